@@ -19,7 +19,13 @@ pub(crate) fn one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<(Se
         let before = of_this_thread()?;
         let result = work();
         let after = of_this_thread()?;
-        Ok((Seconds { all: after.all - before.all, user: after.user - before.user }, result))
+        Ok((
+            Seconds {
+                all: after.all - before.all,
+                user: after.user - before.user,
+            },
+            result,
+        ))
     })
 }
 
@@ -28,12 +34,17 @@ pub(crate) fn one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> Result<(Se
 fn of_this_thread() -> Result<Seconds> {
     const TICKS_A_SECOND: f64 = 100.0;
     let path = "/proc/thread-self/stat";
-    let stat =
-        std::fs::read_to_string(path).with_context(|| format!("processor time needs Linux's {path}"))?;
+    let stat = std::fs::read_to_string(path)
+        .with_context(|| format!("processor time needs Linux's {path}"))?;
     let now = clock_gettime(ClockId::ThreadCPUTime);
     // The second field is the thread's name in brackets, which may hold blanks; user time is the twelfth after it.
-    let (_, fields) = stat.rsplit_once(')').context("no name in /proc/thread-self/stat")?;
-    let user = fields.split_whitespace().nth(11).context("a short /proc/thread-self/stat")?;
+    let (_, fields) = stat
+        .rsplit_once(')')
+        .context("no name in /proc/thread-self/stat")?;
+    let user = fields
+        .split_whitespace()
+        .nth(11)
+        .context("a short /proc/thread-self/stat")?;
     Ok(Seconds {
         all: now.tv_sec as f64 + now.tv_nsec as f64 * 1e-9,
         user: user.parse::<f64>()? / TICKS_A_SECOND,
@@ -51,8 +62,16 @@ pub(crate) fn resident_bytes() -> Result<u64> {
 }
 
 fn status(name: &str) -> Result<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").context("memory needs Linux's /proc")?;
-    let line = status.lines().find(|line| line.starts_with(name)).with_context(|| format!("no {name}"))?;
-    let kilobytes: u64 = line.split_whitespace().nth(1).context("no number after the name")?.parse()?;
+    let status =
+        std::fs::read_to_string("/proc/self/status").context("memory needs Linux's /proc")?;
+    let line = status
+        .lines()
+        .find(|line| line.starts_with(name))
+        .with_context(|| format!("no {name}"))?;
+    let kilobytes: u64 = line
+        .split_whitespace()
+        .nth(1)
+        .context("no number after the name")?
+        .parse()?;
     Ok(kilobytes * 1024)
 }

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::measure::{Bounds, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
+use limitmesh::measure::{
+    Bounds, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff,
+};
 use limitmesh::refine::UniformOptions;
 use limitmesh::scheme::Loop;
 
@@ -78,7 +80,9 @@ pub(crate) fn certified(model: &Path) -> Result<()> {
         ("1e-3", one_percent.relative_gap(0.0).gap(Some(1e-3))),
     ] {
         let run = |threads| {
-            best_of(3, threads, || certified_hausdorff(coarse.as_triangles(), fine.as_triangles(), &options))
+            best_of(3, threads, || {
+                certified_hausdorff(coarse.as_triangles(), fine.as_triangles(), &options)
+            })
         };
         let (one, found) = run(1)?;
         let (two, _) = run(2)?;
@@ -91,7 +95,11 @@ pub(crate) fn certified(model: &Path) -> Result<()> {
             found.upper(),
             interval(&found.forward),
             interval(&found.backward),
-            if found.converged() { "" } else { ", not converged" },
+            if found.converged() {
+                ""
+            } else {
+                ", not converged"
+            },
             one / two,
             found.work as f64 / 1e6
         );

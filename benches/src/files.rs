@@ -46,8 +46,9 @@ pub(crate) fn files() -> Result<()> {
                 if path.exists() {
                     std::fs::remove_file(&path)?;
                 }
-                let (seconds, done) =
-                    best_of(1, threads, || limitmesh_io::write(&path, &output, &Default::default()))?;
+                let (seconds, done) = best_of(1, threads, || {
+                    limitmesh_io::write(&path, &output, &Default::default())
+                })?;
                 done?;
                 least = least.min(seconds);
             }
@@ -55,7 +56,10 @@ pub(crate) fn files() -> Result<()> {
         };
         let (one, two) = (write(1)?, write(2)?);
         let (read, again) = best_of(REPEATS, 1, || limitmesh_io::read(&path))?;
-        ensure!(again?.faces.len() == refined.mesh.face_count(), "{ending}: other faces than were written");
+        ensure!(
+            again?.faces.len() == refined.mesh.face_count(),
+            "{ending}: other faces than were written"
+        );
         let peer = match &peer {
             Some(seconds) => {
                 let Exported { written, read } = seconds[number];
@@ -63,7 +67,11 @@ pub(crate) fn files() -> Result<()> {
             }
             None => "not installed".into(),
         };
-        println!("{ending:6}  {:9.1}  {one:19.0}  {two:4.0}  {:4.0}  {peer}", megabytes(&path)?, 1e3 * read);
+        println!(
+            "{ending:6}  {:9.1}  {one:19.0}  {two:4.0}  {:4.0}  {peer}",
+            megabytes(&path)?,
+            1e3 * read
+        );
     }
     Ok(())
 }

@@ -26,7 +26,9 @@ pub(crate) fn front(folder: &Path) -> Result<()> {
     let control = mesh(&folder.join("bunny_3674.obj"))?;
     let (_, printed) = best_of(1, 1, || {
         tolerances(&control)?;
-        TURNS.iter().try_for_each(|&degrees| camera(&control, degrees))
+        TURNS
+            .iter()
+            .try_for_each(|&degrees| camera(&control, degrees))
     })?;
     printed
 }
@@ -73,8 +75,19 @@ fn camera(control: &Mesh, degrees: f64) -> Result<()> {
     let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
     let camera = |frame: usize| {
         let (sine, cosine) = (degrees.to_radians() * frame as f64 / (FRAMES - 1) as f64).sin_cos();
-        let eye = [middle[0] + 0.9 * size * sine, middle[1] + 0.2 * size, middle[2] + 0.9 * size * cosine];
-        Camera { eye, target: middle, up: [0.0, 1.0, 0.0], fov_degrees: 40.0, width: 3840, height: 2160 }
+        let eye = [
+            middle[0] + 0.9 * size * sine,
+            middle[1] + 0.2 * size,
+            middle[2] + 0.9 * size * cosine,
+        ];
+        Camera {
+            eye,
+            target: middle,
+            up: [0.0, 1.0, 0.0],
+            fov_degrees: 40.0,
+            width: 3840,
+            height: 2160,
+        }
     };
     let mut front = Front::new(control, &Loop)?;
     front.update(&Demand::pixels(0.0, &[camera(0)]).triangles(TRIANGLES))?;

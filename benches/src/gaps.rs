@@ -9,8 +9,8 @@ use anyhow::{Context, Result, ensure};
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::measure::{
-    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff_between_observed, hausdorff_observed,
-    watertightness_observed,
+    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff_between_observed,
+    hausdorff_observed, watertightness_observed,
 };
 use limitmesh::progress::{Observer, Progress};
 use limitmesh::refine::{
@@ -32,32 +32,63 @@ pub(crate) fn gaps(folder: &Path) -> Result<()> {
     println!(
         "work                                      seconds     calls   ms between calls   ms to the end once stopped"
     );
-    let [canyon, bunny] = ["gcanyon_530k.ply", "bunny_3674.obj"].map(|name| mesh(&folder.join(name)));
+    let [canyon, bunny] =
+        ["gcanyon_530k.ply", "bunny_3674.obj"].map(|name| mesh(&folder.join(name)));
     let (canyon, bunny) = (canyon?, bunny?);
     let cup = limitmesh_models::find("cup").context("the cup is built in")?;
     let (cup, _) = Mesh::from_soup(&cup.soup(), &Default::default())?;
-    let within =
-        |mesh: &Mesh, percent: f64| ExactOptions::default().tolerance(0.01 * percent * mesh.diagonal());
+    let within = |mesh: &Mesh, percent: f64| {
+        ExactOptions::default().tolerance(0.01 * percent * mesh.diagonal())
+    };
     let jobs = [
         ("canyon within 0.1 %", &canyon, within(&canyon, 0.1)),
         ("canyon within 0.001 %", &canyon, within(&canyon, 0.001)),
         ("cup within 0.0001 %", &cup, within(&cup, 0.0001)),
         ("bunny within 0.001 %", &bunny, within(&bunny, 0.001)),
-        ("bunny within 0.01 %, balanced", &bunny, within(&bunny, 0.01).balance(true)),
-        ("bunny with 200,000 triangles", &bunny, ExactOptions::default().triangles(200_000)),
-        ("canyon with 2,000,000 triangles", &canyon, ExactOptions::default().triangles(2_000_000)),
-        ("bunny within 0.05 %, optimised", &bunny, within(&bunny, 0.05).optimize(true)),
-        ("bunny at 1 degree", &bunny, ExactOptions::default().angle(1f64.to_radians())),
-        ("bunny at a tenth of a pixel", &bunny, ExactOptions::default().pixels(0.1, vec![camera(&bunny)])),
+        (
+            "bunny within 0.01 %, balanced",
+            &bunny,
+            within(&bunny, 0.01).balance(true),
+        ),
+        (
+            "bunny with 200,000 triangles",
+            &bunny,
+            ExactOptions::default().triangles(200_000),
+        ),
+        (
+            "canyon with 2,000,000 triangles",
+            &canyon,
+            ExactOptions::default().triangles(2_000_000),
+        ),
+        (
+            "bunny within 0.05 %, optimised",
+            &bunny,
+            within(&bunny, 0.05).optimize(true),
+        ),
+        (
+            "bunny at 1 degree",
+            &bunny,
+            ExactOptions::default().angle(1f64.to_radians()),
+        ),
+        (
+            "bunny at a tenth of a pixel",
+            &bunny,
+            ExactOptions::default().pixels(0.1, vec![camera(&bunny)]),
+        ),
     ];
     for (name, control, options) in &jobs {
-        gap(name, &|observer| Ok(exact_observed(control, &Loop, options, observer).map(|_| ())?))?;
+        gap(name, &|observer| {
+            Ok(exact_observed(control, &Loop, options, observer).map(|_| ())?)
+        })?;
     }
     let options = within(&bunny, 0.01).optimize(true);
     gap("bunny, an estimate", &|observer| {
         Ok(exact_estimate_observed(&bunny, &Loop, &options, observer).map(|_| ())?)
     })?;
-    let options = UniformOptions::default().levels(5).limit(true).normals(true);
+    let options = UniformOptions::default()
+        .levels(5)
+        .limit(true)
+        .normals(true);
     gap("bunny, uniform, 5 levels", &|observer| {
         Ok(uniform_observed(&bunny, &Loop, &options, observer).map(|_| ())?)
     })?;
@@ -74,12 +105,24 @@ fn measurements(bunny: &Mesh, canyon: &Mesh) -> Result<()> {
     let fine = limitmesh::refine::limit_reference(bunny, &Loop, 4)?;
     let (a, b) = (bunny.as_triangles(), fine.as_triangles());
     gap("bunny, sampled distances", &|observer| {
-        Ok(hausdorff_observed(a, b, &SamplingOptions::default().samples(1_000_000), observer).map(|_| ())?)
+        Ok(hausdorff_observed(
+            a,
+            b,
+            &SamplingOptions::default().samples(1_000_000),
+            observer,
+        )
+        .map(|_| ())?)
     })?;
     gap("bunny, certified distances", &|observer| {
-        let (surface, reference) = (Bvh::new_observed(a, observer)?, Bvh::new_observed(b, observer)?);
+        let (surface, reference) = (
+            Bvh::new_observed(a, observer)?,
+            Bvh::new_observed(b, observer)?,
+        );
         let options = CertifiedOptions::default();
-        Ok(certified_hausdorff_between_observed(&surface, &reference, &options, observer).map(|_| ())?)
+        Ok(
+            certified_hausdorff_between_observed(&surface, &reference, &options, observer)
+                .map(|_| ())?,
+        )
     })?;
     gap("canyon, watertight", &|observer| {
         Ok(watertightness_observed(canyon.as_triangles(), observer).map(|_| ())?)
@@ -88,7 +131,14 @@ fn measurements(bunny: &Mesh, canyon: &Mesh) -> Result<()> {
 
 fn camera(mesh: &Mesh) -> Camera {
     let eye = [0.0, 0.0, 2.0 * mesh.diagonal()];
-    Camera { eye, target: [0.0; 3], up: [0.0, 1.0, 0.0], fov_degrees: 40.0, width: 1920, height: 1080 }
+    Camera {
+        eye,
+        target: [0.0; 3],
+        up: [0.0, 1.0, 0.0],
+        fov_degrees: 40.0,
+        width: 1920,
+        height: 1080,
+    }
 }
 
 /// Runs to the end once, and then to some places on the way.
@@ -102,7 +152,10 @@ fn gap(name: &str, work: &Work<'_>) -> Result<()> {
         (calls, last) = (calls + 1, now);
         ControlFlow::Continue(())
     })?;
-    let (whole, greatest) = (start.elapsed().as_secs_f64(), greatest.max(last.elapsed().as_secs_f64()));
+    let (whole, greatest) = (
+        start.elapsed().as_secs_f64(),
+        greatest.max(last.elapsed().as_secs_f64()),
+    );
     let mut slowest = 0.0f64;
     for place in 1..=CANCELLED {
         let stop = whole * (place as f64 - 0.5) / CANCELLED as f64;
@@ -119,6 +172,10 @@ fn gap(name: &str, work: &Work<'_>) -> Result<()> {
             slowest = slowest.max(stopped.elapsed().as_secs_f64());
         }
     }
-    println!("{name:40} {whole:8.2} {calls:9} {:18.1} {:28.1}", 1e3 * greatest, 1e3 * slowest);
+    println!(
+        "{name:40} {whole:8.2} {calls:9} {:18.1} {:28.1}",
+        1e3 * greatest,
+        1e3 * slowest
+    );
     Ok(())
 }

@@ -11,10 +11,20 @@ use crate::mesh;
 
 /// Runs [`child`] in a process of its own, three times.
 pub(crate) fn load(file: &Path) -> Result<()> {
-    println!("\n{} read, repaired, topology built", file.file_name().unwrap_or_default().to_string_lossy());
+    println!(
+        "\n{} read, repaired, topology built",
+        file.file_name().unwrap_or_default().to_string_lossy()
+    );
     for _ in 0..3 {
-        let output = Command::new(std::env::current_exe()?).arg("load-child").arg(file).output()?;
-        ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let output = Command::new(std::env::current_exe()?)
+            .arg("load-child")
+            .arg(file)
+            .output()?;
+        ensure!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         print!("{}", String::from_utf8_lossy(&output.stdout));
     }
     Ok(())

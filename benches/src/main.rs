@@ -49,8 +49,13 @@ use limitmesh::Mesh;
 const SPEED: [&str; 5] = ["uniform", "stepwise", "distance", "certified", "load"];
 
 /// All measurements of quality, in the order in which `quality` makes them.
-const QUALITY: [&str; 5] =
-    ["against-paper", "against-uniform", "against-optimum", "against-simplified", "certificate"];
+const QUALITY: [&str; 5] = [
+    "against-paper",
+    "against-uniform",
+    "against-optimum",
+    "against-simplified",
+    "certificate",
+];
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
@@ -81,7 +86,9 @@ fn main() -> Result<()> {
         "quality" => QUALITY.iter().try_for_each(|work| measure(work, &folder)),
         "all" => {
             let works = SPEED.iter().chain(&QUALITY).chain(&["throughput"]);
-            works.into_iter().try_for_each(|work| measure(work, &folder))
+            works
+                .into_iter()
+                .try_for_each(|work| measure(work, &folder))
         }
         one => measure(one, &folder),
     }
@@ -124,8 +131,14 @@ fn mesh(path: &Path) -> Result<Mesh> {
 }
 
 /// Runs `work` on a pool of `threads` threads `repeats` times and returns the least seconds and the last result.
-fn best_of<T: Send>(repeats: usize, threads: usize, work: impl Fn() -> T + Sync) -> Result<(f64, T)> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+fn best_of<T: Send>(
+    repeats: usize,
+    threads: usize,
+    work: impl Fn() -> T + Sync,
+) -> Result<(f64, T)> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()?;
     let run = || {
         let start = std::time::Instant::now();
         let result = pool.install(&work);

@@ -29,12 +29,23 @@ pub(crate) fn opensubdiv(
     level: usize,
     repeats: usize,
 ) -> Result<Option<f64>> {
-    let Some(program) = program(what)? else { return Ok(None) };
-    let output =
-        Command::new(&program).arg(model).arg(level.to_string()).arg(repeats.to_string()).output()?;
-    ensure!(output.status.success(), "OpenSubdiv's program failed on {}", model.display());
+    let Some(program) = program(what)? else {
+        return Ok(None);
+    };
+    let output = Command::new(&program)
+        .arg(model)
+        .arg(level.to_string())
+        .arg(repeats.to_string())
+        .output()?;
+    ensure!(
+        output.status.success(),
+        "OpenSubdiv's program failed on {}",
+        model.display()
+    );
     let text = String::from_utf8(output.stdout)?;
-    let seconds = text.lines().filter_map(|line| line.split_whitespace().nth(1)?.parse().ok());
+    let seconds = text
+        .lines()
+        .filter_map(|line| line.split_whitespace().nth(1)?.parse().ok());
     Ok(seconds.reduce(f64::min))
 }
 
@@ -76,7 +87,9 @@ pub(crate) struct MeshLab {
 
 /// MeshLab's `get_hausdorff_distance`, both ways; `None` where Python has no `pymeshlab`.
 pub(crate) fn meshlab_distance(a: &Mesh, b: &Mesh, samples: usize) -> Result<Option<MeshLab>> {
-    let found = Command::new("python3").args(["-c", "import pymeshlab"]).output();
+    let found = Command::new("python3")
+        .args(["-c", "import pymeshlab"])
+        .output();
     if !found.is_ok_and(|output| output.status.success()) {
         return Ok(None);
     }
@@ -93,14 +106,28 @@ pub(crate) fn meshlab_distance(a: &Mesh, b: &Mesh, samples: usize) -> Result<Opt
         .args([&a, &b])
         .arg(samples.to_string())
         .output()?;
-    ensure!(output.status.success(), "MeshLab: {}", String::from_utf8_lossy(&output.stderr));
+    ensure!(
+        output.status.success(),
+        "MeshLab: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout)?;
-    let line = text.lines().last().context("MeshLab's script printed nothing")?;
-    let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>()?;
+    let line = text
+        .lines()
+        .last()
+        .context("MeshLab's script printed nothing")?;
+    let numbers = line
+        .split_whitespace()
+        .map(str::parse)
+        .collect::<Result<Vec<f64>, _>>()?;
     let [forward, backward, seconds] = numbers[..] else {
         anyhow::bail!("MeshLab's script printed {line}, expected three numbers");
     };
-    Ok(Some(MeshLab { forward, backward, seconds }))
+    Ok(Some(MeshLab {
+        forward,
+        backward,
+        seconds,
+    }))
 }
 
 /// Programs that simplify meshes by quadrics.
@@ -156,10 +183,18 @@ pub(crate) fn simplified(
         .args([&fine, &coarse])
         .arg(triangles.to_string())
         .output()?;
-    ensure!(output.status.success(), "{}: {}", simplifier.name(), String::from_utf8_lossy(&output.stderr));
+    ensure!(
+        output.status.success(),
+        "{}: {}",
+        simplifier.name(),
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout)?;
     let line = text.lines().last().context("the script printed nothing")?;
-    Ok(Some(Simplified { mesh: crate::mesh(&coarse)?, seconds: line.trim().parse()? }))
+    Ok(Some(Simplified {
+        mesh: crate::mesh(&coarse)?,
+        seconds: line.trim().parse()?,
+    }))
 }
 
 /// Seconds of writing a file and of reading it.
@@ -177,7 +212,9 @@ pub(crate) fn exported(
     endings: &[&str],
 ) -> Result<Option<Vec<Exported>>> {
     // 3MF needs the other two.
-    let found = Command::new("python3").args(["-c", "import trimesh, lxml, networkx"]).output();
+    let found = Command::new("python3")
+        .args(["-c", "import trimesh, lxml, networkx"])
+        .output();
     if !found.is_ok_and(|output| output.status.success()) {
         return Ok(None);
     }
@@ -187,11 +224,20 @@ pub(crate) fn exported(
         .arg(repeats.to_string())
         .args(endings)
         .output()?;
-    ensure!(output.status.success(), "trimesh: {}", String::from_utf8_lossy(&output.stderr));
+    ensure!(
+        output.status.success(),
+        "trimesh: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout)?;
     let seconds = text.lines().map(|line| {
-        let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>()?;
-        let [written, read] = numbers[..] else { anyhow::bail!("trimesh's script printed {line}") };
+        let numbers = line
+            .split_whitespace()
+            .map(str::parse)
+            .collect::<Result<Vec<f64>, _>>()?;
+        let [written, read] = numbers[..] else {
+            anyhow::bail!("trimesh's script printed {line}")
+        };
         Ok(Exported { written, read })
     });
     Ok(Some(seconds.collect::<Result<_>>()?))

@@ -35,7 +35,11 @@ fn evaluations(mesh: &Mesh, surface: &LimitSurface<'_>) -> Result<()> {
     println!("| evaluation | places | million a second |");
     println!("|---|---:|---:|");
     let row = |name: &str, places: &[(FaceId, [f64; 3])], seconds: f64| {
-        println!("| {name} | {} | {:.2} |", places.len(), 1e-6 * places.len() as f64 / seconds);
+        println!(
+            "| {name} | {} | {:.2} |",
+            places.len(),
+            1e-6 * places.len() as f64 / seconds
+        );
     };
     let scattered = places(mesh);
     let (time, _) = one_thread(|| surface.at_all(&scattered))?;
@@ -49,7 +53,9 @@ fn evaluations(mesh: &Mesh, surface: &LimitSurface<'_>) -> Result<()> {
     });
     let weights: Vec<[f64; 3]> = weights.collect();
     let faces = (0..mesh.face_count() as u32).step_by(1 + mesh.face_count() / 1000);
-    let grid: Vec<_> = faces.flat_map(|face| weights.iter().map(move |&at| (FaceId(face), at))).collect();
+    let grid: Vec<_> = faces
+        .flat_map(|face| weights.iter().map(move |&at| (FaceId(face), at)))
+        .collect();
     let (time, _) = one_thread(|| surface.at_all(&grid))?;
     row("points and normals on grids of 33 a side", &grid, time.all);
     Ok(())
@@ -81,9 +87,16 @@ fn closest(mesh: &Mesh, surface: &LimitSurface<'_>) -> Result<()> {
         let points: Vec<[f64; 3]> = on.iter().zip(offsets).map(off).collect();
         let (time, found) = one_thread(|| proximity.closest(&points, 1e-6 * diagonal))?;
         let found = found?;
-        let (by_mesh, peers) =
-            one_thread(|| points.iter().map(|&point| tree.closest(point).distance).collect::<Vec<_>>())?;
-        let gap = found.iter().map(|at| at.distance - at.lower).fold(0.0, f64::max);
+        let (by_mesh, peers) = one_thread(|| {
+            points
+                .iter()
+                .map(|&point| tree.closest(point).distance)
+                .collect::<Vec<_>>()
+        })?;
+        let gap = found
+            .iter()
+            .map(|at| at.distance - at.lower)
+            .fold(0.0, f64::max);
         let mut apart = 0.0;
         for (own, peer) in found.iter().zip(peers) {
             apart = f64::max(apart, (own.distance - peer).abs());
@@ -106,7 +119,11 @@ fn places(mesh: &Mesh) -> Vec<(FaceId, [f64; 3])> {
     let place = |i: usize| {
         let face = (i * mesh.face_count() / COUNT) as u32;
         let [u, v] = [0.618_033_988_75, 0.754_877_666_25].map(|step| fraction(i, step));
-        let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+        let [u, v] = if u + v > 1.0 {
+            [1.0 - u, 1.0 - v]
+        } else {
+            [u, v]
+        };
         (FaceId(face), [1.0 - u - v, u, v])
     };
     (0..COUNT).map(place).collect()

@@ -17,7 +17,10 @@ const REPEATS: usize = 5;
 /// Uniform Loop refinement, levels 3 to 6.
 pub(crate) fn uniform(model: &Path) -> Result<()> {
     let control = mesh(model)?;
-    println!("uniform Loop of {}: million output triangles per second, best of {REPEATS}", name(model));
+    println!(
+        "uniform Loop of {}: million output triangles per second, best of {REPEATS}",
+        name(model)
+    );
     println!("level  triangles  1 thread  2 threads  gain  OpenSubdiv Far, 1 thread");
     for level in 3..=6 {
         let run = |threads| {
@@ -31,10 +34,19 @@ pub(crate) fn uniform(model: &Path) -> Result<()> {
         let (two, _) = run(2)?;
         let rate = |seconds: f64| triangles as f64 / seconds / 1e6;
         let peer = match opensubdiv(OpenSubdiv::Far, model, level, REPEATS)? {
-            Some(seconds) => format!("{:.1} (ours is {:.2} times that)", rate(seconds), seconds / one),
+            Some(seconds) => format!(
+                "{:.1} (ours is {:.2} times that)",
+                rate(seconds),
+                seconds / one
+            ),
             None => "not installed".into(),
         };
-        println!("{level:5}  {triangles:9}  {:8.1}  {:9.1}  {:4.2}  {peer}", rate(one), rate(two), one / two);
+        println!(
+            "{level:5}  {triangles:9}  {:8.1}  {:9.1}  {:4.2}  {peer}",
+            rate(one),
+            rate(two),
+            one / two
+        );
     }
     limits(model, &control)
 }
@@ -56,12 +68,17 @@ fn limits(model: &Path, control: &Mesh) -> Result<()> {
                 .map(|found| found.triangles.len())
         };
         let connected = || {
-            limitmesh::refine::uniform(control, &Loop, &options.normals(true)).map(|r| r.mesh.face_count())
+            limitmesh::refine::uniform(control, &Loop, &options.normals(true))
+                .map(|r| r.mesh.face_count())
         };
         let (mut least, mut triangles, mut peer) = ([f64::MAX; 3], 0, None::<f64>);
         // In turns, so that a busy machine slows all of them.
         for _ in 0..REPEATS {
-            let runs = [one_thread(|| alone(false))?, one_thread(|| alone(true))?, one_thread(connected)?];
+            let runs = [
+                one_thread(|| alone(false))?,
+                one_thread(|| alone(true))?,
+                one_thread(connected)?,
+            ];
             for (least, (seconds, count)) in least.iter_mut().zip(runs) {
                 (*least, triangles) = (least.min(seconds.all), count?);
             }
@@ -95,7 +112,10 @@ fn limits(model: &Path, control: &Mesh) -> Result<()> {
 /// The paper's stepwise refinement: 4 steps at 5°, and longer work.
 pub(crate) fn stepwise(model: &Path) -> Result<()> {
     let control = mesh(model)?;
-    println!("\nstepwise limit-normal Loop of {}, best of {REPEATS}", name(model));
+    println!(
+        "\nstepwise limit-normal Loop of {}, best of {REPEATS}",
+        name(model)
+    );
     for (levels, degrees) in [(4, 5.0f64), (7, 1.0)] {
         let criterion = LimitNormal::new(degrees.to_radians());
         let run = |threads| {
@@ -120,5 +140,9 @@ pub(crate) fn stepwise(model: &Path) -> Result<()> {
 }
 
 fn name(model: &Path) -> String {
-    model.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    model
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }

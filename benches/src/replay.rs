@@ -25,8 +25,12 @@ const FRAMES: usize = 16;
 const TOLERANCES: [f64; 3] = [0.1, 0.02, 0.004];
 
 /// The precisions of the peer, and the processors that it is compiled for: the one that all this runs on, and any.
-const PEERS: [(&str, &str); 4] =
-    [("double", "native"), ("float", "native"), ("double", "x86-64"), ("float", "x86-64")];
+const PEERS: [(&str, &str); 4] = [
+    ("double", "native"),
+    ("float", "native"),
+    ("double", "x86-64"),
+    ("float", "x86-64"),
+];
 
 /// Replay of a refined model, warm, one thread, in turns with OpenSubdiv.
 pub(crate) fn replay(model: &Path) -> Result<()> {
@@ -40,7 +44,9 @@ pub(crate) fn replay(model: &Path) -> Result<()> {
     );
     for percent in TOLERANCES {
         let tolerance = 0.01 * percent * control.diagonal();
-        let options = ExactOptions::default().tolerance(tolerance).flat_regions(false);
+        let options = ExactOptions::default()
+            .tolerance(tolerance)
+            .flat_regions(false);
         let refined = exact(&control, &Loop, &options)?;
         compare(model, &control, &refined, percent)?;
     }
@@ -50,12 +56,25 @@ pub(crate) fn replay(model: &Path) -> Result<()> {
 /// The control points turned around the third axis, the more the higher they are.
 fn frames(control: &Mesh) -> Vec<Vec<[f64; 3]>> {
     let heights = || control.positions().iter().map(|p| p[2]);
-    let (low, high) = (heights().fold(f64::MAX, f64::min), heights().fold(f64::MIN, f64::max));
+    let (low, high) = (
+        heights().fold(f64::MAX, f64::min),
+        heights().fold(f64::MIN, f64::max),
+    );
     let turned = |frame: usize, &[x, y, z]: &[f64; 3]| {
         let angle = 0.3 * frame as f64 / FRAMES as f64 * (z - low) / (high - low);
-        [x * angle.cos() - y * angle.sin(), x * angle.sin() + y * angle.cos(), z]
+        [
+            x * angle.cos() - y * angle.sin(),
+            x * angle.sin() + y * angle.cos(),
+            z,
+        ]
     };
-    let frame = |frame| control.positions().iter().map(|p| turned(frame, p)).collect();
+    let frame = |frame| {
+        control
+            .positions()
+            .iter()
+            .map(|p| turned(frame, p))
+            .collect()
+    };
     (1..=FRAMES).map(frame).collect()
 }
 
@@ -84,7 +103,8 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
     let several = (VERTICES / count).max(1);
     for _ in 0..ROUNDS {
         let mut moved = frames.iter().cycle().take(several);
-        let (seconds, done) = one_thread(|| moved.try_for_each(|at| replay.positions(at, &mut frame)))?;
+        let (seconds, done) =
+            one_thread(|| moved.try_for_each(|at| replay.positions(at, &mut frame)))?;
         done?;
         best[0] = best[0].min(seconds.all / several as f64);
         let mut moved = frames.iter().cycle().take(several);
@@ -103,7 +123,11 @@ fn compare(model: &Path, control: &Mesh, refined: &Exact, percent: f64) -> Resul
     );
     replay.frame(control.positions(), &mut frame)?;
     for peer in &mut peers {
-        ensure!(peer.stencils == count, "{} stencils for {count} vertices", peer.stencils);
+        ensure!(
+            peer.stencils == count,
+            "{} stencils for {count} vertices",
+            peer.stencils
+        );
         let apart = peer.apart(&order, &frame.positions, &folder.path().join("positions"))?;
         let times = [peer.best[0] / best[0], peer.best[1] / best[1]];
         println!(
@@ -143,15 +167,23 @@ impl Peer {
         model: &Path,
         places: &Path,
     ) -> Result<Option<Self>> {
-        let Some(program) = program_for(OpenSubdiv::Stencils, processor)? else { return Ok(None) };
+        let Some(program) = program_for(OpenSubdiv::Stencils, processor)? else {
+            return Ok(None);
+        };
         let mut process = Command::new(program)
             .arg(precision)
             .args([model, places])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()?;
-        let input = process.stdin.take().context("no input of OpenSubdiv's program")?;
-        let output = process.stdout.take().context("no output of OpenSubdiv's program")?;
+        let input = process
+            .stdin
+            .take()
+            .context("no input of OpenSubdiv's program")?;
+        let output = process
+            .stdout
+            .take()
+            .context("no output of OpenSubdiv's program")?;
         let mut peer = Self {
             precision,
             processor,
@@ -163,7 +195,10 @@ impl Peer {
             best: [f64::MAX; 2],
         };
         let line = peer.line()?;
-        let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<usize>, _>>()?;
+        let numbers = line
+            .split_whitespace()
+            .map(str::parse)
+            .collect::<Result<Vec<usize>, _>>()?;
         let [stencils, bytes] = numbers[..] else {
             anyhow::bail!("OpenSubdiv's program printed {line:?}, expected two numbers");
         };
@@ -199,11 +234,18 @@ impl Peer {
     fn apart(&mut self, order: &[usize], positions: &[[f64; 3]], file: &Path) -> Result<f64> {
         self.ask(&format!("w {}", file.display()))?;
         let bytes = std::fs::read(file)?;
-        let numbers: Vec<f64> =
-            bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+        let numbers: Vec<f64> = bytes
+            .as_chunks::<8>()
+            .0
+            .iter()
+            .map(|bytes| f64::from_le_bytes(*bytes))
+            .collect();
         let points = numbers.as_chunks::<3>().0;
         let apart = points.iter().zip(order).map(|(point, &vertex)| {
-            let squares = point.iter().zip(positions[vertex]).map(|(a, b)| (a - b) * (a - b));
+            let squares = point
+                .iter()
+                .zip(positions[vertex])
+                .map(|(a, b)| (a - b) * (a - b));
             squares.sum::<f64>().sqrt()
         });
         Ok(apart.fold(0.0, f64::max))

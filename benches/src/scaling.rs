@@ -20,7 +20,10 @@ type Shape = fn(usize) -> PolygonSoup;
 
 /// Prints a table for each way of being large.
 pub(crate) fn scaling() -> Result<()> {
-    println!("exact refinement within {} % of the diagonal, one thread", 100.0 * TOLERANCE);
+    println!(
+        "exact refinement within {} % of the diagonal, one thread",
+        100.0 * TOLERANCE
+    );
     println!(
         "shape                          size  control faces  triangles  ms         µs a face  µs a triangle"
     );
@@ -52,18 +55,30 @@ pub(crate) fn scaling() -> Result<()> {
 
 fn soup(positions: Vec<[f64; 3]>, triangles: &[[u32; 3]]) -> PolygonSoup {
     let faces = triangles.iter().map(|triangle| &triangle[..]).collect();
-    PolygonSoup { positions, faces, ..Default::default() }
+    PolygonSoup {
+        positions,
+        faces,
+        ..Default::default()
+    }
 }
 
 /// Points of an uneven circle.
 fn circle(count: usize, turn: f64) -> impl Iterator<Item = [f64; 3]> {
     let angle = move |i: usize| turn * i as f64 / count as f64;
-    (0..count).map(move |i| [angle(i).cos(), angle(i).sin(), 0.05 * (5.0 * angle(i)).sin()])
+    (0..count).map(move |i| {
+        [
+            angle(i).cos(),
+            angle(i).sin(),
+            0.05 * (5.0 * angle(i)).sin(),
+        ]
+    })
 }
 
 /// Two vertices of so many edges.
 fn pole(edges: usize) -> PolygonSoup {
-    let positions = [[0.0, 0.0, 0.5], [0.0, 0.0, -0.5]].into_iter().chain(circle(edges, TAU));
+    let positions = [[0.0, 0.0, 0.5], [0.0, 0.0, -0.5]]
+        .into_iter()
+        .chain(circle(edges, TAU));
     let rim = |i: usize| 2 + (i % edges) as u32;
     let faces = (0..edges).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]);
     soup(positions.collect(), &faces.collect::<Vec<_>>())
@@ -71,13 +86,25 @@ fn pole(edges: usize) -> PolygonSoup {
 
 /// The same, one of them a corner for a while.
 fn semi_sharp_pole(edges: usize) -> PolygonSoup {
-    PolygonSoup { corners: vec![CornerTag { vertex: 0, sharpness: 2.5 }], ..pole(edges) }
+    PolygonSoup {
+        corners: vec![CornerTag {
+            vertex: 0,
+            sharpness: 2.5,
+        }],
+        ..pole(edges)
+    }
 }
 
 /// The same as smooth, but for every third edge at one of them, which is sharp for a while, and longer from one to the next.
 fn semi_sharp_edges(edges: usize) -> PolygonSoup {
-    let crease = |i: usize| CreaseTag { vertices: [0, 2 + i as u32], sharpness: 0.4 + 0.7 * (i % 5) as f64 };
-    PolygonSoup { creases: (0..edges).step_by(3).map(crease).collect(), ..pole(edges) }
+    let crease = |i: usize| CreaseTag {
+        vertices: [0, 2 + i as u32],
+        sharpness: 0.4 + 0.7 * (i % 5) as f64,
+    };
+    PolygonSoup {
+        creases: (0..edges).step_by(3).map(crease).collect(),
+        ..pole(edges)
+    }
 }
 
 /// A vertex of the boundary with so many edges.
@@ -89,7 +116,9 @@ fn fan(edges: usize) -> PolygonSoup {
 
 /// So many triangles at one edge.
 fn sheets(count: usize) -> PolygonSoup {
-    let positions = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]].into_iter().chain(circle(count, TAU));
+    let positions = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+        .into_iter()
+        .chain(circle(count, TAU));
     let faces: Vec<[u32; 3]> = (2..2 + count as u32).map(|i| [0, 1, i]).collect();
     soup(positions.collect(), &faces)
 }
@@ -100,9 +129,13 @@ fn sphere(faces: usize) -> PolygonSoup {
     let columns = 2 * rows;
     let mut positions = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]];
     for row in 1..rows {
-        let (z, radius) = ((PI * row as f64 / rows as f64).cos(), (PI * row as f64 / rows as f64).sin());
+        let (z, radius) = (
+            (PI * row as f64 / rows as f64).cos(),
+            (PI * row as f64 / rows as f64).sin(),
+        );
         let angle = |column: usize| TAU * column as f64 / columns as f64;
-        positions.extend((0..columns).map(|c| [radius * angle(c).cos(), radius * angle(c).sin(), z]));
+        positions
+            .extend((0..columns).map(|c| [radius * angle(c).cos(), radius * angle(c).sin(), z]));
     }
     let at = |row: usize, column: usize| (2 + (row - 1) * columns + column % columns) as u32;
     let mut triangles = Vec::new();

@@ -21,7 +21,19 @@ fn quadric(corners: [DVec3; 3]) -> Quadric {
     let area = normal.length().max(f64::MIN_POSITIVE);
     let normal = normal / area;
     let ([x, y, z], w) = (normal.to_array(), -normal.dot(corners[0]));
-    [x * x, x * y, x * z, x * w, y * y, y * z, y * w, z * z, z * w, w * w].map(|q| area * q)
+    [
+        x * x,
+        x * y,
+        x * z,
+        x * w,
+        y * y,
+        y * z,
+        y * w,
+        z * z,
+        z * w,
+        w * w,
+    ]
+    .map(|q| area * q)
 }
 
 fn at(q: &Quadric, p: DVec3) -> f64 {
@@ -37,7 +49,12 @@ fn at(q: &Quadric, p: DVec3) -> f64 {
 
 /// A closed mesh with so many triangles left, its vertices some of those before.
 pub(crate) fn thinned(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
-    let positions: Vec<DVec3> = mesh.positions().iter().copied().map(DVec3::from_array).collect();
+    let positions: Vec<DVec3> = mesh
+        .positions()
+        .iter()
+        .copied()
+        .map(DVec3::from_array)
+        .collect();
     let mut faces: Vec<Option<[u32; 3]>> = mesh.triangles().iter().copied().map(Some).collect();
     let mut around: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); positions.len()];
     let mut quadrics = vec![[0.0; 10]; positions.len()];
@@ -45,18 +62,26 @@ pub(crate) fn thinned(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
         let own = quadric(face.map(|v| positions[v as usize]));
         for &v in face {
             around[v as usize].insert(f as u32);
-            quadrics[v as usize].iter_mut().zip(own).for_each(|(sum, q)| *sum += q);
+            quadrics[v as usize]
+                .iter_mut()
+                .zip(own)
+                .for_each(|(sum, q)| *sum += q);
         }
     }
     let ring = |v: u32, faces: &[Option<[u32; 3]>], around: &[BTreeSet<u32>]| -> BTreeSet<u32> {
-        let corners = around[v as usize].iter().filter_map(|&f| faces[f as usize]).flatten();
+        let corners = around[v as usize]
+            .iter()
+            .filter_map(|&f| faces[f as usize])
+            .flatten();
         corners.filter(|&u| u != v).collect()
     };
     let mut version = vec![0u32; positions.len()];
     let mut queue = BinaryHeap::new();
     let cost = |from: u32, to: u32, quadrics: &[Quadric]| {
         let p = positions[to as usize];
-        (at(&quadrics[from as usize], p) + at(&quadrics[to as usize], p)).max(0.0).to_bits()
+        (at(&quadrics[from as usize], p) + at(&quadrics[to as usize], p))
+            .max(0.0)
+            .to_bits()
     };
     for v in 0..positions.len() as u32 {
         for u in ring(v, &faces, &around) {
@@ -81,14 +106,21 @@ pub(crate) fn thinned(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
             let after = before.map(|v| if v == from { to } else { v });
             let [p, q] = [before, after].map(|face| face.map(|v| positions[v as usize]));
             let [n, m] = [normal(p), normal(q)];
-            let longest = (0..3).map(|i| q[i].distance_squared(q[(i + 1) % 3])).fold(0.0, f64::max);
+            let longest = (0..3)
+                .map(|i| q[i].distance_squared(q[(i + 1) % 3]))
+                .fold(0.0, f64::max);
             n.dot(m) < 0.3 * n.length() * m.length() || m.length() < 0.12 * longest
         });
-        if near.intersection(&far).count() != 2 || moved.len() + 2 != around[from as usize].len() || turns {
+        if near.intersection(&far).count() != 2
+            || moved.len() + 2 != around[from as usize].len()
+            || turns
+        {
             continue;
         }
         for f in std::mem::take(&mut around[from as usize]) {
-            let Some(face) = faces[f as usize] else { continue };
+            let Some(face) = faces[f as usize] else {
+                continue;
+            };
             if face.contains(&to) {
                 face.iter().for_each(|&v| {
                     around[v as usize].remove(&f);
@@ -101,7 +133,10 @@ pub(crate) fn thinned(mesh: &Mesh, triangles: usize) -> Result<Mesh> {
             }
         }
         let gone = quadrics[from as usize];
-        quadrics[to as usize].iter_mut().zip(gone).for_each(|(sum, q)| *sum += q);
+        quadrics[to as usize]
+            .iter_mut()
+            .zip(gone)
+            .for_each(|(sum, q)| *sum += q);
         let changed: Vec<u32> = ring(to, &faces, &around).into_iter().chain([to]).collect();
         changed.iter().for_each(|&v| version[v as usize] += 1);
         for &v in &changed {

@@ -17,8 +17,13 @@ use crate::mesh;
 use crate::thinning::{normal, thinned};
 
 /// Closed models whose faces are small against their features.
-const MODELS: [&str; 5] =
-    ["bunny_3674.obj", "teddy.obj", "goathead_be.ply", "skull_low.obj", "monsterfrog.obj"];
+const MODELS: [&str; 5] = [
+    "bunny_3674.obj",
+    "teddy.obj",
+    "goathead_be.ply",
+    "skull_low.obj",
+    "monsterfrog.obj",
+];
 
 /// Parts of the diagonal, in per cent, that limits may be from their vertices.
 const WITHIN: [f64; 3] = [0.02, 0.05, 0.2];
@@ -28,7 +33,9 @@ const LEVELS: usize = 4;
 
 /// Prints the table of docs/benchmarks.md.
 pub(crate) fn through(folder: &Path) -> Result<()> {
-    println!("| model | triangles | surface | greatest distance % | RMS distance % | RMS angle | steps |");
+    println!(
+        "| model | triangles | surface | greatest distance % | RMS distance % | RMS angle | steps |"
+    );
     println!("|---|---:|---|---:|---:|---:|---:|");
     for model in MODELS {
         let truth = mesh(&folder.join(model))?;
@@ -53,8 +60,14 @@ pub(crate) fn through(folder: &Path) -> Result<()> {
         for within in [0.0].into_iter().chain(WITHIN) {
             let options = InterpolateOptions::default().within(0.01 * within * size);
             let found = interpolate(&thinned, &Loop, &options)?;
-            let steps = found.fairness.map_or(found.iterations, |fairness| fairness.steps);
-            let name = if within == 0.0 { "through".to_owned() } else { format!("within {within} %") };
+            let steps = found
+                .fairness
+                .map_or(found.iterations, |fairness| fairness.steps);
+            let name = if within == 0.0 {
+                "through".to_owned()
+            } else {
+                format!("within {within} %")
+            };
             row(&name, &found.mesh, steps.to_string())?;
         }
     }

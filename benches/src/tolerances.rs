@@ -23,7 +23,14 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
         match argument.as_str() {
             "--balance" => is_balanced = true,
             "--runs" => runs = arguments.next().context("--runs needs a number")?.parse()?,
-            "--threads" => threads = Some(arguments.next().context("--threads needs a number")?.parse()?),
+            "--threads" => {
+                threads = Some(
+                    arguments
+                        .next()
+                        .context("--threads needs a number")?
+                        .parse()?,
+                )
+            }
             _ => jobs.push(argument),
         }
     }
@@ -33,13 +40,17 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
         );
     }
     match threads {
-        None => println!("model and goal                                       triangles          ms"),
+        None => {
+            println!("model and goal                                       triangles          ms")
+        }
         Some(threads) => println!(
             "model and goal                                       triangles  1 thread, ms  {threads} threads, ms  gain"
         ),
     }
     for job in &jobs {
-        let (name, goal) = job.rsplit_once('@').with_context(|| format!("no goal in {job}"))?;
+        let (name, goal) = job
+            .rsplit_once('@')
+            .with_context(|| format!("no goal in {job}"))?;
         let control = model(name)?;
         let options = ExactOptions::default().balance(is_balanced);
         let options = match goal.strip_prefix("n:") {
@@ -50,7 +61,10 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
         if let Some(threads) = threads {
             let (least, triangles) = in_turn(threads, runs, run)?;
             let [one, more] = least.map(|seconds| 1e3 * seconds);
-            println!("{job:50} {triangles:11} {one:13.1} {more:14.1} {:5.2}", one / more);
+            println!(
+                "{job:50} {triangles:11} {one:13.1} {more:14.1} {:5.2}",
+                one / more
+            );
             continue;
         }
         let (mut least, mut triangles) = (f64::INFINITY, 0);

@@ -16,7 +16,14 @@ use crate::quality::builtin;
 const MODEL: &str = "bunny";
 
 /// Corners of the part's cross-section: radius and height. A flange with a hub and a bore.
-const PROFILE: [[f64; 2]; 6] = [[0.34, 0.0], [1.0, 0.0], [1.0, 0.28], [0.6, 0.28], [0.6, 0.9], [0.34, 0.9]];
+const PROFILE: [[f64; 2]; 6] = [
+    [0.34, 0.0],
+    [1.0, 0.0],
+    [1.0, 0.28],
+    [0.6, 0.28],
+    [0.6, 0.9],
+    [0.34, 0.9],
+];
 
 /// Facets around the part's axis.
 const FACETS: u32 = 16;
@@ -36,37 +43,68 @@ const WIRE: f32 = 0.6;
 const PALE: [u8; 3] = [104, 124, 152];
 
 /// Where the two are looked at from.
-const PART_VIEW: ViewDirection = ViewDirection { sight: [-0.35, -0.75, -1.0], up: [0.0, 1.0, 0.0] };
-const MODEL_VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up: [0.0, 1.0, 0.0] };
+const PART_VIEW: ViewDirection = ViewDirection {
+    sight: [-0.35, -0.75, -1.0],
+    up: [0.0, 1.0, 0.0],
+};
+const MODEL_VIEW: ViewDirection = ViewDirection {
+    sight: [-0.45, -0.2, -1.0],
+    up: [0.0, 1.0, 0.0],
+};
 
 /// The PNG file.
 pub(super) fn picture() -> Result<Vec<u8>> {
     let part = part()?.with_creases_above(CREASE.to_radians())?;
     let mut panels = Vec::new();
-    let shapes = [(part, PART_VIEW, PART_SIZE), (builtin(MODEL)?, MODEL_VIEW, MODEL_SIZE)];
+    let shapes = [
+        (part, PART_VIEW, PART_SIZE),
+        (builtin(MODEL)?, MODEL_VIEW, MODEL_SIZE),
+    ];
     for (control, view, size) in shapes {
         let options = ExactOptions::default().tolerance(TOLERANCE * control.diagonal());
         let refined = exact(&control, &Loop, &options)?;
         let camera = Camera::fit_tightly(control.as_triangles(), view, size.0, size.1)?;
         let style = Style::default().wireframe(true).shading(Shading::Flat);
-        let before = render(control.as_triangles(), None, None, &camera, &style, size.0, size.1)?;
+        let before = render(
+            control.as_triangles(),
+            None,
+            None,
+            &camera,
+            &style,
+            size.0,
+            size.1,
+        )?;
         let triangles = |mesh: &Mesh| thousands(mesh.face_count());
-        panels.push(Panel::new(before, format!("{} triangles", triangles(&control))));
+        panels.push(Panel::new(
+            before,
+            format!("{} triangles", triangles(&control)),
+        ));
         let percent = 100.0 * refined.error.upper / control.diagonal();
-        let words = format!("{} triangles within {percent:.2} %", triangles(&refined.mesh));
+        let words = format!(
+            "{} triangles within {percent:.2} %",
+            triangles(&refined.mesh)
+        );
         panels.push(Panel::new(by_sides(&refined, &camera, size)?, words));
     }
-    let style = GridStyle::default().columns(panels.len()).gap(6).caption(TextStyle::default().size(14.0));
+    let style = GridStyle::default()
+        .columns(panels.len())
+        .gap(6)
+        .caption(TextStyle::default().size(14.0));
     Ok(grid(&panels, &style)?.encode_png()?)
 }
 
 /// The part: its cross-section turned around the axis.
 fn part() -> Result<Mesh> {
     let corners = PROFILE.len() as u32;
-    let mut soup = PolygonSoup { faces: PolygonFaces::with_capacity(0, 0), ..PolygonSoup::default() };
+    let mut soup = PolygonSoup {
+        faces: PolygonFaces::with_capacity(0, 0),
+        ..PolygonSoup::default()
+    };
     for facet in 0..FACETS {
-        let (sine, cosine) = (std::f64::consts::TAU * f64::from(facet) / f64::from(FACETS)).sin_cos();
-        soup.positions.extend(PROFILE.map(|[radius, height]| [radius * cosine, height, radius * sine]));
+        let (sine, cosine) =
+            (std::f64::consts::TAU * f64::from(facet) / f64::from(FACETS)).sin_cos();
+        soup.positions
+            .extend(PROFILE.map(|[radius, height]| [radius * cosine, height, radius * sine]));
         let vertex = |facet: u32, corner: u32| facet % FACETS * corners + corner % corners;
         for corner in 0..corners {
             let next = corner + 1;
@@ -84,6 +122,17 @@ fn part() -> Result<Mesh> {
 /// The refined mesh with the normals of each side at sharp edges, so that these look sharp.
 fn by_sides(refined: &Exact, camera: &Camera, size: (u32, u32)) -> Result<Image> {
     let surface = refined.split_surface();
-    let style = Style::default().wireframe(true).wire_width(WIRE).wire_colour(PALE);
-    Ok(render(surface.as_triangles(), Some(&surface.normals), None, camera, &style, size.0, size.1)?)
+    let style = Style::default()
+        .wireframe(true)
+        .wire_width(WIRE)
+        .wire_colour(PALE);
+    Ok(render(
+        surface.as_triangles(),
+        Some(&surface.normals),
+        None,
+        camera,
+        &style,
+        size.0,
+        size.1,
+    )?)
 }

@@ -8,8 +8,8 @@ use limitmesh::measure::distances_to;
 use limitmesh::refine::SeamRule;
 use limitmesh_paper::{match_angle, methods};
 use limitmesh_render::{
-    Camera, ColourBar, GridStyle, Image, Lighting, Panel, Scale, Shading, Style, TextStyle, ViewDirection,
-    dice, grid, render, render_scalar,
+    Camera, ColourBar, GridStyle, Image, Lighting, Panel, Scale, Shading, Style, TextStyle,
+    ViewDirection, dice, grid, render, render_scalar,
 };
 
 use crate::quality::{Judge, Reference, best, builtin, optimized};
@@ -27,7 +27,10 @@ const STEPS: usize = 3;
 const FIRST_ANGLE: f64 = 10.0;
 
 /// From the front, a little from the right and above.
-const VIEW: ViewDirection = ViewDirection { sight: [-0.45, -0.2, -1.0], up: [0.0, 1.0, 0.0] };
+const VIEW: ViewDirection = ViewDirection {
+    sight: [-0.45, -0.2, -1.0],
+    up: [0.0, 1.0, 0.0],
+};
 
 /// Pixels of a panel below.
 const SIZE: (u32, u32) = (160, 214);
@@ -69,13 +72,26 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     let judge = Judge::new(&reference)?;
     let uniform = methods::uniform_plain(&control, LEVEL)?.mesh;
     let triangles = uniform.face_count();
-    let paper =
-        match_angle(triangles, FIRST_ANGLE, |angle| methods::paper(&control, angle, STEPS, SeamRule::All))?;
+    let paper = match_angle(triangles, FIRST_ANGLE, |angle| {
+        methods::paper(&control, angle, STEPS, SeamRule::All)
+    })?;
     let columns = [
         column(uniform, "uniform".to_owned(), &judge)?,
-        column(paper.refinement.mesh, format!("the paper’s method, {:.1}°", paper.angle_degrees), &judge)?,
-        column(best(&control, triangles, false)?, "exact".to_owned(), &judge)?,
-        column(optimized(&control, triangles)?, "exact, optimised".to_owned(), &judge)?,
+        column(
+            paper.refinement.mesh,
+            format!("the paper’s method, {:.1}°", paper.angle_degrees),
+            &judge,
+        )?,
+        column(
+            best(&control, triangles, false)?,
+            "exact".to_owned(),
+            &judge,
+        )?,
+        column(
+            optimized(&control, triangles)?,
+            "exact, optimised".to_owned(),
+            &judge,
+        )?,
     ];
     let camera = Camera::fit_tightly(reference.mesh.as_triangles(), VIEW, SIZE.0, SIZE.1)?;
     let close = Camera::orthographic(HEAD, VIEW, HEAD_REACH)?;
@@ -84,7 +100,10 @@ pub(super) fn picture() -> Result<Vec<u8>> {
     let scale = Scale::logarithmic(SPAN * most, most).marking_above(BEYOND);
     let mut panels = Vec::new();
     for (letter, column) in ('a'..).zip(&columns) {
-        panels.push(Panel::new(head(column, &close)?, format!("({letter}) {}", column.words)));
+        panels.push(Panel::new(
+            head(column, &close)?,
+            format!("({letter}) {}", column.words),
+        ));
     }
     for (letter, column) in ('e'..).zip(&columns) {
         let caption = format!(
@@ -94,26 +113,66 @@ pub(super) fn picture() -> Result<Vec<u8>> {
         );
         panels.push(Panel::new(heat(column, &scale, &camera)?, caption));
     }
-    let style = GridStyle::default().columns(columns.len()).gap(8).caption(TextStyle::default().size(12.0));
-    let bar = ColourBar::new(scale).title("distance").unit("%").text_size(11.5);
-    Ok(bar.beside(&grid(&panels, &style)?, style.background)?.encode_png()?)
+    let style = GridStyle::default()
+        .columns(columns.len())
+        .gap(8)
+        .caption(TextStyle::default().size(12.0));
+    let bar = ColourBar::new(scale)
+        .title("distance")
+        .unit("%")
+        .text_size(11.5);
+    Ok(bar
+        .beside(&grid(&panels, &style)?, style.background)?
+        .encode_png()?)
 }
 
 fn column(mesh: Mesh, words: String, judge: &Judge<'_>) -> Result<Column> {
     let symmetric = judge.percent(judge.distance(&mesh)?);
     let diced = dice(mesh.as_triangles(), PARTS);
     let mut distances = distances_to(&diced.0, judge.reference.mesh.as_triangles())?;
-    distances.iter_mut().for_each(|distance| *distance = judge.percent(*distance));
-    Ok(Column { mesh, words, symmetric, distances, diced })
+    distances
+        .iter_mut()
+        .for_each(|distance| *distance = judge.percent(*distance));
+    Ok(Column {
+        mesh,
+        words,
+        symmetric,
+        distances,
+        diced,
+    })
 }
 
 fn head(column: &Column, camera: &Camera) -> Result<Image> {
-    let style = Style::default().wireframe(true).wire_width(WIRE).shading(Shading::Flat);
-    Ok(render(column.mesh.as_triangles(), None, None, camera, &style, HEAD_SIZE.0, HEAD_SIZE.1)?)
+    let style = Style::default()
+        .wireframe(true)
+        .wire_width(WIRE)
+        .shading(Shading::Flat);
+    Ok(render(
+        column.mesh.as_triangles(),
+        None,
+        None,
+        camera,
+        &style,
+        HEAD_SIZE.0,
+        HEAD_SIZE.1,
+    )?)
 }
 
 fn heat(column: &Column, scale: &Scale, camera: &Camera) -> Result<Image> {
-    let surface = limitmesh::Triangles { positions: &column.diced.0, triangles: &column.diced.1 };
-    let style = Style::default().shading(Shading::Flat).lighting(Lighting::even());
-    Ok(render_scalar(surface, None, &column.distances, scale, camera, &style, SIZE)?)
+    let surface = limitmesh::Triangles {
+        positions: &column.diced.0,
+        triangles: &column.diced.1,
+    };
+    let style = Style::default()
+        .shading(Shading::Flat)
+        .lighting(Lighting::even());
+    Ok(render_scalar(
+        surface,
+        None,
+        &column.distances,
+        scale,
+        camera,
+        &style,
+        SIZE,
+    )?)
 }

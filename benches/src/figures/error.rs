@@ -27,8 +27,10 @@ pub(super) fn plot() -> Result<String> {
     let judge = Judge::new(&reference)?;
     let faces = control.face_count();
     // Twice as many from point to point, from a little more than the control mesh has.
-    let counts: Vec<usize> =
-        (0..).map(|i| (faces * 3 / 2) << i).take_while(|&n| n <= MOST_TRIANGLES).collect();
+    let counts: Vec<usize> = (0..)
+        .map(|i| (faces * 3 / 2) << i)
+        .take_while(|&n| n <= MOST_TRIANGLES)
+        .collect();
     let counted = |refine: &dyn Fn(usize) -> Result<Mesh>| series(&judge, &counts, refine);
     let levels: Vec<usize> = (0..=LEVELS).collect();
     let uniform = |limit: bool| {
@@ -41,16 +43,22 @@ pub(super) fn plot() -> Result<String> {
         })
     };
     let paper = |steps| {
-        series(&judge, &ANGLES, &|angle| Ok(methods::paper(&control, angle, steps, SeamRule::All)?.mesh))
+        series(&judge, &ANGLES, &|angle| {
+            Ok(methods::paper(&control, angle, steps, SeamRule::All)?.mesh)
+        })
     };
     let title = format!("Distance to the limit surface, {MODEL}");
-    let y = Axis::new("symmetric Hausdorff distance").unit("% of the diagonal").logarithmic();
+    let y = Axis::new("symmetric Hausdorff distance")
+        .unit("% of the diagonal")
+        .logarithmic();
     let plot = Plot::new(title, Axis::new("triangles").logarithmic(), y)
         .size(860.0, 520.0)
         .with(
             named(
                 "Amresh, 4 steps",
-                series(&judge, &ANGLES, &|angle| Ok(methods::amresh(&control, angle, 4)?.mesh))?,
+                series(&judge, &ANGLES, &|angle| {
+                    Ok(methods::amresh(&control, angle, 4)?.mesh)
+                })?,
                 [150, 150, 158],
             )
             .dashed(true),
@@ -58,10 +66,26 @@ pub(super) fn plot() -> Result<String> {
         .with(named("paper, 3 steps", paper(3)?, [214, 96, 28]))
         .with(named("paper, 5 steps", paper(5)?, [214, 96, 28]).dashed(true))
         .with(named("uniform", uniform(false)?, [204, 154, 24]))
-        .with(named("uniform, limit vertices", uniform(true)?, [84, 168, 214]))
-        .with(named("exact", counted(&|n| best(&control, n, false))?, [20, 92, 158]))
-        .with(named("exact, balanced", counted(&|n| best(&control, n, true))?, [26, 138, 104]))
-        .with(named("exact, optimised", counted(&|n| optimized(&control, n))?, [150, 62, 134]));
+        .with(named(
+            "uniform, limit vertices",
+            uniform(true)?,
+            [84, 168, 214],
+        ))
+        .with(named(
+            "exact",
+            counted(&|n| best(&control, n, false))?,
+            [20, 92, 158],
+        ))
+        .with(named(
+            "exact, balanced",
+            counted(&|n| best(&control, n, true))?,
+            [26, 138, 104],
+        ))
+        .with(named(
+            "exact, optimised",
+            counted(&|n| optimized(&control, n))?,
+            [150, 62, 134],
+        ));
     Ok(plot.to_svg()?)
 }
 
@@ -79,7 +103,9 @@ fn series<T: Copy>(
     for &setting in settings {
         let mesh = refine(setting)?;
         let triangles = mesh.face_count() as f64;
-        if mesh.face_count() > MOST_TRIANGLES || points.last().is_some_and(|last| last[0] == triangles) {
+        if mesh.face_count() > MOST_TRIANGLES
+            || points.last().is_some_and(|last| last[0] == triangles)
+        {
             continue;
         }
         points.push([triangles, judge.percent(judge.distance(&mesh)?)]);

@@ -38,8 +38,8 @@ impl Model {
 
 /// A built-in control mesh.
 pub(crate) fn builtin(name: &str) -> Result<Mesh> {
-    let model =
-        limitmesh_models::find(name).with_context(|| format!("no built-in model is called {name}"))?;
+    let model = limitmesh_models::find(name)
+        .with_context(|| format!("no built-in model is called {name}"))?;
     Ok(Mesh::from_soup(&model.soup(), &Default::default())?.0)
 }
 
@@ -47,12 +47,18 @@ pub(crate) fn builtin(name: &str) -> Result<Mesh> {
 pub(crate) fn gather(folder: &Path, most_faces: usize) -> Result<Vec<Model>> {
     let mut models = Vec::new();
     for name in BUILT_IN {
-        models.push(Model { name: format!("{name} (built in)"), mesh: builtin(name)? });
+        models.push(Model {
+            name: format!("{name} (built in)"),
+            mesh: builtin(name)?,
+        });
     }
     for name in FILES {
         let path = folder.join(name);
         if path.exists() {
-            models.push(Model { name: name.to_owned(), mesh: crate::mesh(&path)? });
+            models.push(Model {
+                name: name.to_owned(),
+                mesh: crate::mesh(&path)?,
+            });
         } else {
             eprintln!("{name} is not in {}: left out", folder.display());
         }

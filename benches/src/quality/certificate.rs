@@ -24,8 +24,9 @@ pub(crate) fn certificate(folder: &Path) -> Result<()> {
     let mut worst = 0.0f64;
     for file in files {
         let path = file.path();
-        let known =
-            path.extension().is_some_and(|e| EXTENSIONS.iter().any(|known| e.eq_ignore_ascii_case(known)));
+        let known = path
+            .extension()
+            .is_some_and(|e| EXTENSIONS.iter().any(|known| e.eq_ignore_ascii_case(known)));
         if !known {
             continue;
         }
@@ -58,7 +59,8 @@ fn measure(name: String, control: &Mesh) -> Result<(Vec<String>, f64)> {
     let options = ExactOptions::default().tolerance(TOLERANCE * diagonal);
     let (seconds, result) = one_thread(|| exact(control, &Loop, &options))?;
     let result = result?;
-    let [lower, upper] = [result.error.lower, result.error.upper].map(|length| 100.0 * length / diagonal);
+    let [lower, upper] =
+        [result.error.lower, result.error.upper].map(|length| 100.0 * length / diagonal);
     let triangles = result.mesh.face_count();
     let row = vec![
         name,

@@ -29,7 +29,11 @@ pub(crate) struct Reference {
 impl Reference {
     pub(crate) fn new(control: &Mesh) -> Result<Self> {
         let level = reference_level(control.face_count());
-        Ok(Self { mesh: limit_reference(control, &Loop, level)?, level, diagonal: control.diagonal() })
+        Ok(Self {
+            mesh: limit_reference(control, &Loop, level)?,
+            level,
+            diagonal: control.diagonal(),
+        })
     }
 }
 

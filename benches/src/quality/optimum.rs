@@ -40,7 +40,10 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
         let reference = Reference::new(&model.mesh)?;
         let judge = Judge::new(&reference)?;
         let integral = root_of_curvature(&reference.mesh);
-        let mut row = vec![model.name.clone(), digits(integral / reference.mesh.diagonal())];
+        let mut row = vec![
+            model.name.clone(),
+            digits(integral / reference.mesh.diagonal()),
+        ];
         for (at, triangles) in TRIANGLES.into_iter().enumerate() {
             let meshes = [
                 best(&model.mesh, triangles, false)?,
@@ -48,7 +51,8 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
                 optimized(&model.mesh, triangles)?,
             ];
             for (which, mesh) in meshes.iter().enumerate() {
-                let ratio = judge.distance(mesh)? * mesh.vertex_count() as f64 / (OPTIMUM * integral);
+                let ratio =
+                    judge.distance(mesh)? * mesh.vertex_count() as f64 / (OPTIMUM * integral);
                 ratios[3 * at + which].push(ratio);
                 row.push(digits(ratio));
             }
@@ -56,11 +60,17 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
         rows.push(row);
     }
     let mut last = vec!["median".to_owned(), String::new()];
-    last.extend(ratios.into_iter().map(|of_column| digits(median(of_column))));
+    last.extend(
+        ratios
+            .into_iter()
+            .map(|of_column| digits(median(of_column))),
+    );
     rows.push(last);
     let mut heads = vec!["model".to_owned(), "∫√\\|K\\| dA / diagonal".to_owned()];
     for triangles in TRIANGLES {
-        heads.extend(["exact", "balanced", "optimised"].map(|name| format!("{name}, {}", count(triangles))));
+        heads.extend(
+            ["exact", "balanced", "optimised"].map(|name| format!("{name}, {}", count(triangles))),
+        );
     }
     table::print(&heads.iter().map(String::as_str).collect::<Vec<_>>(), &rows);
     Ok(())
@@ -68,8 +78,15 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
 
 /// A mesh with at most so many triangles, collapsed from a finer exact one.
 pub(crate) fn optimized(control: &Mesh, triangles: usize) -> Result<Mesh> {
-    let fine = exact(control, &Loop, &ExactOptions::default().triangles(FINER * triangles))?.mesh;
-    let options = SimplifyOptions::default().triangles(Some(triangles)).certify(false);
+    let fine = exact(
+        control,
+        &Loop,
+        &ExactOptions::default().triangles(FINER * triangles),
+    )?
+    .mesh;
+    let options = SimplifyOptions::default()
+        .triangles(Some(triangles))
+        .certify(false);
     Ok(simplify(&fine, &Features::default(), &options)?.mesh)
 }
 
@@ -87,7 +104,11 @@ fn root_of_curvature(mesh: &Mesh) -> f64 {
             areas[vertex as usize] += doubled_area / 6.0;
         }
     }
-    defects.iter().zip(areas).map(|(defect, area): (&f64, f64)| (defect.abs() * area).sqrt()).sum()
+    defects
+        .iter()
+        .zip(areas)
+        .map(|(defect, area): (&f64, f64)| (defect.abs() * area).sqrt())
+        .sum()
 }
 
 #[cfg(test)]

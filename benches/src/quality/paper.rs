@@ -34,7 +34,16 @@ pub(crate) fn against_paper(folder: &Path) -> Result<()> {
         }
     }
     table::print(
-        &["model", "steps", "triangles", "paper", "exact", "balanced", "paper / exact", "paper / balanced"],
+        &[
+            "model",
+            "steps",
+            "triangles",
+            "paper",
+            "exact",
+            "balanced",
+            "paper / exact",
+            "paper / balanced",
+        ],
         &rows,
     );
     for (steps, [plain, balanced]) in [3, 4].into_iter().zip(ratios.clone()) {
@@ -46,11 +55,20 @@ pub(crate) fn against_paper(folder: &Path) -> Result<()> {
         );
     }
     let all = |which: usize| median(ratios.iter().flat_map(|r| r[which].iter().copied()));
-    println!("\nmedian of both: {} and {}", digits(all(0)), digits(all(1)));
+    println!(
+        "\nmedian of both: {} and {}",
+        digits(all(0)),
+        digits(all(1))
+    );
     Ok(())
 }
 
-fn row(model: &Model, judge: &Judge<'_>, steps: usize, ratios: &mut [Vec<f64>; 2]) -> Result<Vec<String>> {
+fn row(
+    model: &Model,
+    judge: &Judge<'_>,
+    steps: usize,
+    ratios: &mut [Vec<f64>; 2],
+) -> Result<Vec<String>> {
     let criterion = LimitNormal::new(ANGLE.to_radians());
     let options = StepwiseOptions::default().levels(steps);
     let paper = stepwise(&model.mesh, &Loop, &criterion, &options)?.mesh;
@@ -69,6 +87,8 @@ fn row(model: &Model, judge: &Judge<'_>, steps: usize, ratios: &mut [Vec<f64>; 2
 
 /// The best mesh with at most so many triangles.
 pub(crate) fn best(control: &Mesh, triangles: usize, balance: bool) -> Result<Mesh> {
-    let options = ExactOptions::default().triangles(triangles).balance(balance);
+    let options = ExactOptions::default()
+        .triangles(triangles)
+        .balance(balance);
     Ok(exact(control, &Loop, &options)?.mesh)
 }

@@ -49,7 +49,9 @@ pub(crate) fn against_simplified(folder: &Path) -> Result<()> {
         compare(&model, &judge, &mut distances, &mut speeds)?;
     }
     if distances.iter().all(Vec::is_empty) {
-        println!("neither MeshLab nor meshoptimizer is installed (pip install pymeshlab meshoptimizer)");
+        println!(
+            "neither MeshLab nor meshoptimizer is installed (pip install pymeshlab meshoptimizer)"
+        );
         return Ok(());
     }
     for (which, name) in Simplifier::ALL.iter().enumerate() {
@@ -76,16 +78,30 @@ fn compare(
         if triangles <= control.face_count() {
             continue;
         }
-        let (time, plain) =
-            one_thread(|| exact(control, &Loop, &ExactOptions::default().triangles(triangles)))?;
+        let (time, plain) = one_thread(|| {
+            exact(
+                control,
+                &Loop,
+                &ExactOptions::default().triangles(triangles),
+            )
+        })?;
         let plain = plain?.mesh;
         let (optimizing, optimized) = one_thread(|| {
-            let finer = exact(control, &Loop, &ExactOptions::default().triangles(FINER * triangles))?;
-            let options = SimplifyOptions::default().triangles(Some(triangles)).certify(false);
+            let finer = exact(
+                control,
+                &Loop,
+                &ExactOptions::default().triangles(FINER * triangles),
+            )?;
+            let options = SimplifyOptions::default()
+                .triangles(Some(triangles))
+                .certify(false);
             Ok::<_, anyhow::Error>(simplify(&finer.mesh, &Features::default(), &options)?)
         })?;
         let optimized = optimized?.mesh;
-        let ours = [(judge.distance(&plain)?, time.all), (judge.distance(&optimized)?, optimizing.all)];
+        let ours = [
+            (judge.distance(&plain)?, time.all),
+            (judge.distance(&optimized)?, optimizing.all),
+        ];
         for ((distance, seconds), name) in ours.into_iter().zip(["exact", "optimised"]) {
             let mut row = vec![model.name.clone(), count(triangles), name.to_owned()];
             row.extend([digits(judge.percent(distance)), digits(seconds)]);
@@ -93,13 +109,18 @@ fn compare(
             table::print_row(&row);
         }
         for (which, simplifier) in Simplifier::ALL.into_iter().enumerate() {
-            let Some(theirs) = peers::simplified(simplifier, &fine, triangles)? else { continue };
+            let Some(theirs) = peers::simplified(simplifier, &fine, triangles)? else {
+                continue;
+            };
             let distance = judge.distance(&theirs.mesh)?;
             let seconds = subdividing.all + theirs.seconds;
             distances[which].push(distance / ours[0].0);
             speeds[which].push(seconds / ours[0].1);
-            let mut row =
-                vec![model.name.clone(), count(theirs.mesh.face_count()), simplifier.name().to_owned()];
+            let mut row = vec![
+                model.name.clone(),
+                count(theirs.mesh.face_count()),
+                simplifier.name().to_owned(),
+            ];
             row.extend([digits(judge.percent(distance)), digits(seconds)]);
             row.extend(ours.map(|(d, _)| digits(distance / d)));
             row.extend(ours.map(|(_, s)| digits(seconds / s)));

@@ -23,7 +23,9 @@ const REPEATS: usize = 3;
 
 /// Every run in a process of its own, whose peak of memory is then its.
 pub(crate) fn throughput(folder: &Path) -> Result<()> {
-    println!("\nexact refinement within a tolerance, with certificate, one thread; best of {REPEATS}");
+    println!(
+        "\nexact refinement within a tolerance, with certificate, one thread; best of {REPEATS}"
+    );
     table::begin(&[
         "model",
         "tolerance %",
@@ -47,21 +49,34 @@ pub(crate) fn throughput(folder: &Path) -> Result<()> {
                 .arg(&path)
                 .arg(tolerance.to_string())
                 .output()?;
-            ensure!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            ensure!(
+                output.status.success(),
+                "{}",
+                String::from_utf8_lossy(&output.stderr)
+            );
             let line = String::from_utf8(output.stdout)?;
-            let numbers = line.split_whitespace().map(str::parse).collect::<Result<Vec<f64>, _>>()?;
+            let numbers = line
+                .split_whitespace()
+                .map(str::parse)
+                .collect::<Result<Vec<f64>, _>>()?;
             let [triangles, all, user, bytes] = numbers[..] else {
                 anyhow::bail!("the process printed {line}, expected four numbers");
             };
             rates.push(triangles / user / 1e6);
-            let mut row = vec![name.to_owned(), format!("{:.5}", 100.0 * tolerance / control.diagonal())];
+            let mut row = vec![
+                name.to_owned(),
+                format!("{:.5}", 100.0 * tolerance / control.diagonal()),
+            ];
             row.push(count(triangles as usize));
             row.extend([triangles / user / 1e6, triangles / all / 1e6].map(digits));
             row.push(format!("{bytes:.0}"));
             table::print_row(&row);
         }
     }
-    println!("\nmedian: {} million triangles a second of user time", digits(median(rates)));
+    println!(
+        "\nmedian: {} million triangles a second of user time",
+        digits(median(rates))
+    );
     Ok(())
 }
 
@@ -70,14 +85,25 @@ fn load(path: &Path) -> Result<Mesh> {
     if path.exists() {
         return crate::mesh(path);
     }
-    builtin(&path.file_name().context("a path without a name")?.to_string_lossy())
+    builtin(
+        &path
+            .file_name()
+            .context("a path without a name")?
+            .to_string_lossy(),
+    )
 }
 
 /// The count grows as the tolerance falls, nearly in inverse proportion.
 fn tolerance_for(control: &Mesh, wanted: usize) -> Result<f64> {
     let mut tolerance = 1e-4 * control.diagonal();
     for _ in 0..3 {
-        let found = exact(control, &Loop, &ExactOptions::default().tolerance(tolerance))?.mesh.face_count();
+        let found = exact(
+            control,
+            &Loop,
+            &ExactOptions::default().tolerance(tolerance),
+        )?
+        .mesh
+        .face_count();
         let ratio = found as f64 / wanted as f64;
         if (ratio - 1.0).abs() < 0.1 {
             break;
@@ -90,7 +116,15 @@ fn tolerance_for(control: &Mesh, wanted: usize) -> Result<f64> {
 /// One model, one tolerance: prints triangles, processor seconds, those of the program alone, and bytes a triangle.
 pub(crate) fn child(path: &Path, tolerance: f64) -> Result<()> {
     let control = load(path)?;
-    let run = || one_thread(|| exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)));
+    let run = || {
+        one_thread(|| {
+            exact(
+                &control,
+                &Loop,
+                &ExactOptions::default().tolerance(tolerance),
+            )
+        })
+    };
     let before = resident_bytes()?;
     let (mut best, result) = run()?;
     let result = result?;
@@ -102,7 +136,12 @@ pub(crate) fn child(path: &Path, tolerance: f64) -> Result<()> {
         best.all = best.all.min(seconds.all);
         best.user = best.user.min(seconds.user);
     }
-    println!("{triangles} {} {} {}", best.all, best.user, beyond / triangles as f64);
+    println!(
+        "{triangles} {} {} {}",
+        best.all,
+        best.user,
+        beyond / triangles as f64
+    );
     Ok(())
 }
 
@@ -111,5 +150,6 @@ fn output_bytes(result: &Exact) -> usize {
     let (vertices, triangles) = (result.mesh.vertex_count(), result.mesh.face_count());
     let vector = size_of::<[f64; 3]>();
     // A triangle has three corners and three twins, a vertex an outgoing half-edge.
-    vertices * (2 * vector + size_of::<u32>() + size_of::<Origin>()) + triangles * 7 * size_of::<u32>()
+    vertices * (2 * vector + size_of::<u32>() + size_of::<Origin>())
+        + triangles * 7 * size_of::<u32>()
 }

@@ -59,13 +59,18 @@ pub(crate) fn against_uniform(folder: &Path) -> Result<()> {
         &rows,
     );
     savings.sort_by(|a, b| b.0.total_cmp(&a.0));
-    println!("\nleast uniform / exact: {} (below 1, uniform is nearer)", digits(worst));
+    println!(
+        "\nleast uniform / exact: {} (below 1, uniform is nearer)",
+        digits(worst)
+    );
     println!(
         "\nmedian of the models' medians: {} times fewer triangles",
         digits(median(savings.iter().map(|s| s.0)))
     );
-    let by_model: Vec<_> =
-        savings.iter().map(|(saving, name)| format!("{name} {}", digits(*saving))).collect();
+    let by_model: Vec<_> = savings
+        .iter()
+        .map(|(saving, name)| format!("{name} {}", digits(*saving)))
+        .collect();
     println!("\nby model: {}", by_model.join(", "));
     Ok(())
 }
@@ -110,7 +115,12 @@ fn as_near(control: &Mesh, judge: &Judge<'_>, distance: f64) -> Result<usize> {
     let mut fewest = usize::MAX;
     let mut tolerance = distance;
     for _ in 0..ATTEMPTS {
-        let mesh = exact(control, &Loop, &ExactOptions::default().tolerance(tolerance))?.mesh;
+        let mesh = exact(
+            control,
+            &Loop,
+            &ExactOptions::default().tolerance(tolerance),
+        )?
+        .mesh;
         let found = judge.distance(&mesh)?;
         if found <= distance {
             fewest = fewest.min(mesh.face_count());

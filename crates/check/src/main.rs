@@ -26,15 +26,21 @@ const NAMED: usize = 10;
 
 /// Takes an option and its value out of the arguments.
 fn taken(words: &mut Vec<String>, option: &str) -> Result<Option<String>, String> {
-    let Some(place) = words.iter().position(|word| word == option) else { return Ok(None) };
+    let Some(place) = words.iter().position(|word| word == option) else {
+        return Ok(None);
+    };
     let value = words.drain(place..words.len().min(place + 2)).nth(1);
     value.map(Some).ok_or(format!("{option} lacks its value"))
 }
 
 fn obj(mesh: &Mesh) -> String {
     let mut text = String::new();
-    mesh.positions.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
-    mesh.triangles.iter().for_each(|t| text += &format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
+    mesh.positions
+        .iter()
+        .for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+    mesh.triangles
+        .iter()
+        .for_each(|t| text += &format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1));
     text
 }
 
@@ -43,12 +49,18 @@ fn run() -> Result<(bool, String), String> {
     match words.first().map(String::as_str) {
         Some("-h" | "--help") => return Ok((true, USAGE.into())),
         Some("-V" | "--version") => {
-            return Ok((true, concat!("limitmesh-check ", env!("CARGO_PKG_VERSION")).into()));
+            return Ok((
+                true,
+                concat!("limitmesh-check ", env!("CARGO_PKG_VERSION")).into(),
+            ));
         }
         _ => {}
     }
     let at = taken(&mut words, "--at")?;
-    let number = |at: String| at.parse().map_err(|_| format!("--at {at}: no number, which has no unit"));
+    let number = |at: String| {
+        at.parse()
+            .map_err(|_| format!("--at {at}: no number, which has no unit"))
+    };
     let at = at.map(number).transpose()?;
     let shown = taken(&mut words, "--control")?;
     let (control, [result, name]) = match &words[..] {
@@ -57,30 +69,43 @@ fn run() -> Result<(bool, String), String> {
         _ => return Err(USAGE.into()),
     };
     let bytes = |name: &String| std::fs::read(name).map_err(|error| format!("{name}: {error}"));
-    let mesh = |name: &String| read::mesh(name, &bytes(name)?).map_err(|what| format!("{name}: {what}"));
+    let mesh =
+        |name: &String| read::mesh(name, &bytes(name)?).map_err(|what| format!("{name}: {what}"));
     let proof = Proof::read(&bytes(name)?).map_err(|what| format!("{name}: {what}"))?;
     let result = mesh(result)?;
     let control = match (control, &proof.held) {
         (Some(control), _) => mesh(control)?,
         (None, Some(held)) => held.clone(),
-        (None, None) => return Err(format!("{name} does not hold the control mesh: name its file first")),
+        (None, None) => {
+            return Err(format!(
+                "{name} does not hold the control mesh: name its file first"
+            ));
+        }
     };
     if let Some(file) = shown {
         std::fs::write(&file, obj(&control)).map_err(|error| format!("{file}: {error}"))?;
     }
     let within = at.unwrap_or(proof.within);
-    let refused =
-        verdict::refused(&control, &result, &proof, within).map_err(|what| format!("{name}: {what}"))?;
+    let refused = verdict::refused(&control, &result, &proof, within)
+        .map_err(|what| format!("{name}: {what}"))?;
     let [triangles, faces] = [&result, &control].map(|mesh| mesh.triangles.len());
     let mut text = match refused.len() {
         0 => format!(
             "confirmed: {triangles} triangles and the limit surface of {faces} are within {within} of each other"
         ),
-        count => format!("refused: {count} of {triangles} triangles are not proven to be within {within}"),
+        count => format!(
+            "refused: {count} of {triangles} triangles are not proven to be within {within}"
+        ),
     };
-    refused.iter().take(NAMED).for_each(|(t, what)| text += &format!("\n  triangle {t} {what}"));
+    refused
+        .iter()
+        .take(NAMED)
+        .for_each(|(t, what)| text += &format!("\n  triangle {t} {what}"));
     if refused.len() > NAMED {
-        text += &format!("\n  and {} more; the first triangle is triangle 0", refused.len() - NAMED);
+        text += &format!(
+            "\n  and {} more; the first triangle is triangle 0",
+            refused.len() - NAMED
+        );
     }
     let (edges, vertices) = (proof.creases.len(), proof.corners.len());
     text += &format!(
@@ -95,7 +120,10 @@ fn run() -> Result<(bool, String), String> {
 
 fn main() -> ExitCode {
     let (code, written) = match run() {
-        Ok((is_confirmed, text)) => (u8::from(!is_confirmed), writeln!(std::io::stdout(), "{text}")),
+        Ok((is_confirmed, text)) => (
+            u8::from(!is_confirmed),
+            writeln!(std::io::stdout(), "{text}"),
+        ),
         Err(what) => (2, writeln!(std::io::stderr(), "error: {what}")),
     };
     ExitCode::from(if written.is_ok() { code } else { 2 })

@@ -20,13 +20,20 @@ pub struct Mesh {
 impl Mesh {
     /// An error where a triangle names a vertex twice or one that isn't there, or a coordinate is no number.
     pub fn check(&self) -> Result<(), String> {
-        if let Some(v) = self.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        if let Some(v) = self
+            .positions
+            .iter()
+            .position(|p| !p.iter().all(|x| x.is_finite()))
+        {
             return Err(format!("vertex {v} has no position"));
         }
         let is_there = |v: &u32| (*v as usize) < self.positions.len();
-        let is_good = |t: &[u32; 3]| t.iter().all(is_there) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+        let is_good =
+            |t: &[u32; 3]| t.iter().all(is_there) && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
         match self.triangles.iter().position(|t| !is_good(t)) {
-            Some(t) => Err(format!("triangle {t} names a vertex twice, or one that is not there")),
+            Some(t) => Err(format!(
+                "triangle {t} names a vertex twice, or one that is not there"
+            )),
             None => Ok(()),
         }
     }
@@ -35,8 +42,18 @@ impl Mesh {
     pub fn digest(&self) -> String {
         let counts = [self.positions.len() as u32, self.triangles.len() as u32];
         let mut bytes: Vec<u8> = counts.iter().flat_map(|n| n.to_le_bytes()).collect();
-        bytes.extend(self.positions.iter().flatten().flat_map(|x| (x + 0.0).to_le_bytes()));
-        bytes.extend(self.triangles.iter().flatten().flat_map(|v| v.to_le_bytes()));
+        bytes.extend(
+            self.positions
+                .iter()
+                .flatten()
+                .flat_map(|x| (x + 0.0).to_le_bytes()),
+        );
+        bytes.extend(
+            self.triangles
+                .iter()
+                .flatten()
+                .flat_map(|v| v.to_le_bytes()),
+        );
         sha256::digest(&bytes)
     }
 
@@ -84,29 +101,55 @@ pub struct Control {
 
 impl Control {
     /// An error where the mesh isn't one.
-    pub fn new(mesh: Mesh, creases: &[([u32; 2], f64)], corners: &[(u32, f64)]) -> Result<Self, String> {
+    pub fn new(
+        mesh: Mesh,
+        creases: &[([u32; 2], f64)],
+        corners: &[(u32, f64)],
+    ) -> Result<Self, String> {
         mesh.check()?;
         let twins = mesh.twins();
-        let twins = twins
-            .map_err(|h| format!("triangle {} of the control mesh has an edge of another one", h / 3))?;
-        let mut sharpness = creases.iter().map(|&(_, s)| s).chain(corners.iter().map(|&(_, s)| s));
+        let twins = twins.map_err(|h| {
+            format!(
+                "triangle {} of the control mesh has an edge of another one",
+                h / 3
+            )
+        })?;
+        let mut sharpness = creases
+            .iter()
+            .map(|&(_, s)| s)
+            .chain(corners.iter().map(|&(_, s)| s));
         if sharpness.any(|s| s.is_nan() || s < 0.0) {
             return Err("a sharpness is no number of at least zero".into());
         }
         let edges = (0..twins.len() as u32).map(|h| sorted([h, next(h)].map(|h| mesh.origin(h))));
         let edges: HashSet<[u32; 2]> = edges.filter(|_| !creases.is_empty()).collect();
-        let is_there = creases.iter().all(|&(ends, _)| edges.contains(&sorted(ends)));
-        if !is_there || corners.iter().any(|&(v, _)| v as usize >= mesh.positions.len()) {
+        let is_there = creases
+            .iter()
+            .all(|&(ends, _)| edges.contains(&sorted(ends)));
+        if !is_there
+            || corners
+                .iter()
+                .any(|&(v, _)| v as usize >= mesh.positions.len())
+        {
             return Err("an edge or a vertex is sharp that the control mesh does not have".into());
         }
         let creases = creases.iter().map(|&(ends, s)| (sorted(ends), s));
-        Ok(Self { twins, creases: sharpest(creases), corners: sharpest(corners.iter().copied()), mesh })
+        Ok(Self {
+            twins,
+            creases: sharpest(creases),
+            corners: sharpest(corners.iter().copied()),
+            mesh,
+        })
     }
 
     /// The greatest number of triangles at a vertex.
     pub fn valence(&self) -> usize {
         let mut count = vec![0; self.mesh.positions.len()];
-        self.mesh.triangles.iter().flatten().for_each(|&v| count[v as usize] += 1);
+        self.mesh
+            .triangles
+            .iter()
+            .flatten()
+            .for_each(|&v| count[v as usize] += 1);
         count.into_iter().max().unwrap_or(0)
     }
 
@@ -126,7 +169,11 @@ impl Control {
         spokes.splice(0..0, before.into_iter().rev());
         let ends = |spoke: u32| [spoke, next(spoke)].map(|h| mesh.origin(h));
         let sharpness = |&spoke: &u32| match twin(spoke) {
-            Some(_) => self.creases.get(&sorted(ends(spoke))).copied().unwrap_or(0.0),
+            Some(_) => self
+                .creases
+                .get(&sorted(ends(spoke)))
+                .copied()
+                .unwrap_or(0.0),
             None => f64::INFINITY,
         };
         let mut around: Vec<Vector> = spokes.iter().map(|&spoke| at(next(spoke))).collect();
@@ -136,7 +183,16 @@ impl Control {
             sharp.push(f64::INFINITY);
         }
         let own = self.corners.get(&mesh.origin(h)).copied().unwrap_or(0.0);
-        Corner { ring: Rc::new(Ring { at: at(h), around, sharp, own, is_open }), slot }
+        Corner {
+            ring: Rc::new(Ring {
+                at: at(h),
+                around,
+                sharp,
+                own,
+                is_open,
+            }),
+            slot,
+        }
     }
 }
 

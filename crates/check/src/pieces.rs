@@ -28,7 +28,9 @@ impl Scheme {
     /// kβ, the weight of all neighbours together.
     fn of_ring(self, valence: usize) -> f64 {
         match self {
-            Self::Loop => 0.625 - (0.375 + 0.25 * (std::f64::consts::TAU / valence as f64).cos()).powi(2),
+            Self::Loop => {
+                0.625 - (0.375 + 0.25 * (std::f64::consts::TAU / valence as f64).cos()).powi(2)
+            }
             Self::LoopWarren if valence == 3 => 0.5625,
             Self::LoopWarren => 0.375,
         }
@@ -49,7 +51,11 @@ pub struct Ring {
 
 /// What is left of a sharpness after one step.
 fn faded(sharpness: f64) -> f64 {
-    if sharpness >= LASTING { sharpness } else { (sharpness - 1.0).max(0.0) }
+    if sharpness >= LASTING {
+        sharpness
+    } else {
+        (sharpness - 1.0).max(0.0)
+    }
 }
 
 /// The point between two with the weight `share` of the first.
@@ -61,7 +67,9 @@ impl Ring {
     /// The weighted mean of the vertex and of what its rule looks at: all neighbours with the first weight where it is smooth, the ends of a crease
     /// with the second; nothing at a corner. `left` is what is left of each sharpness.
     fn by_rule(&self, left: impl Fn(f64) -> f64, [smooth, crease]: [f64; 2]) -> Vector {
-        let ends: Vec<usize> = (0..self.sharp.len()).filter(|&i| left(self.sharp[i]) > 0.0).collect();
+        let ends: Vec<usize> = (0..self.sharp.len())
+            .filter(|&i| left(self.sharp[i]) > 0.0)
+            .collect();
         match ends[..] {
             [] | [_] if left(self.own) == 0.0 => {
                 let sum = self.around.iter().fold([0.0; 3], |sum, &p| add(sum, p));
@@ -78,10 +86,18 @@ impl Ring {
     fn moved(&self, scheme: Scheme) -> Vector {
         let weights = [scheme.of_ring(self.around.len()), 0.25];
         let now = self.by_rule(|s| s, weights);
-        let fading = self.sharp.iter().chain([&self.own]).filter(|&&s| s > 0.0 && s <= 1.0);
+        let fading = self
+            .sharp
+            .iter()
+            .chain([&self.own])
+            .filter(|&&s| s > 0.0 && s <= 1.0);
         match fading.clone().count() {
             0 => now,
-            count => between(now, self.by_rule(faded, weights), fading.sum::<f64>() / count as f64),
+            count => between(
+                now,
+                self.by_rule(faded, weights),
+                fading.sum::<f64>() / count as f64,
+            ),
         }
     }
 
@@ -120,16 +136,35 @@ impl Corner {
 
     /// The six neighbours of a regular corner from the next corner on, mirrored beyond a crease.
     fn six(&self) -> Option<[Vector; 6]> {
-        let Ring { at, around, sharp, own, is_open } = &*self.ring;
+        let Ring {
+            at,
+            around,
+            sharp,
+            own,
+            is_open,
+        } = &*self.ring;
         let k = around.len();
         let ends: Vec<usize> = (0..k).filter(|&i| sharp[i] > 0.0).collect();
         match ends[..] {
-            [] if *own == 0.0 && k == 6 && !is_open => Some([0, 1, 2, 3, 4, 5].map(|i| around[self.slot(i)])),
+            [] if *own == 0.0 && k == 6 && !is_open => {
+                Some([0, 1, 2, 3, 4, 5].map(|i| around[self.slot(i)]))
+            }
             [a, b] if *own == 0.0 && sharp[a].min(sharp[b]) >= LASTING => {
                 // The side that the piece is on: from a to b, or, in a closed ring, from b on to a.
-                let (first, last) = if a <= self.slot && self.slot < b { (a, b) } else { (b, a + k) };
+                let (first, last) = if a <= self.slot && self.slot < b {
+                    (a, b)
+                } else {
+                    (b, a + k)
+                };
                 let s = [0, 1, 2, 3].map(|i| around[(first + i) % k]);
-                let six = [s[0], s[1], s[2], s[3], sub(add(s[3], *at), s[2]), sub(add(s[0], *at), s[1])];
+                let six = [
+                    s[0],
+                    s[1],
+                    s[2],
+                    s[3],
+                    sub(add(s[3], *at), s[2]),
+                    sub(add(s[0], *at), s[1]),
+                ];
                 let turn = (self.slot + k - first) % k;
                 (last == first + 3).then(|| [0, 1, 2, 3, 4, 5].map(|i| six[(i + turn) % 6]))
             }
@@ -150,9 +185,10 @@ impl Piece {
     pub fn new(corners: [Corner; 3]) -> Self {
         let [a, b, c] = &corners;
         match (a.six(), b.six(), c.six()) {
-            (Some(of_a), Some(of_b), Some(of_c)) => {
-                Self::Net(Box::new(quartic::regular([a, b, c].map(|v| v.ring.at), &[of_a, of_b, of_c])))
-            }
+            (Some(of_a), Some(of_b), Some(of_c)) => Self::Net(Box::new(quartic::regular(
+                [a, b, c].map(|v| v.ring.at),
+                &[of_a, of_b, of_c],
+            ))),
             _ => Self::Corners(corners, None),
         }
     }
@@ -161,7 +197,9 @@ impl Piece {
 /// The quarters of a piece: at its corners, with these as their corners 0, 1 and 2, and between the middles of the sides, where corner i is
 /// across from the piece's corner i.
 pub fn quarters(corners: &[Corner; 3], scheme: Scheme) -> [Piece; 4] {
-    let new = corners.each_ref().map(|corner| Rc::new(corner.ring.refined(scheme)));
+    let new = corners
+        .each_ref()
+        .map(|corner| Rc::new(corner.ring.refined(scheme)));
     // The new vertex on the edge from corner a to the next, b, with its ring from b on; c is the third corner.
     let middles = [0, 1, 2].map(|a| {
         let (from, to, new_b) = (&corners[a], &corners[(a + 1) % 3], &new[(a + 1) % 3]);
@@ -173,10 +211,22 @@ pub fn quarters(corners: &[Corner; 3], scheme: Scheme) -> [Piece; 4] {
         }
         let own = new[a].sharp[from.slot];
         let sharp = [own, 0.0, 0.0, own, 0.0, 0.0][..around.len()].to_vec();
-        Rc::new(Ring { at: of_a(0), around, sharp, own: 0.0, is_open })
+        Rc::new(Ring {
+            at: of_a(0),
+            around,
+            sharp,
+            own: 0.0,
+            is_open,
+        })
     });
-    let old = |i: usize| Corner { ring: Rc::clone(&new[i]), slot: corners[i].slot };
-    let edge = |i: usize, slot| Corner { ring: Rc::clone(&middles[i]), slot };
+    let old = |i: usize| Corner {
+        ring: Rc::clone(&new[i]),
+        slot: corners[i].slot,
+    };
+    let edge = |i: usize, slot| Corner {
+        ring: Rc::clone(&middles[i]),
+        slot,
+    };
     [
         Piece::new([old(0), edge(0, 2), edge(2, 0)]),
         Piece::new([edge(0, 0), old(1), edge(1, 2)]),

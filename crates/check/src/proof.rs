@@ -71,7 +71,8 @@ impl Bytes<'_> {
         let [vertices, triangles] = [self.varint()?, self.varint()?];
         let mut mesh = Mesh::default();
         for _ in 0..vertices {
-            mesh.positions.push([self.double()?, self.double()?, self.double()?]);
+            mesh.positions
+                .push([self.double()?, self.double()?, self.double()?]);
         }
         for _ in 0..triangles {
             let mut vertex = || Ok::<u32, String>(u32::from_le_bytes(self.take()?));
@@ -85,11 +86,20 @@ impl Bytes<'_> {
         let (mut parents, mut face) = (Vec::new(), 0);
         while parents.len() < triangles {
             let code = self.varint()?;
-            let (count, run) = (code as usize / 2, if code % 2 == 1 { self.varint()? as usize } else { 1 });
+            let (count, run) = (
+                code as usize / 2,
+                if code % 2 == 1 {
+                    self.varint()? as usize
+                } else {
+                    1
+                },
+            );
             if face + run > faces || parents.len() + run * count > triangles {
                 return Err("has more triangles over its faces than there are".into());
             }
-            parents.extend((face..face + run).flat_map(|face| std::iter::repeat_n(face as u32, count)));
+            parents.extend(
+                (face..face + run).flat_map(|face| std::iter::repeat_n(face as u32, count)),
+            );
             face += run;
         }
         Ok(parents)
@@ -101,8 +111,10 @@ impl Bytes<'_> {
         let at = match code.into() {
             255 => {
                 let [level] = self.take()?;
-                let unit =
-                    WHOLE.checked_shr(level.into()).filter(|&unit| unit > 0).ok_or("a place is too deep")?;
+                let unit = WHOLE
+                    .checked_shr(level.into())
+                    .filter(|&unit| unit > 0)
+                    .ok_or("a place is too deep")?;
                 [self.varint()?, self.varint()?].map(|i| i64::from(i) * unit)
             }
             own if own < FIRST_BESIDE => {
@@ -113,7 +125,9 @@ impl Bytes<'_> {
                 [i, j].map(|x| x * (WHOLE / 16))
             }
             own => {
-                let [p, q] = BESIDE.get(own - FIRST_BESIDE).ok_or("a place has no such code")?;
+                let [p, q] = BESIDE
+                    .get(own - FIRST_BESIDE)
+                    .ok_or("a place has no such code")?;
                 let [a, b] = known().ok_or("a place is beside some that are not known")?;
                 let [i, j] = [b[0] - a[0], b[1] - a[1]];
                 let [x, y] = [p * i - q * j, p * j + q * (i + j)];
@@ -123,24 +137,38 @@ impl Bytes<'_> {
                 [a[0] + x / 6, a[1] + y / 6]
             }
         };
-        let is_inside = Place::weights(at).iter().all(|weight| (0..=WHOLE).contains(weight));
-        if is_inside { Ok(at) } else { Err("a place is beyond its face".into()) }
+        let is_inside = Place::weights(at)
+            .iter()
+            .all(|weight| (0..=WHOLE).contains(weight));
+        if is_inside {
+            Ok(at)
+        } else {
+            Err("a place is beyond its face".into())
+        }
     }
 }
 
 impl Proof {
     /// Reads a proof.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
-        let end = bytes.windows(5).position(|window| window == b"\nend\n").ok_or("is no proof")?;
+        let end = bytes
+            .windows(5)
+            .position(|window| window == b"\nend\n")
+            .ok_or("is no proof")?;
         let head = std::str::from_utf8(&bytes[..end]).map_err(|_| "is no proof")?;
         let mut lines = head.lines();
         let mut line = |key: &str| {
             let value = lines.next().and_then(|line| line.strip_prefix(key));
-            value.map(str::trim).ok_or(format!("lacks its line \"{}\", or is of another version", key.trim()))
+            value.map(str::trim).ok_or(format!(
+                "lacks its line \"{}\", or is of another version",
+                key.trim()
+            ))
         };
         line("limitmesh proof 1")?;
         let name = line("scheme ")?;
-        let scheme = [Scheme::Loop, Scheme::LoopWarren].into_iter().find(|scheme| scheme.name() == name);
+        let scheme = [Scheme::Loop, Scheme::LoopWarren]
+            .into_iter()
+            .find(|scheme| scheme.name() == name);
         let scheme = scheme.ok_or(format!("there is no scheme {name}"))?;
         let within = line("within ")?.parse().map_err(|_| "claims no length")?;
         let [control, result] = [line("control ")?, line("result ")?].map(str::to_string);
@@ -156,30 +184,53 @@ impl Proof {
         for _ in 0..rest.varint()? {
             corners.push((rest.varint()?, rest.double()?));
         }
-        Ok(Self { scheme, within, control, result, held, creases, corners, rest: rest.0.to_vec() })
+        Ok(Self {
+            scheme,
+            within,
+            control,
+            result,
+            held,
+            creases,
+            corners,
+            rest: rest.0.to_vec(),
+        })
     }
 
     /// Where triangles and vertices come from. An error where the proof is about another control mesh, or has no places for the result.
     pub fn origins(&self, control: &Mesh, result: &Mesh) -> Result<Origins, String> {
         if control.digest() != self.control {
             return Err(
-                "is about another control mesh than this one (the order is CONTROL RESULT PROOF)".into()
+                "is about another control mesh than this one (the order is CONTROL RESULT PROOF)"
+                    .into(),
             );
         }
         let mut rest = Bytes(&self.rest);
         let parents = rest.parents(control.triangles.len(), result.triangles.len())?;
-        let mut places = vec![Place { face: u32::MAX, at: [0; 2] }; result.positions.len()];
+        let mut places = vec![
+            Place {
+                face: u32::MAX,
+                at: [0; 2]
+            };
+            result.positions.len()
+        ];
         for (t, (triangle, &face)) in result.triangles.iter().zip(&parents).enumerate() {
             for corner in 0..3 {
                 let [vertex, a, b] = [0, 1, 2].map(|i| triangle[(corner + i) % 3] as usize);
                 if places[vertex].face == u32::MAX {
                     let known = |v: usize| places[v].within(&control.triangles, face);
                     let at = rest.place(|| Some([known(a)?, known(b)?]));
-                    places[vertex] = Place { face, at: at.map_err(|what| format!("triangle {t}: {what}"))? };
+                    places[vertex] = Place {
+                        face,
+                        at: at.map_err(|what| format!("triangle {t}: {what}"))?,
+                    };
                 }
             }
         }
-        if rest.0.is_empty() { Ok(Origins { parents, places }) } else { Err("goes on behind its end".into()) }
+        if rest.0.is_empty() {
+            Ok(Origins { parents, places })
+        } else {
+            Err("goes on behind its end".into())
+        }
     }
 }
 
@@ -194,7 +245,10 @@ impl Place {
         if self.face == face {
             return Some(self.at);
         }
-        let (from, to) = (triangles.get(self.face as usize)?, triangles.get(face as usize)?);
+        let (from, to) = (
+            triangles.get(self.face as usize)?,
+            triangles.get(face as usize)?,
+        );
         let (own, mut weights) = (Self::weights(self.at), [0; 3]);
         for i in (0..3).filter(|&i| own[i] > 0) {
             weights[to.iter().position(|&vertex| vertex == from[i])?] = own[i];

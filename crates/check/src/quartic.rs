@@ -33,7 +33,9 @@ pub fn regular(corners: [Vector; 3], rings: &[[Vector; 6]; 3]) -> Net {
     for i in 0..3 {
         for (counts, weights) in STENCILS {
             let points = [corners[i]].into_iter().chain(rings[i]);
-            let sum = points.zip(weights).fold([0.0; 3], |sum, (p, weight)| add(sum, scale(p, weight)));
+            let sum = points
+                .zip(weights)
+                .fold([0.0; 3], |sum, (p, weight)| add(sum, scale(p, weight)));
             net[at(4, counts[(4 - i) % 3], counts[(5 - i) % 3])] = scale(sum, 1.0 / 24.0);
         }
     }
@@ -76,7 +78,9 @@ pub fn over(net: &Net, corners: &[Vector; 3]) -> Net {
         let mut at_1 = at_2;
         for j in 0..5 - k {
             let mut at_0 = at_1;
-            (1..5 - k - j).rev().for_each(|n| step(&mut at_0, n, corners[0]));
+            (1..5 - k - j)
+                .rev()
+                .for_each(|n| step(&mut at_0, n, corners[0]));
             out[at(4, j, k)] = at_0[0];
             if j + k < 4 {
                 step(&mut at_1, 4 - k - j, corners[1]);
@@ -94,7 +98,10 @@ fn step(net: &mut Net, n: usize, weights: Vector) {
     for j in 0..n {
         for k in 0..n - j {
             let [p, q, r] = [net[at(n, j, k)], net[at(n, j + 1, k)], net[at(n, j, k + 1)]];
-            net[at(n - 1, j, k)] = add(add(scale(p, weights[0]), scale(q, weights[1])), scale(r, weights[2]));
+            net[at(n - 1, j, k)] = add(
+                add(scale(p, weights[0]), scale(q, weights[1])),
+                scale(r, weights[2]),
+            );
         }
     }
 }

@@ -7,7 +7,13 @@ use crate::mesh::Mesh;
 /// Reads a file by the ending of its name.
 pub fn mesh(name: &str, bytes: &[u8]) -> Result<Mesh, String> {
     let text = || std::str::from_utf8(bytes).map_err(|_| "not a text file".to_string());
-    let mesh = match name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase().as_str() {
+    let mesh = match name
+        .rsplit('.')
+        .next()
+        .unwrap_or_default()
+        .to_ascii_lowercase()
+        .as_str()
+    {
         "obj" => obj(text()?),
         "off" => off(text()?),
         "ply" => ply(bytes),
@@ -19,15 +25,22 @@ pub fn mesh(name: &str, bytes: &[u8]) -> Result<Mesh, String> {
 
 fn number<T: FromStr>(word: Option<&str>) -> Result<T, String> {
     let word = word.ok_or("ends early")?;
-    word.parse().map_err(|_| format!("{word} is no number, or not one that may be here"))
+    word.parse()
+        .map_err(|_| format!("{word} is no number, or not one that may be here"))
 }
 
 fn position(words: &mut SplitWhitespace<'_>) -> Result<[f64; 3], String> {
-    Ok([number(words.next())?, number(words.next())?, number(words.next())?])
+    Ok([
+        number(words.next())?,
+        number(words.next())?,
+        number(words.next())?,
+    ])
 }
 
 fn triangle(corners: &[u32]) -> Result<[u32; 3], String> {
-    corners.try_into().map_err(|_| format!("a face has {} corners, not three", corners.len()))
+    corners
+        .try_into()
+        .map_err(|_| format!("a face has {} corners, not three", corners.len()))
 }
 
 fn obj(text: &str) -> Result<Mesh, String> {
@@ -39,10 +52,16 @@ fn obj(text: &str) -> Result<Mesh, String> {
             Some("f") => {
                 let vertex = |word: &str| {
                     let named: i64 = number(word.split('/').next())?;
-                    let from_0 = if named < 0 { mesh.positions.len() as i64 + named } else { named - 1 };
+                    let from_0 = if named < 0 {
+                        mesh.positions.len() as i64 + named
+                    } else {
+                        named - 1
+                    };
                     u32::try_from(from_0).map_err(|_| format!("there is no vertex {named}"))
                 };
-                mesh.triangles.push(triangle(&words.map(vertex).collect::<Result<Vec<_>, _>>()?)?);
+                mesh.triangles.push(triangle(
+                    &words.map(vertex).collect::<Result<Vec<_>, _>>()?,
+                )?);
             }
             _ => {}
         }
@@ -51,7 +70,12 @@ fn obj(text: &str) -> Result<Mesh, String> {
 }
 
 fn off(text: &str) -> Result<Mesh, String> {
-    let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().split_whitespace());
+    let lines = text.lines().map(|line| {
+        line.split('#')
+            .next()
+            .unwrap_or_default()
+            .split_whitespace()
+    });
     let mut lines = lines.filter(|line| line.clone().next().is_some());
     let mut line = || lines.next().ok_or("ends early".to_string());
     if !line()?.eq(["OFF"]) {
@@ -66,7 +90,10 @@ fn off(text: &str) -> Result<Mesh, String> {
     for _ in 0..faces {
         let mut words = line()?;
         let count: usize = number(words.next())?;
-        let corners = words.take(count).map(|word| number(Some(word))).collect::<Result<Vec<_>, _>>()?;
+        let corners = words
+            .take(count)
+            .map(|word| number(Some(word)))
+            .collect::<Result<Vec<_>, _>>()?;
         mesh.triangles.push(triangle(&corners)?);
     }
     Ok(mesh)
@@ -107,7 +134,10 @@ impl Numbers<'_> {
 }
 
 fn ply(bytes: &[u8]) -> Result<Mesh, String> {
-    let end = bytes.windows(11).position(|w| w == b"end_header\n").map(|at| at + 11);
+    let end = bytes
+        .windows(11)
+        .position(|w| w == b"end_header\n")
+        .map(|at| at + 11);
     let end = end.or_else(|| Some(bytes.windows(12).position(|w| w == b"end_header\r\n")? + 12));
     let (header, body) = bytes.split_at(end.ok_or("has no header")?);
     let text = |bytes| std::str::from_utf8(bytes).map_err(|_| "is not text".to_string());
@@ -116,18 +146,28 @@ fn ply(bytes: &[u8]) -> Result<Mesh, String> {
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["format", "ascii", _] => numbers = Numbers::Words(text(body)?.split_whitespace()),
             ["format", order, _] => {
-                numbers = Numbers::Bytes { rest: body, is_big: order == "binary_big_endian" };
+                numbers = Numbers::Bytes {
+                    rest: body,
+                    is_big: order == "binary_big_endian",
+                };
             }
-            ["element", name, count] => elements.push((name, number::<u32>(Some(count))?, Vec::new())),
+            ["element", name, count] => {
+                elements.push((name, number::<u32>(Some(count))?, Vec::new()))
+            }
             ["property", ref kinds @ .., name] => {
-                elements.last_mut().ok_or("has a stray property")?.2.push((kinds.to_vec(), name));
+                elements
+                    .last_mut()
+                    .ok_or("has a stray property")?
+                    .2
+                    .push((kinds.to_vec(), name));
             }
             _ => {}
         }
     }
     let mut mesh = Mesh::default();
-    for (element, count, properties) in
-        elements.into_iter().filter(|(_, _, properties)| !properties.is_empty())
+    for (element, count, properties) in elements
+        .into_iter()
+        .filter(|(_, _, properties)| !properties.is_empty())
     {
         for _ in 0..count {
             let mut at = [f64::NAN; 3];
@@ -135,7 +175,9 @@ fn ply(bytes: &[u8]) -> Result<Mesh, String> {
                 match kinds[..] {
                     ["list", length, kind] => {
                         let length = numbers.next(length)? as u32;
-                        let list = (0..length).map(|_| numbers.next(kind)).collect::<Result<Vec<_>, _>>()?;
+                        let list = (0..length)
+                            .map(|_| numbers.next(kind))
+                            .collect::<Result<Vec<_>, _>>()?;
                         if element == "face" && name.starts_with("vertex_ind") {
                             let vertex = |&value: &f64| match value as u32 {
                                 vertex if f64::from(vertex) == value => Ok(vertex),

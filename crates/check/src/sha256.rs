@@ -1,8 +1,9 @@
 //! SHA-256, as FIPS 180-4 defines it.
 
 /// The first 32 bits of the fractional parts of the square roots of the first 8 primes.
-const START: [u32; 8] =
-    [0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19];
+const START: [u32; 8] = [
+    0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a, 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19,
+];
 
 /// The same of the cube roots of the first 64 primes.
 #[rustfmt::skip]
@@ -21,34 +22,55 @@ const ROUND: [u32; 64] = [
 pub fn digest(bytes: &[u8]) -> String {
     let mut state = START;
     let (blocks, rest) = bytes.split_at(bytes.len() / 64 * 64);
-    blocks.chunks_exact(64).for_each(|block| compress(&mut state, block));
+    blocks
+        .chunks_exact(64)
+        .for_each(|block| compress(&mut state, block));
     let mut tail = rest.to_vec();
     tail.push(0x80);
     tail.resize((tail.len() + 8).next_multiple_of(64) - 8, 0);
     tail.extend((bytes.len() as u64 * 8).to_be_bytes());
-    tail.chunks_exact(64).for_each(|block| compress(&mut state, block));
+    tail.chunks_exact(64)
+        .for_each(|block| compress(&mut state, block));
     state.iter().map(|word| format!("{word:08x}")).collect()
 }
 
 fn compress(state: &mut [u32; 8], block: &[u8]) {
     let mut words = [0u32; 64];
     for (word, bytes) in words.iter_mut().zip(block.chunks_exact(4)) {
-        *word = bytes.iter().fold(0, |word, &byte| word << 8 | u32::from(byte));
+        *word = bytes
+            .iter()
+            .fold(0, |word, &byte| word << 8 | u32::from(byte));
     }
     for i in 16..64 {
         let [a, b] = [words[i - 15], words[i - 2]];
         let small = a.rotate_right(7) ^ a.rotate_right(18) ^ a >> 3;
         let large = b.rotate_right(17) ^ b.rotate_right(19) ^ b >> 10;
-        words[i] = words[i - 16].wrapping_add(small).wrapping_add(words[i - 7]).wrapping_add(large);
+        words[i] = words[i - 16]
+            .wrapping_add(small)
+            .wrapping_add(words[i - 7])
+            .wrapping_add(large);
     }
     let [mut a, mut b, mut c, mut d, mut e, mut f, mut g, mut h] = *state;
     for i in 0..64 {
         let large = e.rotate_right(6) ^ e.rotate_right(11) ^ e.rotate_right(25);
         let choice = e & f ^ !e & g;
-        let first = h.wrapping_add(large).wrapping_add(choice).wrapping_add(ROUND[i]).wrapping_add(words[i]);
+        let first = h
+            .wrapping_add(large)
+            .wrapping_add(choice)
+            .wrapping_add(ROUND[i])
+            .wrapping_add(words[i]);
         let small = a.rotate_right(2) ^ a.rotate_right(13) ^ a.rotate_right(22);
         let second = small.wrapping_add(a & b ^ a & c ^ b & c);
-        (h, g, f, e, d, c, b, a) = (g, f, e, d.wrapping_add(first), c, b, a, first.wrapping_add(second));
+        (h, g, f, e, d, c, b, a) = (
+            g,
+            f,
+            e,
+            d.wrapping_add(first),
+            c,
+            b,
+            a,
+            first.wrapping_add(second),
+        );
     }
     for (word, new) in state.iter_mut().zip([a, b, c, d, e, f, g, h]) {
         *word = word.wrapping_add(new);

@@ -7,7 +7,11 @@ use crate::proof::{Origins, Place, WHOLE};
 pub type Refusal = (u32, &'static str);
 
 /// By half-edge of the result, the one that goes the other way; or what is wrong.
-pub fn check(control: &Control, result: &Mesh, origins: &Origins) -> Result<Vec<u32>, Vec<Refusal>> {
+pub fn check(
+    control: &Control,
+    result: &Mesh,
+    origins: &Origins,
+) -> Result<Vec<u32>, Vec<Refusal>> {
     let triangles = &control.mesh.triangles;
     let (mut refused, mut areas) = (Vec::new(), vec![0i128; triangles.len()]);
     for (t, &parent) in (0..).zip(&origins.parents) {
@@ -20,14 +24,31 @@ pub fn check(control: &Control, result: &Mesh, origins: &Origins) -> Result<Vec<
             None => refused.push((t, "reaches beyond its face of the control mesh")),
         }
     }
-    let is_covered: Vec<bool> = areas.iter().map(|&area| area == i128::from(WHOLE * WHOLE)).collect();
-    let over_others = (0..).zip(&origins.parents).filter(|&(_, &parent)| !is_covered[parent as usize]);
-    refused
-        .extend(over_others.map(|(t, _)| (t, "is over a face of the control mesh that is not covered once")));
-    if let (Some(face), []) = (is_covered.iter().position(|is_covered| !is_covered), &refused[..]) {
+    let is_covered: Vec<bool> = areas
+        .iter()
+        .map(|&area| area == i128::from(WHOLE * WHOLE))
+        .collect();
+    let over_others = (0..)
+        .zip(&origins.parents)
+        .filter(|&(_, &parent)| !is_covered[parent as usize]);
+    refused.extend(over_others.map(|(t, _)| {
+        (
+            t,
+            "is over a face of the control mesh that is not covered once",
+        )
+    }));
+    if let (Some(face), []) = (
+        is_covered.iter().position(|is_covered| !is_covered),
+        &refused[..],
+    ) {
         refused.push((face as u32, "of the control mesh has no triangle over it"));
     }
-    let doubled = |h: u32| vec![(h / 3, "has an edge in the same direction as another triangle")];
+    let doubled = |h: u32| {
+        vec![(
+            h / 3,
+            "has an edge in the same direction as another triangle",
+        )]
+    };
     let twins = result.twins().map_err(doubled)?;
     let is_torn = |&h: &u32| {
         let mut along = edges_along(result, origins, triangles, h);
@@ -41,11 +62,20 @@ pub fn check(control: &Control, result: &Mesh, origins: &Origins) -> Result<Vec<
     };
     let torn = (0..twins.len() as u32).filter(is_torn);
     refused.extend(torn.map(|h| (h / 3, "does not go on where the control mesh goes on")));
-    if refused.is_empty() { Ok(twins) } else { Err(refused) }
+    if refused.is_empty() {
+        Ok(twins)
+    } else {
+        Err(refused)
+    }
 }
 
 /// The weights of a triangle's corners in its parent.
-pub fn part(result: &Mesh, origins: &Origins, triangles: &[[u32; 3]], t: u32) -> Option<[[i64; 2]; 3]> {
+pub fn part(
+    result: &Mesh,
+    origins: &Origins,
+    triangles: &[[u32; 3]],
+    t: u32,
+) -> Option<[[i64; 2]; 3]> {
     let parent = origins.parents[t as usize];
     let [a, b, c] =
         result.triangles[t as usize].map(|v| origins.places[v as usize].within(triangles, parent));
@@ -71,5 +101,7 @@ fn edges_along(
         weights.is_some_and(|weights| ends.iter().all(|&end| weights[end][corner] == 0))
     };
     // Where a corner has no weight is the edge that begins at the next one.
-    (0..3).filter(move |&corner| is_without(corner as usize)).map(move |corner| next(parent + corner))
+    (0..3)
+        .filter(move |&corner| is_without(corner as usize))
+        .map(move |corner| next(parent + corner))
 }

@@ -76,13 +76,22 @@ impl Frames<'_> {
     }
 
     fn plane(&self, [a, b, c]: [Vector; 3]) -> Option<Plane> {
-        let longest = [sub(b, a), sub(c, b), sub(a, c)].map(length).into_iter().fold(0.0, f64::max);
+        let longest = [sub(b, a), sub(c, b), sub(a, c)]
+            .map(length)
+            .into_iter()
+            .fold(0.0, f64::max);
         // In units of the longest edge, so that no square is too large or too small; and of no such edge.
-        let normal = cross(scale(sub(b, a), 1.0 / longest), scale(sub(c, b), 1.0 / longest));
+        let normal = cross(
+            scale(sub(b, a), 1.0 / longest),
+            scale(sub(c, b), 1.0 / longest),
+        );
         let area = length(normal);
         let rounding = 64.0 * ROUNDOFF * (longest + self.within) / area;
         let is_good = (1e-120..1e120).contains(&longest) && rounding <= self.within / 64.0;
-        is_good.then(|| Plane { normal: scale(normal, 1.0 / area), rounding })
+        is_good.then(|| Plane {
+            normal: scale(normal, 1.0 / area),
+            rounding,
+        })
     }
 
     /// The tangents of the angle at a half-edge's origin, and of half of what it leaves of 180°.
@@ -91,7 +100,11 @@ impl Frames<'_> {
         let [v, b, c] = [h, next(h), next(next(h))].map(|h| corners[h as usize % 3]);
         let [to_b, to_c] = [sub(b, v), sub(c, v)].map(|way| scale(way, 1.0 / length(way)));
         let (sine, cosine) = (length(cross(to_b, to_c)), dot(to_b, to_c));
-        let own = if cosine > 0.0 { sine / cosine } else { f64::INFINITY };
+        let own = if cosine > 0.0 {
+            sine / cosine
+        } else {
+            f64::INFINITY
+        };
         [own, (1.0 + cosine) / sine]
     }
 
@@ -104,20 +117,37 @@ impl Frames<'_> {
             let from = corners[i as usize];
             let way = sub(corners[next(i) as usize], from);
             let along = scale(way, 1.0 / length(way));
-            let outwards = plane.as_ref().map_or([0.0; 3], |plane| cross(along, plane.normal));
-            let joined = plane.as_ref().and_then(|plane| self.fold(3 * t + i, plane, way));
+            let outwards = plane
+                .as_ref()
+                .map_or([0.0; 3], |plane| cross(along, plane.normal));
+            let joined = plane
+                .as_ref()
+                .and_then(|plane| self.fold(3 * t + i, plane, way));
             flaps.push(from);
             if let Some(fold) = &joined {
                 let [start, end] = fold.sides[0].out;
                 let tip = add(along, scale(outwards, start));
                 flaps.push(add(from, scale(tip, length(way) * end / (start + end))));
             }
-            Edge { length: length(way), along, outwards, joined }
+            Edge {
+                length: length(way),
+                along,
+                outwards,
+                joined,
+            }
         });
         let own = plane.as_ref().map_or(0.0, |plane| plane.rounding);
-        let folds = edges.iter().filter_map(|edge: &Edge| Some(edge.joined.as_ref()?.rounding));
+        let folds = edges
+            .iter()
+            .filter_map(|edge: &Edge| Some(edge.joined.as_ref()?.rounding));
         let within = self.within - self.rounding - folds.fold(own, f64::max);
-        Triangle { corners, within, plane, edges, flaps }
+        Triangle {
+            corners,
+            within,
+            plane,
+            edges,
+            flaps,
+        }
     }
 
     /// The fold at a half-edge of a triangle, if that is joined.
@@ -126,15 +156,26 @@ impl Frames<'_> {
         let Plane { normal, rounding } = self.plane(self.corners(twin / 3))?;
         let cos = dot(plane.normal, normal);
         let tangents = [h, next(h), next(twin), twin].map(|h| self.tangents(h));
-        let tan = |i: usize| tangents[(i + 2) % 4][0].min(tangents[i][1]).min(MOST_TAN) * (1.0 - SHRINK);
+        let tan =
+            |i: usize| tangents[(i + 2) % 4][0].min(tangents[i][1]).min(MOST_TAN) * (1.0 - SHRINK);
         let (out, back) = ([tan(0), tan(1)], [tan(2), tan(3)]);
         let least = [1, 2, 3].iter().fold(tan(0), |least, &i| least.min(tan(i)));
         let along = scale(way, 1.0 / length(way));
         let rounding = rounding.max(plane.rounding);
         let slack = 2.0 * (self.rounding + rounding) * (1.0 + MOST_TAN);
         let is_wide = least >= LEAST_TAN && length(way) * least * SHRINK >= 8.0 * slack;
-        let own = Side { normal: plane.normal, outwards: cross(along, plane.normal), out, back };
-        let other = Side { normal, outwards: cross(normal, along), out: back, back: out };
+        let own = Side {
+            normal: plane.normal,
+            outwards: cross(along, plane.normal),
+            out,
+            back,
+        };
+        let other = Side {
+            normal,
+            outwards: cross(normal, along),
+            out: back,
+            back: out,
+        };
         (cos > 0.0 && is_wide).then(|| Fold {
             sides: [own, other],
             sigma: length(sub(normal, plane.normal)),
@@ -150,7 +191,11 @@ impl Frames<'_> {
 fn on_segment(p: Vector, a: Vector, b: Vector) -> Vector {
     let way = sub(b, a);
     let share = dot(sub(p, a), way) / dot(way, way);
-    if share > 0.0 { add(a, scale(way, share.min(1.0))) } else { a }
+    if share > 0.0 {
+        add(a, scale(way, share.min(1.0)))
+    } else {
+        a
+    }
 }
 
 /// The point of a convex polygon, counter-clockwise around the normal, that is nearest to a point of its plane.
@@ -161,7 +206,8 @@ fn on_polygon(p: Vector, corners: &[Vector], normal: Vector) -> Vector {
         return p;
     }
     let feet = sides.map(|(a, b)| on_segment(p, a, b));
-    feet.min_by(|&a, &b| length(sub(p, a)).total_cmp(&length(sub(p, b)))).unwrap_or(p)
+    feet.min_by(|&a, &b| length(sub(p, a)).total_cmp(&length(sub(p, b))))
+        .unwrap_or(p)
 }
 
 impl Triangle {
@@ -177,7 +223,10 @@ impl Triangle {
         }
         let foot = sub(p, scale(normal, height));
         let turned = |i: usize, z: Vector| {
-            self.edges[i].joined.as_ref().map_or(0.0, |fold| fold.sigma * beyond(i, z).max(0.0))
+            self.edges[i]
+                .joined
+                .as_ref()
+                .map_or(0.0, |fold| fold.sigma * beyond(i, z).max(0.0))
         };
         let gauge = |z: Vector| length(sub(p, z)) + turned(0, z) + turned(1, z) + turned(2, z);
         length(sub(p, on_polygon(foot, &self.corners, normal))) <= self.within
@@ -188,7 +237,9 @@ impl Triangle {
     pub fn is_along(&self, edge: usize, points: &[Vector]) -> bool {
         let fold = self.edges[edge].joined.as_ref();
         fold.is_some_and(|fold| points.iter().all(|&p| self.is_across(edge, fold, p)))
-            || points.iter().all(|&p| self.distance_to_edge(edge, p) <= self.within)
+            || points
+                .iter()
+                .all(|&p| self.distance_to_edge(edge, p) <= self.within)
     }
 
     /// The same for a curve by its Bézier points, halved as long as that helps.
@@ -205,18 +256,24 @@ impl Triangle {
             (0..5 - step).for_each(|i| work[i] = middle(work[i], work[i + 1]));
             (first[step], second[4 - step]) = (work[0], work[4 - step]);
         }
-        [first, second].iter().all(|half| self.is_curve_along(edge, half, halvings + 1))
+        [first, second]
+            .iter()
+            .all(|half| self.is_curve_along(edge, half, halvings + 1))
     }
 
     fn distance_to_edge(&self, edge: usize, p: Vector) -> f64 {
-        length(sub(p, on_segment(p, self.corners[edge], self.corners[(edge + 1) % 3])))
+        length(sub(
+            p,
+            on_segment(p, self.corners[edge], self.corners[(edge + 1) % 3]),
+        ))
     }
 
     /// The conditions of Lemma 3.
     fn is_across(&self, edge: usize, fold: &Fold, p: Vector) -> bool {
         let (from, edge) = (sub(p, self.corners[edge]), &self.edges[edge]);
         let along = dot(from, edge.along);
-        let wide = |tan: [f64; 2]| (tan[0] * along).min(tan[1] * (edge.length - along)) + fold.slack;
+        let wide =
+            |tan: [f64; 2]| (tan[0] * along).min(tan[1] * (edge.length - along)) + fold.slack;
         fold.sides.iter().all(|side| {
             let (height, beyond) = (dot(from, side.normal).abs(), dot(from, side.outwards));
             beyond <= wide(side.out)

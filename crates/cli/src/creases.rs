@@ -46,10 +46,15 @@ impl Hints<'_> {
         from: CreasesFrom,
         name: &str,
     ) -> anyhow::Result<Vec<HalfEdgeId>> {
-        let of_faces =
-            |channel: &&Channel| channel.domain == Domain::Face && channel.semantic == Semantic::Label;
+        let of_faces = |channel: &&Channel| {
+            channel.domain == Domain::Face && channel.semantic == Semantic::Label
+        };
         let labels = |is_own: &dyn Fn(&str) -> bool| -> Vec<&Channel> {
-            self.channels.iter().filter(of_faces).filter(|channel| is_own(&channel.name)).collect()
+            self.channels
+                .iter()
+                .filter(of_faces)
+                .filter(|channel| is_own(&channel.name))
+                .collect()
         };
         let (found, what) = match from {
             CreasesFrom::None => return Ok(Vec::new()),
@@ -57,33 +62,50 @@ impl Hints<'_> {
                 Some(normals) => return Ok(split_edges(mesh, normals)),
                 None => (Vec::new(), "normals"),
             },
-            CreasesFrom::SmoothingGroups => (labels(&|name| name == SMOOTHING_GROUP), "smoothing groups"),
-            CreasesFrom::Materials => {
-                (labels(&|name| ![OBJECT, GROUP, SMOOTHING_GROUP].contains(&name)), MATERIAL)
+            CreasesFrom::SmoothingGroups => {
+                (labels(&|name| name == SMOOTHING_GROUP), "smoothing groups")
             }
+            CreasesFrom::Materials => (
+                labels(&|name| ![OBJECT, GROUP, SMOOTHING_GROUP].contains(&name)),
+                MATERIAL,
+            ),
         };
         if found.is_empty() {
             return usage(format!("--creases-from: {name} has no {what}"));
         }
-        let is_border =
-            |a: FaceId, b: FaceId| found.iter().any(|channel| differ(channel, a.index(), b.index()));
-        Ok(inner_edges(mesh, |h, twin| is_border(h.face(), twin.face())))
+        let is_border = |a: FaceId, b: FaceId| {
+            found
+                .iter()
+                .any(|channel| differ(channel, a.index(), b.index()))
+        };
+        Ok(inner_edges(mesh, |h, twin| {
+            is_border(h.face(), twin.face())
+        }))
     }
 
     /// What it says of some edges that they are sharp, and of others that they are not.
     pub(crate) fn sharpness(&self, mesh: &Mesh) -> OwnSharpness {
-        let mut groups = self.channels.iter().filter(|channel| channel.name == SMOOTHING_GROUP);
+        let mut groups = self
+            .channels
+            .iter()
+            .filter(|channel| channel.name == SMOOTHING_GROUP);
         let differ = |h: HalfEdgeId, twin: HalfEdgeId, channel: &Channel| {
             differ(channel, h.face().index(), twin.face().index())
         };
         let have_borders = |channel: &Channel| {
-            let is_one = channel.indices.iter().all(|&index| index == channel.indices[0]);
+            let is_one = channel
+                .indices
+                .iter()
+                .all(|&index| index == channel.indices[0]);
             !is_one && !inner_edges(mesh, |h, twin| differ(h, twin, channel)).is_empty()
         };
         if self.is_tagged || groups.any(have_borders) {
             return OwnSharpness::Tags;
         }
-        match self.normals.map_or(0, |normals| telling_edges(mesh, normals)) {
+        match self
+            .normals
+            .map_or(0, |normals| telling_edges(mesh, normals))
+        {
             0 => OwnSharpness::None,
             edges => OwnSharpness::Normals(edges),
         }
@@ -91,14 +113,19 @@ impl Hints<'_> {
 
     /// How many edges have normals that differ between their faces.
     pub(crate) fn split_edges(&self, mesh: &Mesh) -> usize {
-        self.normals.map_or(0, |normals| split_edges(mesh, normals).len())
+        self.normals
+            .map_or(0, |normals| split_edges(mesh, normals).len())
     }
 }
 
 /// Edges inside, once each, that are as asked.
 fn inner_edges(mesh: &Mesh, is_own: impl Fn(HalfEdgeId, HalfEdgeId) -> bool) -> Vec<HalfEdgeId> {
     let topology = mesh.topology();
-    let inner = |h: &HalfEdgeId| topology.twin(*h).is_some_and(|twin| *h < twin && is_own(*h, twin));
+    let inner = |h: &HalfEdgeId| {
+        topology
+            .twin(*h)
+            .is_some_and(|twin| *h < twin && is_own(*h, twin))
+    };
     topology.half_edges().filter(inner).collect()
 }
 
@@ -113,7 +140,9 @@ fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
         (Some(a), Some(b)) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>() > SAME * SAME,
         _ => false,
     };
-    inner_edges(mesh, |h, twin| differ(h, twin.next()) || differ(h.next(), twin))
+    inner_edges(mesh, |h, twin| {
+        differ(h, twin.next()) || differ(h.next(), twin)
+    })
 }
 
 /// How many edges have normals that differ, if these are the same on both sides of others where faces meet at an angle: facets that are
@@ -124,8 +153,13 @@ fn telling_edges(mesh: &Mesh, normals: &Channel) -> usize {
         let [m, n] = [h, twin].map(|h| mesh.face_normal(h.face()));
         length(cross(m, n)) > BENT * length(m) * length(n)
     };
-    let is_smooth = |h: HalfEdgeId, twin: HalfEdgeId| is_bent(h, twin) && split.binary_search(&h).is_err();
-    if split.is_empty() || inner_edges(mesh, is_smooth).is_empty() { 0 } else { split.len() }
+    let is_smooth =
+        |h: HalfEdgeId, twin: HalfEdgeId| is_bent(h, twin) && split.binary_search(&h).is_err();
+    if split.is_empty() || inner_edges(mesh, is_smooth).is_empty() {
+        0
+    } else {
+        split.len()
+    }
 }
 
 /// Whether the edge between two faces is a border of what they are labelled with.
@@ -134,7 +168,14 @@ fn differ(channel: &Channel, a: usize, b: usize) -> bool {
     // Faces in no smoothing group are smooth with no other.
     let is_off = |number: u32| {
         channel.name == SMOOTHING_GROUP
-            && channel.labels.get(number as usize).is_some_and(|name| name == "off" || name == "0")
+            && channel
+                .labels
+                .get(number as usize)
+                .is_some_and(|name| name == "off" || name == "0")
     };
-    if channel.labels.is_empty() { channel.value(a) != channel.value(b) } else { own != other || is_off(own) }
+    if channel.labels.is_empty() {
+        channel.value(a) != channel.value(b)
+    } else {
+        own != other || is_off(own)
+    }
 }

@@ -34,7 +34,13 @@ impl Dihedrals {
                 histogram[(degrees / 10.0) as usize] += 1;
             }
         }
-        let part = |look: Look| if let Look::Part(part) = look { Some(part) } else { None };
+        let part = |look: Look| {
+            if let Look::Part(part) = look {
+                Some(part)
+            } else {
+                None
+            }
+        };
         let suggested = part(Look::of(mesh, &[]));
         Self {
             histogram,

@@ -65,15 +65,22 @@ pub(crate) fn refined(
     arguments: impl IntoIterator<Item = OsString>,
     progress: &Progress,
 ) -> Result<Refined, Failure> {
-    let words = ["limitmesh", "refine"].into_iter().map(OsString::from).chain(arguments);
-    let parsed =
-        Arguments::try_parse_from(words).map_err(|why| Failure::Usage(first_line(&why.to_string())))?;
+    let words = ["limitmesh", "refine"]
+        .into_iter()
+        .map(OsString::from)
+        .chain(arguments);
+    let parsed = Arguments::try_parse_from(words)
+        .map_err(|why| Failure::Usage(first_line(&why.to_string())))?;
     let Command::Refine(arguments) = &parsed.command else {
         return Err(Failure::Usage("that is not limitmesh refine".to_owned()));
     };
     match commands::refine::run(arguments, progress) {
-        Ok(Outcome::Done) => Ok(Refined { stopped_short: None }),
-        Ok(Outcome::StoppedShort(why)) => Ok(Refined { stopped_short: Some(why) }),
+        Ok(Outcome::Done) => Ok(Refined {
+            stopped_short: None,
+        }),
+        Ok(Outcome::StoppedShort(why)) => Ok(Refined {
+            stopped_short: Some(why),
+        }),
         Err(error) => Err(match error.downcast_ref::<UsageError>() {
             Some(UsageError(what)) => Failure::Usage(what.clone()),
             None => Failure::Input(in_words(&error)),

@@ -31,9 +31,11 @@ pub(crate) fn usage<T>(what: impl Into<String>) -> anyhow::Result<T> {
 
 /// Whether the reader of our output went away, as `head` does: no failure of ours.
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    error
-        .chain()
-        .any(|cause| cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+    error.chain().any(|cause| {
+        cause
+            .downcast_ref::<io::Error>()
+            .is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+    })
 }
 
 /// Prints why the command line makes no sense. What it means is at fault, not how it is written: a line on its usage would not help.

@@ -18,7 +18,10 @@ impl FileIdentity {
         #[cfg(unix)]
         if let Ok(found) = std::fs::metadata(path) {
             use std::os::unix::fs::MetadataExt;
-            return Self::There { device: found.dev(), number: found.ino() };
+            return Self::There {
+                device: found.dev(),
+                number: found.ino(),
+            };
         }
         Self::Path(whole(path))
     }
@@ -28,7 +31,10 @@ fn whole(path: &Path) -> PathBuf {
     if let Ok(there) = path.canonicalize() {
         return there;
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     match (folder.canonicalize(), path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
         _ => std::path::absolute(path).unwrap_or_else(|_| path.to_owned()),

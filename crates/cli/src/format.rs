@@ -12,7 +12,11 @@ pub(crate) fn number(x: f64) -> String {
     }
     let decimals = (5 - x.abs().log10().floor() as i64).clamp(0, 9) as usize;
     let text = format!("{x:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// Digits of a bound, of which more would not be looked at.
@@ -36,7 +40,9 @@ fn bound(x: f64, round: impl Fn(f64) -> f64) -> String {
     let power = 10f64.powi(exponent.abs());
     let digits = round(if exponent < 0 { x * power } else { x / power });
     // The digits and the power as text: no rounding by a multiplication.
-    format!("{digits:.0}e{exponent}").parse().map_or_else(|_| number(x), short)
+    format!("{digits:.0}e{exponent}")
+        .parse()
+        .map_or_else(|_| number(x), short)
 }
 
 /// Digits of an interval's ends, at least and at most: a number has little more than fifteen.
@@ -45,8 +51,17 @@ const INTERVAL_DIGITS: [f64; 2] = [6.0, 15.0];
 /// The ends of an interval, rounded outwards, in so many digits that it is hardly wider than it was.
 pub(crate) fn interval(lower: f64, upper: f64) -> [String; 2] {
     let [fewest, most] = INTERVAL_DIGITS;
-    let digits = |end: f64| (100.0 * end / (upper - lower)).log10().ceil().max(fewest).min(most) as usize;
-    [outwards(lower, digits(lower), -1.0), outwards(upper, digits(upper), 1.0)]
+    let digits = |end: f64| {
+        (100.0 * end / (upper - lower))
+            .log10()
+            .ceil()
+            .max(fewest)
+            .min(most) as usize
+    };
+    [
+        outwards(lower, digits(lower), -1.0),
+        outwards(upper, digits(upper), 1.0),
+    ]
 }
 
 /// A number in so many digits, by the sign rounded up or down.
@@ -57,12 +72,23 @@ fn outwards(x: f64, digits: usize, sign: f64) -> String {
     let in_digits = |x: f64| format!("{x:.*e}", digits - 1).parse().unwrap_or(x);
     let (nearest, exponent): (f64, f64) = (in_digits(x), x.log10().floor());
     let unit = 10f64.powf(exponent + 1.0 - digits as f64);
-    let rounded = if sign * nearest < sign * x { in_digits(nearest + sign * unit) } else { nearest };
+    let rounded = if sign * nearest < sign * x {
+        in_digits(nearest + sign * unit)
+    } else {
+        nearest
+    };
     if !(1e-4..1e9).contains(&rounded) {
         return format!("{rounded:.*e}", digits - 1);
     }
-    let text = format!("{rounded:.*}", (digits as f64 - 1.0 - exponent).max(0.0) as usize);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    let text = format!(
+        "{rounded:.*}",
+        (digits as f64 - 1.0 - exponent).max(0.0) as usize
+    );
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }
 
 /// [`number`] without a tail of zeros before an exponent either.
@@ -70,7 +96,10 @@ fn short(x: f64) -> String {
     let text = number(x);
     match text.split_once('e') {
         Some((digits, exponent)) => {
-            format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+            format!(
+                "{}e{exponent}",
+                digits.trim_end_matches('0').trim_end_matches('.')
+            )
         }
         None => text,
     }
@@ -110,9 +139,15 @@ pub(crate) fn seconds(s: f64) -> String {
 /// Rows of cells as lines: the first column to the left, the others to the right, two spaces between.
 pub(crate) fn table(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width =
-        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| c.chars().count()).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let width = |column: usize| {
+        rows.iter()
+            .filter_map(|row| row.get(column))
+            .map(|c| c.chars().count())
+            .max()
+    };
+    let widths: Vec<usize> = (0..columns)
+        .map(|column| width(column).unwrap_or(0))
+        .collect();
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();
@@ -162,7 +197,11 @@ mod tests {
             (2e-8, "2e-8", "2e-8"),
         ];
         for (x, above, below) in pairs {
-            assert_eq!((upper_bound(x).as_str(), lower_bound(x).as_str()), (above, below), "{x}");
+            assert_eq!(
+                (upper_bound(x).as_str(), lower_bound(x).as_str()),
+                (above, below),
+                "{x}"
+            );
         }
     }
 
@@ -182,9 +221,16 @@ mod tests {
         for i in 1..2000 {
             let lower = 1.1f64.powi(i % 400 - 200) * (1.0 + f64::from(i) / 3000.0);
             let upper = lower * (1.0 + 0.3 * 0.5f64.powi(i % 41));
-            let [from, to] = interval(lower, upper).map(|end| end.parse::<f64>().expect("a number"));
-            assert!(from <= lower && upper <= to, "{i}: {from} {lower} {upper} {to}");
-            assert!(to - from <= 1.3 * (upper - lower) + 2e-14 * upper, "{i}: {from} {lower} {upper} {to}");
+            let [from, to] =
+                interval(lower, upper).map(|end| end.parse::<f64>().expect("a number"));
+            assert!(
+                from <= lower && upper <= to,
+                "{i}: {from} {lower} {upper} {to}"
+            );
+            assert!(
+                to - from <= 1.3 * (upper - lower) + 2e-14 * upper,
+                "{i}: {from} {lower} {upper} {to}"
+            );
         }
     }
 
@@ -204,7 +250,10 @@ mod tests {
 
     #[test]
     fn columns_line_up() {
-        let rows = [vec!["a".to_owned(), "10".to_owned()], vec!["long".to_owned(), "7".to_owned()]];
+        let rows = [
+            vec!["a".to_owned(), "10".to_owned()],
+            vec!["long".to_owned(), "7".to_owned()],
+        ];
         assert_eq!(table(&rows), "a     10\nlong   7\n");
     }
 }

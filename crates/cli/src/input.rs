@@ -47,7 +47,11 @@ pub(crate) struct Soup {
 impl Input {
     /// What it tells of sharp edges beside tags.
     pub(crate) fn hints(&self) -> Hints<'_> {
-        Hints { is_tagged: self.is_tagged, normals: self.normals.as_ref(), channels: &self.channels }
+        Hints {
+            is_tagged: self.is_tagged,
+            normals: self.normals.as_ref(),
+            channels: &self.channels,
+        }
     }
 
     /// Its mesh with the edges sharp that are to be, by what it tells.
@@ -56,7 +60,10 @@ impl Input {
     /// It tells nothing of that kind.
     pub(crate) fn with_creases(self, from: CreasesFrom) -> anyhow::Result<Self> {
         let edges = self.hints().edges(&self.mesh, from, &self.name)?;
-        Ok(Self { mesh: self.mesh.with_creases(&edges), ..self })
+        Ok(Self {
+            mesh: self.mesh.with_creases(&edges),
+            ..self
+        })
     }
 
     /// It with its numbers measured in another unit, where both are known.
@@ -64,16 +71,36 @@ impl Input {
     /// # Errors
     /// They are beyond what numbers hold then.
     pub(crate) fn in_unit(self, other: Option<Unit>, progress: &Progress) -> anyhow::Result<Self> {
-        let Some(factor) = factor(self.unit, other, &self.name, progress) else { return Ok(self) };
-        let positions = self.mesh.positions().iter().map(|p| p.map(|x| factor * x)).collect();
-        Ok(Self { mesh: self.mesh.with_positions(positions)?, unit: other, ..self })
+        let Some(factor) = factor(self.unit, other, &self.name, progress) else {
+            return Ok(self);
+        };
+        let positions = self
+            .mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| factor * x))
+            .collect();
+        Ok(Self {
+            mesh: self.mesh.with_positions(positions)?,
+            unit: other,
+            ..self
+        })
     }
 }
 
 /// What makes numbers in one unit such in another, where both are known and differ; a note says it of the file that is called `name`.
-pub(crate) fn factor(own: Option<Unit>, other: Option<Unit>, name: &str, progress: &Progress) -> Option<f64> {
+pub(crate) fn factor(
+    own: Option<Unit>,
+    other: Option<Unit>,
+    name: &str,
+    progress: &Progress,
+) -> Option<f64> {
     let (own, other) = own.zip(other).filter(|(own, other)| own != other)?;
-    progress.note(format!("{name}: its {} are taken to {}", own.name(), other.name()));
+    progress.note(format!(
+        "{name}: its {} are taken to {}",
+        own.name(),
+        other.name()
+    ));
     Some(own.in_others(other))
 }
 
@@ -115,7 +142,11 @@ pub(crate) struct Input {
 ///
 /// # Errors
 /// The file cannot be read, or there is no such model; the message lists those that there are.
-pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Soup> {
+pub(crate) fn read(
+    path: &Path,
+    build: &BuildArguments,
+    progress: &Progress,
+) -> anyhow::Result<Soup> {
     let name = display_name(path);
     progress.stage(format!("reading {name}"));
     let start = Instant::now();
@@ -146,9 +177,21 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
         }
     };
     let mut soup: PolygonSoup = soup;
-    let normals = soup.channels.iter().position(|channel| channel.name == NORMALS);
+    let normals = soup
+        .channels
+        .iter()
+        .position(|channel| channel.name == NORMALS);
     let normals = normals.map(|at| soup.channels.remove(at));
-    Ok(Soup { name, format, soup, normals, asset: document, package: held, unit, reading: start.elapsed() })
+    Ok(Soup {
+        name,
+        format,
+        soup,
+        normals,
+        asset: document,
+        package: held,
+        unit,
+        reading: start.elapsed(),
+    })
 }
 
 /// Opens a glTF document: a file, or standard input for `-`.
@@ -158,7 +201,8 @@ pub(crate) fn read(path: &Path, build: &BuildArguments, progress: &Progress) -> 
 pub(crate) fn asset(path: &Path) -> anyhow::Result<Asset> {
     if path.as_os_str() == STANDARD_INPUT {
         let bytes = standard_input()?;
-        return Asset::from_bytes(&bytes, None).map_err(|why| anyhow::anyhow!("standard input: {why}"));
+        return Asset::from_bytes(&bytes, None)
+            .map_err(|why| anyhow::anyhow!("standard input: {why}"));
     }
     Ok(Asset::open(path)?)
 }
@@ -179,23 +223,37 @@ pub(crate) fn package(path: &Path) -> anyhow::Result<Package> {
 ///
 /// # Errors
 /// Another one was given.
-pub(crate) fn unit_of_package(package: &Package, given: Option<Unit>, name: &str) -> anyhow::Result<Unit> {
+pub(crate) fn unit_of_package(
+    package: &Package,
+    given: Option<Unit>,
+    name: &str,
+) -> anyhow::Result<Unit> {
     let own = Unit::of_package(package.unit());
     match given.filter(|&given| given != own) {
-        Some(given) => usage(format!("--unit {}: {name} says that it is in {}", given.name(), own.name())),
+        Some(given) => usage(format!(
+            "--unit {}: {name} says that it is in {}",
+            given.name(),
+            own.name()
+        )),
         None => Ok(own),
     }
 }
 
 fn standard_input() -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    std::io::stdin().lock().read_to_end(&mut bytes).context("standard input cannot be read")?;
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .context("standard input cannot be read")?;
     Ok(bytes)
 }
 
 /// Refuses to read standard input twice.
 pub(crate) fn check_once<'a>(inputs: impl Iterator<Item = &'a PathBuf>) -> anyhow::Result<()> {
-    match inputs.filter(|path| path.as_os_str() == STANDARD_INPUT).count() {
+    match inputs
+        .filter(|path| path.as_os_str() == STANDARD_INPUT)
+        .count()
+    {
         0 | 1 => Ok(()),
         _ => usage("standard input can be read once only"),
     }
@@ -203,7 +261,11 @@ pub(crate) fn check_once<'a>(inputs: impl Iterator<Item = &'a PathBuf>) -> anyho
 
 /// How an input is called in messages and reports.
 pub(crate) fn display_name(path: &Path) -> String {
-    if path.as_os_str() == STANDARD_INPUT { "standard input".to_owned() } else { path.display().to_string() }
+    if path.as_os_str() == STANDARD_INPUT {
+        "standard input".to_owned()
+    } else {
+        path.display().to_string()
+    }
 }
 
 /// The name of a built-in model, if that is what is asked for.
@@ -222,17 +284,24 @@ pub(crate) fn format_of(path: &Path, given: Option<FileFormat>) -> anyhow::Resul
         (Err(_), None) if path.as_os_str() == STANDARD_INPUT => {
             usage("standard input has no name that tells its format; it needs --from")
         }
-        (Err(_), None) if path.is_dir() => {
-            usage(format!("{} is a folder; `limitmesh batch` smooths all its files", path.display()))
-        }
+        (Err(_), None) if path.is_dir() => usage(format!(
+            "{} is a folder; `limitmesh batch` smooths all its files",
+            path.display()
+        )),
         (Err(unknown), None) => Err(unknown.into()),
     }
 }
 
 fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
     let model = limitmesh_models::find(name).with_context(|| {
-        let names: Vec<&str> = limitmesh_models::all().iter().map(|model| model.name).collect();
-        format!("there is no built-in model '{name}'; there are: {}", names.join(", "))
+        let names: Vec<&str> = limitmesh_models::all()
+            .iter()
+            .map(|model| model.name)
+            .collect();
+        format!(
+            "there is no built-in model '{name}'; there are: {}",
+            names.join(", ")
+        )
     })?;
     Ok(model.soup())
 }
@@ -241,7 +310,11 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
 ///
 /// # Errors
 /// As for [`read`]; or no mesh can be made of it, or only by a repair that `build` forbids.
-pub(crate) fn load(path: &Path, build: &BuildArguments, progress: &Progress) -> anyhow::Result<Input> {
+pub(crate) fn load(
+    path: &Path,
+    build: &BuildArguments,
+    progress: &Progress,
+) -> anyhow::Result<Input> {
     load_keeping(path, build, &[], progress)
 }
 
@@ -269,7 +342,12 @@ pub(crate) fn load_for(
     (kept, channels): (&[&str], &ChannelArguments),
     progress: &Progress,
 ) -> anyhow::Result<Input> {
-    connect(read_for(path, build, channels, progress)?, build, kept, progress)
+    connect(
+        read_for(path, build, channels, progress)?,
+        build,
+        kept,
+        progress,
+    )
 }
 
 /// [`read`] for refinement, where channels are as `channels` asks.
@@ -283,7 +361,13 @@ pub(crate) fn read_for(
     progress: &Progress,
 ) -> anyhow::Result<Soup> {
     let mut read = read(path, build, progress)?;
-    channels.check(&read.name, read.soup.channels.iter().map(|channel| channel.name.as_str()))?;
+    channels.check(
+        &read.name,
+        read.soup
+            .channels
+            .iter()
+            .map(|channel| channel.name.as_str()),
+    )?;
     channels.apply(&mut read.soup.channels)?;
     Ok(read)
 }
@@ -299,15 +383,34 @@ pub(crate) fn connect(
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     let options = &build.in_unit(read.unit).options()?;
-    let Soup { name, format, mut soup, normals, asset, unit, reading, .. } = read;
-    progress.stage(format!("connecting {}", counted(soup.faces.len(), "face", "faces")));
+    let Soup {
+        name,
+        format,
+        mut soup,
+        normals,
+        asset,
+        unit,
+        reading,
+        ..
+    } = read;
+    progress.stage(format!(
+        "connecting {}",
+        counted(soup.faces.len(), "face", "faces")
+    ));
     let start = Instant::now();
     let (mesh, diagnosis, trace) =
         Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
-    let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
-    let channels: Vec<Channel> = channels.collect::<Result<_, _>>().with_context(|| name.clone())?;
-    let normals =
-        normals.map(|own| own.on_mesh(&soup, &mesh, &trace)).transpose().with_context(|| name.clone())?;
+    let channels = soup
+        .channels
+        .iter()
+        .map(|channel| channel.on_mesh(&soup, &mesh, &trace));
+    let channels: Vec<Channel> = channels
+        .collect::<Result<_, _>>()
+        .with_context(|| name.clone())?;
+    let normals = normals
+        .map(|own| own.on_mesh(&soup, &mesh, &trace))
+        .transpose()
+        .with_context(|| name.clone())?;
     let material_libraries = std::mem::take(&mut soup.material_libraries);
     let texture_files = std::mem::take(&mut soup.texture_files);
     let near = nearly_closed(&mesh, options.weld, welded(&soup));
@@ -316,7 +419,11 @@ pub(crate) fn connect(
     // Large soups are given back before refinement needs the memory.
     drop(soup);
     let building = start.elapsed();
-    let lost: Vec<&str> = left_out.iter().map(String::as_str).filter(|words| !kept.contains(words)).collect();
+    let lost: Vec<&str> = left_out
+        .iter()
+        .map(String::as_str)
+        .filter(|words| !kept.contains(words))
+        .collect();
     if !lost.is_empty() {
         progress.note(format!("{name}: left out: {}", lost.join("; ")));
     }
@@ -351,7 +458,13 @@ const NEAR: f64 = 1e-6;
 
 /// The mesh of a soup for another way to merge vertices, if there is one.
 pub(crate) fn welded(soup: &PolygonSoup) -> impl FnOnce(Weld) -> Option<Mesh> {
-    |weld| Some(Mesh::from_soup(soup, &BuildOptions::default().weld(weld)).ok()?.0)
+    |weld| {
+        Some(
+            Mesh::from_soup(soup, &BuildOptions::default().weld(weld))
+                .ok()?
+                .0,
+        )
+    }
 }
 
 /// Reports where open edges of a mesh would close if nearly equal positions were merged too; `build` makes it anew for that.
@@ -366,7 +479,9 @@ pub(crate) fn nearly_closed(
     }
     // As it would be typed: one digit.
     let distance: f64 = format!("{:.0e}", NEAR * mesh.diagonal()).parse().ok()?;
-    let left = build(Weld::Within(distance))?.topology().boundary_edge_count();
+    let left = build(Weld::Within(distance))?
+        .topology()
+        .boundary_edge_count();
     (left < open).then(|| {
         let closing = if left == 0 { "all of them".to_owned() } else { thousands(open - left) };
         let open = counted(open, "edge is open", "edges are open");

@@ -42,9 +42,18 @@ struct Signal {
 
 /// The signals that end the program in good order.
 const SIGNALS: [Signal; 3] = [
-    Signal { name: "SIGHUP", number: 1 },
-    Signal { name: "Ctrl-C", number: 2 },
-    Signal { name: "SIGTERM", number: 15 },
+    Signal {
+        name: "SIGHUP",
+        number: 1,
+    },
+    Signal {
+        name: "Ctrl-C",
+        number: 2,
+    },
+    Signal {
+        name: "SIGTERM",
+        number: 15,
+    },
 ];
 
 /// Makes the signals end the program in good order, but for those that whoever started it has it ignore, as `nohup` does.
@@ -52,11 +61,17 @@ const SIGNALS: [Signal; 3] = [
 pub(crate) fn install() -> anyhow::Result<()> {
     let ignored = ignored_signals();
     let heeded = SIGNALS.map(|signal| signal.number);
-    let heeded = heeded.into_iter().filter(|number| ignored >> (number - 1) & 1 == 0);
-    let mut signals = signal_hook::iterator::Signals::new(heeded).context("could not arrange for signals")?;
+    let heeded = heeded
+        .into_iter()
+        .filter(|number| ignored >> (number - 1) & 1 == 0);
+    let mut signals =
+        signal_hook::iterator::Signals::new(heeded).context("could not arrange for signals")?;
     std::thread::spawn(move || {
         for number in signals.forever() {
-            SIGNALS.iter().filter(|signal| signal.number == number).for_each(|&signal| end(signal));
+            SIGNALS
+                .iter()
+                .filter(|signal| signal.number == number)
+                .for_each(|&signal| end(signal));
         }
     });
     Ok(())
@@ -67,7 +82,8 @@ pub(crate) fn install() -> anyhow::Result<()> {
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok()).unwrap_or(0)
+    line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
+        .unwrap_or(0)
 }
 
 /// Makes Ctrl-C end the program in good order.
@@ -89,7 +105,10 @@ fn end(signal: Signal) {
     }
     // Held, too, so that no file takes its name any longer.
     let abandoned = limitmesh_io::abandon_unfinished();
-    if let Some((path, _)) = state.writing.take_if(|(_, before)| abandoned.finished_files() > *before) {
+    if let Some((path, _)) = state
+        .writing
+        .take_if(|(_, before)| abandoned.finished_files() > *before)
+    {
         state.written.push(path.display().to_string());
     }
     exit(&state, signal)
@@ -120,7 +139,10 @@ pub(crate) fn end_with_standard_input() {
     std::thread::spawn(|| {
         // An error is an end, too.
         let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
-        end(Signal { name: "the end of standard input", number: 15 });
+        end(Signal {
+            name: "the end of standard input",
+            number: 15,
+        });
     });
 }
 
@@ -150,7 +172,11 @@ fn say(line: &str) {
 
 /// Clears the line of the spinner on a terminal.
 fn line_start() -> &'static str {
-    if std::io::stderr().is_terminal() { "\r\u{1b}[K" } else { "" }
+    if std::io::stderr().is_terminal() {
+        "\r\u{1b}[K"
+    } else {
+        ""
+    }
 }
 
 /// Remembers what is being done.
@@ -167,7 +193,10 @@ pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
 /// Runs `write`, which writes this file: whole or not at all, also where a signal ends the program meanwhile.
 ///
 /// Where signals are left to the caller, one that came meanwhile ends the program afterwards.
-pub(crate) fn whole_or_not<T, E>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+pub(crate) fn whole_or_not<T, E>(
+    path: &Path,
+    write: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
     state().writing = Some((path.to_owned(), limitmesh_io::finished_files()));
     let result = write();
     let mut state = state();

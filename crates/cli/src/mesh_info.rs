@@ -17,9 +17,12 @@ pub(crate) fn examine(mesh: &Mesh, faces: &[u32]) -> MeshInformation {
     let topology = mesh.topology();
     let boundary_loops = boundary_loops(mesh);
     let euler = topology.euler_characteristic();
-    let valences = topology.vertices().map(|v| topology.valence_and_openness(v).0);
-    let (min_valence, max_valence) =
-        valences.fold((u32::MAX, 0), |(low, high), valence| (low.min(valence), high.max(valence)));
+    let valences = topology
+        .vertices()
+        .map(|v| topology.valence_and_openness(v).0);
+    let (min_valence, max_valence) = valences.fold((u32::MAX, 0), |(low, high), valence| {
+        (low.min(valence), high.max(valence))
+    });
     let [low, high] = surface.bounding_box().unwrap_or_default();
     MeshInformation {
         vertices: mesh.vertex_count(),
@@ -34,8 +37,15 @@ pub(crate) fn examine(mesh: &Mesh, faces: &[u32]) -> MeshInformation {
         watertight: tightness.is_watertight(),
         min_valence,
         max_valence,
-        irregular_vertices: topology.vertices().filter(|&v| !mesh.ring_shape(v).is_regular()).count(),
-        bounding_box: BoundingBox { low, high, diagonal: surface.diagonal() },
+        irregular_vertices: topology
+            .vertices()
+            .filter(|&v| !mesh.ring_shape(v).is_regular())
+            .count(),
+        bounding_box: BoundingBox {
+            low,
+            high,
+            diagonal: surface.diagonal(),
+        },
         bulk: Bulk::of(mesh),
         dihedrals: Dihedrals::of(mesh, faces),
         min_angle_degrees: quality.min_angle_degrees,
@@ -75,13 +85,23 @@ mod tests {
             positions.extend((0..4).map(|x| [f64::from(x), f64::from(y), 0.0]));
         }
         let mut triangles = Vec::new();
-        for (x, y) in (0..9u32).map(|i| (i % 3, i / 3)).filter(|&cell| cell != (1, 1)) {
+        for (x, y) in (0..9u32)
+            .map(|i| (i % 3, i / 3))
+            .filter(|&cell| cell != (1, 1))
+        {
             let a = 4 * y + x;
             triangles.extend([[a, a + 1, a + 5], [a, a + 5, a + 4]]);
         }
         let mesh = Mesh::from_triangles(positions, triangles).unwrap();
         let shape = examine(&mesh, &[]);
-        assert_eq!((shape.boundary_loops, shape.genus, shape.euler_characteristic), (2, 0, 0));
+        assert_eq!(
+            (
+                shape.boundary_loops,
+                shape.genus,
+                shape.euler_characteristic
+            ),
+            (2, 0, 0)
+        );
         assert_eq!((shape.vertices, shape.edges, shape.triangles), (16, 32, 16));
         assert_eq!(shape.bounding_box.high, [3.0, 3.0, 0.0]);
     }

@@ -20,7 +20,10 @@ const STANDARD_OUTPUT: &str = "-";
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.write_all(end)).and_then(|()| out.flush());
+    let written = out
+        .write_all(text.as_bytes())
+        .and_then(|()| out.write_all(end))
+        .and_then(|()| out.flush());
     written.context("standard output")
 }
 
@@ -38,7 +41,10 @@ pub(crate) fn is_standard_output(path: &Path) -> bool {
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     if is_standard_output(path) {
         let mut out = std::io::stdout().lock();
-        return out.write_all(bytes).and_then(|()| out.flush()).context("standard output");
+        return out
+            .write_all(bytes)
+            .and_then(|()| out.flush())
+            .context("standard output");
     }
     interrupt::whole_or_not(path, || limitmesh_io::write_whole(path, bytes))?;
     Ok(())
@@ -87,13 +93,17 @@ pub(crate) fn check_replaced(
     asked: Option<OverwriteArguments>,
 ) -> anyhow::Result<()> {
     let inputs: BTreeSet<FileIdentity> = inputs.iter().map(|path| FileIdentity::of(path)).collect();
-    let is_input = |path: &Path| !is_standard_output(path) && inputs.contains(&FileIdentity::of(path));
-    let replaced = written.iter().find(|path| is_input(path)).map(|path| path.display());
+    let is_input =
+        |path: &Path| !is_standard_output(path) && inputs.contains(&FileIdentity::of(path));
+    let replaced = written
+        .iter()
+        .find(|path| is_input(path))
+        .map(|path| path.display());
     match (replaced, asked) {
         (None, _) | (_, Some(OverwriteArguments { overwrite: true })) => Ok(()),
-        (Some(path), Some(_)) => {
-            usage(format!("{path} is an input, which the result would replace; --overwrite allows that"))
-        }
+        (Some(path), Some(_)) => usage(format!(
+            "{path} is an input, which the result would replace; --overwrite allows that"
+        )),
         (Some(path), None) => usage(format!("{path} is an input, which it would replace")),
     }
 }
@@ -101,7 +111,10 @@ pub(crate) fn check_replaced(
 /// Refuses to write a file twice.
 pub(crate) fn check_once(written: &[&Path]) -> anyhow::Result<()> {
     let mut seen = BTreeSet::new();
-    match written.iter().find(|path| !seen.insert(FileIdentity::of(path))) {
+    match written
+        .iter()
+        .find(|path| !seen.insert(FileIdentity::of(path)))
+    {
         Some(path) => usage(format!("{} would be written twice", path.display())),
         None => Ok(()),
     }
@@ -116,10 +129,26 @@ pub(crate) fn check_writable(path: &Path) -> anyhow::Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let kind = std::fs::metadata(folder)
-        .with_context(|| format!("{} cannot be written: no folder {}", path.display(), folder.display()))?;
-    anyhow::ensure!(kind.is_dir(), "{} cannot be written: {} is no folder", path.display(), folder.display());
-    anyhow::ensure!(!path.is_dir(), "{} cannot be written: it is a folder", path.display());
+    let kind = std::fs::metadata(folder).with_context(|| {
+        format!(
+            "{} cannot be written: no folder {}",
+            path.display(),
+            folder.display()
+        )
+    })?;
+    anyhow::ensure!(
+        kind.is_dir(),
+        "{} cannot be written: {} is no folder",
+        path.display(),
+        folder.display()
+    );
+    anyhow::ensure!(
+        !path.is_dir(),
+        "{} cannot be written: it is a folder",
+        path.display()
+    );
     // It makes a file and removes it.
-    Ok(interrupt::undisturbed(|| limitmesh_io::check_writable(path))?)
+    Ok(interrupt::undisturbed(|| {
+        limitmesh_io::check_writable(path)
+    })?)
 }

@@ -25,28 +25,56 @@ pub(crate) fn decided(
     hints: &Hints<'_>,
     can_be_led: bool,
 ) -> Decided {
-    let as_given = |features, interpolation| Decided { features, interpolation, note: None };
-    if features.crease_angle != Some(CreaseAngle::Auto) || features.creases_from != CreasesFrom::None {
+    let as_given = |features, interpolation| Decided {
+        features,
+        interpolation,
+        note: None,
+    };
+    if features.crease_angle != Some(CreaseAngle::Auto)
+        || features.creases_from != CreasesFrom::None
+    {
         return as_given(features, interpolation);
     }
     let own = hints.sharpness(mesh);
     let look = (own != OwnSharpness::Tags).then(|| Look::of(mesh, faces));
-    let Some(Look::Part(part)) = look else { return as_given(features, interpolation) };
+    let Some(Look::Part(part)) = look else {
+        return as_given(features, interpolation);
+    };
     interpolation.is_of_part = can_be_led && interpolation.given().is_none();
     let (edges, which, tips) = if let OwnSharpness::Normals(edges) = own {
         features.creases_from = CreasesFrom::Normals;
-        (edges, "that have different normals on both sides".to_owned(), 0)
+        (
+            edges,
+            "that have different normals on both sides".to_owned(),
+            0,
+        )
     } else {
         features.crease_angle = Some(CreaseAngle::Found(part.degrees));
-        (part.creases.edges.len(), format!("sharper than {}°", number(part.degrees)), part.tips.len())
+        (
+            part.creases.edges.len(),
+            format!("sharper than {}°", number(part.degrees)),
+            part.tips.len(),
+        )
     };
-    let tips = if tips > 0 { format!(" and {}", counted(tips, "tip", "tips")) } else { String::new() };
-    let led = if interpolation.is_of_part { ", surface led through the vertices" } else { "" };
+    let tips = if tips > 0 {
+        format!(" and {}", counted(tips, "tip", "tips"))
+    } else {
+        String::new()
+    };
+    let led = if interpolation.is_of_part {
+        ", surface led through the vertices"
+    } else {
+        ""
+    };
     let is_one = edges == 1 && tips.is_empty() && !interpolation.is_of_part;
     let note = format!(
         "looks like a part: {} {which}{tips} kept sharp{led}; --crease-angle none smooths {}",
         counted(edges, "edge", "edges"),
         if is_one { "it" } else { "them" },
     );
-    Decided { features, interpolation, note: Some(note) }
+    Decided {
+        features,
+        interpolation,
+        note: Some(note),
+    }
 }

@@ -9,7 +9,13 @@ use rayon::prelude::*;
 const PIECE: usize = 1 << 13;
 
 /// What `of` gives for each piece of so many elements, in their order.
-pub(crate) fn pieces<T: Send>(count: usize, of: impl Fn(Range<usize>) -> T + Sync + Send) -> Vec<T> {
+pub(crate) fn pieces<T: Send>(
+    count: usize,
+    of: impl Fn(Range<usize>) -> T + Sync + Send,
+) -> Vec<T> {
     let piece = |number: usize| of(number * PIECE..count.min((number + 1) * PIECE));
-    (0..count.div_ceil(PIECE)).into_par_iter().map(piece).collect()
+    (0..count.div_ceil(PIECE))
+        .into_par_iter()
+        .map(piece)
+        .collect()
 }

@@ -33,7 +33,11 @@ impl Phases {
             Stage::Simplifying => 2,
             // The fine mesh is made ready for the collapses, or what is left is measured.
             Stage::Indexing | Stage::Matching if !self.has_collapsed => 2,
-            Stage::Limits | Stage::Refining | Stage::Assembling | Stage::Bounding if !self.has_collapsed => 1,
+            Stage::Limits | Stage::Refining | Stage::Assembling | Stage::Bounding
+                if !self.has_collapsed =>
+            {
+                1
+            }
             _ => 3,
         };
         self.last = self.last.max(phase);
@@ -53,18 +57,30 @@ pub(crate) struct Progress<'a> {
 impl<'a> Progress<'a> {
     /// Tells another program.
     pub(crate) fn to_host(host: &'a dyn Host) -> Self {
-        Self { host: Some(host), ..Self::new(true) }
+        Self {
+            host: Some(host),
+            ..Self::new(true)
+        }
     }
 
     /// Silent if `quiet`; without the spinner if standard error is no terminal.
     pub(crate) fn new(quiet: bool) -> Self {
         let moving = !quiet && std::io::stderr().is_terminal();
-        let target = if moving { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let target = if moving {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
+        };
         let spinner = ProgressBar::with_draw_target(None, target);
         if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed})") {
             spinner.set_style(style);
         }
-        Self { spinner, quiet, moving, host: None }
+        Self {
+            spinner,
+            quiet,
+            moving,
+            host: None,
+        }
     }
 
     /// Shows what is being done now.
@@ -97,8 +113,9 @@ impl<'a> Progress<'a> {
                     Ok(percent) => format!("{percent} %"),
                     Err(triangles) => counted(triangles, "triangle", "triangles"),
                 };
-                let phase =
-                    phase.map_or_else(String::new, |phase| format!("phase {phase} of {}, ", Phases::COUNT));
+                let phase = phase.map_or_else(String::new, |phase| {
+                    format!("phase {phase} of {}, ", Phases::COUNT)
+                });
                 self.stage(format!("{phase}{}: {far}", at.stage));
             }
             self.answer(at)
@@ -107,7 +124,8 @@ impl<'a> Progress<'a> {
 
     /// What another program says to that, if one hears it.
     pub(crate) fn answer(&self, at: &limitmesh::progress::Progress) -> ControlFlow<()> {
-        self.host.map_or(ControlFlow::Continue(()), |host| host.observe(at))
+        self.host
+            .map_or(ControlFlow::Continue(()), |host| host.observe(at))
     }
 
     /// Prints a line that stays, above the spinner.
@@ -117,7 +135,8 @@ impl<'a> Progress<'a> {
         }
         if !self.quiet {
             // Nobody is left to tell if standard error is closed.
-            self.spinner.suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
+            self.spinner
+                .suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
         }
     }
 

@@ -31,7 +31,8 @@ pub(crate) struct Reference {
 
 /// As many of the `wanted` levels as keep the reference below [`CHOSEN_TRIANGLES`], but [`FEWEST`] at least.
 pub(crate) fn affordable_levels(control_faces: usize, wanted: usize) -> usize {
-    let fits = |&levels: &usize| faces_at(control_faces, levels).is_some_and(|n| n <= CHOSEN_TRIANGLES);
+    let fits =
+        |&levels: &usize| faces_at(control_faces, levels).is_some_and(|n| n <= CHOSEN_TRIANGLES);
     (FEWEST..=wanted).rev().find(fits).unwrap_or(FEWEST)
 }
 
@@ -66,15 +67,24 @@ pub(crate) fn levels_for(
 
 /// Number of faces after so many levels of uniform refinement, if it can be counted.
 fn faces_at(control_faces: usize, levels: usize) -> Option<usize> {
-    4usize.checked_pow(levels as u32)?.checked_mul(control_faces)
+    4usize
+        .checked_pow(levels as u32)?
+        .checked_mul(control_faces)
 }
 
 /// Builds the reference at the given level.
 ///
 /// # Errors
 /// It would be too large for any use, or the scheme has no limit there.
-pub(crate) fn at_level(control: &Mesh, scheme: &dyn Scheme, levels: usize) -> anyhow::Result<Reference> {
-    let options = UniformOptions::default().levels(levels).limit(true).max_triangles(Some(MOST_TRIANGLES));
+pub(crate) fn at_level(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    levels: usize,
+) -> anyhow::Result<Reference> {
+    let options = UniformOptions::default()
+        .levels(levels)
+        .limit(true)
+        .max_triangles(Some(MOST_TRIANGLES));
     let refinement = uniform(control, scheme, &options)?;
     if let Stop::TriangleCap { .. } = refinement.stop {
         return usage(format!(
@@ -85,7 +95,10 @@ pub(crate) fn at_level(control: &Mesh, scheme: &dyn Scheme, levels: usize) -> an
             refinement.steps.len(),
         ));
     }
-    Ok(Reference { mesh: refinement.mesh, levels })
+    Ok(Reference {
+        mesh: refinement.mesh,
+        levels,
+    })
 }
 
 #[cfg(test)]

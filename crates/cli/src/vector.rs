@@ -23,7 +23,11 @@ const SAFE: Range<f64> = 1e-280..1e300;
 /// The length, without overflow on the way.
 pub(crate) fn length(a: [f64; 3]) -> f64 {
     let squared = dot(a, a);
-    if SAFE.contains(&squared) { squared.sqrt() } else { a[0].hypot(a[1]).hypot(a[2]) }
+    if SAFE.contains(&squared) {
+        squared.sqrt()
+    } else {
+        a[0].hypot(a[1]).hypot(a[2])
+    }
 }
 
 #[cfg(test)]
@@ -34,7 +38,10 @@ mod tests {
     fn vectors_of_any_size_have_a_length() {
         for size in [0.0, 5e-324, 1e-200, 1.0, 3.7e149, 1e200] {
             let (found, expected) = (length([2.0 * size, -3.0 * size, 6.0 * size]), 7.0 * size);
-            assert!((found - expected).abs() <= 1e-15 * expected, "{size}: {found}");
+            assert!(
+                (found - expected).abs() <= 1e-15 * expected,
+                "{size}: {found}"
+            );
         }
         assert!(length([f64::NAN, 1.0, 1.0]).is_nan());
         assert_eq!(length([f64::NEG_INFINITY, 1.0, 1.0]), f64::INFINITY);

@@ -22,8 +22,15 @@ impl<'a> WrittenUnit<'a> {
     /// Of an input whose unit is that of the arguments, and a format to write.
     pub(crate) fn of(input: &'a Path, build: &BuildArguments, to: Format) -> Self {
         let is_file = input::builtin_name(input).is_none();
-        let from = is_file.then(|| input::format_of(input, build.from).ok()).flatten();
-        Self { input, from, to, own: build.unit }
+        let from = is_file
+            .then(|| input::format_of(input, build.from).ok())
+            .flatten();
+        Self {
+            input,
+            from,
+            to,
+            own: build.unit,
+        }
     }
 
     /// Whether numbers are made millimetres, which programs that print expect most of all, of a document's metres.
@@ -40,7 +47,9 @@ impl<'a> WrittenUnit<'a> {
             progress.note(format!("{output}: in mm, 1000 times the m of {input}"));
         } else if self.to.is_gltf() && own != Unit::M {
             let factor = own.in_others(Unit::M);
-            progress.note(format!("{output}: in m, as its node scales the {name} of {input} by {factor}"));
+            progress.note(format!(
+                "{output}: in m, as its node scales the {name} of {input} by {factor}"
+            ));
         } else if self.from == Some(Format::ThreeMf) && self.to != Format::ThreeMf {
             progress.note(format!(
                 "{output}: its numbers are {name}, as {input} says; {} files cannot say it",
@@ -51,7 +60,13 @@ impl<'a> WrittenUnit<'a> {
 
     /// Options for the written numbers' unit.
     pub(crate) fn options(&self, options: WriteOptions) -> WriteOptions {
-        match self.own.map(|own| if self.becomes_millimetres() { Unit::Mm } else { own }) {
+        match self.own.map(|own| {
+            if self.becomes_millimetres() {
+                Unit::Mm
+            } else {
+                own
+            }
+        }) {
             Some(unit) => options.unit(unit.in_package()),
             None => options,
         }

@@ -25,7 +25,9 @@ impl Scheme for Tense {
 
     fn vertex_mask(&self, shape: RingShape) -> VertexMask {
         let mut mask = Loop.vertex_mask(shape);
-        mask.ring.iter_mut().for_each(|weight| *weight *= 1.0 - self.tension);
+        mask.ring
+            .iter_mut()
+            .for_each(|weight| *weight *= 1.0 - self.tension);
         mask.centre = 1.0 - mask.ring.iter().sum::<f64>();
         mask
     }
@@ -36,17 +38,26 @@ impl Scheme for Tense {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let soup = limitmesh_models::find("icosphere").ok_or("no such built-in model")?.soup();
+    let soup = limitmesh_models::find("icosphere")
+        .ok_or("no such built-in model")?
+        .soup();
     let (mesh, _) = Mesh::from_soup(&soup, &Default::default())?;
     let vertex = VertexId(0);
     for tension in [0.0, 0.25, 0.5] {
         let scheme = Tense { tension };
         let limits = LimitTable::new(&scheme);
-        let (position, normal) = (limits.position(&mesh, vertex)?, limits.normal(&mesh, vertex)?);
+        let (position, normal) = (
+            limits.position(&mesh, vertex)?,
+            limits.normal(&mesh, vertex)?,
+        );
         // Old vertices keep their numbers, so that six levels show where the vertex is going.
         let refined = uniform(&mesh, &scheme, &UniformOptions::default().levels(6))?.mesh;
         let six_levels_on = refined.positions()[vertex.index()];
-        let gap: f64 = position.iter().zip(six_levels_on).map(|(a, b)| (a - b).powi(2)).sum();
+        let gap: f64 = position
+            .iter()
+            .zip(six_levels_on)
+            .map(|(a, b)| (a - b).powi(2))
+            .sum();
         println!(
             "tension {tension}: limit {position:.6?}, normal {normal:.6?}, six levels on {:.1e} away",
             gap.sqrt()

@@ -51,7 +51,12 @@ impl Pattern {
     }
 
     const fn new(triangles: [[u8; 3]; 4], count: u8) -> Self {
-        let mut pattern = Self { count, triangles, twins: [BORDER; 12], border: [[BORDER; 2]; 3] };
+        let mut pattern = Self {
+            count,
+            triangles,
+            twins: [BORDER; 12],
+            border: [[BORDER; 2]; 3],
+        };
         let half_edges = 3 * count as usize;
         let mut h = 0;
         while h < half_edges {
@@ -91,7 +96,15 @@ const UNUSED: [u8; 3] = [0; 3];
 /// Case (b): one edge, from corner `c`, is split and joined to the corner opposite.
 const fn bisected(c: u8) -> Pattern {
     let (next, opposite, middle) = ((c + 1) % 3, (c + 2) % 3, 3 + c);
-    Pattern::new([[c, middle, opposite], [middle, next, opposite], UNUSED, UNUSED], 2)
+    Pattern::new(
+        [
+            [c, middle, opposite],
+            [middle, next, opposite],
+            UNUSED,
+            UNUSED,
+        ],
+        2,
+    )
 }
 
 /// Case (c): all edges but the one from corner `u` are split.
@@ -100,8 +113,12 @@ const fn trisected(u: u8, diagonal: Diagonal) -> Pattern {
     let (after, before) = (3 + end, 3 + tip);
     let cut_off = [after, tip, before];
     match diagonal {
-        Diagonal::FromStart => Pattern::new([[u, end, after], [u, after, before], cut_off, UNUSED], 3),
-        Diagonal::FromEnd => Pattern::new([[u, end, before], [end, after, before], cut_off, UNUSED], 3),
+        Diagonal::FromStart => {
+            Pattern::new([[u, end, after], [u, after, before], cut_off, UNUSED], 3)
+        }
+        Diagonal::FromEnd => {
+            Pattern::new([[u, end, before], [end, after, before], cut_off, UNUSED], 3)
+        }
     }
 }
 
@@ -114,10 +131,19 @@ const PATTERNS: [[Pattern; 2]; 8] = [
     [WHOLE; 2],
     [bisected(0); 2],
     [bisected(1); 2],
-    [trisected(2, Diagonal::FromStart), trisected(2, Diagonal::FromEnd)],
+    [
+        trisected(2, Diagonal::FromStart),
+        trisected(2, Diagonal::FromEnd),
+    ],
     [bisected(2); 2],
-    [trisected(1, Diagonal::FromStart), trisected(1, Diagonal::FromEnd)],
-    [trisected(0, Diagonal::FromStart), trisected(0, Diagonal::FromEnd)],
+    [
+        trisected(1, Diagonal::FromStart),
+        trisected(1, Diagonal::FromEnd),
+    ],
+    [
+        trisected(0, Diagonal::FromStart),
+        trisected(0, Diagonal::FromEnd),
+    ],
     [QUARTERED; 2],
 ];
 
@@ -138,7 +164,14 @@ mod tests {
 
     /// Positions in exact arithmetic: corners of a triangle of area 1/2 and its edge midpoints.
     fn place(label: u8) -> [f64; 2] {
-        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]][label as usize]
+        [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+            [0.5, 0.5],
+            [0.0, 0.5],
+        ][label as usize]
     }
 
     #[test]
@@ -148,7 +181,10 @@ mod tests {
             for &t in closure(split, diagonal).triangles() {
                 let [a, b, c] = t.map(place);
                 let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                assert!(twice > 0.0, "{split} {diagonal:?}: {t:?} is turned over or flat");
+                assert!(
+                    twice > 0.0,
+                    "{split} {diagonal:?}: {t:?} is turned over or flat"
+                );
                 area += twice / 2.0;
             }
             assert_eq!(area, 0.5, "{split} {diagonal:?}");

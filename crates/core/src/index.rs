@@ -69,12 +69,20 @@ impl HalfEdgeId {
     /// The next half-edge of the same face, counter-clockwise.
     #[inline]
     pub const fn next(self) -> Self {
-        Self(if self.0 % 3 == 2 { self.0 - 2 } else { self.0 + 1 })
+        Self(if self.0 % 3 == 2 {
+            self.0 - 2
+        } else {
+            self.0 + 1
+        })
     }
 
     /// The previous half-edge of the same face.
     #[inline]
     pub const fn previous(self) -> Self {
-        Self(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
+        Self(if self.0.is_multiple_of(3) {
+            self.0 + 2
+        } else {
+            self.0 - 1
+        })
     }
 }

@@ -83,7 +83,9 @@ mod vector;
 
 pub use facing::{Facing, NormalCone};
 pub use index::{FaceId, HalfEdgeId, VertexId};
-pub use limit_surface::{BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric};
+pub use limit_surface::{
+    BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,
+};
 pub use mesh::{Mesh, PolygonSoup, Triangles};
 pub use proximity::{Closest, Membership, Proximity, ProximityError};
 pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};

@@ -25,7 +25,9 @@ use crate::parallel;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{self, Limit, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch};
+use crate::patch::{
+    self, Limit, LimitPoint, Patch, Quartic, RefinedPatch, Rules, child_corners, root_patch,
+};
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 use places::{Answers, Coordinates, Place, Points, parted, take_corners, take_nearest};
@@ -95,7 +97,14 @@ impl<'a> LimitSurface<'a> {
         let positions = rules.table().positions(mesh)?;
         let sharpness = Sharpness::of(mesh);
         let large = LargeRings::with_tags(mesh, &sharpness, &rules);
-        Ok(Self { mesh, sharpness, large, rules, positions, normals: None })
+        Ok(Self {
+            mesh,
+            sharpness,
+            large,
+            rules,
+            positions,
+            normals: None,
+        })
     }
 
     /// The point over a place of a control face, given by barycentric coordinates; the second and third count, cut off so that none
@@ -109,9 +118,16 @@ impl<'a> LimitSurface<'a> {
     pub fn over(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<SurfacePoint> {
         let mut points = vec![NOWHERE; places.len()];
         if face.index() < self.mesh.face_count() {
-            let mut places = places.iter().enumerate().map(|(at, &weights)| Place::of(at, weights)).collect();
+            let mut places = places
+                .iter()
+                .enumerate()
+                .map(|(at, &weights)| Place::of(at, weights))
+                .collect();
             let with_normals = self.normals.is_some();
-            let mut found = Points { with_normals, points: &mut points };
+            let mut found = Points {
+                with_normals,
+                points: &mut points,
+            };
             self.find(face, &mut places, &mut Vec::new(), &mut found);
         }
         points
@@ -125,7 +141,9 @@ impl<'a> LimitSurface<'a> {
                 let at: Vec<[f64; 3]> = own.iter().map(|&(_, at)| at).collect();
                 self.over(own[0].0, &at)
             };
-            block.flat_map(|face| over(of_faces[face])).collect::<Vec<_>>()
+            block
+                .flat_map(|face| over(of_faces[face]))
+                .collect::<Vec<_>>()
         });
         blocks.concat()
     }
@@ -151,8 +169,16 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// Answers for places over a face that there is. `spare` is scratch space.
-    fn find<A: Answers>(&self, face: FaceId, places: &mut Vec<Place>, spare: &mut Vec<Place>, found: &mut A) {
-        let corners = self.corner_points(face).map(|point| A::Limit::of(point.position, || point.normal));
+    fn find<A: Answers>(
+        &self,
+        face: FaceId,
+        places: &mut Vec<Place>,
+        spare: &mut Vec<Place>,
+        found: &mut A,
+    ) {
+        let corners = self
+            .corner_points(face)
+            .map(|point| A::Limit::of(point.position, || point.normal));
         take_corners(corners, places, found);
         if !places.is_empty() {
             let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
@@ -199,8 +225,14 @@ impl<'a> LimitSurface<'a> {
         [0, 1, 2].map(|corner| {
             let h = HalfEdgeId::of(face, corner);
             let position = vector(self.positions[topology.origin(h).index()]);
-            let normal = self.normals.as_ref().map_or([0.0; 3], |normals| normals.at(topology, h));
-            LimitPoint { position, normal: vector(normal) }
+            let normal = self
+                .normals
+                .as_ref()
+                .map_or([0.0; 3], |normals| normals.at(topology, h));
+            LimitPoint {
+                position,
+                normal: vector(normal),
+            }
         })
     }
 
@@ -226,7 +258,9 @@ impl<'a> LimitSurface<'a> {
         match patch {
             Patch::Regular(points) => found.are_on(points, slices[0]),
             _ if levels == 0 => take_nearest(corners, slices[0], found),
-            Patch::Extraordinary(patch) => self.descend_to_vertex(patch, corners, slices, levels, found),
+            Patch::Extraordinary(patch) => {
+                self.descend_to_vertex(patch, corners, slices, levels, found)
+            }
             _ => self.descend_to_parts(&patch.refined(&self.rules), corners, slices, levels, found),
         }
     }
@@ -259,7 +293,11 @@ impl<'a> LimitSurface<'a> {
     ) {
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
         let ranges = parted(places, spare, corners, middles, found);
-        for (part, own) in ranges.into_iter().enumerate().filter(|(_, own)| !own.is_empty()) {
+        for (part, own) in ranges
+            .into_iter()
+            .enumerate()
+            .filter(|(_, own)| !own.is_empty())
+        {
             let slices = [&mut spare[own.clone()], &mut places[own]];
             let corners = child_corners(corners, middles, part);
             if let Some(points) = refined.points(part) {
@@ -324,4 +362,7 @@ fn regular(points: &patch::Points) -> Quartic {
     Quartic::of(&BezierTriangle::of(points), 0)
 }
 
-const NOWHERE: SurfacePoint = SurfacePoint { position: [0.0; 3], normal: [0.0; 3] };
+const NOWHERE: SurfacePoint = SurfacePoint {
+    position: [0.0; 3],
+    normal: [0.0; 3],
+};

@@ -54,10 +54,20 @@ impl<'a> Masks<'a> {
     pub(crate) fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let scheme = declared(scheme);
         let shapes = RingShapes::of(mesh);
-        let vertex_masks = shapes.distinct.iter().map(|&shape| scheme.vertex_mask(shape)).collect();
+        let vertex_masks = shapes
+            .distinct
+            .iter()
+            .map(|&shape| scheme.vertex_mask(shape))
+            .collect();
         let is_closed = shapes.distinct.iter().all(|shape| !shape.open);
         let slots = slots_of_open_rings(mesh.topology(), &shapes);
-        let mut masks = Self { shapes, vertex_masks, is_closed, slots, ..Self::on_demand(mesh, scheme) };
+        let mut masks = Self {
+            shapes,
+            vertex_masks,
+            is_closed,
+            slots,
+            ..Self::on_demand(mesh, scheme)
+        };
         masks.edge_masks = masks.all_edge_masks();
         masks
     }
@@ -65,8 +75,15 @@ impl<'a> Masks<'a> {
     /// For a few points.
     pub(crate) fn on_demand(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let scheme = declared(scheme);
-        let regular = || scheme.edge_mask(EdgeShape::between(RingShape::interior(6), RingShape::interior(6)));
-        let diamond = (scheme.support() == Support::OneRing).then(|| Diamond::of(&regular())).flatten();
+        let regular = || {
+            scheme.edge_mask(EdgeShape::between(
+                RingShape::interior(6),
+                RingShape::interior(6),
+            ))
+        };
+        let diamond = (scheme.support() == Support::OneRing)
+            .then(|| Diamond::of(&regular()))
+            .flatten();
         let sharpness = Sharpness::of(mesh);
         Self {
             mesh,
@@ -108,7 +125,10 @@ impl<'a> Masks<'a> {
             room = left.unwrap_or(room);
             left.is_some()
         });
-        shapes.into_iter().map(|shape| (shape, self.scheme.edge_mask(shape))).collect()
+        shapes
+            .into_iter()
+            .map(|shape| (shape, self.scheme.edge_mask(shape)))
+            .collect()
     }
 
     /// The shape of an edge, without going round its ends where their rings are known.
@@ -122,7 +142,8 @@ impl<'a> Masks<'a> {
             _ if !shape.open => 0,
             IncidentEdge::Arriving(_) => shape.valence - 1,
             IncidentEdge::Leaving(h) => self.slots.get(h.index()).copied().unwrap_or_else(|| {
-                let before = core::iter::successors(edge.previous(topology), |s| s.previous(topology));
+                let before =
+                    core::iter::successors(edge.previous(topology), |s| s.previous(topology));
                 before.count() as u32
             }),
         };
@@ -152,7 +173,13 @@ impl<'a> Masks<'a> {
     /// Whether an end of an edge follows other rules than its ring's shape says.
     #[inline]
     fn is_at_tag(&self, h: HalfEdgeId) -> bool {
-        !self.is_untagged && self.mesh.topology().ends(h).iter().any(|&end| self.sharpness.is_tagged(end))
+        !self.is_untagged
+            && self
+                .mesh
+                .topology()
+                .ends(h)
+                .iter()
+                .any(|&end| self.sharpness.is_tagged(end))
     }
 
     fn at(&self, vertex: VertexId) -> DVec3 {
@@ -166,7 +193,10 @@ impl<'a> Masks<'a> {
         }
         match self.shapes.by_vertex.get(vertex.index()) {
             Some(&shape) => self.weigh_vertex(vertex, &self.vertex_masks[shape as usize]),
-            None => self.weigh_vertex(vertex, &self.scheme.vertex_mask(self.mesh.ring_shape(vertex))),
+            None => self.weigh_vertex(
+                vertex,
+                &self.scheme.vertex_mask(self.mesh.ring_shape(vertex)),
+            ),
         }
     }
 
@@ -176,7 +206,9 @@ impl<'a> Masks<'a> {
             .ring(vertex)
             .zip(&mask.ring)
             .filter(|&(_, &weight)| weight != 0.0)
-            .fold(mask.centre * self.at(vertex), |sum, (u, &weight)| sum + weight * self.at(u))
+            .fold(mask.centre * self.at(vertex), |sum, (u, &weight)| {
+                sum + weight * self.at(u)
+            })
     }
 
     /// Where the new vertex on the edge of `h` comes to stand: the same bits from both of its half-edges.
@@ -186,7 +218,9 @@ impl<'a> Masks<'a> {
         if self.is_at_tag(h) {
             return self.tagged_edge_point(h);
         }
-        if let (Some(diamond), Some(twin), true) = (self.diamond, topology.twin(h), self.has_diamond(h)) {
+        if let (Some(diamond), Some(twin), true) =
+            (self.diamond, topology.twin(h), self.has_diamond(h))
+        {
             let [origin, target] = topology.ends(h);
             return diamond.ends[0] * self.at(origin)
                 + diamond.ends[1] * self.at(target)
@@ -194,7 +228,10 @@ impl<'a> Masks<'a> {
                 + diamond.opposite[1] * self.at(topology.opposite(twin));
         }
         let shape = self.edge_shape(h);
-        match self.edge_masks.binary_search_by(|(known, _)| known.cmp(&shape)) {
+        match self
+            .edge_masks
+            .binary_search_by(|(known, _)| known.cmp(&shape))
+        {
             Ok(i) => self.weigh_edge(h, &shape, &self.edge_masks[i].1),
             Err(_) => self.weigh_edge(h, &shape, &self.scheme.edge_mask(shape)),
         }
@@ -203,7 +240,11 @@ impl<'a> Masks<'a> {
     /// The ring of a vertex with the sharpness of its edges.
     fn labelled_ring(&self, vertex: VertexId) -> LabelledRing<VertexId> {
         let neighbours = self.mesh.topology().ring(vertex).collect();
-        LabelledRing { centre: vertex, neighbours, sharp: self.sharpness.ring(vertex) }
+        LabelledRing {
+            centre: vertex,
+            neighbours,
+            sharp: self.sharpness.ring(vertex),
+        }
     }
 
     // Kept apart, so that the loops over untagged vertices and edges stay short.
@@ -233,7 +274,11 @@ impl<'a> Masks<'a> {
         let [origin, target] = topology.ends(h).map(|end| self.labelled_ring(end));
         let slot = |ring: &LabelledRing<VertexId>, h: Option<HalfEdgeId>| {
             // The last edge of an open ring has no half-edge that leaves.
-            let place = |h| topology.outgoing_ring(ring.centre).position(|other| other == h);
+            let place = |h| {
+                topology
+                    .outgoing_ring(ring.centre)
+                    .position(|other| other == h)
+            };
             h.and_then(place).unwrap_or(ring.neighbours.len() - 1)
         };
         let slots = [slot(&origin, Some(h)), slot(&target, topology.twin(h))];
@@ -245,7 +290,10 @@ impl<'a> Masks<'a> {
         let mut weights = Vec::new();
         for (share, view) in vertex_views(&self.labelled_ring(vertex)) {
             let mask = self.scheme.vertex_mask(view.shape);
-            weights.extend(view.weighted(mask.centre, &mask.ring).map(|(v, weight)| (v, share * weight)));
+            weights.extend(
+                view.weighted(mask.centre, &mask.ring)
+                    .map(|(v, weight)| (v, share * weight)),
+            );
         }
         weights
     }
@@ -253,11 +301,23 @@ impl<'a> Masks<'a> {
     /// The vertices whose weighted sum [`Self::edge_point`] is; a vertex may occur several times.
     pub(crate) fn edge_weights(&self, h: HalfEdgeId) -> Vec<(VertexId, f64)> {
         let mut weights = Vec::new();
-        for (share, EdgeView { shape, origin, target }) in self.views_of_edge(h) {
+        for (
+            share,
+            EdgeView {
+                shape,
+                origin,
+                target,
+            },
+        ) in self.views_of_edge(h)
+        {
             let mask = self.scheme.edge_mask(shape);
             let at_origin = origin.weighted(mask.origin, &mask.origin_ring);
             let at_target = target.weighted(mask.target, &mask.target_ring);
-            weights.extend(at_origin.chain(at_target).map(|(v, weight)| (v, share * weight)));
+            weights.extend(
+                at_origin
+                    .chain(at_target)
+                    .map(|(v, weight)| (v, share * weight)),
+            );
         }
         weights
     }
@@ -267,21 +327,30 @@ impl<'a> Masks<'a> {
             self.weigh_view(&view.origin, mask.origin, &mask.origin_ring)
                 + self.weigh_view(&view.target, mask.target, &mask.target_ring)
         };
-        match self.edge_masks.binary_search_by(|(known, _)| known.cmp(&view.shape)) {
+        match self
+            .edge_masks
+            .binary_search_by(|(known, _)| known.cmp(&view.shape))
+        {
             Ok(i) => weigh(&self.edge_masks[i].1),
             Err(_) => weigh(&self.scheme.edge_mask(view.shape)),
         }
     }
 
     fn weigh_view(&self, view: &View<VertexId>, centre: f64, ring: &[f64]) -> DVec3 {
-        view.weighted(centre, ring).fold(DVec3::ZERO, |sum, (v, weight)| sum + weight * self.at(v))
+        view.weighted(centre, ring)
+            .fold(DVec3::ZERO, |sum, (v, weight)| sum + weight * self.at(v))
     }
 
     fn weigh_edge(&self, h: HalfEdgeId, shape: &EdgeShape, mask: &EdgeMask) -> DVec3 {
         let [origin, target] = self.mesh.topology().ends(h);
         let mut sum = mask.origin * self.at(origin) + mask.target * self.at(target);
         let ends = [
-            (IncidentEdge::from_origin(h), shape.origin, shape.origin_slot, &mask.origin_ring),
+            (
+                IncidentEdge::from_origin(h),
+                shape.origin,
+                shape.origin_slot,
+                &mask.origin_ring,
+            ),
             (
                 IncidentEdge::from_target(self.mesh.topology(), h),
                 shape.target,
@@ -300,7 +369,12 @@ impl<'a> Masks<'a> {
             };
             self.weigh_around(&mut sum, Some(edge), IncidentEdge::next, from.iter());
             let previous = edge.previous(self.mesh.topology());
-            self.weigh_around(&mut sum, previous, IncidentEdge::previous, before.iter().rev());
+            self.weigh_around(
+                &mut sum,
+                previous,
+                IncidentEdge::previous,
+                before.iter().rev(),
+            );
         }
         sum
     }
@@ -314,7 +388,10 @@ impl<'a> Masks<'a> {
         weights: impl DoubleEndedIterator<Item = &'w f64> + ExactSizeIterator + Clone,
     ) {
         let topology = self.mesh.topology();
-        let reach = weights.clone().rposition(|&weight| weight != 0.0).map_or(0, |last| last + 1);
+        let reach = weights
+            .clone()
+            .rposition(|&weight| weight != 0.0)
+            .map_or(0, |last| last + 1);
         for &weight in weights.take(reach) {
             let Some(here) = edge else { return };
             if weight != 0.0 {
@@ -327,7 +404,11 @@ impl<'a> Masks<'a> {
 
 /// The place of each half-edge in the ring of its origin, where that is open, if any such ring is large.
 fn slots_of_open_rings(topology: &Topology, shapes: &RingShapes) -> Vec<u32> {
-    if !shapes.distinct.iter().any(|shape| shape.open && shape.valence > MOST_COUNTED) {
+    if !shapes
+        .distinct
+        .iter()
+        .any(|shape| shape.open && shape.valence > MOST_COUNTED)
+    {
         return Vec::new();
     }
     let mut slots = vec![0; topology.half_edge_count()];

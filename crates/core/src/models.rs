@@ -16,14 +16,23 @@ impl Model {
     /// The model's polygons.
     pub(crate) fn soup(&self) -> PolygonSoup {
         let soup = self.0.soup();
-        PolygonSoup { positions: soup.positions, faces: soup.faces.iter().collect(), ..Default::default() }
+        PolygonSoup {
+            positions: soup.positions,
+            faces: soup.faces.iter().collect(),
+            ..Default::default()
+        }
     }
 }
 
 /// Points on a model's, each off by up to a share of the diagonal that depends on the seed.
 #[allow(clippy::unwrap_used)]
 pub(crate) fn stirred(name: &str, seed: u64) -> Mesh {
-    stir(Mesh::from_soup(&find(name).unwrap().soup(), &Default::default()).unwrap().0, seed)
+    stir(
+        Mesh::from_soup(&find(name).unwrap().soup(), &Default::default())
+            .unwrap()
+            .0,
+        seed,
+    )
 }
 
 /// The same of any mesh.
@@ -31,7 +40,11 @@ pub(crate) fn stirred(name: &str, seed: u64) -> Mesh {
 pub(crate) fn stir(mesh: Mesh, seed: u64) -> Mesh {
     let mut random = Random::new(seed);
     let size = [0.0, 0.01, 0.05, 0.2][seed as usize % 4] * mesh.diagonal();
-    let positions = mesh.positions().iter().map(|p| p.map(|x| x + size * random.signed())).collect();
+    let positions = mesh
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| x + size * random.signed()))
+        .collect();
     mesh.with_positions(positions).unwrap()
 }
 
@@ -40,20 +53,31 @@ pub(crate) fn stir(mesh: Mesh, seed: u64) -> Mesh {
 pub(crate) fn book() -> Mesh {
     let (pages, rows, columns) = (3, 5, 3);
     let mut soup = PolygonSoup::default();
-    soup.positions.extend((0..rows).map(|row| [0.0, 0.0, f64::from(row)]));
+    soup.positions
+        .extend((0..rows).map(|row| [0.0, 0.0, f64::from(row)]));
     for page in 0..pages {
         let (sin, cos) = (core::f64::consts::TAU * f64::from(page) / f64::from(pages)).sin_cos();
         for column in 1..=columns {
             let out = f64::from(column);
-            let at = |row| [out * cos, out * sin, f64::from(row) + 0.3 * f64::from((row * column) % 2)];
+            let at = |row| {
+                [
+                    out * cos,
+                    out * sin,
+                    f64::from(row) + 0.3 * f64::from((row * column) % 2),
+                ]
+            };
             soup.positions.extend((0..rows).map(at));
         }
         let number = |column: u32, row: u32| {
-            let own = if column == 0 { 0 } else { 1 + page as u32 * columns as u32 + column - 1 };
+            let own = if column == 0 {
+                0
+            } else {
+                1 + page as u32 * columns as u32 + column - 1
+            };
             own * rows as u32 + row
         };
-        for (column, row) in
-            (0..columns as u32).flat_map(|column| (0..rows as u32 - 1).map(move |row| (column, row)))
+        for (column, row) in (0..columns as u32)
+            .flat_map(|column| (0..rows as u32 - 1).map(move |row| (column, row)))
         {
             let (next, above) = (column + 1, row + 1);
             let here = number(column, row);

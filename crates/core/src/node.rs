@@ -17,21 +17,38 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn root(face: u32) -> Self {
-        Self { face, level: 0, path: 0 }
+        Self {
+            face,
+            level: 0,
+            path: 0,
+        }
     }
 
     /// The node that it is a child of.
     pub(crate) fn parent(self) -> Option<Self> {
-        Some(Self { level: self.level.checked_sub(1)?, path: self.path >> 2, ..self })
+        Some(Self {
+            level: self.level.checked_sub(1)?,
+            path: self.path >> 2,
+            ..self
+        })
     }
 
     pub(crate) fn child(self, child: usize) -> Self {
-        Self { level: self.level + 1, path: self.path << 2 | child as u64, ..self }
+        Self {
+            level: self.level + 1,
+            path: self.path << 2 | child as u64,
+            ..self
+        }
     }
 
     /// The node `depth` levels below in column i and row j, as rows run along edge 0 from the first corner: the one that stands
     /// upright there, or the one to its right that stands on its head.
-    pub(crate) fn leaf(self, depth: u32, (mut i, mut j): (usize, usize), mut is_headlong: bool) -> Self {
+    pub(crate) fn leaf(
+        self,
+        depth: u32,
+        (mut i, mut j): (usize, usize),
+        mut is_headlong: bool,
+    ) -> Self {
         let mut place = self;
         for level in (0..depth).rev() {
             let half = 1 << level;
@@ -70,13 +87,20 @@ impl Place {
 
     /// Whether a walk over the face comes to this node before the other, or to one that holds it.
     pub(crate) fn precedes(self, other: Self) -> bool {
-        Self { face: other.face, ..self }.in_order(&other).is_lt()
+        Self {
+            face: other.face,
+            ..self
+        }
+        .in_order(&other)
+        .is_lt()
     }
 
     /// The order of faces, and in each that of a walk over leaves.
     pub(crate) fn in_order(&self, other: &Self) -> core::cmp::Ordering {
         let most = self.level.max(other.level);
-        self.face.cmp(&other.face).then_with(|| self.key(most).cmp(&other.key(most)))
+        self.face
+            .cmp(&other.face)
+            .then_with(|| self.key(most).cmp(&other.key(most)))
     }
 
     /// What stands in that order for nodes of a face down to a level.
@@ -111,7 +135,9 @@ impl Place {
 
     /// The node of level `down` below this one, at number `index` along edge `edge` from its start.
     pub(crate) fn along(self, edge: usize, down: u32, index: u32) -> Self {
-        let digits = (0..down).rev().map(|bit| along_edge(edge, index >> bit & 1 == 1));
+        let digits = (0..down)
+            .rev()
+            .map(|bit| along_edge(edge, index >> bit & 1 == 1));
         digits.fold(self, |place, child| place.child(child))
     }
 }
@@ -150,9 +176,16 @@ pub(crate) struct Along {
 impl Along {
     /// The node of the control face of `half_edge`, which runs along the same edge, the other way if `turned`.
     pub(crate) fn node_at(self, half_edge: u32, turned: bool) -> (Place, usize) {
-        let index = if turned { (1 << self.level) - 1 - self.index } else { self.index };
+        let index = if turned {
+            (1 << self.level) - 1 - self.index
+        } else {
+            self.index
+        };
         let edge = (half_edge % 3) as usize;
-        (Place::root(half_edge / 3).along(edge, self.level, index), edge)
+        (
+            Place::root(half_edge / 3).along(edge, self.level, index),
+            edge,
+        )
     }
 }
 
@@ -176,7 +209,11 @@ pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
         path >>= 2;
         level -= 1;
     }
-    Beyond::Control(Along { half_edge: 3 * place.face + edge as u32, level: place.level, index })
+    Beyond::Control(Along {
+        half_edge: 3 * place.face + edge as u32,
+        level: place.level,
+        index,
+    })
 }
 
 /// The half-edges of the control mesh that run along one edge.
@@ -197,14 +234,23 @@ impl<'m> Edges<'m> {
             .junctions()
             .edges
             .iter()
-            .map(|group| group.iter().map(|&h| (h, start(h) != start(group[0]))).collect())
+            .map(|group| {
+                group
+                    .iter()
+                    .map(|&h| (h, start(h) != start(group[0])))
+                    .collect()
+            })
             .collect();
         let mut groups: Vec<(u32, u32)> = (0..)
             .zip(&members)
             .flat_map(|(group, members)| members.iter().map(move |&(h, _)| (h, group)))
             .collect();
         groups.sort_unstable();
-        Self { topology, groups, members }
+        Self {
+            topology,
+            groups,
+            members,
+        }
     }
 
     pub(crate) fn twin(&self, h: u32) -> Option<u32> {
@@ -216,7 +262,10 @@ impl<'m> Edges<'m> {
         if self.groups.is_empty() {
             return None;
         }
-        let at = self.groups.binary_search_by_key(&h, |&(member, _)| member).ok()?;
+        let at = self
+            .groups
+            .binary_search_by_key(&h, |&(member, _)| member)
+            .ok()?;
         Some(self.groups[at].1 as usize)
     }
 
@@ -240,7 +289,11 @@ mod tests {
         let mut at = [[0, 0], [full, 0], [0, full]];
         for level in 0..place.level {
             let middle = |a: [i64; 2], b: [i64; 2]| [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-            let middles = [middle(at[0], at[1]), middle(at[1], at[2]), middle(at[2], at[0])];
+            let middles = [
+                middle(at[0], at[1]),
+                middle(at[1], at[2]),
+                middle(at[2], at[0]),
+            ];
             let child = place.digit(level);
             at = if child == 3 {
                 [middles[1], middles[2], middles[0]]
@@ -256,12 +309,17 @@ mod tests {
 
     #[test]
     fn rows_tell_where_leaves_stand() {
-        let node = Place { face: 3, level: 2, path: 9 };
+        let node = Place {
+            face: 3,
+            level: 2,
+            path: 9,
+        };
         for depth in 0..5 {
             let n = 1 << depth;
             for (j, i) in (0..n).flat_map(|j| (0..n - j).map(move |i| (j, i))) {
-                for is_headlong in
-                    [false, true].into_iter().filter(|&is_headlong| !is_headlong || i + j + 1 < n)
+                for is_headlong in [false, true]
+                    .into_iter()
+                    .filter(|&is_headlong| !is_headlong || i + j + 1 < n)
                 {
                     let leaf = node.leaf(depth, (i, j), is_headlong);
                     assert_eq!(leaf.row_below(node.level), (j, i), "{depth}: {leaf:?}");
@@ -274,7 +332,11 @@ mod tests {
     fn nodes_beyond_an_edge_share_it() {
         for level in 0..5u32 {
             for path in 0..1u64 << (2 * level) {
-                let place = Place { face: 7, level, path };
+                let place = Place {
+                    face: 7,
+                    level,
+                    path,
+                };
                 let own = corners(place);
                 for edge in 0..3 {
                     let (start, end) = (own[edge], own[(edge + 1) % 3]);
@@ -299,13 +361,19 @@ mod tests {
 
     #[test]
     fn nodes_are_found_by_column_and_row() {
-        let node = Place { face: 0, level: 2, path: 0b11_01 };
+        let node = Place {
+            face: 0,
+            level: 2,
+            path: 0b11_01,
+        };
         let depth = 3;
         let whole = corners(node).map(|c| c.map(|x| x << depth));
         let n = 1i64 << depth;
         let at = |i: i64, j: i64| {
             [0, 1].map(|x| {
-                whole[0][x] + (whole[1][x] - whole[0][x]) / n * i + (whole[2][x] - whole[0][x]) / n * j
+                whole[0][x]
+                    + (whole[1][x] - whole[0][x]) / n * i
+                    + (whole[2][x] - whole[0][x]) / n * j
             })
         };
         for j in 0..n {
@@ -314,7 +382,10 @@ mod tests {
                 assert_eq!(corners(leaf), [at(i, j), at(i + 1, j), at(i, j + 1)]);
                 if i + j + 1 < n {
                     let leaf = node.leaf(depth, (i as usize, j as usize), true);
-                    assert_eq!(corners(leaf), [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)]);
+                    assert_eq!(
+                        corners(leaf),
+                        [at(i + 1, j + 1), at(i, j + 1), at(i + 1, j)]
+                    );
                 }
             }
         }

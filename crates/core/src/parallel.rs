@@ -34,14 +34,21 @@ pub(crate) fn map<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> V
     {
         use rayon::prelude::*;
         if n >= SEQUENTIAL_BELOW && rayon::current_num_threads() > 1 {
-            return (0..n).into_par_iter().with_min_len(SEQUENTIAL_BELOW / 4).map(f).collect();
+            return (0..n)
+                .into_par_iter()
+                .with_min_len(SEQUENTIAL_BELOW / 4)
+                .map(f)
+                .collect();
         }
     }
     (0..n).map(f).collect()
 }
 
 /// So many default values, with room for more: as [`limitmesh_pages::defaults_with_room`], but that all threads touch what must be.
-pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(length: usize, capacity: usize) -> Vec<T> {
+pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(
+    length: usize,
+    capacity: usize,
+) -> Vec<T> {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
@@ -75,7 +82,10 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
             return;
         }
     }
-    slots.chunks_mut(piece).enumerate().for_each(|(i, chunk)| f(i, chunk));
+    slots
+        .chunks_mut(piece)
+        .enumerate()
+        .for_each(|(i, chunk)| f(i, chunk));
 }
 
 /// Bytes that are touched by several threads from so many on.
@@ -105,7 +115,10 @@ pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
     {
         use rayon::prelude::*;
         if count > 1 && rayon::current_num_threads() > 1 {
-            return (0..count).into_par_iter().map(|piece| f(range(piece))).collect();
+            return (0..count)
+                .into_par_iter()
+                .map(|piece| f(range(piece)))
+                .collect();
         }
     }
     (0..count).map(|piece| f(range(piece))).collect()
@@ -113,7 +126,10 @@ pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
 
 /// The least `i` below `n` for which `found(i)` holds.
 pub(crate) fn first<F: Fn(usize) -> bool + Sync + Send>(n: usize, found: F) -> Option<usize> {
-    pieces(n, |mut piece| piece.find(|&i| found(i))).into_iter().flatten().next()
+    pieces(n, |mut piece| piece.find(|&i| found(i)))
+        .into_iter()
+        .flatten()
+        .next()
 }
 
 /// `[0, c(0), c(0)+c(1), …]`: where each element's items start when element `i` has `c(i)` of them, and their
@@ -123,14 +139,18 @@ pub(crate) fn starts<F: Fn(usize) -> u32 + Sync + Send>(
     poll: &mut Poll<'_>,
     count: F,
 ) -> Result<Option<Vec<u32>>, Cancelled> {
-    let totals = pieces_polled(n, PIECE, poll, |piece| piece.map(|i| u64::from(count(i))).sum::<u64>())?;
+    let totals = pieces_polled(n, PIECE, poll, |piece| {
+        piece.map(|i| u64::from(count(i))).sum::<u64>()
+    })?;
     let mut before = Vec::with_capacity(totals.len());
     let mut total = 0u64;
     for piece_total in totals {
         before.push(total);
         total += piece_total;
     }
-    let Ok(total) = u32::try_from(total) else { return Ok(None) };
+    let Ok(total) = u32::try_from(total) else {
+        return Ok(None);
+    };
     let mut starts = limitmesh_pages::defaults::<u32>(n + 1);
     starts[n] = total;
     for_each_chunk_polled(&mut starts[..n], PIECE, poll, |piece, slots| {
@@ -172,7 +192,11 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
             f(i, &mut a[run.clone()], &mut b[run]);
         }
     };
-    hand_out(pieces.into_iter(), &mut |pieces| poll((pieces * PIECE).min(n)), |piece, _| work(piece))?;
+    hand_out(
+        pieces.into_iter(),
+        &mut |pieces| poll((pieces * PIECE).min(n)),
+        |piece, _| work(piece),
+    )?;
     Ok(())
 }
 
@@ -193,7 +217,10 @@ pub(crate) type IsStopped<'a> = dyn Fn() -> bool + 'a;
 const ASKED: usize = 1 << 12;
 
 /// The same items, with the question now and then whether they are still of use; there are no more of them where they are not.
-pub(crate) fn asking<I: IntoIterator>(items: I, is_stopped: &IsStopped<'_>) -> impl Iterator<Item = I::Item> {
+pub(crate) fn asking<I: IntoIterator>(
+    items: I,
+    is_stopped: &IsStopped<'_>,
+) -> impl Iterator<Item = I::Item> {
     let mut taken = 0usize;
     items.into_iter().take_while(move |_| {
         taken += 1;
@@ -247,7 +274,11 @@ pub(crate) fn for_each_chunk_polled<T: Send, F: Fn(usize, &mut [T]) + Sync>(
 ) -> Result<(), Cancelled> {
     let n = slots.len();
     let chunks = slots.chunks_mut(piece).enumerate();
-    hand_out(chunks, &mut |blocks| poll((blocks * piece).min(n)), |(i, chunk), _| f(i, chunk))?;
+    hand_out(
+        chunks,
+        &mut |blocks| poll((blocks * piece).min(n)),
+        |(i, chunk), _| f(i, chunk),
+    )?;
     Ok(())
 }
 
@@ -300,7 +331,9 @@ pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + S
 ) -> Result<Vec<T>, Cancelled> {
     let mut slots = limitmesh_pages::defaults::<T>(n);
     for_each_chunk_polled(&mut slots, length, poll, |chunk, slots| {
-        (chunk * length..).zip(slots).for_each(|(i, slot)| *slot = f(i));
+        (chunk * length..)
+            .zip(slots)
+            .for_each(|(i, slot)| *slot = f(i));
     })?;
     Ok(slots)
 }
@@ -308,7 +341,12 @@ pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + S
 /// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
 /// does, with the number of blocks done, and while it waits for others, and by blocks that ask for it; once it fails it is not called
 /// again and no further block is begun.
-fn hand_out<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send, F: Fn(B, &IsStopped<'_>) -> R + Sync>(
+fn hand_out<
+    B: Send,
+    R: Send,
+    I: ExactSizeIterator<Item = B> + Send,
+    F: Fn(B, &IsStopped<'_>) -> R + Sync,
+>(
     blocks: I,
     poll: &mut Poll<'_>,
     work: F,
@@ -345,7 +383,11 @@ fn led<B, R>(
         }
         is_cancelled.load(Relaxed)
     });
-    if is_cancelled.load(Relaxed) { Err(Cancelled) } else { Ok(result) }
+    if is_cancelled.load(Relaxed) {
+        Err(Cancelled)
+    } else {
+        Ok(result)
+    }
 }
 
 /// Blocks that several threads take one after the other, the calling one among them.
@@ -375,8 +417,16 @@ const WAIT: core::time::Duration = core::time::Duration::from_millis(20);
 impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
     fn new(blocks: I) -> Self {
         let results = Vec::with_capacity(blocks.len());
-        let state = BlocksState { left: blocks.enumerate(), results, working: 0 };
-        Self { state: Mutex::new(state), ended: Condvar::new(), is_cancelled: AtomicBool::new(false) }
+        let state = BlocksState {
+            left: blocks.enumerate(),
+            results,
+            working: 0,
+        };
+        Self {
+            state: Mutex::new(state),
+            ended: Condvar::new(),
+            is_cancelled: AtomicBool::new(false),
+        }
     }
 
     fn run(
@@ -393,7 +443,10 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
             self.is_cancelled.fetch_or(result.is_err(), Relaxed);
             result
         })?;
-        let state = self.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let state = self
+            .state
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
         let mut results = state.results;
         results.sort_unstable_by_key(|&(number, _)| number);
         Ok(results.into_iter().map(|(_, result)| result).collect())
@@ -404,7 +457,11 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
     }
 
     /// The calling thread: works as long as there are blocks, then waits for the others.
-    fn lead(&self, poll: &mut Poll<'_>, work: &impl Fn(B, &IsStopped<'_>) -> R) -> Result<(), Cancelled> {
+    fn lead(
+        &self,
+        poll: &mut Poll<'_>,
+        work: &impl Fn(B, &IsStopped<'_>) -> R,
+    ) -> Result<(), Cancelled> {
         loop {
             let (next, done) = {
                 let mut state = self.lock();
@@ -418,7 +475,11 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
         let mut state = self.lock();
         while state.working > 0 {
             let waited = self.ended.wait_timeout(state, WAIT);
-            let done = waited.unwrap_or_else(PoisonError::into_inner).0.results.len();
+            let done = waited
+                .unwrap_or_else(PoisonError::into_inner)
+                .0
+                .results
+                .len();
             poll(done)?;
             state = self.lock();
         }
@@ -431,7 +492,9 @@ impl<B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send> Blocks<I, R> {
         let _ended = Ended(self);
         let is_stopped = || self.is_cancelled.load(Relaxed);
         while !is_stopped() {
-            let Some((number, block)) = self.lock().left.next() else { return };
+            let Some((number, block)) = self.lock().left.next() else {
+                return;
+            };
             let result = work(block, &is_stopped);
             self.lock().put(number, result);
         }

@@ -107,7 +107,8 @@ pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
 
 /// What `work` gives if nobody watches: then nothing cancels it.
 pub(crate) fn uncancelled<T>(work: impl FnOnce(&mut Observer<'_>) -> Result<T, Cancelled>) -> T {
-    work(&mut unobserved).unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
+    work(&mut unobserved)
+        .unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
 }
 
 /// An observer and what it is told: what long functions pass on to the loops that they consist of.
@@ -119,12 +120,25 @@ pub(crate) struct Watch<'a> {
 impl<'a> Watch<'a> {
     /// Begins with `stage`, of which nothing is done.
     pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
-        Self { observer, progress: Progress { stage, done: 0, total: None, triangles: 0 } }
+        Self {
+            observer,
+            progress: Progress {
+                stage,
+                done: 0,
+                total: None,
+                triangles: 0,
+            },
+        }
     }
 
     /// Another stage begins; the triangles stay.
     pub(crate) fn stage(&mut self, stage: Stage, total: Option<usize>) -> Result<(), Cancelled> {
-        self.progress = Progress { stage, done: 0, total, ..self.progress };
+        self.progress = Progress {
+            stage,
+            done: 0,
+            total,
+            ..self.progress
+        };
         self.poll()
     }
 
@@ -178,7 +192,10 @@ const STEPS: usize = 1 << 12;
 
 impl<'a> SharedWatch<'a> {
     pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
-        Self { watch: RefCell::new(Watch::new(observer, stage)), rounds: Cell::new(0) }
+        Self {
+            watch: RefCell::new(Watch::new(observer, stage)),
+            rounds: Cell::new(0),
+        }
     }
 
     /// [`Watch::stage`].

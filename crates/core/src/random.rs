@@ -12,7 +12,10 @@ impl Random {
 
     /// All 64 bits, of which a caller takes the upper ones.
     pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         self.0
     }
 

@@ -97,7 +97,11 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
     }
     // Scaled first: squares of very large or small coordinates overflow or vanish.
     let greatest = v.abs().max_element();
-    if greatest > 0.0 && greatest.is_finite() { (v / greatest).normalize_or_zero() } else { DVec3::ZERO }
+    if greatest > 0.0 && greatest.is_finite() {
+        (v / greatest).normalize_or_zero()
+    } else {
+        DVec3::ZERO
+    }
 }
 
 /// `√(a² + b²)`, also where squares vanish or overflow. Unlike what the system's library has for that, it gives the same bytes everywhere, and
@@ -105,7 +109,11 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
 #[inline]
 pub(crate) fn hypotenuse(a: f64, b: f64) -> f64 {
     let squared = a * a + b * b;
-    if squared > 1e-280 && squared < 1e300 { squared.sqrt() } else { hypotenuse_of_any(a.abs(), b.abs()) }
+    if squared > 1e-280 && squared < 1e300 {
+        squared.sqrt()
+    } else {
+        hypotenuse_of_any(a.abs(), b.abs())
+    }
 }
 
 #[cold]
@@ -160,7 +168,11 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     let (ab, ac) = (b - a, c - a);
     // Scaled first: areas of very large or small triangles overflow or vanish.
     let size = ab.abs().max(ac.abs()).max_element();
-    if size > 0.0 { (ab / size).cross(ac / size) } else { DVec3::ZERO }
+    if size > 0.0 {
+        (ab / size).cross(ac / size)
+    } else {
+        DVec3::ZERO
+    }
 }
 
 /// The length of a box's diagonal, for any size whose length is finite.
@@ -172,7 +184,11 @@ pub(crate) fn diagonal(low: DVec3, high: DVec3) -> f64 {
     }
     // Scaled first: squares of very large or small sides overflow or vanish.
     let greatest = sides.max_element();
-    if greatest > 0.0 && greatest.is_finite() { greatest * (sides / greatest).length() } else { length }
+    if greatest > 0.0 && greatest.is_finite() {
+        greatest * (sides / greatest).length()
+    } else {
+        length
+    }
 }
 
 #[cfg(test)]
@@ -183,7 +199,10 @@ mod tests {
     fn diagonals_of_any_size_have_a_length() {
         for size in [1e-310, 1e-200, 1.0, 1e200, 1e307] {
             let length = diagonal(DVec3::splat(-size), DVec3::new(2.0, 5.0, -1.0) * size);
-            assert!((length / size - 45f64.sqrt()).abs() < 1e-9, "{size}: {length}");
+            assert!(
+                (length / size - 45f64.sqrt()).abs() < 1e-9,
+                "{size}: {length}"
+            );
         }
         assert_eq!(diagonal(DVec3::ONE, DVec3::ONE), 0.0);
     }

@@ -19,16 +19,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let soup = match arguments.next() {
         Some(path) => read(&path)?,
-        None => limitmesh_models::find("cup").ok_or("no such built-in model")?.soup(),
+        None => limitmesh_models::find("cup")
+            .ok_or("no such built-in model")?
+            .soup(),
     };
-    let output = arguments.next().unwrap_or_else(|| std::env::temp_dir().join("limitmesh-cup.ply"));
+    let output = arguments
+        .next()
+        .unwrap_or_else(|| std::env::temp_dir().join("limitmesh-cup.ply"));
 
     let (control, diagnosis) = Mesh::from_soup(&soup, &Default::default())?;
     if !diagnosis.is_clean() {
         println!("{diagnosis}");
     }
     let criterion = LimitNormal::new(10f64.to_radians());
-    let refined = stepwise(&control, &Loop, &criterion, &StepwiseOptions::default().levels(3))?;
+    let refined = stepwise(
+        &control,
+        &Loop,
+        &criterion,
+        &StepwiseOptions::default().levels(3),
+    )?;
     for step in &refined.steps {
         println!(
             "step {}: {} of {} faces divided, {} faces after it",
@@ -39,7 +48,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let limit = limit_reference(&control, &Loop, 4)?;
     let samples = SamplingOptions::default().samples(20_000);
     let distance = hausdorff(refined.mesh.as_triangles(), limit.as_triangles(), &samples)?;
-    println!("at least {:.4} % of the diagonal away from the limit surface", distance.symmetric_percent());
+    println!(
+        "at least {:.4} % of the diagonal away from the limit surface",
+        distance.symmetric_percent()
+    );
 
     let normals = LimitTable::new(&Loop).normals(&refined.mesh)?;
     let content = Output::new(refined.mesh.as_triangles()).normals(&normals);

@@ -3,7 +3,11 @@
 /// Three rows: x' = row · (x, y, z, 1).
 pub(crate) type Affine = [[f64; 4]; 3];
 
-pub(crate) const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+pub(crate) const IDENTITY: Affine = [
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+];
 
 /// `a` after `b`.
 pub(crate) fn product(a: &Affine, b: &Affine) -> Affine {
@@ -23,11 +27,27 @@ pub(crate) fn of_columns(m: &[f64; 16]) -> Affine {
 /// Scaling, then rotating by a quaternion x, y, z, w of any length, then moving.
 pub(crate) fn of_parts(translation: [f64; 3], rotation: [f64; 4], scale: [f64; 3]) -> Affine {
     let length = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let [x, y, z, w] = if length > 0.0 { rotation.map(|c| c / length) } else { [0.0, 0.0, 0.0, 1.0] };
+    let [x, y, z, w] = if length > 0.0 {
+        rotation.map(|c| c / length)
+    } else {
+        [0.0, 0.0, 0.0, 1.0]
+    };
     let rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
+        [
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - z * w),
+            2.0 * (x * z + y * w),
+        ],
+        [
+            2.0 * (x * y + z * w),
+            1.0 - 2.0 * (x * x + z * z),
+            2.0 * (y * z - x * w),
+        ],
+        [
+            2.0 * (x * z - y * w),
+            2.0 * (y * z + x * w),
+            1.0 - 2.0 * (x * x + y * y),
+        ],
     ];
     std::array::from_fn(|i| {
         let [a, b, c] = rows[i];
@@ -47,7 +67,11 @@ pub(crate) fn apply_to_normal(m: &Affine, [x, y, z]: [f64; 3]) -> [f64; 3] {
     // Cofactors are the inverse's transpose times the determinant, and there where it is 0.
     std::array::from_fn(|i| {
         let [b, c] = [rows[(i + 1) % 3], rows[(i + 2) % 3]];
-        let cofactors = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+        let cofactors = [
+            b[1] * c[2] - b[2] * c[1],
+            b[2] * c[0] - b[0] * c[2],
+            b[0] * c[1] - b[1] * c[0],
+        ];
         sign * (cofactors[0] * x + cofactors[1] * y + cofactors[2] * z)
     })
 }
@@ -60,29 +84,39 @@ pub(crate) fn mirrors(m: &Affine) -> bool {
 /// Of several the one that makes vectors longest, and the first of equals; without any, the map that does nothing.
 pub(crate) fn largest<'a>(all: impl Iterator<Item = &'a Affine>) -> &'a Affine {
     let stretched = all.map(|m| (m, greatest_stretch(m)));
-    stretched.reduce(|most, own| if own.1 > most.1 { own } else { most }).map_or(&IDENTITY, |(m, _)| m)
+    stretched
+        .reduce(|most, own| if own.1 > most.1 { own } else { most })
+        .map_or(&IDENTITY, |(m, _)| m)
 }
 
 /// How many times longer it makes vectors at most: the greatest singular value M, √λ of the greatest eigenvalue of MᵀM,
 /// by the closed form for symmetric matrices of three rows (Smith 1961).
 pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     let m = linear(m);
-    let size = m.as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let size = m
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |most, x| most.max(x.abs()));
     if size == 0.0 || !size.is_finite() {
         return size;
     }
     let m = m.map(|row| row.map(|x| x / size));
-    let a: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| m[k][i] * m[k][j]).sum::<f64>()));
+    let a: [[f64; 3]; 3] = std::array::from_fn(|i| {
+        std::array::from_fn(|j| (0..3).map(|k| m[k][i] * m[k][j]).sum::<f64>())
+    });
     let mean = (a[0][0] + a[1][1] + a[2][2]) / 3.0;
     let off = a[0][1] * a[0][1] + a[0][2] * a[0][2] + a[1][2] * a[1][2];
-    let spread = (0..3).map(|i| (a[i][i] - mean) * (a[i][i] - mean)).sum::<f64>() + 2.0 * off;
+    let spread = (0..3)
+        .map(|i| (a[i][i] - mean) * (a[i][i] - mean))
+        .sum::<f64>()
+        + 2.0 * off;
     let p = (spread / 6.0).sqrt();
     let greatest = if p == 0.0 {
         mean
     } else {
-        let b: [[f64; 3]; 3] =
-            std::array::from_fn(|i| std::array::from_fn(|j| (a[i][j] - if i == j { mean } else { 0.0 }) / p));
+        let b: [[f64; 3]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| (a[i][j] - if i == j { mean } else { 0.0 }) / p)
+        });
         mean + 2.0 * p * ((0.5 * determinant(&b)).clamp(-1.0, 1.0).acos() / 3.0).cos()
     };
     size * greatest.max(0.0).sqrt()
@@ -109,7 +143,11 @@ mod tests {
         assert!((greatest_stretch(&turned) - 3.0).abs() < 1e-14);
         assert!(mirrors(&turned));
         // A shear by 1 stretches by the golden ratio.
-        let shear = [[1.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+        let shear = [
+            [1.0, 1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 1.0, 0.0],
+        ];
         assert!((greatest_stretch(&shear) - (1.0 + 5f64.sqrt()) / 2.0).abs() < 1e-14);
         let tiny = of_parts([0.0; 3], [0.0, 0.6, 0.0, 0.8], [1.16e-4; 3]);
         assert!((greatest_stretch(&tiny) / 1.16e-4 - 1.0).abs() < 1e-14);
@@ -121,7 +159,8 @@ mod tests {
         for scale in [[1.0, 2.0, 0.1], [-3.0, 1.0, 0.5], [-1.0, -1.0, -2.0]] {
             let m = of_parts([7.0, 8.0, 9.0], [0.1, 0.9, -0.4, 0.2], scale);
             let [u, v, n] = [[1.0, 2.0, 0.0], [0.0, 1.0, 3.0], [6.0, -3.0, 1.0]];
-            let moved = |d: [f64; 3]| linear(&m).map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
+            let moved =
+                |d: [f64; 3]| linear(&m).map(|row| row[0] * d[0] + row[1] * d[1] + row[2] * d[2]);
             let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
             let normal = apply_to_normal(&m, n);
             assert!(dot(normal, moved(u)).abs() < 1e-12 && dot(normal, moved(v)).abs() < 1e-12);
@@ -149,6 +188,9 @@ mod tests {
             }
         }
         let stretch = greatest_stretch(&m);
-        assert!(most <= stretch * (1.0 + 1e-12) && most > 0.9999 * stretch, "{most} {stretch}");
+        assert!(
+            most <= stretch * (1.0 + 1e-12) && most > 0.9999 * stretch,
+            "{most} {stretch}"
+        );
     }
 }

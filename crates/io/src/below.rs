@@ -8,7 +8,11 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// There is none, or a link leads out of the folder.
 pub(crate) fn file_below(folder: &Path, file: &Path) -> io::Result<PathBuf> {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
     let path = folder.join(file).canonicalize()?;
     match path.starts_with(folder.canonicalize()?) {
         true if path.is_file() => Ok(path),

@@ -64,14 +64,22 @@ pub fn holds(format: Format, options: &WriteOptions, channel: &Channel) -> bool 
 }
 
 /// By vertex, the number of its value, of several corners the first's; and how many vertices have several. The channel must have values.
-pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, usize) {
+pub(crate) fn by_vertex(
+    channel: &Channel,
+    vertices: usize,
+    triangles: &[[u32; 3]],
+) -> (Vec<u32>, usize) {
     const NONE: u32 = u32::MAX;
     if channel.domain == Domain::Vertex {
         return (channel.indices.clone(), 0);
     }
     let (mut values, mut is_torn) = (vec![NONE; vertices], vec![false; vertices]);
     for (corner, &vertex) in triangles.as_flattened().iter().enumerate() {
-        let element = if channel.domain == Domain::Face { corner / 3 } else { corner };
+        let element = if channel.domain == Domain::Face {
+            corner / 3
+        } else {
+            corner
+        };
         let (index, first) = (channel.indices[element], &mut values[vertex as usize]);
         is_torn[vertex as usize] |= *first != NONE && *first != index;
         if *first == NONE {
@@ -79,12 +87,23 @@ pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3
         }
     }
     // Vertices in no triangle have the first value there is.
-    values.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = 0);
-    (values, is_torn.into_iter().filter(|&is_torn| is_torn).count())
+    values
+        .iter_mut()
+        .filter(|index| **index == NONE)
+        .for_each(|index| *index = 0);
+    (
+        values,
+        is_torn.into_iter().filter(|&is_torn| is_torn).count(),
+    )
 }
 
 /// How many vertices have several values of a channel of which a format holds one: these get the first of their corners'.
-pub fn values_lost(format: Format, channel: &Channel, triangles: &[[u32; 3]], vertices: usize) -> usize {
+pub fn values_lost(
+    format: Format,
+    channel: &Channel,
+    triangles: &[[u32; 3]],
+    vertices: usize,
+) -> usize {
     let options = WriteOptions::default();
     let is_by_corner = channel.semantic == Semantic::TextureCoordinates || format.is_gltf();
     if channel.domain != Domain::Corner || is_by_corner || !holds(format, &options, channel) {

@@ -31,7 +31,10 @@ pub enum ReadError {
         format: Format,
     },
     /// The content is plainly of another kind than the name says.
-    #[error("{}named as {format}, but the content looks like {looks_like}", prefix(path))]
+    #[error(
+        "{}named as {format}, but the content looks like {looks_like}",
+        prefix(path)
+    )]
     OtherContent {
         /// The file, if it was one.
         path: Option<PathBuf>,
@@ -92,7 +95,8 @@ impl ReadError {
 }
 
 fn prefix(path: &Option<PathBuf>) -> String {
-    path.as_ref().map_or_else(String::new, |path| format!("{}: ", path.display()))
+    path.as_ref()
+        .map_or_else(String::new, |path| format!("{}: ", path.display()))
 }
 
 /// A place in a file.
@@ -138,7 +142,11 @@ impl Flaw {
 
     /// A problem in words.
     pub(crate) fn saying(place: Place, problem: impl Into<String>) -> Self {
-        Self { place, element: String::new(), problem: problem.into() }
+        Self {
+            place,
+            element: String::new(),
+            problem: problem.into(),
+        }
     }
 
     /// The same flaw with the element it is in.
@@ -148,7 +156,11 @@ impl Flaw {
     }
 
     pub(crate) fn in_format(self, format: Format) -> ReadError {
-        ReadError::Flaw { path: None, format, flaw: self }
+        ReadError::Flaw {
+            path: None,
+            format,
+            flaw: self,
+        }
     }
 }
 
@@ -209,7 +221,9 @@ pub enum WriteError {
     #[error(transparent)]
     Channel(#[from] limitmesh::mesh::ChannelError),
     /// There are not three corner normals for each triangle.
-    #[error("there are corner normals of {count} triangles for {triangles}: each triangle needs three")]
+    #[error(
+        "there are corner normals of {count} triangles for {triangles}: each triangle needs three"
+    )]
     CornerNormals {
         /// Triangles that have some.
         count: usize,
@@ -245,7 +259,9 @@ pub enum WriteError {
         what: &'static str,
     },
     /// A property is NaN or infinite somewhere.
-    #[error("property '{name}' of element {element} is {value}: {format} files hold finite numbers only")]
+    #[error(
+        "property '{name}' of element {element} is {value}: {format} files hold finite numbers only"
+    )]
     PropertyNotFinite {
         /// The property's name.
         name: String,
@@ -327,7 +343,10 @@ impl WriteError {
     /// The same error with the file's name, if it is one of input and output.
     pub(crate) fn in_file(self, path: &Path) -> Self {
         match self {
-            Self::Writer { reason } => Self::File { path: path.to_owned(), reason },
+            Self::Writer { reason } => Self::File {
+                path: path.to_owned(),
+                reason,
+            },
             other => other,
         }
     }

@@ -51,8 +51,15 @@ impl std::error::Error for UnknownFormat {}
 
 impl Format {
     /// All formats.
-    pub const ALL: &[Self] =
-        &[Self::Obj, Self::Ply, Self::Stl, Self::Off, Self::Gltf, Self::Glb, Self::ThreeMf];
+    pub const ALL: &[Self] = &[
+        Self::Obj,
+        Self::Ply,
+        Self::Stl,
+        Self::Off,
+        Self::Gltf,
+        Self::Glb,
+        Self::ThreeMf,
+    ];
 
     /// The usual extension, in small letters and without the point.
     pub fn extension(self) -> &'static str {
@@ -74,8 +81,15 @@ impl Format {
     pub fn from_path(path: &Path) -> Result<Self, UnknownFormat> {
         let extension = path.extension().and_then(|e| e.to_str());
         extension
-            .and_then(|e| Self::ALL.iter().copied().find(|f| f.extension().eq_ignore_ascii_case(e)))
-            .ok_or_else(|| UnknownFormat { path: path.to_owned() })
+            .and_then(|e| {
+                Self::ALL
+                    .iter()
+                    .copied()
+                    .find(|f| f.extension().eq_ignore_ascii_case(e))
+            })
+            .ok_or_else(|| UnknownFormat {
+                path: path.to_owned(),
+            })
     }
 
     /// Whether it is glTF, in either form.
@@ -122,7 +136,10 @@ const SIGNATURES: [(&[u8], &str); 11] = [
     (b"Kaydara FBX", "an FBX file"),
     (b"\xff\xfe", "UTF-16 text"),
     (b"\xfe\xff", "UTF-16 text"),
-    (b"version https://git-lfs", "a Git LFS pointer, not the file itself"),
+    (
+        b"version https://git-lfs",
+        "a Git LFS pointer, not the file itself",
+    ),
     (b"<", "XML or HTML"),
     (b"{", "JSON, as glTF is"),
 ];
@@ -140,7 +157,10 @@ pub(crate) fn looks_like_other(bytes: &[u8], named: Format) -> Option<&'static s
     if is_binary_stl(bytes) {
         return (named != Format::Stl).then_some("a binary STL file");
     }
-    if let Some((_, words)) = SIGNATURES.iter().find(|(start, _)| bytes.starts_with(start)) {
+    if let Some((_, words)) = SIGNATURES
+        .iter()
+        .find(|(start, _)| bytes.starts_with(start))
+    {
         return Some(words);
     }
     let seen = sniff_text(bytes)?;
@@ -161,7 +181,11 @@ pub(crate) fn stl_facet_count(bytes: &[u8]) -> Option<u32> {
 fn sniff_text(bytes: &[u8]) -> Option<Format> {
     let mut words = first_statement(bytes)?;
     let word = words.next()?;
-    let mut next_is_number = || words.next().is_some_and(|w| crate::scan::number(w).is_some());
+    let mut next_is_number = || {
+        words
+            .next()
+            .is_some_and(|w| crate::scan::number(w).is_some())
+    };
     match word {
         b"ply" => Some(Format::Ply),
         b"v" | b"vn" | b"vt" if next_is_number() => Some(Format::Obj),
@@ -188,12 +212,17 @@ pub(crate) struct OffKeyword<'a> {
 /// Reads a word as the keyword of an OFF file, such as `STCNOFF`, `coff` or `OFF216`; `None` for any other word.
 pub(crate) fn off_keyword(word: &[u8]) -> Option<OffKeyword<'_>> {
     const OFF: usize = 3;
-    let at = word.windows(OFF).position(|three| three.eq_ignore_ascii_case(b"OFF"))?;
+    let at = word
+        .windows(OFF)
+        .position(|three| three.eq_ignore_ascii_case(b"OFF"))?;
     let (mut letters, off, glued) = (&word[..at], &word[at..at + OFF], &word[at + OFF..]);
     if !glued.iter().all(u8::is_ascii_digit) {
         return None;
     }
-    let mut keyword = OffKeyword { glued, ..OffKeyword::default() };
+    let mut keyword = OffKeyword {
+        glued,
+        ..OffKeyword::default()
+    };
     // Geomview: "[ST][C][N][4][n]OFF". In small letters, n is taken for normals, which are far more common.
     for dimension in [b'n', b'4'] {
         if (dimension == b'4' || off == b"OFF") && letters.last() == Some(&dimension) {
@@ -219,14 +248,24 @@ pub(crate) fn off_keyword(word: &[u8]) -> Option<OffKeyword<'_>> {
 
 /// Whether a text begins as an ASCII STL does: `solid` and, after its line, `facet` or `endsolid`.
 pub(crate) fn is_ascii_stl(bytes: &[u8]) -> bool {
-    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes).trim_ascii_start();
-    let Some((keyword, rest)) = text.split_at_checked(5) else { return false };
+    let text = bytes
+        .strip_prefix(BYTE_ORDER_MARK)
+        .unwrap_or(bytes)
+        .trim_ascii_start();
+    let Some((keyword, rest)) = text.split_at_checked(5) else {
+        return false;
+    };
     if !keyword.eq_ignore_ascii_case(b"solid") {
         return false;
     }
-    let Some(line_end) = rest.iter().position(|&b| b == b'\n' || b == b'\r') else { return false };
+    let Some(line_end) = rest.iter().position(|&b| b == b'\n' || b == b'\r') else {
+        return false;
+    };
     let body = rest[line_end..].trim_ascii_start();
-    let begins = |word: &[u8]| body.get(..word.len()).is_some_and(|w| w.eq_ignore_ascii_case(word));
+    let begins = |word: &[u8]| {
+        body.get(..word.len())
+            .is_some_and(|w| w.eq_ignore_ascii_case(word))
+    };
     // A file cut right after its first line is an ASCII file still.
     body.is_empty() || begins(b"facet") || begins(b"endsolid") || begins(b"solid")
 }
@@ -237,5 +276,8 @@ fn first_statement(bytes: &[u8]) -> Option<impl Iterator<Item = &[u8]>> {
     text.split(|&b| b == b'\n' || b == b'\r')
         .map(<[u8]>::trim_ascii)
         .find(|line| !line.is_empty() && !line.starts_with(b"#"))
-        .map(|line| line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()))
+        .map(|line| {
+            line.split(u8::is_ascii_whitespace)
+                .filter(|w| !w.is_empty())
+        })
 }

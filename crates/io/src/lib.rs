@@ -53,5 +53,6 @@ pub use read::{read, read_as, read_bytes};
 pub use threemf::Package;
 pub use write::{
     Abandoned, Output, Property, PropertyValues, WriteOptions, abandon_unfinished, check_writable,
-    finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole, write_whole_with,
+    finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole,
+    write_whole_with,
 };

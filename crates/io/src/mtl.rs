@@ -89,7 +89,10 @@ impl MaterialLibraries {
 
     /// Nothing yet, for a file.
     fn of_file(file: &Path) -> Self {
-        Self { folder: file.parent().unwrap_or(Path::new("")).to_owned(), ..Self::default() }
+        Self {
+            folder: file.parent().unwrap_or(Path::new("")).to_owned(),
+            ..Self::default()
+        }
     }
 
     /// The names between blanks, if there is no file of the whole name but of one of them.
@@ -108,7 +111,10 @@ impl MaterialLibraries {
                 Some(file)
             }
             Err(why) => {
-                self.problems.insert(Problem { name: name.to_owned(), reason: why.to_string() });
+                self.problems.insert(Problem {
+                    name: name.to_owned(),
+                    reason: why.to_string(),
+                });
                 None
             }
         }
@@ -142,18 +148,32 @@ impl MaterialLibraries {
         let bytes = match std::fs::read(self.folder.join(file)) {
             Ok(bytes) => bytes,
             Err(why) => {
-                self.problems.insert(Problem { name: name.to_owned(), reason: why.to_string() });
+                self.problems.insert(Problem {
+                    name: name.to_owned(),
+                    reason: why.to_string(),
+                });
                 return;
             }
         };
         let first = self.materials.len();
         let folder = file.parent().unwrap_or(Path::new(""));
-        let mut scanner = Scanner::new(&bytes, Syntax { comments: true, continuations: true });
+        let mut scanner = Scanner::new(
+            &bytes,
+            Syntax {
+                comments: true,
+                continuations: true,
+            },
+        );
         while let Some(keyword) = scanner.first_word() {
             let words: Vec<&[u8]> = std::iter::from_fn(|| scanner.word()).collect();
             if keyword.eq_ignore_ascii_case(b"newmtl") {
                 let name = joined(&words);
-                self.materials.push(Material { name, colour: [1.0; 3], opacity: 1.0, picture: None });
+                self.materials.push(Material {
+                    name,
+                    colour: [1.0; 3],
+                    opacity: 1.0,
+                    picture: None,
+                });
             } else if self.materials.len() > first {
                 self.follow(&names::read(keyword), &words, folder);
             }
@@ -167,12 +187,16 @@ impl MaterialLibraries {
         if lower.starts_with("map_") || PICTURES.contains(&lower.as_str()) {
             return self.follow_picture(keyword, words, folder);
         }
-        let Some(material) = self.materials.last_mut() else { return };
+        let Some(material) = self.materials.last_mut() else {
+            return;
+        };
         let followed = match lower.as_str() {
             "kd" => colour(words).map(|colour| material.colour = colour),
             "d" => share(words).map(|opacity| material.opacity = opacity),
             // 1 would be invisible: programs that write it mean opaque.
-            "tr" => share(words).filter(|&x| x < 1.0).map(|x| material.opacity = 1.0 - x),
+            "tr" => share(words)
+                .filter(|&x| x < 1.0)
+                .map(|x| material.opacity = 1.0 - x),
             other if OTHERS.contains(&other) => None,
             _ => Some(()),
         };
@@ -183,14 +207,22 @@ impl MaterialLibraries {
 
     fn follow_picture(&mut self, keyword: &str, words: &[&[u8]], folder: &Path) {
         let (options, name) = words.split_at(length_of_options(words));
-        let file = if name.is_empty() { None } else { self.find(folder, &joined(name)) };
+        let file = if name.is_empty() {
+            None
+        } else {
+            self.find(folder, &joined(name))
+        };
         if !keyword.eq_ignore_ascii_case("map_kd") {
             self.left_out.insert(keyword.to_owned());
             return;
         }
         let options = options.iter().filter(|word| arguments(word).is_some());
-        self.left_out.extend(options.map(|option| format!("{keyword} {}", names::read(option))));
-        let picture = file.map(|file| Picture { mime_type: mime_type(&self.folder.join(&file)), file });
+        self.left_out
+            .extend(options.map(|option| format!("{keyword} {}", names::read(option))));
+        let picture = file.map(|file| Picture {
+            mime_type: mime_type(&self.folder.join(&file)),
+            file,
+        });
         if let Some(material) = self.materials.last_mut() {
             material.picture = picture;
         }
@@ -221,12 +253,20 @@ const OTHERS: [&str; 15] = [
 
 /// A name of several words.
 fn joined(words: &[&[u8]]) -> String {
-    words.iter().map(|word| names::read(word)).collect::<Vec<_>>().join(" ")
+    words
+        .iter()
+        .map(|word| names::read(word))
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 /// The first number, from 0 to 1: options such as `-halo` may stand before it.
 fn share(words: &[&[u8]]) -> Option<f64> {
-    words.iter().find_map(|word| number(word)).filter(|x| x.is_finite()).map(|x| x.clamp(0.0, 1.0))
+    words
+        .iter()
+        .find_map(|word| number(word))
+        .filter(|x| x.is_finite())
+        .map(|x| x.clamp(0.0, 1.0))
 }
 
 /// Red, green and blue; one number is a grey.
@@ -254,8 +294,8 @@ fn arguments(option: &[u8]) -> Option<std::ops::RangeInclusive<usize>> {
     match option {
         b"-o" | b"-s" | b"-t" => Some(1..=3),
         b"-mm" => Some(2..=2),
-        b"-blendu" | b"-blendv" | b"-bm" | b"-boost" | b"-cc" | b"-clamp" | b"-colorspace" | b"-imfchan"
-        | b"-texres" | b"-type" => Some(1..=1),
+        b"-blendu" | b"-blendv" | b"-bm" | b"-boost" | b"-cc" | b"-clamp" | b"-colorspace"
+        | b"-imfchan" | b"-texres" | b"-type" => Some(1..=1),
         _ => None,
     }
 }
@@ -263,9 +303,17 @@ fn arguments(option: &[u8]) -> Option<std::ops::RangeInclusive<usize>> {
 /// The kind of a picture that glTF knows without extensions, by its first bytes.
 fn mime_type(path: &Path) -> Option<&'static str> {
     let mut first = [0; 8];
-    File::open(path).and_then(|mut file| file.read_exact(&mut first)).ok()?;
-    let kinds = [(&b"\x89PNG\r\n\x1a\n"[..], "image/png"), (&b"\xFF\xD8\xFF"[..], "image/jpeg")];
-    kinds.into_iter().find(|(start, _)| first.starts_with(start)).map(|(_, kind)| kind)
+    File::open(path)
+        .and_then(|mut file| file.read_exact(&mut first))
+        .ok()?;
+    let kinds = [
+        (&b"\x89PNG\r\n\x1a\n"[..], "image/png"),
+        (&b"\xFF\xD8\xFF"[..], "image/jpeg"),
+    ];
+    kinds
+        .into_iter()
+        .find(|(start, _)| first.starts_with(start))
+        .map(|(_, kind)| kind)
 }
 
 #[cfg(test)]
@@ -289,7 +337,11 @@ mod tests {
         ];
         for (line, expected) in cases {
             let words: Vec<&[u8]> = line.split_whitespace().map(str::as_bytes).collect();
-            assert_eq!(joined(&words[length_of_options(&words)..]), expected, "{line}");
+            assert_eq!(
+                joined(&words[length_of_options(&words)..]),
+                expected,
+                "{line}"
+            );
         }
     }
 }

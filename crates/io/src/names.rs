@@ -8,7 +8,10 @@ const FIRST: u32 = 0x10_FF00;
 
 /// The byte that a character stands for.
 fn byte_of(c: char) -> Option<u8> {
-    u32::from(c).checked_sub(FIRST).and_then(|byte| u8::try_from(byte).ok()).filter(|&byte| byte >= 0x80)
+    u32::from(c)
+        .checked_sub(FIRST)
+        .and_then(|byte| u8::try_from(byte).ok())
+        .filter(|&byte| byte >= 0x80)
 }
 
 /// A name as text.

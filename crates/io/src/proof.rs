@@ -10,8 +10,14 @@ use sha2::{Digest, Sha256};
 const WHOLE: f64 = (1u64 << 30) as f64;
 
 /// The byte of a place beside two that are known, and sixths of the edge between them and of that edge turned by 60°.
-const BESIDE: [(u8, [i64; 2]); 6] =
-    [(153, [0, 6]), (154, [3, 3]), (155, [0, 12]), (156, [4, 4]), (157, [2, 2]), (158, [0, 3])];
+const BESIDE: [(u8, [i64; 2]); 6] = [
+    (153, [0, 6]),
+    (154, [3, 3]),
+    (155, [0, 12]),
+    (156, [4, 4]),
+    (157, [2, 2]),
+    (158, [0, 3]),
+];
 
 /// The byte before a place that is written in full.
 const IN_FULL: u8 = 255;
@@ -41,7 +47,9 @@ pub enum ProofError {
     #[error("triangle {0} reaches over several control faces")]
     SeveralFaces(usize),
     /// A vertex is not where 30 levels of refinement could put it.
-    #[error("a corner of triangle {0} is in the control face where more than 30 levels would put it")]
+    #[error(
+        "a corner of triangle {0} is in the control face where more than 30 levels would put it"
+    )]
     TooDeep(usize),
 }
 
@@ -62,15 +70,29 @@ impl Proof<'_> {
         if self.holds_control {
             varint(&mut bytes, control.positions.len() as u64);
             varint(&mut bytes, control.triangles.len() as u64);
-            bytes.extend(control.positions.iter().flatten().flat_map(|x| x.to_le_bytes()));
-            bytes.extend(control.triangles.iter().flatten().flat_map(|v| v.to_le_bytes()));
+            bytes.extend(
+                control
+                    .positions
+                    .iter()
+                    .flatten()
+                    .flat_map(|x| x.to_le_bytes()),
+            );
+            bytes.extend(
+                control
+                    .triangles
+                    .iter()
+                    .flatten()
+                    .flat_map(|v| v.to_le_bytes()),
+            );
         } else {
             bytes.extend([0, 0]);
         }
         let tags = self.control.tags();
         varint(&mut bytes, tags.creases.len() as u64);
         for tag in &tags.creases {
-            tag.vertices.iter().for_each(|&v| varint(&mut bytes, v.into()));
+            tag.vertices
+                .iter()
+                .for_each(|&v| varint(&mut bytes, v.into()));
             bytes.extend(tag.sharpness.to_le_bytes());
         }
         varint(&mut bytes, tags.corners.len() as u64);
@@ -85,7 +107,9 @@ impl Proof<'_> {
 
     fn add_parents(&self, bytes: &mut Vec<u8>) {
         let mut counts = vec![0u64; self.control.face_count()];
-        self.parents.iter().for_each(|&parent| counts[parent as usize] += 1);
+        self.parents
+            .iter()
+            .for_each(|&parent| counts[parent as usize] += 1);
         for run in counts.chunk_by(|a, b| a == b) {
             match run.len() {
                 1 => varint(bytes, 2 * run[0]),
@@ -102,20 +126,37 @@ impl Proof<'_> {
         let mut is_known = vec![false; self.result.positions.len()];
         for (t, (triangle, &parent)) in self.result.triangles.iter().zip(self.parents).enumerate() {
             let place = |v: u32| {
-                let origin = self.origins.get(v as usize).and_then(|origin| origin.in_face(faces, parent));
+                let origin = self
+                    .origins
+                    .get(v as usize)
+                    .and_then(|origin| origin.in_face(faces, parent));
                 let origin = origin.ok_or(ProofError::SeveralFaces(t))?;
                 let weights = [1, 2].map(|i| origin.barycentric[i] * WHOLE);
                 let is_whole = weights.iter().all(|weight| weight.fract() == 0.0);
-                if is_whole { Ok(weights.map(|weight| weight as i64)) } else { Err(ProofError::TooDeep(t)) }
+                if is_whole {
+                    Ok(weights.map(|weight| weight as i64))
+                } else {
+                    Err(ProofError::TooDeep(t))
+                }
             };
-            let places = [place(triangle[0])?, place(triangle[1])?, place(triangle[2])?];
+            let places = [
+                place(triangle[0])?,
+                place(triangle[1])?,
+                place(triangle[2])?,
+            ];
             for corner in 0..3 {
                 let [v, a, b] = [0, 1, 2].map(|i| triangle[(corner + i) % 3] as usize);
                 if core::mem::replace(&mut is_known[v], true) {
                     continue;
                 }
                 let beside = (is_known[a] && is_known[b])
-                    .then(|| beside(places[corner], places[(corner + 1) % 3], places[(corner + 2) % 3]))
+                    .then(|| {
+                        beside(
+                            places[corner],
+                            places[(corner + 1) % 3],
+                            places[(corner + 2) % 3],
+                        )
+                    })
                     .flatten();
                 match beside.or_else(|| in_sixteenths(places[corner])) {
                     Some(code) => bytes.push(code),
@@ -146,7 +187,9 @@ fn in_sixteenths(place: [i64; 2]) -> Option<u8> {
 fn in_full(bytes: &mut Vec<u8>, place: [i64; 2]) {
     let spare = (place[0] | place[1]).trailing_zeros().min(30);
     bytes.extend([IN_FULL, 30 - spare as u8]);
-    place.iter().for_each(|weight| varint(bytes, (weight >> spare) as u64));
+    place
+        .iter()
+        .for_each(|weight| varint(bytes, (weight >> spare) as u64));
 }
 
 fn varint(bytes: &mut Vec<u8>, mut value: u64) {
@@ -160,9 +203,20 @@ fn varint(bytes: &mut Vec<u8>, mut value: u64) {
 /// How proofs know meshes.
 fn digest(mesh: Triangles<'_>) -> String {
     let mut hash = Sha256::new();
-    [mesh.positions.len(), mesh.triangles.len()].iter().for_each(|&n| hash.update((n as u32).to_le_bytes()));
+    [mesh.positions.len(), mesh.triangles.len()]
+        .iter()
+        .for_each(|&n| hash.update((n as u32).to_le_bytes()));
     // Zero is written without its sign.
-    mesh.positions.iter().flatten().for_each(|x| hash.update((x + 0.0).to_le_bytes()));
-    mesh.triangles.iter().flatten().for_each(|v| hash.update(v.to_le_bytes()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    mesh.positions
+        .iter()
+        .flatten()
+        .for_each(|x| hash.update((x + 0.0).to_le_bytes()));
+    mesh.triangles
+        .iter()
+        .flatten()
+        .for_each(|v| hash.update(v.to_le_bytes()));
+    hash.finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }

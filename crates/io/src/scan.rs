@@ -27,13 +27,27 @@ pub(crate) struct Scanner<'a> {
 impl<'a> Scanner<'a> {
     /// At the beginning of `bytes`, after a byte order mark of UTF-8 if there is one.
     pub(crate) fn new(bytes: &'a [u8], syntax: Syntax) -> Self {
-        let at = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
-        Self { bytes, at, line: 1, syntax }
+        let at = if bytes.starts_with(BYTE_ORDER_MARK) {
+            BYTE_ORDER_MARK.len()
+        } else {
+            0
+        };
+        Self {
+            bytes,
+            at,
+            line: 1,
+            syntax,
+        }
     }
 
     /// At byte `at`, which stands in line `line`.
     pub(crate) fn starting_at(bytes: &'a [u8], at: usize, line: usize) -> Self {
-        Self { bytes, at, line, syntax: Syntax::default() }
+        Self {
+            bytes,
+            at,
+            line,
+            syntax: Syntax::default(),
+        }
     }
 
     /// The line the scanner stands in, counted from 1.
@@ -170,7 +184,11 @@ impl<'a> Scanner<'a> {
     /// The next three words of this line as a point.
     #[inline]
     pub(crate) fn point(&mut self) -> Result<[f64; 3], Flaw> {
-        Ok([self.finite_number("x")?, self.finite_number("y")?, self.finite_number("z")?])
+        Ok([
+            self.finite_number("x")?,
+            self.finite_number("y")?,
+            self.finite_number("z")?,
+        ])
     }
 }
 

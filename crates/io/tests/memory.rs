@@ -2,7 +2,11 @@
 //!
 //! All in one test, because the highest mark is one for the whole program.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
 
 use limitmesh_io::{Format, read, read_bytes};
 use peak_alloc::PeakAlloc;
@@ -35,9 +39,18 @@ fn promises_take_no_room() {
     let list = "property list uint uint vertex_indices\n";
     let most = u32::MAX;
     let mut files = vec![
-        (Format::Off, format!("OFF\n{most} {most} {most}\n0 0 0\n").into_bytes()),
-        (Format::Off, format!("OFF\n1 {most} 0\n0 0 0\n{most} 0 0\n").into_bytes()),
-        (Format::Obj, format!("v 0 0 0\nt crease {most}/{most}/{most} 0 0\n").into_bytes()),
+        (
+            Format::Off,
+            format!("OFF\n{most} {most} {most}\n0 0 0\n").into_bytes(),
+        ),
+        (
+            Format::Off,
+            format!("OFF\n1 {most} 0\n0 0 0\n{most} 0 0\n").into_bytes(),
+        ),
+        (
+            Format::Obj,
+            format!("v 0 0 0\nt crease {most}/{most}/{most} 0 0\n").into_bytes(),
+        ),
     ];
     for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
         for (vertices, faces, other) in [(most, 0, 0), (0, most, 0), (0, 0, most), (1, 1, 0)] {
@@ -46,7 +59,11 @@ fn promises_take_no_room() {
                  element face {faces}\n{list}end_header\n"
             );
             // Twelve bytes for a vertex, or as text three numbers; then the length of a list.
-            for body in [&b"0 0 0\n4294967295 0 0\n"[..], &[0xff; 40], b"0 0 0 0 0 0 ~~~~"] {
+            for body in [
+                &b"0 0 0\n4294967295 0 0\n"[..],
+                &[0xff; 40],
+                b"0 0 0 0 0 0 ~~~~",
+            ] {
                 files.push((Format::Ply, [header.as_bytes(), body].concat()));
             }
         }
@@ -57,7 +74,11 @@ fn promises_take_no_room() {
     for (format, bytes) in files {
         let peak = peak_of(|| read_bytes(&bytes, format));
         let text = String::from_utf8_lossy(&bytes);
-        assert!(peak < 16 * 1024, "{peak} bytes to read {} bytes of {format}:\n{text}", bytes.len());
+        assert!(
+            peak < 16 * 1024,
+            "{peak} bytes to read {} bytes of {format}:\n{text}",
+            bytes.len()
+        );
     }
 }
 
@@ -97,13 +118,17 @@ fn zeros_take_no_room() {
         ),
         format!(
             r#""meshes":[{mesh}],"nodes":[{}]"#,
-            many(r#"{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}"#)
+            many(
+                r#"{"mesh":0,"extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0}}}}"#
+            )
         ),
     ];
     for members in documents {
         let text = format!(r#"{{"asset":{{"version":"2.0"}},"accessors":{zeros},{members}}}"#);
         let peak = peak_of(|| {
-            let said = read_bytes(text.as_bytes(), Format::Gltf).unwrap_err().to_string();
+            let said = read_bytes(text.as_bytes(), Format::Gltf)
+                .unwrap_err()
+                .to_string();
             assert!(said.contains("without a buffer view"), "{said}");
         });
         assert!(peak < 16 << 20, "{peak} bytes to refuse {}", text.len());
@@ -113,15 +138,18 @@ fn zeros_take_no_room() {
 /// Reading takes what the soup takes, and next to nothing beyond.
 fn room_is_exact() {
     const SIDE: usize = 200;
-    let positions: Vec<[f64; 3]> =
-        (0..SIDE * SIDE).map(|i| [(i % SIDE) as f64, (i / SIDE) as f64, 0.5]).collect();
+    let positions: Vec<[f64; 3]> = (0..SIDE * SIDE)
+        .map(|i| [(i % SIDE) as f64, (i / SIDE) as f64, 0.5])
+        .collect();
     let triangles: Vec<[u32; 3]> = (0..(SIDE - 1) * SIDE)
         .filter(|i| i % SIDE != SIDE - 1)
         .flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]])
         .map(|triangle| triangle.map(|v| v as u32))
         .collect();
-    let output =
-        limitmesh_io::Output::new(limitmesh::Triangles { positions: &positions, triangles: &triangles });
+    let output = limitmesh_io::Output::new(limitmesh::Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    });
     // A glTF document, and the text of a 3MF package, is kept while its meshes are read.
     let is_kept = |format: Format| format.is_gltf() || format == Format::ThreeMf;
     for &format in Format::ALL.iter().filter(|format| !is_kept(**format)) {
@@ -129,12 +157,22 @@ fn room_is_exact() {
             let mut bytes = Vec::new();
             let options = limitmesh_io::WriteOptions::default().ascii(ascii);
             limitmesh_io::write_to(&mut bytes, format, &output, &options).unwrap();
-            let vertices = if format == Format::Stl { 3 * triangles.len() } else { positions.len() };
+            let vertices = if format == Format::Stl {
+                3 * triangles.len()
+            } else {
+                positions.len()
+            };
             // 24 bytes a position, 12 for the corners of a triangle, 4 for its start.
             let needed = 24 * vertices + 16 * triangles.len();
             let peak = peak_of(|| read_bytes(&bytes, format).unwrap());
-            assert!(peak >= needed, "the highest mark cannot be under what is held");
-            assert!(peak < needed + 4096, "{format}: {peak} bytes where {needed} are needed");
+            assert!(
+                peak >= needed,
+                "the highest mark cannot be under what is held"
+            );
+            assert!(
+                peak < needed + 4096,
+                "{format}: {peak} bytes where {needed} are needed"
+            );
         }
     }
 }

@@ -15,7 +15,13 @@ fn bunny_field(p: DVec3) -> f64 {
     let body = ellipsoid(p, at(0.0, -0.38, -0.15), at(0.36, 0.4, 0.44));
     let chest = ball(p, at(0.0, -0.2, 0.1), 0.26);
     let haunch = ellipsoid(p, at(0.27, -0.5, -0.16), at(0.17, 0.24, 0.29));
-    let foot = rod(p, at(0.27, -0.72, -0.05), 0.08, at(0.25, -0.73, 0.24), 0.075);
+    let foot = rod(
+        p,
+        at(0.27, -0.72, -0.05),
+        0.08,
+        at(0.25, -0.73, 0.24),
+        0.075,
+    );
     let arm = rod(p, at(0.13, -0.3, 0.25), 0.09, at(0.11, -0.71, 0.37), 0.075);
     let tail = ball(p, at(0.0, -0.55, -0.6), 0.13);
     let skull = ellipsoid(p, at(0.0, 0.18, 0.2), at(0.235, 0.225, 0.26));
@@ -47,7 +53,11 @@ fn ear(p: DVec3) -> f64 {
         ],
         0.05,
     );
-    let hollow = limb(p, &[(at(0.14, 0.5, 0.16), 0.04), (at(0.19, 0.8, 0.09), 0.045)], 0.05);
+    let hollow = limb(
+        p,
+        &[(at(0.14, 0.5, 0.16), 0.04), (at(0.19, 0.8, 0.09), 0.045)],
+        0.05,
+    );
     difference(leaf, hollow, 0.04)
 }
 
@@ -67,10 +77,18 @@ fn teddy_field(p: DVec3) -> f64 {
     let ear_hollow = ball(p, at(0.33, 0.77, 0.13), 0.1);
     let arm = limb(
         p,
-        &[(at(0.34, -0.02, 0.03), 0.14), (at(0.56, -0.2, 0.2), 0.135), (at(0.66, -0.28, 0.36), 0.14)],
+        &[
+            (at(0.34, -0.02, 0.03), 0.14),
+            (at(0.56, -0.2, 0.2), 0.135),
+            (at(0.66, -0.28, 0.36), 0.14),
+        ],
         0.06,
     );
-    let leg = limb(p, &[(at(0.24, -0.6, 0.1), 0.18), (at(0.4, -0.64, 0.52), 0.165)], 0.06);
+    let leg = limb(
+        p,
+        &[(at(0.24, -0.6, 0.1), 0.18), (at(0.4, -0.64, 0.52), 0.165)],
+        0.06,
+    );
     let paw = ellipsoid(p, at(0.42, -0.58, 0.66), at(0.17, 0.22, 0.11));
     let socket = ball(p, at(0.15, 0.52, 0.44), 0.075);
     let mut head = union(skull, muzzle, 0.06);
@@ -96,17 +114,52 @@ fn shark_field(p: DVec3) -> f64 {
     let mouth = ellipsoid(p, at(0.0, -0.17, 0.72), at(0.13, 0.07, 0.1));
     // Fins are flat blades: those in the middle by (z, y), the paired ones by (x, z) on a slope.
     let upright = [p.z, p.y, p.x];
-    let dorsal = blade(upright, &[[0.32, 0.1], [-0.2, 0.62], [-0.24, 0.56], [-0.12, 0.1]], 0.05, 0.05);
-    let second = blade(upright, &[[-0.4, 0.02], [-0.66, 0.27], [-0.62, 0.02]], 0.04, 0.04);
-    let upper_tail = blade(upright, &[[-0.7, 0.0], [-1.16, 0.66], [-1.2, 0.6], [-0.95, -0.02]], 0.045, 0.05);
-    let lower_tail =
-        blade(upright, &[[-0.76, 0.12], [-0.93, 0.08], [-1.1, -0.34], [-1.06, -0.38]], 0.045, 0.05);
+    let dorsal = blade(
+        upright,
+        &[[0.32, 0.1], [-0.2, 0.62], [-0.24, 0.56], [-0.12, 0.1]],
+        0.05,
+        0.05,
+    );
+    let second = blade(
+        upright,
+        &[[-0.4, 0.02], [-0.66, 0.27], [-0.62, 0.02]],
+        0.04,
+        0.04,
+    );
+    let upper_tail = blade(
+        upright,
+        &[[-0.7, 0.0], [-1.16, 0.66], [-1.2, 0.6], [-0.95, -0.02]],
+        0.045,
+        0.05,
+    );
+    let lower_tail = blade(
+        upright,
+        &[[-0.76, 0.12], [-0.93, 0.08], [-1.1, -0.34], [-1.06, -0.38]],
+        0.045,
+        0.05,
+    );
     let slope = [p.x, p.z, p.y + 0.08 + 0.3 * p.x];
-    let pectoral = blade(slope, &[[0.05, 0.12], [0.72, -0.17], [0.74, -0.1], [0.05, 0.47]], 0.045, 0.05);
-    let pelvic = blade(slope, &[[0.0, -0.45], [0.32, -0.58], [0.0, -0.22]], 0.04, 0.04);
+    let pectoral = blade(
+        slope,
+        &[[0.05, 0.12], [0.72, -0.17], [0.74, -0.1], [0.05, 0.47]],
+        0.045,
+        0.05,
+    );
+    let pelvic = blade(
+        slope,
+        &[[0.0, -0.45], [0.32, -0.58], [0.0, -0.22]],
+        0.04,
+        0.04,
+    );
     let mut body = union(union(trunk, snout, 0.15), stem, 0.16);
     body = difference(body, mouth, 0.04);
-    [dorsal, second, union(upper_tail, lower_tail, 0.04), pectoral, pelvic]
-        .iter()
-        .fold(body, |body, &fin| union(body, fin, 0.06))
+    [
+        dorsal,
+        second,
+        union(upper_tail, lower_tail, 0.04),
+        pectoral,
+        pelvic,
+    ]
+    .iter()
+    .fold(body, |body, &fin| union(body, fin, 0.06))
 }

@@ -42,7 +42,8 @@ pub(super) fn cup() -> Surface {
     for [radius, height] in PROFILE {
         for sector in 0..SECTORS {
             let (sin, cos) = (TAU * f64::from(sector) / f64::from(SECTORS)).sin_cos();
-            cup.positions.push(DVec3::new(radius * cos, height, -radius * sin));
+            cup.positions
+                .push(DVec3::new(radius * cos, height, -radius * sin));
         }
     }
     let rings = PROFILE.len() as u32;
@@ -72,7 +73,11 @@ fn close_with_pole(cup: &mut Surface, ring: u32, height: f64) {
     cup.positions.push(DVec3::new(0.0, height, 0.0));
     cup.triangles.extend((0..SECTORS).map(|sector| {
         let [a, b] = [sector, sector + 1].map(|s| vertex(ring, s));
-        if ring == 0 { [pole, b, a] } else { [a, b, pole] }
+        if ring == 0 {
+            [pole, b, a]
+        } else {
+            [a, b, pole]
+        }
     }));
 }
 
@@ -81,8 +86,15 @@ fn add_handle(cup: &mut Surface) {
     // The six vertices of a hole, clockwise seen from outside, starting on the handle's outer side: for the upper
     // hole that is the upper edge, for the lower hole the lower edge.
     let hole = |outer: u32, inner: u32| {
-        [(outer, SECTORS - 1), (outer, 0), (outer, 1), (inner, 1), (inner, 0), (inner, SECTORS - 1)]
-            .map(|(ring, sector)| vertex(ring, sector))
+        [
+            (outer, SECTORS - 1),
+            (outer, 0),
+            (outer, 1),
+            (inner, 1),
+            (inner, 0),
+            (inner, SECTORS - 1),
+        ]
+        .map(|(ring, sector)| vertex(ring, sector))
     };
     let upper = hole(HANDLE_STRIPS[0] + 1, HANDLE_STRIPS[0]);
     let lower = hole(HANDLE_STRIPS[1], HANDLE_STRIPS[1] + 1);
@@ -92,12 +104,16 @@ fn add_handle(cup: &mut Surface) {
             lower
         } else {
             let first = cup.positions.len() as u32;
-            cup.positions.extend(handle_section(section as f64 / SECTIONS as f64));
+            cup.positions
+                .extend(handle_section(section as f64 / SECTIONS as f64));
             core::array::from_fn(|i| first + i as u32)
         };
         for i in 0..6 {
             let j = (i + 1) % 6;
-            cup.triangles.extend([[before[j], before[i], after[i]], [before[j], after[i], after[j]]]);
+            cup.triangles.extend([
+                [before[j], before[i], after[i]],
+                [before[j], after[i], after[j]],
+            ]);
         }
         before = after;
     }
@@ -111,7 +127,8 @@ fn handle_section(part: f64) -> [DVec3; 6] {
     // Wide where it meets the wall, slender half-way.
     let width = 0.08 + 0.08 * cos * cos;
     let thickness = 0.06;
-    let corner = |side: f64, out: f64| centre + DVec3::Z * (width * side) + outwards * (thickness * out);
+    let corner =
+        |side: f64, out: f64| centre + DVec3::Z * (width * side) + outwards * (thickness * out);
     // Sector SECTORS − 1 lies towards +z, sector 1 towards −z.
     [
         corner(1.0, 0.7),

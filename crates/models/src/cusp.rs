@@ -29,7 +29,11 @@ fn cusp_field(p: DVec3, horn: &[(DVec3, f64)]) -> f64 {
 fn horn() -> [(DVec3, f64); JOINTS] {
     core::array::from_fn(|i| {
         let part = i as f64 / (JOINTS - 1) as f64;
-        let joint = at(0.1 + 0.95 * part - 0.13 * part * part, 0.0, 0.62 * part * part - 0.02);
+        let joint = at(
+            0.1 + 0.95 * part - 0.13 * part * part,
+            0.0,
+            0.62 * part * part - 0.02,
+        );
         (joint, 0.02 + 0.24 * (1.0 - part) * (1.0 - 0.25 * part))
     })
 }

@@ -28,7 +28,10 @@ pub(super) fn ellipsoid() -> Surface {
             DVec3::new(radius * cosine, height, radius * sine)
         })
         .collect();
-    let mut surface = Surface { positions, triangles: Vec::new() };
+    let mut surface = Surface {
+        positions,
+        triangles: Vec::new(),
+    };
     surface.triangles = hull(&surface.positions);
     surface.positions.iter_mut().for_each(|p| *p *= AXES);
     surface
@@ -45,7 +48,11 @@ fn hull(points: &[DVec3]) -> Vec<[u32; 3]> {
                 let outwards = normal * normal.dot(p).signum();
                 if points.iter().all(|s| (*s - p).dot(outwards) < IN_PLANE) {
                     let [a, b, c] = [a, b, c].map(|v| v as u32);
-                    triangles.push(if normal.dot(p) > 0.0 { [a, b, c] } else { [a, c, b] });
+                    triangles.push(if normal.dot(p) > 0.0 {
+                        [a, b, c]
+                    } else {
+                        [a, c, b]
+                    });
                 }
             }
         }

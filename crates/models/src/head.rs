@@ -73,7 +73,12 @@ const TRIANGLES: &str = "\
 /// The head, looking to the front.
 pub(super) fn head() -> Surface {
     let positions = POINTS.iter().map(|&(_, p)| DVec3::from_array(p)).collect();
-    let index = |letter: char| POINTS.iter().position(|&(name, _)| name == letter).map_or(0, |v| v as u32);
+    let index = |letter: char| {
+        POINTS
+            .iter()
+            .position(|&(name, _)| name == letter)
+            .map_or(0, |v| v as u32)
+    };
     let triangles = TRIANGLES
         .split_whitespace()
         .map(|name| {
@@ -81,5 +86,11 @@ pub(super) fn head() -> Surface {
             core::array::from_fn(|_| corners.next().unwrap_or(0))
         })
         .collect();
-    mirrored_with_limit_through(&Surface { positions, triangles }, 6)
+    mirrored_with_limit_through(
+        &Surface {
+            positions,
+            triangles,
+        },
+        6,
+    )
 }

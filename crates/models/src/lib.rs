@@ -112,8 +112,16 @@ static MODELS: [Model; 17] = [
         about: "pointed hat of 320 triangles, tip of valence 64, open rim",
         generate: || parametric::spike().into_soup(),
     },
-    Model { name: "tetrahedron", about: "4 triangles, every valence 3", generate: polyhedra::tetrahedron },
-    Model { name: "cube", about: "6 squares, to be triangulated", generate: polyhedra::cube },
+    Model {
+        name: "tetrahedron",
+        about: "4 triangles, every valence 3",
+        generate: polyhedra::tetrahedron,
+    },
+    Model {
+        name: "cube",
+        about: "6 squares, to be triangulated",
+        generate: polyhedra::cube,
+    },
 ];
 
 /// All built-in models.

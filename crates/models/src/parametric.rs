@@ -13,7 +13,10 @@ fn grid(cells: [u32; 2], closed: [bool; 2], position: impl Fn(f64, f64) -> DVec3
     let mut surface = Surface::default();
     for j in 0..nv {
         for i in 0..nu {
-            let (u, v) = (f64::from(i) / f64::from(cells[0]), f64::from(j) / f64::from(cells[1]));
+            let (u, v) = (
+                f64::from(i) / f64::from(cells[0]),
+                f64::from(j) / f64::from(cells[1]),
+            );
             surface.positions.push(position(u, v));
         }
     }
@@ -38,7 +41,9 @@ pub(super) fn sphere() -> Surface {
         let (radius, depth) = (TAU / 2.0 * f64::from(stack) / f64::from(STACKS)).sin_cos();
         for slice in 0..SLICES {
             let (x, z) = (TAU * f64::from(slice) / f64::from(SLICES)).sin_cos();
-            surface.positions.push(DVec3::new(radius * x, -depth, radius * z));
+            surface
+                .positions
+                .push(DVec3::new(radius * x, -depth, radius * z));
         }
     }
     surface.positions.push(DVec3::Y);
@@ -52,7 +57,9 @@ pub(super) fn sphere() -> Surface {
             let [d, c] = [i, next].map(|i| ring(stack + 1, i));
             surface.triangles.extend([[a, b, c], [a, c, d]]);
         }
-        surface.triangles.push([ring(STACKS - 1, i), ring(STACKS - 1, next), north]);
+        surface
+            .triangles
+            .push([ring(STACKS - 1, i), ring(STACKS - 1, next), north]);
     }
     surface
 }
@@ -72,7 +79,8 @@ pub(super) fn sheet() -> Surface {
     grid([12, 12], [false, false], |u, v| {
         let (x, z) = (2.0 * u - 1.0, 1.0 - 2.0 * v);
         // Two waves that cross, one of them growing to the right.
-        let height = 0.16 * (TAU * (0.9 * x + 0.2 * z)).sin() + 0.12 * (1.0 + x) * (TAU * 0.7 * z).cos();
+        let height =
+            0.16 * (TAU * (0.9 * x + 0.2 * z)).sin() + 0.12 * (1.0 + x) * (TAU * 0.7 * z).cos();
         DVec3::new(x, height - 0.1, z)
     })
 }
@@ -90,6 +98,8 @@ pub(super) fn spike() -> Surface {
     let tip = surface.positions.len() as u32;
     surface.positions.push(DVec3::new(0.0, 1.0, 0.0));
     let last = tip - SLICES;
-    surface.triangles.extend((0..SLICES).map(|i| [last + i, last + (i + 1) % SLICES, tip]));
+    surface
+        .triangles
+        .extend((0..SLICES).map(|i| [last + i, last + (i + 1) % SLICES, tip]));
     surface
 }

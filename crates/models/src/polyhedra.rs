@@ -10,13 +10,19 @@ pub(super) fn tetrahedron() -> PolygonSoup {
     let s = 1.0 / 3.0_f64.sqrt();
     let positions = vec![[s, s, s], [-s, -s, s], [-s, s, -s], [s, -s, -s]];
     let faces: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-    PolygonSoup { positions, faces: faces.iter().map(|f| &f[..]).collect(), ..PolygonSoup::default() }
+    PolygonSoup {
+        positions,
+        faces: faces.iter().map(|f| &f[..]).collect(),
+        ..PolygonSoup::default()
+    }
 }
 
 /// The cube from −1/2 to 1/2, 6 squares.
 pub(super) fn cube() -> PolygonSoup {
     // Bit i of the index is the side along axis i.
-    let positions = (0..8_u32).map(|v| core::array::from_fn(|axis| f64::from(v >> axis & 1) - 0.5)).collect();
+    let positions = (0..8_u32)
+        .map(|v| core::array::from_fn(|axis| f64::from(v >> axis & 1) - 0.5))
+        .collect();
     let mut faces = PolygonFaces::default();
     for axis in 0..3 {
         let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
@@ -24,7 +30,11 @@ pub(super) fn cube() -> PolygonSoup {
         let far = 1 << axis;
         faces.push(&[far, far | u, far | u | v, far | v]);
     }
-    PolygonSoup { positions, faces, ..PolygonSoup::default() }
+    PolygonSoup {
+        positions,
+        faces,
+        ..PolygonSoup::default()
+    }
 }
 
 /// The icosahedron with every triangle split in four and its vertices put on the unit sphere, `levels` times.
@@ -40,7 +50,10 @@ pub(super) fn icosphere(levels: usize) -> Surface {
             DVec3::from_array(p).normalize()
         })
         .collect();
-    let mut sphere = Surface { positions, triangles: Vec::new() };
+    let mut sphere = Surface {
+        positions,
+        triangles: Vec::new(),
+    };
     // The faces are the triples at the edge length, oriented outwards.
     let edge = 4.0 / (golden * golden + 1.0);
     let near = |a: DVec3, b: DVec3| (a.distance_squared(b) - edge).abs() < 0.1;
@@ -50,7 +63,9 @@ pub(super) fn icosphere(levels: usize) -> Surface {
                 let [p, q, r] = [a, b, c].map(|v| sphere.positions[v as usize]);
                 if near(p, q) && near(q, r) && near(r, p) {
                     let outwards = p.dot(q.cross(r)) > 0.0;
-                    sphere.triangles.push(if outwards { [a, b, c] } else { [a, c, b] });
+                    sphere
+                        .triangles
+                        .push(if outwards { [a, b, c] } else { [a, c, b] });
                 }
             }
         }

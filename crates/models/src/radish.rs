@@ -15,11 +15,22 @@ fn radish_field(p: DVec3) -> f64 {
     let bulb = ellipsoid(p, at(0.0, -0.3, 0.0), at(0.42, 0.38, 0.42));
     let root = limb(
         p,
-        &[(at(0.0, -0.5, 0.0), 0.2), (at(0.0, -0.72, 0.0), 0.075), (at(0.0, -1.0, 0.06), 0.022)],
+        &[
+            (at(0.0, -0.5, 0.0), 0.2),
+            (at(0.0, -0.72, 0.0), 0.075),
+            (at(0.0, -1.0, 0.06), 0.022),
+        ],
         0.08,
     );
-    let stalk =
-        limb(p, &[(at(0.0, 0.02, 0.0), 0.08), (at(0.1, 0.22, 0.0), 0.05), (at(0.2, 0.4, 0.0), 0.045)], 0.05);
+    let stalk = limb(
+        p,
+        &[
+            (at(0.0, 0.02, 0.0), 0.08),
+            (at(0.1, 0.22, 0.0), 0.05),
+            (at(0.2, 0.4, 0.0), 0.045),
+        ],
+        0.05,
+    );
     // The blade is a chain of balls pressed flat across its own, gently bowed, surface.
     let bow = p.z - 0.5 * (p.x - 0.3) * (p.x - 0.3);
     let flat = DVec3::new(p.x, p.y, 2.6 * bow);
@@ -34,5 +45,9 @@ fn radish_field(p: DVec3) -> f64 {
         0.08,
     );
     let body = union(bulb, root, 0.12);
-    union(union(body, stalk, 0.08), union(stalk, 0.5 * blade, 0.05), 0.02)
+    union(
+        union(body, stalk, 0.08),
+        union(stalk, 0.5 * blade, 0.05),
+        0.02,
+    )
 }

@@ -20,8 +20,20 @@ struct Station {
     ground: f64,
 }
 
-const fn station(sole: [f64; 2], collar: [f64; 2], insole: [f64; 2], vamp: f64, ground: f64) -> Station {
-    Station { sole, collar, insole, vamp, ground }
+const fn station(
+    sole: [f64; 2],
+    collar: [f64; 2],
+    insole: [f64; 2],
+    vamp: f64,
+    ground: f64,
+) -> Station {
+    Station {
+        sole,
+        collar,
+        insole,
+        vamp,
+        ground,
+    }
 }
 
 const OUTLINES: [Station; STATIONS] = [
@@ -103,7 +115,8 @@ fn loft(rings: &[[DVec3; STATIONS]]) -> Surface {
     let mut shoe = Surface::default();
     for ring in rings {
         shoe.positions.extend(ring);
-        shoe.positions.extend(ring[1..STATIONS - 1].iter().rev().map(|p| p.with_x(-p.x)));
+        shoe.positions
+            .extend(ring[1..STATIONS - 1].iter().rev().map(|p| p.with_x(-p.x)));
     }
     let vertex = |ring: usize, k: u32| ring as u32 * AROUND + k % AROUND;
     for strip in 0..rings.len() - 1 {

@@ -24,7 +24,13 @@ const fn promise(
     genus: i64,
     least_angle: f64,
 ) -> Promise {
-    Promise { name, triangles, loops, genus, least_angle }
+    Promise {
+        name,
+        triangles,
+        loops,
+        genus,
+        least_angle,
+    }
 }
 
 /// All models in their order, but for the cube of squares.
@@ -50,15 +56,28 @@ const PROMISES: [Promise; 16] = [
 /// The mesh of a model; each is generated once for all tests.
 fn mesh(name: &str) -> &'static Mesh {
     static MESHES: OnceLock<Vec<(&str, Mesh)>> = OnceLock::new();
-    let meshes = MESHES.get_or_init(|| all().iter().map(|model| (model.name, built(model.name))).collect());
-    &meshes.iter().find(|(known, _)| *known == name).unwrap_or_else(|| panic!("no model {name}")).1
+    let meshes = MESHES.get_or_init(|| {
+        all()
+            .iter()
+            .map(|model| (model.name, built(model.name)))
+            .collect()
+    });
+    &meshes
+        .iter()
+        .find(|(known, _)| *known == name)
+        .unwrap_or_else(|| panic!("no model {name}"))
+        .1
 }
 
 fn built(name: &str) -> Mesh {
-    let soup = find(name).unwrap_or_else(|| panic!("no model {name}")).soup();
+    let soup = find(name)
+        .unwrap_or_else(|| panic!("no model {name}"))
+        .soup();
     // Strict: nothing about a model may need repair, but for the cube's squares.
     let options = BuildOptions::default().strict(name != "cube");
-    Mesh::from_soup(&soup, &options).unwrap_or_else(|error| panic!("{name}: {error}")).0
+    Mesh::from_soup(&soup, &options)
+        .unwrap_or_else(|error| panic!("{name}: {error}"))
+        .0
 }
 
 fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -76,7 +95,10 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// Boundary loops, counted by walking each boundary edge once.
 fn boundary_loops(mesh: &Mesh) -> usize {
     let topology = mesh.topology();
-    let mut left: Vec<_> = topology.half_edges().filter(|&h| topology.twin(h).is_none()).collect();
+    let mut left: Vec<_> = topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_none())
+        .collect();
     let mut loops = 0;
     while let Some(start) = left.pop() {
         loops += 1;
@@ -113,12 +135,21 @@ fn volume(mesh: &Mesh) -> f64 {
         sixfold += dot(a, cross(b, c));
     }
     let position = |v: limitmesh::VertexId| mesh.positions()[v.index()];
-    let rim: Vec<_> = topology.half_edges().filter(|&h| topology.twin(h).is_none()).collect();
+    let rim: Vec<_> = topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_none())
+        .collect();
     let centre: [f64; 3] = core::array::from_fn(|i| {
-        rim.iter().map(|&h| position(topology.origin(h))[i]).sum::<f64>() / rim.len().max(1) as f64
+        rim.iter()
+            .map(|&h| position(topology.origin(h))[i])
+            .sum::<f64>()
+            / rim.len().max(1) as f64
     });
     for &h in &rim {
-        sixfold += dot(centre, cross(position(topology.target(h)), position(topology.origin(h))));
+        sixfold += dot(
+            centre,
+            cross(position(topology.target(h)), position(topology.origin(h))),
+        );
     }
     sixfold / 6.0
 }
@@ -126,7 +157,11 @@ fn volume(mesh: &Mesh) -> f64 {
 #[test]
 fn every_model_is_promised_and_documented() {
     let names: Vec<_> = all().iter().map(|model| model.name).collect();
-    let promised: Vec<_> = PROMISES.iter().map(|promise| promise.name).chain(["cube"]).collect();
+    let promised: Vec<_> = PROMISES
+        .iter()
+        .map(|promise| promise.name)
+        .chain(["cube"])
+        .collect();
     assert_eq!(names, promised);
     for model in all() {
         assert!(!model.about.is_empty());
@@ -139,11 +174,17 @@ fn every_model_is_promised_and_documented() {
 fn counts_genus_and_boundaries_are_as_promised() {
     for promise in PROMISES {
         let mesh = mesh(promise.name);
-        mesh.validate().unwrap_or_else(|error| panic!("{}: {error}", promise.name));
+        mesh.validate()
+            .unwrap_or_else(|error| panic!("{}: {error}", promise.name));
         assert_eq!(mesh.face_count(), promise.triangles, "{}", promise.name);
         assert_eq!(boundary_loops(mesh), promise.loops, "{}", promise.name);
         let euler = 2 - 2 * promise.genus - promise.loops as i64;
-        assert_eq!(mesh.topology().euler_characteristic(), euler, "{}", promise.name);
+        assert_eq!(
+            mesh.topology().euler_characteristic(),
+            euler,
+            "{}",
+            promise.name
+        );
     }
 }
 
@@ -152,7 +193,11 @@ fn triangles_are_well_shaped_and_look_outwards() {
     for promise in PROMISES {
         let mesh = mesh(promise.name);
         let least = least_angle(mesh);
-        assert!(least > promise.least_angle, "{}: least angle {least}°", promise.name);
+        assert!(
+            least > promise.least_angle,
+            "{}: least angle {least}°",
+            promise.name
+        );
         // The sheet encloses nothing: it looks up.
         if promise.name == "sheet" {
             let up: f64 = mesh
@@ -164,7 +209,12 @@ fn triangles_are_well_shaped_and_look_outwards() {
                 .sum();
             assert!(up > 0.0);
         } else {
-            assert!(volume(mesh) > 0.02, "{}: volume {}", promise.name, volume(mesh));
+            assert!(
+                volume(mesh) > 0.02,
+                "{}: volume {}",
+                promise.name,
+                volume(mesh)
+            );
         }
     }
 }
@@ -173,7 +223,11 @@ fn triangles_are_well_shaped_and_look_outwards() {
 fn sizes_are_about_one() {
     for model in all() {
         let soup = model.soup();
-        let largest = soup.positions.as_flattened().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let largest = soup
+            .positions
+            .as_flattened()
+            .iter()
+            .fold(0.0_f64, |most, x| most.max(x.abs()));
         assert!((0.4..1.3).contains(&largest), "{}: {largest}", model.name);
     }
 }
@@ -183,7 +237,11 @@ fn repeated_generation_gives_the_same_bits() {
     for model in all() {
         let (first, second) = (model.soup(), model.soup());
         let bits = |soup: &limitmesh::PolygonSoup| -> Vec<u64> {
-            soup.positions.as_flattened().iter().map(|x| x.to_bits()).collect()
+            soup.positions
+                .as_flattened()
+                .iter()
+                .map(|x| x.to_bits())
+                .collect()
         };
         assert_eq!(bits(&first), bits(&second), "{}", model.name);
         assert_eq!(first.faces, second.faces, "{}", model.name);
@@ -194,7 +252,12 @@ fn repeated_generation_gives_the_same_bits() {
 fn sculpted_models_are_mirror_images_of_themselves() {
     for name in ["head", "bunny", "teddy", "shark", "radish", "cusp"] {
         let mesh = mesh(name);
-        let find = |p: [f64; 3]| mesh.positions().iter().position(|&q| q == p).map(|v| v as u32);
+        let find = |p: [f64; 3]| {
+            mesh.positions()
+                .iter()
+                .position(|&q| q == p)
+                .map(|v| v as u32)
+        };
         let image: Vec<u32> = mesh
             .positions()
             .iter()
@@ -210,9 +273,16 @@ fn sculpted_models_are_mirror_images_of_themselves() {
             faces.sort_unstable();
             faces
         };
-        let mirrored =
-            mesh.triangles().iter().map(|&[a, b, c]| [a, c, b].map(|v| image[v as usize])).collect();
-        assert_eq!(sorted(mirrored), sorted(mesh.triangles().to_vec()), "{name}");
+        let mirrored = mesh
+            .triangles()
+            .iter()
+            .map(|&[a, b, c]| [a, c, b].map(|v| image[v as usize]))
+            .collect();
+        assert_eq!(
+            sorted(mirrored),
+            sorted(mesh.triangles().to_vec()),
+            "{name}"
+        );
     }
 }
 
@@ -232,9 +302,15 @@ fn closed_forms_lie_where_they_should() {
     }
     let valence = |name: &str| {
         let mesh = mesh(name);
-        let valences: Vec<u32> =
-            mesh.topology().vertices().map(|v| mesh.topology().valence_and_openness(v).0).collect();
-        (valences.iter().copied().min().unwrap(), valences.iter().copied().max().unwrap())
+        let valences: Vec<u32> = mesh
+            .topology()
+            .vertices()
+            .map(|v| mesh.topology().valence_and_openness(v).0)
+            .collect();
+        (
+            valences.iter().copied().min().unwrap(),
+            valences.iter().copied().max().unwrap(),
+        )
     };
     assert_eq!(valence("sphere"), (5, 20));
     assert_eq!(valence("icosphere"), (5, 6));
@@ -255,6 +331,9 @@ fn the_cube_builds() {
         assert!((dot(normal, a) - 0.5).abs() < 1e-15 && (dot(normal, c) - 0.5).abs() < 1e-15);
     }
     let cube = mesh("cube");
-    assert_eq!((cube.face_count(), cube.topology().euler_characteristic()), (12, 2));
+    assert_eq!(
+        (cube.face_count(), cube.topology().euler_characteristic()),
+        (12, 2)
+    );
     assert!((volume(cube) - 1.0).abs() < 1e-12);
 }

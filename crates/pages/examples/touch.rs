@@ -5,10 +5,16 @@ use std::time::Instant;
 const BYTES: usize = 40 << 20;
 
 fn main() {
-    println!("milliseconds for {} MB on small pages, on large ones", BYTES >> 20);
+    println!(
+        "milliseconds for {} MB on small pages, on large ones",
+        BYTES >> 20
+    );
     for _ in 0..4 {
         let small = milliseconds(|| vec![1u8; BYTES]);
-        println!("{small:6.1} {:6.1}", milliseconds(|| limitmesh_pages::filled(1u8, BYTES)));
+        println!(
+            "{small:6.1} {:6.1}",
+            milliseconds(|| limitmesh_pages::filled(1u8, BYTES))
+        );
     }
 }
 

@@ -133,7 +133,13 @@ mod system {
             unsafe_code,
             reason = "advice on how pages of the vector are mapped, which changes nothing of what they hold"
         )]
-        let _ = unsafe { madvise(start.wrapping_add(before).cast(), whole, Advice::LinuxHugepage) };
+        let _ = unsafe {
+            madvise(
+                start.wrapping_add(before).cast(),
+                whole,
+                Advice::LinuxHugepage,
+            )
+        };
     }
 }
 

@@ -12,7 +12,11 @@ fn vectors_hold_what_they_should() {
         let zeros = defaults::<[f64; 3]>(length);
         assert!(zeros.len() == length && zeros.iter().all(|&one| one == [0.0; 3]));
         let more: Vec<u8> = defaults_with_room(length, 3 * length);
-        assert!(more.capacity() >= 3 * length && more.len() == length && more.iter().all(|&one| one == 0));
+        assert!(
+            more.capacity() >= 3 * length
+                && more.len() == length
+                && more.iter().all(|&one| one == 0)
+        );
     }
     assert_eq!(with_capacity::<()>(usize::MAX).len(), 0);
     assert_eq!(filled((), 1 << 20).len(), 1 << 20);
@@ -34,9 +38,14 @@ fn is_asked_for(address: usize) -> Option<bool> {
     let maps = std::fs::read_to_string("/proc/self/smaps").ok()?;
     let mut is_here = false;
     for line in maps.lines() {
-        let bounds = line.split_whitespace().next().and_then(|range| range.split_once('-'));
+        let bounds = line
+            .split_whitespace()
+            .next()
+            .and_then(|range| range.split_once('-'));
         let parsed = |bound: &str| usize::from_str_radix(bound, 16).ok();
-        if let Some((Some(start), Some(end))) = bounds.map(|(start, end)| (parsed(start), parsed(end))) {
+        if let Some((Some(start), Some(end))) =
+            bounds.map(|(start, end)| (parsed(start), parsed(end)))
+        {
             is_here = (start..end).contains(&address);
         }
         if is_here && let Some(flags) = line.strip_prefix("VmFlags:") {

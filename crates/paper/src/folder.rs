@@ -20,8 +20,13 @@ impl<'a> Folder<'a> {
     /// # Errors
     /// It cannot be made, or something else has that name.
     pub(super) fn new(path: PathBuf, host: &'a dyn Host) -> anyhow::Result<Self> {
-        fs::create_dir_all(&path).with_context(|| format!("the folder {} cannot be made", path.display()))?;
-        Ok(Self { path, host, files: Vec::new() })
+        fs::create_dir_all(&path)
+            .with_context(|| format!("the folder {} cannot be made", path.display()))?;
+        Ok(Self {
+            path,
+            host,
+            files: Vec::new(),
+        })
     }
 
     /// Writes a file over an earlier one of that name.

@@ -4,7 +4,10 @@ use super::figures::Picture;
 
 /// Text as HTML wants it.
 pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }
 
 /// A paragraph of plain text.
@@ -14,7 +17,10 @@ pub(super) fn paragraph(text: &str) -> String {
 
 /// A list of plain texts.
 pub(super) fn list(items: &[String]) -> String {
-    let items: String = items.iter().map(|item| format!("  <li>{}</li>\n", escape(item))).collect();
+    let items: String = items
+        .iter()
+        .map(|item| format!("  <li>{}</li>\n", escape(item)))
+        .collect();
     format!("<ul>\n{items}</ul>\n")
 }
 
@@ -26,7 +32,11 @@ pub(super) fn pictures(pictures: &[Picture], class: &str) -> String {
 
 /// One picture with its caption.
 pub(super) fn figure(picture: &Picture, class: &str) -> String {
-    let (file, alt, caption) = (&picture.file, escape(&picture.alt), escape(&picture.caption));
+    let (file, alt, caption) = (
+        &picture.file,
+        escape(&picture.alt),
+        escape(&picture.caption),
+    );
     // As wide as page.css takes a page for a phone's.
     let narrow = picture.narrow.as_ref().map_or_else(String::new, |narrow| {
         format!("<source media=\"(max-width: 52rem)\" srcset=\"{narrow}\">")
@@ -48,7 +58,11 @@ pub(super) fn table(id: &str, caption: &str, header: &str, groups: &[Vec<Vec<Str
     for group in groups {
         body.push_str("<tbody>\n");
         for (index, row) in group.iter().enumerate() {
-            body.push_str(if index > 0 { "<tr class=\"again\">" } else { "<tr>" });
+            body.push_str(if index > 0 {
+                "<tr class=\"again\">"
+            } else {
+                "<tr>"
+            });
             for (column, cell) in row.iter().enumerate() {
                 if column == 0 {
                     body.push_str(&format!("<th scope=\"row\">{cell}</th>"));
@@ -72,15 +86,25 @@ pub(super) fn table(id: &str, caption: &str, header: &str, groups: &[Vec<Vec<Str
 /// A header row of plain texts; `words` are the columns that hold text rather than numbers.
 pub(super) fn header(cells: &[&str], words: &[usize]) -> String {
     let cell = |(column, cell): (usize, &&str)| {
-        let class = if words.contains(&column) { " class=\"words\"" } else { "" };
+        let class = if words.contains(&column) {
+            " class=\"words\""
+        } else {
+            ""
+        };
         format!("<th scope=\"col\"{class}>{}</th>", escape(cell))
     };
-    format!("<tr>{}</tr>\n", cells.iter().enumerate().map(cell).collect::<String>())
+    format!(
+        "<tr>{}</tr>\n",
+        cells.iter().enumerate().map(cell).collect::<String>()
+    )
 }
 
 /// A section with its heading.
 pub(super) fn section(id: &str, title: &str, content: &str) -> String {
-    format!("<section id=\"{id}\">\n<h2>{}</h2>\n{content}</section>\n", escape(title))
+    format!(
+        "<section id=\"{id}\">\n<h2>{}</h2>\n{content}</section>\n",
+        escape(title)
+    )
 }
 
 /// What agrees with the paper, what does not, and why.
@@ -93,8 +117,17 @@ pub(super) struct Findings {
 /// Findings as a list of definitions.
 pub(super) fn findings(findings: &Findings) -> String {
     let entry = |term: &str, text: &str| format!("  <dt>{term}</dt><dd>{}</dd>\n", escape(text));
-    let Findings { agrees, differs, why } = findings;
-    let entries = [entry("Agrees", agrees), entry("Differs", differs), entry("Why", why)].concat();
+    let Findings {
+        agrees,
+        differs,
+        why,
+    } = findings;
+    let entries = [
+        entry("Agrees", agrees),
+        entry("Differs", differs),
+        entry("Why", why),
+    ]
+    .concat();
     format!("<dl class=\"findings\">\n{entries}</dl>\n")
 }
 

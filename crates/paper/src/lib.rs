@@ -100,7 +100,11 @@ pub fn reproduce(request: &Request, host: &dyn Host) -> anyhow::Result<Written> 
     for (index, player) in company.table_1.iter().enumerate() {
         let stage = |what: &str| {
             let count = company.table_1.len();
-            host.stage(&format!("Table 1: {} ({} of {count}), {what}", player.name, index + 1));
+            host.stage(&format!(
+                "Table 1: {} ({} of {count}), {what}",
+                player.name,
+                index + 1
+            ));
         };
         table_1.push(study::study(player, &settings, &stage)?);
     }
@@ -113,7 +117,10 @@ pub fn reproduce(request: &Request, host: &dyn Host) -> anyhow::Result<Written> 
     };
     let figure_5 = figures::closure::closure(&all, &mut folder)?;
     host.stage("Figure 7");
-    let figure_7 = company.heads.iter().map(|head| figures::head::head(head, &renderer, &mut folder));
+    let figure_7 = company
+        .heads
+        .iter()
+        .map(|head| figures::head::head(head, &renderer, &mut folder));
     let figure_7 = figure_7.collect::<Result<Vec<_>, _>>()?;
     host.stage("Figure 8");
     let figure_8 = figures::shoe::shoe(&company.shoe, &renderer, &mut folder)?;
@@ -133,7 +140,10 @@ pub fn reproduce(request: &Request, host: &dyn Host) -> anyhow::Result<Written> 
         seconds: start.elapsed().as_secs_f64(),
     };
     write(&results, &portraits, &mut folder)?;
-    Ok(Written { files: folder.count(), page: folder.path_of("index.html") })
+    Ok(Written {
+        files: folder.count(),
+        page: folder.path_of("index.html"),
+    })
 }
 
 /// All models that take part.
@@ -148,10 +158,17 @@ struct Company {
 impl Company {
     fn gather(casting: &Casting<'_>) -> anyhow::Result<Self> {
         let head = casting.play(&HEAD)?;
-        let mut heads = if head.origin.file { vec![head, casting.builtin(&HEAD)?] } else { vec![head] };
+        let mut heads = if head.origin.file {
+            vec![head, casting.builtin(&HEAD)?]
+        } else {
+            vec![head]
+        };
         heads.push(casting.builtin(&ELLIPSOID)?);
         Ok(Self {
-            table_1: TABLE_1.iter().map(|part| casting.play(part)).collect::<Result<_, _>>()?,
+            table_1: TABLE_1
+                .iter()
+                .map(|part| casting.play(part))
+                .collect::<Result<_, _>>()?,
             heads,
             shoe: casting.play(&SHOE)?,
             sphere: casting.play(&SPHERE)?,
@@ -160,10 +177,20 @@ impl Company {
 
     /// The models of Figure 9.
     fn shown(&self) -> Vec<Shown<'_>> {
-        let pairs = [(Some(&self.sphere), FIGURE_9_SPHERE), (self.table_1.first(), FIGURE_9_BUNNY)];
-        let shown = pairs.into_iter().filter_map(|(player, (paper_uniform, paper_adaptive_printed))| {
-            Some(Shown { player: player?, paper_uniform, paper_adaptive_printed })
-        });
+        let pairs = [
+            (Some(&self.sphere), FIGURE_9_SPHERE),
+            (self.table_1.first(), FIGURE_9_BUNNY),
+        ];
+        let shown =
+            pairs
+                .into_iter()
+                .filter_map(|(player, (paper_uniform, paper_adaptive_printed))| {
+                    Some(Shown {
+                        player: player?,
+                        paper_uniform,
+                        paper_adaptive_printed,
+                    })
+                });
         shown.collect()
     }
 }
@@ -180,26 +207,47 @@ fn portraits(
     for player in players {
         let file = format!("figure6-{}.png", player.name);
         folder.write(&file, &renderer.portrait(&player.mesh, player.view())?)?;
-        let caption = format!("{}: {}", player.name, counted(player.mesh.face_count(), "face", "faces"));
-        pictures.push(Picture::new(file, format!("Control mesh of the {caption}"), caption));
+        let caption = format!(
+            "{}: {}",
+            player.name,
+            counted(player.mesh.face_count(), "face", "faces")
+        );
+        pictures.push(Picture::new(
+            file,
+            format!("Control mesh of the {caption}"),
+            caption,
+        ));
     }
     Ok(pictures)
 }
 
 /// Writes the numbers, the charts and, last, the page.
 fn write(results: &Results, portraits: &[Picture], folder: &mut Folder<'_>) -> anyhow::Result<()> {
-    folder.write("table1.csv", numbers::table_1_csv(results.rows()).as_bytes())?;
-    folder.write("references.csv", numbers::references_csv(results.rows()).as_bytes())?;
+    folder.write(
+        "table1.csv",
+        numbers::table_1_csv(results.rows()).as_bytes(),
+    )?;
+    folder.write(
+        "references.csv",
+        numbers::references_csv(results.rows()).as_bytes(),
+    )?;
     folder.write("drift.csv", numbers::drift_csv(&results.table_1).as_bytes())?;
     folder.write("seams.csv", numbers::seams_csv(&results.table_1).as_bytes())?;
     let json = serde_json::to_string_pretty(results)? + "\n";
     folder.write("reproduction.json", json.as_bytes())?;
     let rows: Vec<_> = results.rows().cloned().collect();
-    let drift: Vec<_> = results.table_1.iter().flat_map(|study| study.drift.clone()).collect();
+    let drift: Vec<_> = results
+        .table_1
+        .iter()
+        .flat_map(|study| study.drift.clone())
+        .collect();
     let angle = results.settings.extra_angle_degrees;
     for room in Room::ALL {
         folder.write(&room.file("table1"), plot::table_1(&rows, room)?.as_bytes())?;
-        folder.write(&room.file("drift"), plot::drift(&drift, angle, room)?.as_bytes())?;
+        folder.write(
+            &room.file("drift"),
+            plot::drift(&drift, angle, room)?.as_bytes(),
+        )?;
     }
     folder.write("index.html", page::page(results, portraits).as_bytes())
 }

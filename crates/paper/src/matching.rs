@@ -46,12 +46,17 @@ pub fn match_angle(
     let mut attempt = |angle_degrees: f64| {
         let start = Instant::now();
         let refinement = refine(angle_degrees)?;
-        Ok::<_, RefineError>(Matched { angle_degrees, refinement, duration: start.elapsed() })
+        Ok::<_, RefineError>(Matched {
+            angle_degrees,
+            refinement,
+            duration: start.elapsed(),
+        })
     };
     let (mut low, mut high) = (LEAST_ANGLE, GREATEST_ANGLE);
     let mut best = attempt(GREATEST_ANGLE)?;
     let mut angle = first;
-    while best.miss(wanted) as f64 > NEAR_ENOUGH * wanted as f64 && high > low * (1.0 + ANGLE_KNOWN) {
+    while best.miss(wanted) as f64 > NEAR_ENOUGH * wanted as f64 && high > low * (1.0 + ANGLE_KNOWN)
+    {
         let next = attempt(angle)?;
         let capped = matches!(next.refinement.stop, Stop::TriangleCap { .. });
         if capped || next.refinement.mesh.face_count() > wanted {
@@ -71,7 +76,9 @@ pub fn match_angle(
 /// The uniform level whose face count is nearest in ratio.
 pub fn nearest_level(control_faces: usize, faces: usize) -> usize {
     // Levels multiply by 4: the nearest in ratio is the rounded logarithm.
-    ((faces as f64 / control_faces as f64).log(4.0)).round().max(0.0) as usize
+    ((faces as f64 / control_faces as f64).log(4.0))
+        .round()
+        .max(0.0) as usize
 }
 
 #[cfg(test)]
@@ -100,9 +107,14 @@ mod tests {
         let wanted = 1500;
         let found = match_angle(wanted, 10.0, refine).unwrap();
         let count = |degrees: f64| refine(degrees).unwrap().mesh.face_count();
-        assert_eq!(found.refinement.mesh.face_count(), count(found.angle_degrees));
+        assert_eq!(
+            found.refinement.mesh.face_count(),
+            count(found.angle_degrees)
+        );
         let off = |faces: usize| (faces as f64 - wanted as f64).abs() / wanted as f64;
-        let best = (1..360).map(|i| off(count(0.5 * f64::from(i)))).fold(f64::MAX, f64::min);
+        let best = (1..360)
+            .map(|i| off(count(0.5 * f64::from(i))))
+            .fold(f64::MAX, f64::min);
         assert!(off(found.refinement.mesh.face_count()) <= best.max(NEAR_ENOUGH) + 1e-12);
     }
 }

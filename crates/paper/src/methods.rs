@@ -4,8 +4,8 @@ use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::front::{Demand, Front, FrontError, Measure};
 use limitmesh::refine::{
-    Exact, ExactOptions, RefineError, Refinement, SeamRule, StepwiseOptions, UniformOptions, exact, stepwise,
-    uniform,
+    Exact, ExactOptions, RefineError, Refinement, SeamRule, StepwiseOptions, UniformOptions, exact,
+    stepwise, uniform,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::sqrt3::{self, Sqrt3Options};
@@ -20,7 +20,12 @@ pub fn paper(
     steps: usize,
     seam: SeamRule,
 ) -> Result<Refinement, RefineError> {
-    adaptive(control, &LimitNormal::new(angle_degrees.to_radians()), steps, seam)
+    adaptive(
+        control,
+        &LimitNormal::new(angle_degrees.to_radians()),
+        steps,
+        seam,
+    )
 }
 
 /// The method of Amresh, Farin and Razdan, angle in degrees.
@@ -28,7 +33,12 @@ pub fn paper(
 /// # Errors
 /// See [`RefineError`].
 pub fn amresh(control: &Mesh, angle_degrees: f64, steps: usize) -> Result<Refinement, RefineError> {
-    adaptive(control, &NeighbourNormal::new(angle_degrees.to_radians()), steps, SeamRule::All)
+    adaptive(
+        control,
+        &NeighbourNormal::new(angle_degrees.to_radians()),
+        steps,
+        SeamRule::All,
+    )
 }
 
 /// Stepwise refinement by any criterion.
@@ -41,7 +51,12 @@ pub fn adaptive(
     steps: usize,
     seam: SeamRule,
 ) -> Result<Refinement, RefineError> {
-    stepwise(control, &Loop, criterion, &StepwiseOptions::default().levels(steps).seam(seam))
+    stepwise(
+        control,
+        &Loop,
+        criterion,
+        &StepwiseOptions::default().levels(steps).seam(seam),
+    )
 }
 
 /// Exact refinement: the best mesh with at most so many faces, its vertices on the limit surface of `control`.
@@ -86,9 +101,17 @@ pub fn sqrt3_with(control: &Mesh, faces: usize) -> Result<Mesh, RefineError> {
 ///
 /// # Errors
 /// See [`RefineError`].
-pub fn sqrt3_reference(control: &Mesh, least: u32, most: usize) -> Result<(Mesh, usize), RefineError> {
+pub fn sqrt3_reference(
+    control: &Mesh,
+    least: u32,
+    most: usize,
+) -> Result<(Mesh, usize), RefineError> {
     let mut steps = least.next_multiple_of(2);
-    while control.face_count().saturating_mul(3usize.saturating_pow(steps + 2)) <= most {
+    while control
+        .face_count()
+        .saturating_mul(3usize.saturating_pow(steps + 2))
+        <= most
+    {
         steps += 2;
     }
     let options = UniformOptions::default().levels(steps as usize).limit(true);

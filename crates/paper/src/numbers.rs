@@ -90,7 +90,10 @@ pub(super) fn table_1_cells(row: &Row) -> [String; 11] {
 
 /// Table 1 as a file.
 pub(super) fn table_1_csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
-    csv(&TABLE_1_COLUMNS, rows.map(|row| table_1_cells(row).to_vec()))
+    csv(
+        &TABLE_1_COLUMNS,
+        rows.map(|row| table_1_cells(row).to_vec()),
+    )
 }
 
 /// The header of references.csv.
@@ -121,13 +124,22 @@ pub(super) fn references_cells(row: &Row) -> [String; 8] {
 
 /// Those as a file.
 pub(super) fn references_csv<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
-    csv(&REFERENCES_COLUMNS, rows.map(|row| references_cells(row).to_vec()))
+    csv(
+        &REFERENCES_COLUMNS,
+        rows.map(|row| references_cells(row).to_vec()),
+    )
 }
 
 /// Distance against steps as a file; empty cells where the level is that of the reference.
 pub(super) fn drift_csv(studies: &[Study]) -> String {
-    let header =
-        ["model", "steps", "faces", "shd_percent", "uniform_limit_faces", "uniform_limit_shd_percent"];
+    let header = [
+        "model",
+        "steps",
+        "faces",
+        "shd_percent",
+        "uniform_limit_faces",
+        "uniform_limit_shd_percent",
+    ];
     let rows = studies.iter().flat_map(|study| &study.drift).map(|point| {
         let uniform = point.uniform_limit;
         vec![
@@ -146,7 +158,12 @@ pub(super) fn drift_csv(studies: &[Study]) -> String {
 pub(super) fn seams_csv(studies: &[Study]) -> String {
     let rows = studies.iter().flat_map(|study| &study.seams).map(|row| {
         let measured = &row.measured;
-        vec![row.model.to_owned(), row.seam.to_owned(), measured.faces.to_string(), shd(measured.shd_percent)]
+        vec![
+            row.model.to_owned(),
+            row.seam.to_owned(),
+            measured.faces.to_string(),
+            shd(measured.shd_percent),
+        ]
     });
     csv(&["model", "seam", "faces", "shd_percent"], rows)
 }

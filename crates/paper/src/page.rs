@@ -17,12 +17,20 @@ const STYLE: &str = include_str!("page.css");
 /// Sections in order: their address on the page, their heading, their name in the list at the top.
 const SECTIONS: [(&str, &str, &str); 10] = [
     ("models", "The models", "Models"),
-    ("table-1", "Table 1: distance to the limit surface", "Table 1"),
+    (
+        "table-1",
+        "Table 1: distance to the limit surface",
+        "Table 1",
+    ),
     ("figure-2", "Figure 2: the cone of normals", "Figure 2"),
     ("figure-5", "Figure 5: no cracks", "Figure 5"),
     ("figure-7", "Figure 7: the head", "Figure 7"),
     ("figure-8", "Figure 8: two thresholds", "Figure 8"),
-    ("figure-9", "Figure 9: view-dependent refinement", "Figure 9"),
+    (
+        "figure-9",
+        "Figure 9: view-dependent refinement",
+        "Figure 9",
+    ),
     ("drift", "More steps", "More steps"),
     ("seams", "Which vertices move", "Seam rules"),
     ("files", "The numbers, and how to run this again", "Files"),
@@ -42,10 +50,15 @@ pub(super) fn page(results: &Results, portraits: &[Picture]) -> String {
         seams(results),
         files(results),
     ];
-    let links: String =
-        SECTIONS.iter().map(|(id, _, name)| format!("<a href=\"#{id}\">{name}</a>\n")).collect();
-    let sections: String =
-        SECTIONS.iter().zip(contents).map(|((id, title, _), content)| section(id, title, &content)).collect();
+    let links: String = SECTIONS
+        .iter()
+        .map(|(id, _, name)| format!("<a href=\"#{id}\">{name}</a>\n"))
+        .collect();
+    let sections: String = SECTIONS
+        .iter()
+        .zip(contents)
+        .map(|((id, title, _), content)| section(id, title, &content))
+        .collect();
     let lead = "“An Adaptive Subdivision Method Based on Limit Surface Normal” by Chen, Luo and Ling divides a face \
                 of a subdivision surface where its normal leaves a cone around the limit normals of its vertices. \
                 This page repeats the paper's table and figures, and measures what it leaves out.";
@@ -68,13 +81,24 @@ fn words(text: &str) -> String {
 
 fn models(results: &Results, portraits: &[Picture]) -> String {
     let head = header(
-        &["model", "played by", "what it is", "vertices", "faces", "open edges", "greatest valence"],
+        &[
+            "model",
+            "played by",
+            "what it is",
+            "vertices",
+            "faces",
+            "open edges",
+            "greatest valence",
+        ],
         &[1, 2],
     );
     let row = |study: &super::study::Study| {
         vec![
             study.model.to_owned(),
-            format!("<td class=\"words\"><code>{}</code></td>", escape(&study.origin.source)),
+            format!(
+                "<td class=\"words\"><code>{}</code></td>",
+                escape(&study.origin.source)
+            ),
             words(&study.origin.about),
             thousands(study.control_vertices),
             thousands(study.control_faces),
@@ -82,8 +106,16 @@ fn models(results: &Results, portraits: &[Picture]) -> String {
             study.max_valence.to_string(),
         ]
     };
-    let groups: Vec<_> = results.table_1.iter().map(|study| vec![row(study)]).collect();
-    let files = results.table_1.iter().filter(|study| study.origin.file).count();
+    let groups: Vec<_> = results
+        .table_1
+        .iter()
+        .map(|study| vec![row(study)])
+        .collect();
+    let files = results
+        .table_1
+        .iter()
+        .filter(|study| study.origin.file)
+        .count();
     let played = match files {
         0 => "All six are played by built-in shapes of the same names here".to_owned(),
         6 => "All six are played by files here".to_owned(),
@@ -106,8 +138,8 @@ fn table_1(results: &Results) -> String {
                 <th colspan=\"2\">exact, at equal triangles</th></tr>\n";
     let head = header(
         &[
-            "model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %", "faces",
-            "SHD %",
+            "model", "angle", "faces", "SHD %", "faces", "SHD %", "ratio %", "faces", "SHD %",
+            "faces", "SHD %",
         ],
         &[],
     );
@@ -115,7 +147,11 @@ fn table_1(results: &Results) -> String {
         .table_1
         .iter()
         .map(|study| {
-            study.rows.iter().map(|row| table_1_row(table_1_cells(row), row.ratio_percent)).collect()
+            study
+                .rows
+                .iter()
+                .map(|row| table_1_row(table_1_cells(row), row.ratio_percent))
+                .collect()
         })
         .collect();
     let steps = results.settings.steps;
@@ -134,7 +170,10 @@ fn table_1(results: &Results) -> String {
         "Distances of Table 1 as dots on a logarithmic scale",
         "The same numbers: a line for each setting, a dot for each method.",
     );
-    let notes: String = prose::table_1_notes(results).iter().map(|note| paragraph(note)).collect();
+    let notes: String = prose::table_1_notes(results)
+        .iter()
+        .map(|note| paragraph(note))
+        .collect();
     paragraph(&intro)
         + &table(
             "table1",
@@ -152,17 +191,27 @@ fn table_1(results: &Results) -> String {
 fn references(results: &Results) -> String {
     let over = "<tr class=\"over\"><th colspan=\"2\"></th><th colspan=\"2\">planarity (Zorin)</th>\
                 <th colspan=\"2\">vertex errors (Müller)</th><th colspan=\"2\">√3 (Kobbelt)</th></tr>\n";
-    let head = header(&["model", "angle", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %"], &[]);
+    let head = header(
+        &[
+            "model", "angle", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %",
+        ],
+        &[],
+    );
     let row = |row: &Row| {
         let mut cells = references_cells(row);
         for column in [2, 4, 6] {
-            cells[column] = cells[column].parse().map_or_else(|_| cells[column].clone(), thousands);
+            cells[column] = cells[column]
+                .parse()
+                .map_or_else(|_| cells[column].clone(), thousands);
         }
         cells[1].push('°');
         cells.to_vec()
     };
-    let groups: Vec<Vec<Vec<String>>> =
-        results.table_1.iter().map(|study| study.rows.iter().map(row).collect()).collect();
+    let groups: Vec<Vec<Vec<String>>> = results
+        .table_1
+        .iter()
+        .map(|study| study.rows.iter().map(row).collect())
+        .collect();
     let intro = "Methods of three of the paper's references, with no more faces than its own: the planarity of Zorin, Schröder and \
                  Sweldens (how high the limit surface is over a triangle in the middles of its edges) and the vertex errors of Müller and \
                  Jaeschke (how far control points are from their limits), both over a quadtree whose neighbours differ by one level and \
@@ -180,7 +229,9 @@ fn table_1_row(cells: [String; 11], ratio_percent: f64) -> Vec<String> {
     };
     let mut row = cells.to_vec();
     for column in [2, 4, 7, 9] {
-        row[column] = row[column].parse().map_or_else(|_| row[column].clone(), thousands);
+        row[column] = row[column]
+            .parse()
+            .map_or_else(|_| row[column].clone(), thousands);
     }
     row[1].push('°');
     row[6] = format!("<td{class}>{}</td>", row[6]);
@@ -195,40 +246,70 @@ fn no_cone() -> String {
 
 fn figure_2(cone: &ConeFigure) -> String {
     let head = header(
-        &["mesh", "angles of the face normals from the limit normal, counter-clockwise", "greatest"],
+        &[
+            "mesh",
+            "angles of the face normals from the limit normal, counter-clockwise",
+            "greatest",
+        ],
         &[1],
     );
     let rows = cone.stages.iter().map(|stage| {
-        let angles: Vec<String> = stage.angles_degrees.iter().map(|a| format!("{a:.1}°")).collect();
+        let angles: Vec<String> = stage
+            .angles_degrees
+            .iter()
+            .map(|a| format!("{a:.1}°"))
+            .collect();
         let name = match stage.step {
             0 => "control mesh".to_owned(),
             1 => "1 step".to_owned(),
             step => format!("{step} steps"),
         };
-        vec![vec![name, words(&angles.join(", ")), format!("{:.1}°", stage.greatest())]]
+        vec![vec![
+            name,
+            words(&angles.join(", ")),
+            format!("{:.1}°", stage.greatest()),
+        ]]
     });
     let groups: Vec<_> = rows.collect();
     let caption = format!("Vertex {} of the {}", cone.vertex, cone.model);
-    wide(&cone.picture) + &table("cone-table", &caption, &head, &groups) + &findings(&prose::figure_2(cone))
+    wide(&cone.picture)
+        + &table("cone-table", &caption, &head, &groups)
+        + &findings(&prose::figure_2(cone))
 }
 
 fn figure_5(closure: &ClosureFigure) -> String {
-    let head =
-        header(&["model", "step", "divided", "(a) whole", "(b) in two", "(c) in three", "(d) in four"], &[]);
+    let head = header(
+        &[
+            "model",
+            "step",
+            "divided",
+            "(a) whole",
+            "(b) in two",
+            "(c) in three",
+            "(d) in four",
+        ],
+        &[],
+    );
     let groups: Vec<Vec<Vec<String>>> = closure
         .counts
         .chunk_by(|a, b| a.model == b.model)
         .map(|counts| {
             let row = |count: &super::figures::closure::ClosureCount| {
-                let mut row =
-                    vec![count.model.to_owned(), count.step.to_string(), thousands(count.divisible)];
+                let mut row = vec![
+                    count.model.to_owned(),
+                    count.step.to_string(),
+                    thousands(count.divisible),
+                ];
                 row.extend(count.cases.map(thousands));
                 row
             };
             counts.iter().map(row).collect()
         })
         .collect();
-    let caption = format!("Faces by what a step does to them, at {}°", closure.angle_degrees);
+    let caption = format!(
+        "Faces by what a step does to them, at {}°",
+        closure.angle_degrees
+    );
     wide(&closure.picture)
         + &table("closure-table", &caption, &head, &groups)
         + &findings(&prose::figure_5(closure))
@@ -236,8 +317,11 @@ fn figure_5(closure: &ClosureFigure) -> String {
 
 fn figure_7(results: &Results) -> String {
     let heads = results.figure_7.iter().map(|head| {
-        let source =
-            format!("<p><code>{}</code>: {}</p>\n", escape(&head.origin.source), escape(&head.origin.about));
+        let source = format!(
+            "<p><code>{}</code>: {}</p>\n",
+            escape(&head.origin.source),
+            escape(&head.origin.about)
+        );
         source + &pictures(&head.pictures, "")
     });
     heads.collect::<String>() + &findings(&prose::figure_7(&results.figure_7))
@@ -251,16 +335,34 @@ fn figure_9(view: &ViewFigure) -> String {
         .iter()
         .map(|tried| {
             let part = tried.part_of_pi;
-            let drawn = if part == view.part_of_pi { " (drawn)" } else { "" };
+            let drawn = if part == view.part_of_pi {
+                " (drawn)"
+            } else {
+                ""
+            };
             let mut row = vec![format!("π/{part}{drawn}")];
-            row.extend(view.models.iter().map(|m| m.faces_at(part).map_or_else(String::new, thousands)));
+            row.extend(
+                view.models
+                    .iter()
+                    .map(|m| m.faces_at(part).map_or_else(String::new, thousands)),
+            );
             vec![row]
         })
         .collect();
-    let models: String = view.models.iter().map(|model| pictures(&model.pictures, "")).collect();
-    let uniform: Vec<String> =
-        view.models.iter().map(|m| format!("{} {}", m.name, thousands(m.uniform_faces))).collect();
-    let caption = format!("Faces after two view-dependent steps (uniform: {})", uniform.join(", "));
+    let models: String = view
+        .models
+        .iter()
+        .map(|model| pictures(&model.pictures, ""))
+        .collect();
+    let uniform: Vec<String> = view
+        .models
+        .iter()
+        .map(|m| format!("{} {}", m.name, thousands(m.uniform_faces)))
+        .collect();
+    let caption = format!(
+        "Faces after two view-dependent steps (uniform: {})",
+        uniform.join(", ")
+    );
     models + &table("view-table", &caption, &head, &groups) + &findings(&prose::figure_9(view))
 }
 
@@ -281,15 +383,23 @@ fn drift(results: &Results) -> String {
 fn seams(results: &Results) -> String {
     let over = "<tr class=\"over\"><th></th><th colspan=\"2\">all</th><th colspan=\"2\">any</th>\
                 <th colspan=\"2\">inner</th></tr>\n";
-    let head =
-        over.to_owned() + &header(&["model", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %"], &[]);
+    let head = over.to_owned()
+        + &header(
+            &[
+                "model", "faces", "SHD %", "faces", "SHD %", "faces", "SHD %",
+            ],
+            &[],
+        );
     let groups: Vec<Vec<Vec<String>>> = results
         .table_1
         .iter()
         .map(|study| {
             let mut row = vec![study.model.to_owned()];
             for seam in &study.seams {
-                row.extend([thousands(seam.measured.faces), shd(seam.measured.shd_percent)]);
+                row.extend([
+                    thousands(seam.measured.faces),
+                    shd(seam.measured.shd_percent),
+                ]);
             }
             vec![row]
         })
@@ -303,7 +413,11 @@ fn seams(results: &Results) -> String {
 
 fn files(results: &Results) -> String {
     let stems = |part: &Part| format!("{}: {}", part.name, paper_models::stems(part).join(" or "));
-    let parts: Vec<String> = TABLE_1.iter().chain([&HEAD, &SHOE, &SPHERE]).map(stems).collect();
+    let parts: Vec<String> = TABLE_1
+        .iter()
+        .chain([&HEAD, &SHOE, &SPHERE])
+        .map(stems)
+        .collect();
     let looked_for = format!(
         "With --models DIR, these names are looked for with the extension off, obj, ply or stl: {}. A built-in model \
          takes the place of one that is not there.",

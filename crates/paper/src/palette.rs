@@ -30,7 +30,13 @@ pub(super) fn plain() -> Label {
 }
 
 /// A polygon with a faint area under an opaque outline.
-pub(super) fn tinted(drawing: &mut Drawing, points: &[[f64; 2]], fill: [u8; 3], opacity: f64, outline: &Pen) {
+pub(super) fn tinted(
+    drawing: &mut Drawing,
+    points: &[[f64; 2]],
+    fill: [u8; 3],
+    opacity: f64,
+    outline: &Pen,
+) {
     drawing.polygon(points, &Pen::area(fill).opacity(opacity));
     drawing.polygon(points, outline);
 }

@@ -38,46 +38,87 @@ struct File {
 
 /// A file whose front looks along +z and whose y axis points up, as in the built-in models.
 const fn file(stem: &'static str, about: &'static str) -> File {
-    File { stem, about, front: FRONT }
+    File {
+        stem,
+        about,
+        front: FRONT,
+    }
 }
 
 /// A file that lies or stands otherwise.
 const fn turned(stem: &'static str, about: &'static str, sight: [f64; 3], up: [f64; 3]) -> File {
-    File { stem, about, front: ViewDirection { sight, up } }
+    File {
+        stem,
+        about,
+        front: ViewDirection { sight, up },
+    }
 }
 
 const ALONG_Y: [f64; 3] = [0.0, 1.0, 0.0];
 const ALONG_Z: [f64; 3] = [0.0, 0.0, 1.0];
 
-const FRONT: ViewDirection = ViewDirection { sight: [0.0, 0.0, -1.0], up: [0.0, 1.0, 0.0] };
+const FRONT: ViewDirection = ViewDirection {
+    sight: [0.0, 0.0, -1.0],
+    up: [0.0, 1.0, 0.0],
+};
 
 /// What the paper calls its models is all that is known of them; the stems are those of freely available
 /// meshes of the same subjects, coarse enough to be control meshes.
 pub(super) const TABLE_1: [Part; 6] = [
-    Part { name: "bunny", files: &[file("bunny_1k", "Stanford bunny, simplified"), file("bunny", "bunny")] },
-    Part { name: "teddy", files: &[file("teddy", "the classic teddy bear")] },
+    Part {
+        name: "bunny",
+        files: &[
+            file("bunny_1k", "Stanford bunny, simplified"),
+            file("bunny", "bunny"),
+        ],
+    },
+    Part {
+        name: "teddy",
+        files: &[file("teddy", "the classic teddy bear")],
+    },
     Part {
         name: "shark",
         files: &[
             file("shark", "shark"),
-            turned("fish_cage", "a fish, in place of the shark", [-0.6, 0.0, -0.8], ALONG_Y),
+            turned(
+                "fish_cage",
+                "a fish, in place of the shark",
+                [-0.6, 0.0, -0.8],
+                ALONG_Y,
+            ),
         ],
     },
     Part {
         name: "cup",
         files: &[
             file("cup", "cup"),
-            turned("cup_standin", "a cup like the paper's", [0.0, -1.0, 0.0], ALONG_Z),
+            turned(
+                "cup_standin",
+                "a cup like the paper's",
+                [0.0, -1.0, 0.0],
+                ALONG_Z,
+            ),
         ],
     },
     Part {
         name: "radish",
         files: &[
             file("radish", "radish"),
-            turned("radish_standin", "a radish like the paper's", ALONG_Y, ALONG_Z),
+            turned(
+                "radish_standin",
+                "a radish like the paper's",
+                ALONG_Y,
+                ALONG_Z,
+            ),
         ],
     },
-    Part { name: "cusp", files: &[file("cusp", "cusp"), file("cusp_standin", "a cusp like the paper's")] },
+    Part {
+        name: "cusp",
+        files: &[
+            file("cusp", "cusp"),
+            file("cusp_standin", "a cusp like the paper's"),
+        ],
+    },
 ];
 
 /// Figure 7.
@@ -95,16 +136,27 @@ pub(super) const HEAD: Part = Part {
 };
 
 /// Beside Figure 7's head: its proportions without its features. No file plays it.
-pub(super) const ELLIPSOID: Part = Part { name: "ellipsoid", files: &[] };
+pub(super) const ELLIPSOID: Part = Part {
+    name: "ellipsoid",
+    files: &[],
+};
 
 /// Figure 8.
-pub(super) const SHOE: Part =
-    Part { name: "shoe", files: &[file("shoe", "shoe"), file("boot_684", "a boot of 684 faces")] };
+pub(super) const SHOE: Part = Part {
+    name: "shoe",
+    files: &[
+        file("shoe", "shoe"),
+        file("boot_684", "a boot of 684 faces"),
+    ],
+};
 
 /// Figure 9.
 pub(super) const SPHERE: Part = Part {
     name: "sphere",
-    files: &[file("sphere_360", "sphere of 20 slices by 10 stacks"), file("sphere", "sphere")],
+    files: &[
+        file("sphere_360", "sphere of 20 slices by 10 stacks"),
+        file("sphere", "sphere"),
+    ],
 };
 
 /// A control mesh that plays a part.
@@ -125,7 +177,10 @@ impl Player {
     pub(super) fn view(&self) -> ViewDirection {
         let ViewDirection { sight, up } = self.front;
         let right = cross(sight, up);
-        ViewDirection { sight: add_scaled(add_scaled(sight, -0.4, right), -0.25, up), up }
+        ViewDirection {
+            sight: add_scaled(add_scaled(sight, -0.4, right), -0.25, up),
+            up,
+        }
     }
 }
 
@@ -151,7 +206,11 @@ impl<'a> Casting<'a> {
     /// `folder` is no folder.
     pub(super) fn new(folder: Option<&'a Path>, host: &'a dyn Host) -> anyhow::Result<Self> {
         if let Some(folder) = folder {
-            ensure!(folder.is_dir(), "--models: {} is no folder", folder.display());
+            ensure!(
+                folder.is_dir(),
+                "--models: {} is no folder",
+                folder.display()
+            );
         }
         Ok(Self { folder, host })
     }
@@ -164,16 +223,30 @@ impl<'a> Casting<'a> {
         let Some((path, file)) = self.folder.and_then(|folder| matching(folder, part)) else {
             return self.builtin(part);
         };
-        let name = path.to_str().with_context(|| format!("{} is no UTF-8 path", path.display()))?;
+        let name = path
+            .to_str()
+            .with_context(|| format!("{} is no UTF-8 path", path.display()))?;
         let mesh = self.host.load(name)?;
         let faces = mesh.face_count();
         ensure!(
             faces <= MOST_FACES,
             "{name} has {faces} triangles; a control mesh of at most {MOST_FACES} is expected here"
         );
-        let source = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let origin = Origin { source, file: true, about: file.about.to_owned() };
-        Ok(Player { name: part.name, mesh, origin, front: file.front })
+        let source = path
+            .file_name()
+            .map(|n| n.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        let origin = Origin {
+            source,
+            file: true,
+            about: file.about.to_owned(),
+        };
+        Ok(Player {
+            name: part.name,
+            mesh,
+            origin,
+            front: file.front,
+        })
     }
 
     /// The built-in model of the part's name.
@@ -183,17 +256,33 @@ impl<'a> Casting<'a> {
     pub(super) fn builtin(&self, part: &Part) -> anyhow::Result<Player> {
         let source = format!("builtin:{}", part.name);
         let mesh = self.host.load(&source)?;
-        let about = limitmesh_models::find(part.name).map_or(part.name, |model| model.about).to_owned();
-        let origin = Origin { source, file: false, about };
-        Ok(Player { name: part.name, mesh, origin, front: FRONT })
+        let about = limitmesh_models::find(part.name)
+            .map_or(part.name, |model| model.about)
+            .to_owned();
+        let origin = Origin {
+            source,
+            file: false,
+            about,
+        };
+        Ok(Player {
+            name: part.name,
+            mesh,
+            origin,
+            front: FRONT,
+        })
     }
 }
 
 /// The first file in `folder` that may play `part`.
 fn matching(folder: &Path, part: &Part) -> Option<(std::path::PathBuf, File)> {
     part.files.iter().find_map(|file| {
-        let names = EXTENSIONS.iter().map(|extension| folder.join(format!("{}.{extension}", file.stem)));
-        names.into_iter().find(|path| path.is_file()).map(|path| (path, *file))
+        let names = EXTENSIONS
+            .iter()
+            .map(|extension| folder.join(format!("{}.{extension}", file.stem)));
+        names
+            .into_iter()
+            .find(|path| path.is_file())
+            .map(|path| (path, *file))
     })
 }
 

@@ -17,14 +17,27 @@ impl Renderer {
 
     /// A camera that shows all of `mesh`; pictures to be compared share one.
     pub(super) fn camera(&self, mesh: &Mesh, view: ViewDirection) -> anyhow::Result<Camera> {
-        Ok(Camera::fit_tightly(mesh.as_triangles(), view, self.side, self.side)?)
+        Ok(Camera::fit_tightly(
+            mesh.as_triangles(),
+            view,
+            self.side,
+            self.side,
+        )?)
     }
 
     /// The PNG file of a picture; shaded by the normals of the mesh's own limit surface.
     pub(super) fn draw(&self, mesh: &Mesh, camera: &Camera) -> anyhow::Result<Vec<u8>> {
         let normals = LimitTable::new(&Loop).normals(mesh)?;
         let style = Style::default().wireframe(true);
-        let image = render(mesh.as_triangles(), Some(&normals), None, camera, &style, self.side, self.side)?;
+        let image = render(
+            mesh.as_triangles(),
+            Some(&normals),
+            None,
+            camera,
+            &style,
+            self.side,
+            self.side,
+        )?;
         Ok(image.encode_png()?)
     }
 

@@ -5,7 +5,8 @@ use limitmesh_render::svg::{Drawing, Pen};
 use limitmesh_render::{Align, RenderError};
 
 use super::palette::{
-    AMRESH, EXACT, GRID, PALE, PAPER, PLANARITY, SQRT3, UNIFORM, VERTEX_ERROR, dot, plain, small, thin,
+    AMRESH, EXACT, GRID, PALE, PAPER, PLANARITY, SQRT3, UNIFORM, VERTEX_ERROR, dot, plain, small,
+    thin,
 };
 use super::room::{Legend, Room, lines, paragraph, width_of};
 use super::study::{DriftPoint, Measured, Row};
@@ -23,11 +24,23 @@ impl LogAxis {
     fn new(values: impl Iterator<Item = f64>, from: f64, to: f64) -> Self {
         let (low, high) = values
             .filter(|v| *v > 0.0)
-            .fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v.log10()), high.max(v.log10())));
+            .fold((f64::MAX, f64::MIN), |(low, high), v| {
+                (low.min(v.log10()), high.max(v.log10()))
+            });
         if low > high {
-            return Self { low: -1.0, high: 0.0, from, to };
+            return Self {
+                low: -1.0,
+                high: 0.0,
+                from,
+                to,
+            };
         }
-        Self { low: low - 0.12, high: high + 0.12, from, to }
+        Self {
+            low: low - 0.12,
+            high: high + 0.12,
+            from,
+            to,
+        }
     }
 
     fn at(&self, value: f64) -> f64 {
@@ -39,7 +52,8 @@ impl LogAxis {
     fn ticks(&self) -> Vec<f64> {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
         let all = decades.flat_map(|d| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(d)));
-        all.filter(|v| (self.low..=self.high).contains(&v.log10())).collect()
+        all.filter(|v| (self.low..=self.high).contains(&v.log10()))
+            .collect()
     }
 }
 
@@ -50,7 +64,8 @@ fn tick_label(value: f64) -> String {
 }
 
 /// What the horizontal axis of Table 1's chart and the vertical ones of the drift show.
-const DISTANCE: &str = "symmetric Hausdorff distance, % of the control mesh's diagonal (logarithmic)";
+const DISTANCE: &str =
+    "symmetric Hausdorff distance, % of the control mesh's diagonal (logarithmic)";
 
 /// Table 1 as a dot chart: a line for each setting, a dot for each method.
 pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
@@ -76,7 +91,10 @@ pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
     let models = rows.chunk_by(|a, b| a.model == b.model).count() as f64;
     let bottom = top + rows.len() as f64 * step + models * (gap + name);
     let mut drawing = Drawing::new(width, bottom + 30.0 + 17.0 * caption.len() as f64)?;
-    let values = rows.iter().flat_map(dots_of).map(|(measured, _)| measured.shd_percent);
+    let values = rows
+        .iter()
+        .flat_map(dots_of)
+        .map(|(measured, _)| measured.shd_percent);
     let axis = LogAxis::new(values, left, right);
     let mut free = 0.0;
     for tick in axis.ticks() {
@@ -100,7 +118,11 @@ pub(super) fn table_1(rows: &[Row], room: Room) -> Result<String, RenderError> {
         for row in model {
             let middle = y + 0.5 * step;
             let label = format!("{}°", row.angle_degrees);
-            drawing.label([left - 14.0, middle + 4.5], &label, &plain().colour(PALE).align(Align::Right));
+            drawing.label(
+                [left - 14.0, middle + 4.5],
+                &label,
+                &plain().colour(PALE).align(Align::Right),
+            );
             dots(&mut drawing, row, &axis, middle);
             y += step;
         }
@@ -125,7 +147,10 @@ fn dots_of(row: &Row) -> [(&Measured, [u8; 3]); 7] {
 fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
     let all = dots_of(row).map(|(measured, colour)| (axis.at(measured.shd_percent), colour));
     let places = all.iter().map(|&(x, _)| x);
-    let (low, high) = (places.clone().fold(f64::MAX, f64::min), places.fold(f64::MIN, f64::max));
+    let (low, high) = (
+        places.clone().fold(f64::MAX, f64::min),
+        places.fold(f64::MIN, f64::max),
+    );
     drawing.line([low, y], [high, y], &thin(PALE).opacity(0.6));
     for (x, colour) in all {
         dot(drawing, [x, y], 5.0, colour);
@@ -133,17 +158,28 @@ fn dots(drawing: &mut Drawing, row: &Row, axis: &LogAxis, y: f64) {
 }
 
 /// Distance against steps, a small chart for each model, all on the same scales.
-pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64, room: Room) -> Result<String, RenderError> {
+pub(super) fn drift(
+    points: &[DriftPoint],
+    angle_degrees: f64,
+    room: Room,
+) -> Result<String, RenderError> {
     let models: Vec<&[DriftPoint]> = points.chunk_by(|a, b| a.model == b.model).collect();
     let columns = models.len().clamp(1, room.pick(3, 2));
     let (cell, height, left) = (room.pick(236.0, 167.0), 190.0, 46.0);
     let rows = models.len().div_ceil(columns);
     let width = left + columns as f64 * cell;
     let paper = format!("limit normal, {angle_degrees}° (paper)");
-    let entries = [(PAPER, paper.as_str()), (UNIFORM, "uniform, limit vertices, as many levels")];
+    let entries = [
+        (PAPER, paper.as_str()),
+        (UNIFORM, "uniform, limit vertices, as many levels"),
+    ];
     let legend = Legend::new(&entries, width - 20.0)?;
     let words = plain().size(12.0).align(Align::Centre);
-    let caption = lines(&format!("steps; vertically the {DISTANCE}"), width - 20.0, &words)?;
+    let caption = lines(
+        &format!("steps; vertically the {DISTANCE}"),
+        width - 20.0,
+        &words,
+    )?;
     let top = 24.0 + legend.height();
     let bottom = top + rows as f64 * height;
     let mut drawing = Drawing::new(width, bottom + 12.0 + 17.0 * caption.len() as f64)?;
@@ -152,7 +188,13 @@ pub(super) fn drift(points: &[DriftPoint], angle_degrees: f64, room: Room) -> Re
         let (column, row) = (i % columns, i / columns);
         let x = left + column as f64 * cell;
         let y = top + row as f64 * height;
-        panel(&mut drawing, model, points, [x, y, cell - 18.0, height - 44.0], column == 0);
+        panel(
+            &mut drawing,
+            model,
+            points,
+            [x, y, cell - 18.0, height - 44.0],
+            column == 0,
+        );
     }
     paragraph(&mut drawing, [0.5 * width, bottom + 14.0], &caption, &words);
     drawing.finish()
@@ -165,27 +207,51 @@ fn panel(
     [x, y, width, height]: [f64; 4],
     labelled: bool,
 ) {
-    let values = |p: &DriftPoint| [Some(p.paper.shd_percent), p.uniform_limit.map(|m| m.shd_percent)];
+    let values = |p: &DriftPoint| {
+        [
+            Some(p.paper.shd_percent),
+            p.uniform_limit.map(|m| m.shd_percent),
+        ]
+    };
     let axis = LogAxis::new(all.iter().flat_map(values).flatten(), y + height, y + 20.0);
     let most = all.iter().map(|p| p.steps).max().unwrap_or(1);
-    let across =
-        |steps: usize| x + 14.0 + (width - 28.0) * (steps as f64 - 1.0) / (most as f64 - 1.0).max(1.0);
+    let across = |steps: usize| {
+        x + 14.0 + (width - 28.0) * (steps as f64 - 1.0) / (most as f64 - 1.0).max(1.0)
+    };
     let name = model.first().map_or("", |p| p.model);
     drawing.label([x + 6.0, y + 11.0], name, &plain().bold(true));
     for tick in axis.ticks() {
         drawing.line([x, axis.at(tick)], [x + width, axis.at(tick)], &thin(GRID));
         if labelled {
-            drawing.label([x - 6.0, axis.at(tick) + 4.0], &tick_label(tick), &small().align(Align::Right));
+            drawing.label(
+                [x - 6.0, axis.at(tick) + 4.0],
+                &tick_label(tick),
+                &small().align(Align::Right),
+            );
         }
     }
     drawing.line([x, y + height], [x + width, y + height], &thin(PALE));
     for steps in 1..=most {
-        drawing.label([across(steps), y + height + 15.0], &steps.to_string(), &small().align(Align::Centre));
+        drawing.label(
+            [across(steps), y + height + 15.0],
+            &steps.to_string(),
+            &small().align(Align::Centre),
+        );
     }
-    let uniform = model.iter().filter_map(|p| Some((p.steps, p.uniform_limit?.shd_percent)));
+    let uniform = model
+        .iter()
+        .filter_map(|p| Some((p.steps, p.uniform_limit?.shd_percent)));
     let paper = model.iter().map(|p| (p.steps, p.paper.shd_percent));
-    curve(drawing, UNIFORM, uniform.map(|(s, v)| [across(s), axis.at(v)]).collect());
-    curve(drawing, PAPER, paper.map(|(s, v)| [across(s), axis.at(v)]).collect());
+    curve(
+        drawing,
+        UNIFORM,
+        uniform.map(|(s, v)| [across(s), axis.at(v)]).collect(),
+    );
+    curve(
+        drawing,
+        PAPER,
+        paper.map(|(s, v)| [across(s), axis.at(v)]).collect(),
+    );
 }
 
 fn curve(drawing: &mut Drawing, colour: [u8; 3], points: Vec<[f64; 2]>) {

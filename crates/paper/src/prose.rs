@@ -64,7 +64,12 @@ fn drift(results: &Results) -> impl Iterator<Item = &DriftPoint> + Clone {
 }
 
 fn setting(row: &Row) -> String {
-    format!("{} at {}° ({} %)", row.model, row.angle_degrees, ratio(row.ratio_percent))
+    format!(
+        "{} at {}° ({} %)",
+        row.model,
+        row.angle_degrees,
+        ratio(row.ratio_percent)
+    )
 }
 
 fn joined(items: impl Iterator<Item = String>) -> String {
@@ -81,17 +86,27 @@ pub(super) fn table_1(results: &Results) -> Findings {
         format!("{below} of {} at {angle}°", at.len())
     });
     let by_angle = joined(by_angle);
-    let by_angle =
-        if results.settings.angles_degrees.len() > 1 { format!(" ({by_angle})") } else { String::new() };
+    let by_angle = if results.settings.angles_degrees.len() > 1 {
+        format!(" ({by_angle})")
+    } else {
+        String::new()
+    };
     let agrees = format!(
         "The ratio is below 100 % in {} of {all} settings{by_angle}, as the paper has it for all six of its own.{}",
         s.below,
-        if s.equal > 0 { format!(" In {} the distances are equal.", s.equal) } else { String::new() }
+        if s.equal > 0 {
+            format!(" In {} the distances are equal.", s.equal)
+        } else {
+            String::new()
+        }
     );
     let above = if s.above.is_empty() {
         "No ratio is above 100 %.".to_owned()
     } else {
-        format!("The ratio is above 100 % for {}.", joined(s.above.iter().map(|r| setting(r))))
+        format!(
+            "The ratio is above 100 % for {}.",
+            joined(s.above.iter().map(|r| setting(r)))
+        )
     };
     let differs = format!(
         "{above} Uniform refinement with limit vertices, which the paper does not show, is nearer to the limit \
@@ -108,7 +123,11 @@ pub(super) fn table_1(results: &Results) -> Findings {
                which do not lie on it; uniform refinement with limit vertices has neither error, but it spends faces \
                where the surface is flat."
         .to_owned();
-    Findings { agrees, differs, why }
+    Findings {
+        agrees,
+        differs,
+        why,
+    }
 }
 
 /// How well the face counts of Table 1 match, and what the reference is worth.
@@ -120,10 +139,14 @@ pub(super) fn table_1_notes(results: &Results) -> Vec<String> {
             significant(s.worst_match, 2)
         )
     } else {
-        let list = s
-            .unmatched
-            .iter()
-            .map(|(r, off)| format!("{} at {}° ({} %)", r.model, r.angle_degrees, signed(*off, 1)));
+        let list = s.unmatched.iter().map(|(r, off)| {
+            format!(
+                "{} at {}° ({} %)",
+                r.model,
+                r.angle_degrees,
+                signed(*off, 1)
+            )
+        });
         format!(
             "Amresh's face count is a step function of its threshold. It could not be brought within 1 % for {}; \
              elsewhere it is.",
@@ -132,9 +155,17 @@ pub(super) fn table_1_notes(results: &Results) -> Vec<String> {
     };
     let references = results.table_1.iter().map(|study| {
         let r = study.reference;
-        format!("{} level {} ({} triangles)", study.model, r.level, thousands(r.triangles))
+        format!(
+            "{} level {} ({} triangles)",
+            study.model,
+            r.level,
+            thousands(r.triangles)
+        )
     });
-    let own = results.table_1.iter().map(|study| study.reference.coarser_level_shd_percent / 3.0);
+    let own = results
+        .table_1
+        .iter()
+        .map(|study| study.reference.coarser_level_shd_percent / 3.0);
     let own = spread(own)[2];
     vec![
         counts,
@@ -157,8 +188,16 @@ pub(super) fn table_1_notes(results: &Results) -> Vec<String> {
 /// Figure 2.
 pub(super) fn figure_2(cone: &ConeFigure) -> Findings {
     let greatest = joined(cone.stages.iter().map(|s| format!("{:.1}°", s.greatest())));
-    let turn = cone.stages.iter().map(|s| s.limit_normal_turn_degrees).fold(0.0, f64::max);
-    let inside = cone.stages.iter().filter(|s| s.greatest() <= cone.alpha_degrees).count();
+    let turn = cone
+        .stages
+        .iter()
+        .map(|s| s.limit_normal_turn_degrees)
+        .fold(0.0, f64::max);
+    let inside = cone
+        .stages
+        .iter()
+        .filter(|s| s.greatest() <= cone.alpha_degrees)
+        .count();
     Findings {
         agrees: format!(
             "The greatest angle between the face normals around vertex {} of the {} and its limit normal is {greatest} \
@@ -209,17 +248,29 @@ pub(super) fn figure_7(heads: &[Head]) -> Findings {
     );
     let adaptive = each(&|h| {
         let off = signed(h.off_percent(), 0);
-        format!("{} for {} ({off} %)", thousands(h.adaptive_faces), h.origin.source)
+        format!(
+            "{} for {} ({off} %)",
+            thousands(h.adaptive_faces),
+            h.origin.source
+        )
     });
     let matching = each(&|h| {
-        format!("{:.1}° for {} ({})", h.matching_angle_degrees, h.origin.source, thousands(h.matching_faces))
+        format!(
+            "{:.1}° for {} ({})",
+            h.matching_angle_degrees,
+            h.origin.source,
+            thousands(h.matching_faces)
+        )
     });
     let adaptive = format!(
         "At π/36 = 5° the adaptive count is {adaptive}, where the paper has {}; that count is reached at {matching}.",
         thousands(PAPER_ADAPTIVE)
     );
     let seams = each(&|h| {
-        let by_seam = h.by_seam.iter().map(|(seam, faces)| format!("{} under '{seam}'", thousands(*faces)));
+        let by_seam = h
+            .by_seam
+            .iter()
+            .map(|(seam, faces)| format!("{} under '{seam}'", thousands(*faces)));
         format!("{} ({})", h.origin.source, joined(by_seam))
     });
     let (agrees, differs) = if uniform_agrees {
@@ -232,7 +283,10 @@ pub(super) fn figure_7(heads: &[Head]) -> Findings {
     };
     let (ellipsoid, own): (Vec<&Head>, Vec<&Head>) =
         heads.iter().partition(|head| head.name == ELLIPSOID.name);
-    let nearest = own.iter().map(|head| head.off_percent().abs()).fold(f64::MAX, f64::min);
+    let nearest = own
+        .iter()
+        .map(|head| head.off_percent().abs())
+        .fold(f64::MAX, f64::min);
     let even = ellipsoid.iter().filter(|ellipsoid| ellipsoid.off_percent().abs() < nearest).map(|ellipsoid| {
         format!(
             " An ellipsoid with a head's proportions, 1 : 1.2 : 1.6, evenly faceted with as many faces, gives {}, nearest \
@@ -246,13 +300,24 @@ pub(super) fn figure_7(heads: &[Head]) -> Findings {
          are {seams}.",
         even.collect::<String>()
     );
-    Findings { agrees, differs, why }
+    Findings {
+        agrees,
+        differs,
+        why,
+    }
 }
 
 /// Figure 8.
 pub(super) fn figure_8(shoe: &Shoe) -> Findings {
-    let tell = joined(shoe.settings.iter().map(|s| format!("{} at {}", thousands(s.faces), s.angle)));
-    let more = shoe.settings.windows(2).all(|pair| pair[1].faces > pair[0].faces);
+    let tell = joined(
+        shoe.settings
+            .iter()
+            .map(|s| format!("{} at {}", thousands(s.faces), s.angle)),
+    );
+    let more = shoe
+        .settings
+        .windows(2)
+        .all(|pair| pair[1].faces > pair[0].faces);
     let readings = shoe.settings.iter().map(|s| {
         let all = joined(s.readings.iter().map(|&n| thousands(n)));
         let nearest = s.readings.iter().min_by_key(|n| n.abs_diff(s.faces));
@@ -271,17 +336,25 @@ pub(super) fn figure_8(shoe: &Shoe) -> Findings {
             thousands(shoe.uniform_faces)
         )
     } else {
-        format!("The mesh starts from as many faces ({}).", thousands(shoe.control_faces))
+        format!(
+            "The mesh starts from as many faces ({}).",
+            thousands(shoe.control_faces)
+        )
     };
     let differs = format!(
         "The paper's counts have lost digits in the text extracted from its PDF, all of them zeros as far as can be seen: {}.",
         readings.collect::<Vec<_>>().join(". ")
     );
-    let against = if more { "" } else { " The counts do not grow as the threshold shrinks." };
+    let against = if more {
+        ""
+    } else {
+        " The counts do not grow as the threshold shrinks."
+    };
     Findings {
         agrees,
         differs: differs + against,
-        why: "The shoe of the paper is not to be had; this is another shape with as many faces.".to_owned(),
+        why: "The shoe of the paper is not to be had; this is another shape with as many faces."
+            .to_owned(),
     }
 }
 
@@ -291,7 +364,12 @@ pub(super) fn figure_9(figure: &ViewFigure) -> Findings {
     let tell = figure.models.iter().map(|m| {
         let faces = m.faces_at(part).unwrap_or(m.control_faces);
         let share = 100.0 * faces as f64 / m.uniform_faces as f64;
-        format!("{}: {} of {} faces ({share:.0} %)", m.name, thousands(faces), thousands(m.uniform_faces))
+        format!(
+            "{}: {} of {} faces ({share:.0} %)",
+            m.name,
+            thousands(faces),
+            thousands(m.uniform_faces)
+        )
     });
     let back = figure.models.iter().map(|m| {
         let [control, uniform, adaptive] = m.back_faces.map(thousands);
@@ -301,12 +379,19 @@ pub(super) fn figure_9(figure: &ViewFigure) -> Findings {
         )
     });
     let readings = figure.models.iter().map(|m| {
-        let all = joined(
-            m.paper_adaptive_readings
-                .iter()
-                .map(|&n| format!("{} ({:.0} %)", thousands(n), 100.0 * n as f64 / m.paper_uniform as f64)),
-        );
-        format!("{} of {} for the {}", all, thousands(m.paper_uniform), m.name)
+        let all = joined(m.paper_adaptive_readings.iter().map(|&n| {
+            format!(
+                "{} ({:.0} %)",
+                thousands(n),
+                100.0 * n as f64 / m.paper_uniform as f64
+            )
+        }));
+        format!(
+            "{} of {} for the {}",
+            all,
+            thousands(m.paper_uniform),
+            m.name
+        )
     });
     Findings {
         agrees: format!(
@@ -326,10 +411,15 @@ pub(super) fn figure_9(figure: &ViewFigure) -> Findings {
 /// The drift.
 pub(super) fn drift_findings(results: &Results) -> Findings {
     let (paper, paper_pairs) = rises(drift(results), |p| Some(p.paper.shd_percent));
-    let (uniform, uniform_pairs) = rises(drift(results), |p| p.uniform_limit.map(|m| m.shd_percent));
+    let (uniform, uniform_pairs) =
+        rises(drift(results), |p| p.uniform_limit.map(|m| m.shd_percent));
     let ends = results.table_1.iter().filter_map(|study| {
         let last = study.drift.last()?;
-        let best = study.drift.iter().map(|p| p.paper.shd_percent).fold(f64::MAX, f64::min);
+        let best = study
+            .drift
+            .iter()
+            .map(|p| p.paper.shd_percent)
+            .fold(f64::MAX, f64::min);
         Some(last.paper.shd_percent / best.max(f64::MIN_POSITIVE))
     });
     let ends: Vec<f64> = ends.collect();
@@ -360,12 +450,21 @@ pub(super) fn drift_findings(results: &Results) -> Findings {
 pub(super) fn seams(results: &Results) -> String {
     let mut best = [0; SEAMS.len()];
     for study in &results.table_1 {
-        let least = study.seams.iter().map(|row| row.measured.shd_percent).fold(f64::MAX, f64::min);
+        let least = study
+            .seams
+            .iter()
+            .map(|row| row.measured.shd_percent)
+            .fold(f64::MAX, f64::min);
         for (wins, row) in best.iter_mut().zip(&study.seams) {
             *wins += usize::from(row.measured.shd_percent == least);
         }
     }
-    let wins = joined(SEAMS.iter().zip(best).map(|((_, name), wins)| format!("'{name}' for {wins}")));
+    let wins = joined(
+        SEAMS
+            .iter()
+            .zip(best)
+            .map(|((_, name), wins)| format!("'{name}' for {wins}")),
+    );
     format!(
         "The paper does not say which vertices take their new position where divided and undivided faces meet. 'all' \
          (the default, and what the other tables use) moves every vertex of the mesh in each step; 'any' moves those \

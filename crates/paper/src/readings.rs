@@ -35,12 +35,21 @@ mod tests {
     #[test]
     fn all_readings_and_no_others() {
         let brute = |printed: &str, low: usize, high: usize| -> Vec<usize> {
-            (low..=high).filter(|n| n.to_string().replace('0', "") == printed.replace('0', "")).collect()
+            (low..=high)
+                .filter(|n| n.to_string().replace('0', "") == printed.replace('0', ""))
+                .collect()
         };
-        for (printed, low, high) in
-            [("988", 142, 9088), ("188", 360, 5760), ("846", 684, 10_944), ("6626", 1, 13_280)]
-        {
-            assert_eq!(readings(printed, low, high), brute(printed, low, high), "{printed}");
+        for (printed, low, high) in [
+            ("988", 142, 9088),
+            ("188", 360, 5760),
+            ("846", 684, 10_944),
+            ("6626", 1, 13_280),
+        ] {
+            assert_eq!(
+                readings(printed, low, high),
+                brute(printed, low, high),
+                "{printed}"
+            );
         }
         assert_eq!(readings("988", 142, 9088), [988, 9088]);
     }

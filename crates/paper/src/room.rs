@@ -46,7 +46,9 @@ impl Room {
 
 /// Pixels that a label takes in the widest of the usual fonts.
 pub(super) fn width_of(text: &str, label: &Label) -> Result<f64, RenderError> {
-    let style = TextStyle::default().size(label.size as f32).bold(label.bold);
+    let style = TextStyle::default()
+        .size(label.size as f32)
+        .bold(label.bold);
     Ok(WIDEST * f64::from(text_width(text, &style)?))
 }
 
@@ -67,7 +69,12 @@ pub(super) fn lines(text: &str, room: f64, label: &Label) -> Result<Vec<String>,
 }
 
 /// A text in lines from `top`, the first baseline, downwards.
-pub(super) fn paragraph(drawing: &mut Drawing, [x, top]: [f64; 2], lines: &[String], label: &Label) {
+pub(super) fn paragraph(
+    drawing: &mut Drawing,
+    [x, top]: [f64; 2],
+    lines: &[String],
+    label: &Label,
+) {
     for (line, row) in lines.iter().zip(0..) {
         drawing.label([x, top + 1.35 * label.size * f64::from(row)], line, label);
     }

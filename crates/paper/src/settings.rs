@@ -71,7 +71,10 @@ mod tests {
             let level = Settings::FULL.reference_level(faces);
             let triangles = faces << (2 * level);
             assert!(level > Settings::FULL.steps);
-            assert!(level == Settings::FULL.steps + 1 || triangles <= Settings::FULL.reference_triangles);
+            assert!(
+                level == Settings::FULL.steps + 1
+                    || triangles <= Settings::FULL.reference_triangles
+            );
             assert!(4 * triangles > Settings::FULL.reference_triangles);
         }
     }

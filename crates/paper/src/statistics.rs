@@ -52,14 +52,23 @@ pub(super) struct Table1Statistics<'a> {
 impl<'a> Table1Statistics<'a> {
     pub(super) fn new(results: &'a Results) -> Self {
         let rows: Vec<&Row> = results.rows().collect();
-        let count = |what: Against| rows.iter().filter(|r| against(r.ratio_percent) == what).count();
+        let count = |what: Against| {
+            rows.iter()
+                .filter(|r| against(r.ratio_percent) == what)
+                .count()
+        };
         let nearer = |r: &&&Row| r.uniform_limit.shd_percent < r.paper.shd_percent;
         let off = |r: &Row| 100.0 * (r.amresh.faces as f64 / r.paper.faces as f64 - 1.0);
-        let factor = |r: &&Row| r.paper.shd_percent / r.uniform_limit.shd_percent.max(f64::MIN_POSITIVE);
+        let factor =
+            |r: &&Row| r.paper.shd_percent / r.uniform_limit.shd_percent.max(f64::MIN_POSITIVE);
         Self {
             below: count(Against::Below),
             equal: count(Against::Equal),
-            above: rows.iter().filter(|r| against(r.ratio_percent) == Against::Above).copied().collect(),
+            above: rows
+                .iter()
+                .filter(|r| against(r.ratio_percent) == Against::Above)
+                .copied()
+                .collect(),
             ratios: spread(rows.iter().map(|r| r.ratio_percent)),
             uniform_nearer: rows.iter().filter(nearer).count(),
             uniform_nearer_and_smaller: rows
@@ -70,12 +79,19 @@ impl<'a> Table1Statistics<'a> {
             uniform_factors: spread(rows.iter().map(factor)),
             exact_nearer: rows
                 .iter()
-                .filter(|r| r.exact.shd_percent < r.paper.shd_percent && r.exact.faces <= r.paper.faces)
+                .filter(|r| {
+                    r.exact.shd_percent < r.paper.shd_percent && r.exact.faces <= r.paper.faces
+                })
                 .count(),
             exact_factors: spread(
-                rows.iter().map(|r| r.paper.shd_percent / r.exact.shd_percent.max(f64::MIN_POSITIVE)),
+                rows.iter()
+                    .map(|r| r.paper.shd_percent / r.exact.shd_percent.max(f64::MIN_POSITIVE)),
             ),
-            unmatched: rows.iter().map(|&r| (r, off(r))).filter(|(_, off)| off.abs() > 1.0).collect(),
+            unmatched: rows
+                .iter()
+                .map(|&r| (r, off(r)))
+                .filter(|(_, off)| off.abs() > 1.0)
+                .collect(),
             worst_match: rows.iter().map(|r| off(r).abs()).fold(0.0, f64::max),
             rows,
         }
@@ -86,9 +102,15 @@ impl<'a> Table1Statistics<'a> {
 pub(super) fn spread(values: impl Iterator<Item = f64>) -> [f64; 3] {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
-    let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return [0.0; 3] };
+    let (Some(&first), Some(&last)) = (values.first(), values.last()) else {
+        return [0.0; 3];
+    };
     let half = values.len() / 2;
-    let median = if values.len() % 2 == 1 { values[half] } else { 0.5 * (values[half - 1] + values[half]) };
+    let median = if values.len() % 2 == 1 {
+        values[half]
+    } else {
+        0.5 * (values[half - 1] + values[half])
+    };
     [first, median, last]
 }
 
@@ -97,10 +119,14 @@ pub(super) fn rises<'a>(
     points: impl Iterator<Item = &'a DriftPoint> + Clone,
     value: impl Fn(&DriftPoint) -> Option<f64>,
 ) -> (usize, usize) {
-    let pairs =
-        points.clone().zip(points.skip(1)).filter(|(a, b)| a.model == b.model && a.steps + 1 == b.steps);
+    let pairs = points
+        .clone()
+        .zip(points.skip(1))
+        .filter(|(a, b)| a.model == b.model && a.steps + 1 == b.steps);
     let known = pairs.filter_map(|(a, b)| Some((value(a)?, value(b)?)));
-    known.fold((0, 0), |(rises, all), (a, b)| (rises + usize::from(b > a), all + 1))
+    known.fold((0, 0), |(rises, all), (a, b)| {
+        (rises + usize::from(b > a), all + 1)
+    })
 }
 
 #[cfg(test)]

@@ -103,8 +103,11 @@ pub(super) struct Study {
 }
 
 /// The seam rules by their names on the command line.
-pub(super) const SEAMS: [(SeamRule, &str); 3] =
-    [(SeamRule::All, "all"), (SeamRule::Any, "any"), (SeamRule::Inner, "inner")];
+pub(super) const SEAMS: [(SeamRule, &str); 3] = [
+    (SeamRule::All, "all"),
+    (SeamRule::Any, "any"),
+    (SeamRule::Inner, "inner"),
+];
 
 /// Steps at least of what stands for the limit surface of √3-subdivision.
 const SQRT3_STEPS: u32 = 6;
@@ -113,7 +116,11 @@ const SQRT3_STEPS: u32 = 6;
 ///
 /// # Errors
 /// A refinement or a measurement fails.
-pub(super) fn study(player: &Player, settings: &Settings, stage: &dyn Fn(&str)) -> anyhow::Result<Study> {
+pub(super) fn study(
+    player: &Player,
+    settings: &Settings,
+    stage: &dyn Fn(&str),
+) -> anyhow::Result<Study> {
     let start = Instant::now();
     let control = &player.mesh;
     let level = settings.reference_level(control.face_count());
@@ -145,7 +152,12 @@ pub(super) fn study(player: &Player, settings: &Settings, stage: &dyn Fn(&str)) 
         control_vertices: control.vertex_count(),
         control_faces: control.face_count(),
         boundary_edges: control.topology().boundary_edge_count(),
-        max_valence: control.topology().vertices().map(valence).max().unwrap_or(0),
+        max_valence: control
+            .topology()
+            .vertices()
+            .map(valence)
+            .max()
+            .unwrap_or(0),
         reference,
         rows,
         drift,
@@ -176,7 +188,16 @@ impl<'a> Bench<'a> {
         settings: &'a Settings,
     ) -> Self {
         let uniform = vec![None; level];
-        Self { model, control, reference, sqrt3, level, settings, uniform, paper: Vec::new() }
+        Self {
+            model,
+            control,
+            reference,
+            sqrt3,
+            level,
+            settings,
+            uniform,
+            paper: Vec::new(),
+        }
     }
 
     /// A length in per cent of the diagonal of the control mesh's bounding box.
@@ -221,8 +242,9 @@ impl<'a> Bench<'a> {
         steps: usize,
         (seam, name): (SeamRule, &'static str),
     ) -> anyhow::Result<Measured> {
-        let same =
-            |known: &&(f64, usize, &str, Measured)| (known.0, known.1, known.2) == (angle, steps, name);
+        let same = |known: &&(f64, usize, &str, Measured)| {
+            (known.0, known.1, known.2) == (angle, steps, name)
+        };
         if let Some(known) = self.paper.iter().find(same) {
             return Ok(known.3);
         }
@@ -234,7 +256,9 @@ impl<'a> Bench<'a> {
     fn row(&mut self, angle: f64) -> anyhow::Result<Row> {
         let steps = self.settings.steps;
         let paper = self.paper(angle, steps, SEAMS[0])?;
-        let matched = match_angle(paper.faces, angle, |angle| methods::amresh(self.control, angle, steps))?;
+        let matched = match_angle(paper.faces, angle, |angle| {
+            methods::amresh(self.control, angle, steps)
+        })?;
         let amresh = self.measure(&matched.refinement.mesh)?;
         let exact = methods::exact_with(self.control, paper.faces)?;
         let restricted = |measure| methods::restricted(self.control, measure, paper.faces);
@@ -264,8 +288,17 @@ impl<'a> Bench<'a> {
         let mut points = Vec::new();
         for steps in 1..=self.settings.drift_steps {
             let paper = self.paper(angle, steps, SEAMS[0])?;
-            let uniform_limit = if steps < self.level { Some(self.uniform_limit(steps)?) } else { None };
-            points.push(DriftPoint { model: self.model, steps, paper, uniform_limit });
+            let uniform_limit = if steps < self.level {
+                Some(self.uniform_limit(steps)?)
+            } else {
+                None
+            };
+            points.push(DriftPoint {
+                model: self.model,
+                steps,
+                paper,
+                uniform_limit,
+            });
         }
         Ok(points)
     }
@@ -274,7 +307,11 @@ impl<'a> Bench<'a> {
         let (angle, steps) = (self.settings.extra_angle_degrees, self.settings.steps);
         let rows = SEAMS.map(|rule| {
             let measured = self.paper(angle, steps, rule)?;
-            Ok(SeamRow { model: self.model, seam: rule.1, measured })
+            Ok(SeamRow {
+                model: self.model,
+                seam: rule.1,
+                measured,
+            })
         });
         rows.into_iter().collect()
     }
@@ -282,5 +319,9 @@ impl<'a> Bench<'a> {
 
 /// One distance in per cent of another; 100 where both vanish.
 fn ratio_percent(shd: f64, by: f64) -> f64 {
-    if shd == by { 100.0 } else { 100.0 * shd / by.max(f64::MIN_POSITIVE) }
+    if shd == by {
+        100.0
+    } else {
+        100.0 * shd / by.max(f64::MIN_POSITIVE)
+    }
 }

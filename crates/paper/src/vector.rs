@@ -16,13 +16,21 @@ pub(super) fn dot(a: Vector, b: Vector) -> f64 {
 }
 
 pub(super) fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// The direction of `a`; zero where it has none.
 pub(super) fn unit(a: Vector) -> Vector {
     let length = dot(a, a).sqrt();
-    if length > 0.0 { a.map(|x| x / length) } else { [0.0; 3] }
+    if length > 0.0 {
+        a.map(|x| x / length)
+    } else {
+        [0.0; 3]
+    }
 }
 
 /// The angle between two unit vectors, in degrees; accurate for small ones too.
@@ -33,7 +41,11 @@ pub(super) fn angle_degrees(a: Vector, b: Vector) -> f64 {
 
 /// Two unit vectors perpendicular to the unit vector `n` and to each other; with it they are right-handed.
 pub(super) fn tangents(n: Vector) -> [Vector; 2] {
-    let axis = if n[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
+    let axis = if n[0].abs() < 0.6 {
+        [1.0, 0.0, 0.0]
+    } else {
+        [0.0, 1.0, 0.0]
+    };
     let u = unit(cross(axis, n));
     [u, cross(n, u)]
 }

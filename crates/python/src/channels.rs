@@ -30,17 +30,32 @@ const SEMANTICS: [(&str, Semantic); 6] = [
     ("other", Semantic::Other),
 ];
 
-const DOMAINS: [(&str, Domain); 3] =
-    [("vertex", Domain::Vertex), ("corner", Domain::Corner), ("face", Domain::Face)];
+const DOMAINS: [(&str, Domain); 3] = [
+    ("vertex", Domain::Vertex),
+    ("corner", Domain::Corner),
+    ("face", Domain::Face),
+];
 
 const INTERPOLATIONS: [(&str, Interpolation); 7] = [
     ("linear", Interpolation::Linear),
     ("nearest", Interpolation::Nearest),
     ("smooth-none", Interpolation::Smooth(SeamRule::None)),
-    ("smooth-corners-only", Interpolation::Smooth(SeamRule::CornersOnly)),
-    ("smooth-corners-plus1", Interpolation::Smooth(SeamRule::CornersPlus1)),
-    ("smooth-corners-plus2", Interpolation::Smooth(SeamRule::CornersPlus2)),
-    ("smooth-boundaries", Interpolation::Smooth(SeamRule::Boundaries)),
+    (
+        "smooth-corners-only",
+        Interpolation::Smooth(SeamRule::CornersOnly),
+    ),
+    (
+        "smooth-corners-plus1",
+        Interpolation::Smooth(SeamRule::CornersPlus1),
+    ),
+    (
+        "smooth-corners-plus2",
+        Interpolation::Smooth(SeamRule::CornersPlus2),
+    ),
+    (
+        "smooth-boundaries",
+        Interpolation::Smooth(SeamRule::Boundaries),
+    ),
 ];
 
 const STORAGES: [(&str, Storage); 9] = [
@@ -60,13 +75,18 @@ fn named<T: Copy>(all: &[(&str, T)], name: &str, what: &str) -> PyResult<T> {
     let found = all.iter().find(|(own, _)| *own == name);
     found.map(|&(_, value)| value).ok_or_else(|| {
         let names: Vec<&str> = all.iter().map(|&(name, _)| name).collect();
-        OptionError::new_err(format!("{what} is '{name}', expected one of {}", names.join(", ")))
+        OptionError::new_err(format!(
+            "{what} is '{name}', expected one of {}",
+            names.join(", ")
+        ))
     })
 }
 
 /// The name of a value.
 fn name_of<T: PartialEq>(all: &[(&'static str, T)], value: &T) -> &'static str {
-    all.iter().find(|(_, own)| own == value).map_or("other", |&(name, _)| name)
+    all.iter()
+        .find(|(_, own)| own == value)
+        .map_or("other", |&(name, _)| name)
 }
 
 impl ChannelIn<'_> {
@@ -81,15 +101,26 @@ impl ChannelIn<'_> {
         let interpolation = named(&INTERPOLATIONS, &self.interpolation, &what("interpolation"))?;
         let storage = named(&STORAGES, &self.storage, &what("storage"))?;
         let arity = self.values.shape()[1];
-        let indices = self.indices.as_slice()?.iter().enumerate().map(|(row, &index)| {
-            u32::try_from(index).map_err(|_| {
-                OptionError::new_err(format!("{}[{row}] is {index}, expected at least 0", what("indices")))
-            })
-        });
+        let indices = self
+            .indices
+            .as_slice()?
+            .iter()
+            .enumerate()
+            .map(|(row, &index)| {
+                u32::try_from(index).map_err(|_| {
+                    OptionError::new_err(format!(
+                        "{}[{row}] is {index}, expected at least 0",
+                        what("indices")
+                    ))
+                })
+            });
         let mut channel = Channel::new(&*self.name, semantic, domain, arity)
             .interpolated(interpolation)
             .stored(storage)
-            .with(self.values.as_slice()?.to_vec(), indices.collect::<PyResult<_>>()?);
+            .with(
+                self.values.as_slice()?.to_vec(),
+                indices.collect::<PyResult<_>>()?,
+            );
         channel.labels.clone_from(&self.labels);
         Ok(channel)
     }
@@ -102,10 +133,16 @@ pub(crate) fn told<'py>(py: Python<'py>, channel: Channel) -> PyResult<Bound<'py
     dict.set_item("name", &channel.name)?;
     dict.set_item("semantic", name_of(&SEMANTICS, &channel.semantic))?;
     dict.set_item("domain", name_of(&DOMAINS, &channel.domain))?;
-    dict.set_item("interpolation", name_of(&INTERPOLATIONS, &channel.interpolation))?;
+    dict.set_item(
+        "interpolation",
+        name_of(&INTERPOLATIONS, &channel.interpolation),
+    )?;
     dict.set_item("storage", name_of(&STORAGES, &channel.storage))?;
     dict.set_item("labels", &channel.labels)?;
-    dict.set_item("values", PyArray1::from_vec(py, channel.values).reshape([rows, arity])?)?;
+    dict.set_item(
+        "values",
+        PyArray1::from_vec(py, channel.values).reshape([rows, arity])?,
+    )?;
     dict.set_item("indices", PyArray1::from_vec(py, channel.indices))?;
     Ok(dict)
 }

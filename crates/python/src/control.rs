@@ -1,7 +1,9 @@
 //! From a soup to the control mesh that is refined, and the way back: which row of the input each element is from.
 
 use limitmesh::carry::borders;
-use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
+use limitmesh::interpolate::{
+    InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed,
+};
 use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
@@ -26,7 +28,11 @@ impl Recipe {
     /// # Errors
     /// A name that stands for nothing.
     pub(crate) fn new(options: ControlOptions) -> PyResult<Self> {
-        Ok(Self { boundary: options.boundary()?, scheme: options.scheme()?, options })
+        Ok(Self {
+            boundary: options.boundary()?,
+            scheme: options.scheme()?,
+            options,
+        })
     }
 
     /// Whether folded flat regions are taken for what their rims enclose.
@@ -47,10 +53,17 @@ impl Recipe {
     ///
     /// # Errors
     /// No mesh can be made of it, or none that interpolates.
-    pub(crate) fn control(&self, soup: PolygonSoup, observer: &mut Observer<'_>) -> Result<Control, Failure> {
+    pub(crate) fn control(
+        &self,
+        soup: PolygonSoup,
+        observer: &mut Observer<'_>,
+    ) -> Result<Control, Failure> {
         let options = &self.options;
         let (mesh, mut diagnosis, trace) = Mesh::from_soup_traced(&soup, &options.build())?;
-        let channels = soup.channels.iter().map(|channel| channel.on_mesh(&soup, &mesh, &trace));
+        let channels = soup
+            .channels
+            .iter()
+            .map(|channel| channel.on_mesh(&soup, &mesh, &trace));
         let channels: Vec<Channel> = channels.collect::<Result<_, _>>()?;
         let corners = trace.vertices(&soup);
         let mut vertices = vec![None; soup.positions.len()];
@@ -61,8 +74,14 @@ impl Recipe {
         let mesh = mesh.with_boundary(self.boundary);
         let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
         let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {
-            (Some(degrees), _) => (mesh.with_creases_above(degrees.to_radians())?, Some(degrees), false),
-            (None, Some(Look::Part(part))) => (part.on(mesh), Some(part.degrees), options.leads_parts),
+            (Some(degrees), _) => (
+                mesh.with_creases_above(degrees.to_radians())?,
+                Some(degrees),
+                false,
+            ),
+            (None, Some(Look::Part(part))) => {
+                (part.on(mesh), Some(part.degrees), options.leads_parts)
+            }
             _ => (mesh, None, false),
         };
         let (whole, (mesh, concave)) = match options.divides_concave_corners {
@@ -88,7 +107,10 @@ impl Recipe {
         };
         let channels = match concave.parts.is_empty() {
             true => channels,
-            false => channels.iter().map(|channel| channel.on_parts(&concave.parts, &mesh)).collect(),
+            false => channels
+                .iter()
+                .map(|channel| channel.on_parts(&concave.parts, &mesh))
+                .collect(),
         };
         let tables = Tables {
             parts: concave.parts,
@@ -98,7 +120,14 @@ impl Recipe {
             crease_angle,
             interpolated,
         };
-        Ok(Control { mesh, whole, tables, vertices, channels, diagonal })
+        Ok(Control {
+            mesh,
+            whole,
+            tables,
+            vertices,
+            channels,
+            diagonal,
+        })
     }
 }
 

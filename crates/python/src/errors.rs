@@ -16,9 +16,24 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-create_exception!(limitmesh, Error, PyValueError, "What limitmesh cannot do with its arguments.");
-create_exception!(limitmesh, MeshError, Error, "A mesh that is none; the message names the row.");
-create_exception!(limitmesh, OptionError, Error, "An option that has no meaning, or not with the others.");
+create_exception!(
+    limitmesh,
+    Error,
+    PyValueError,
+    "What limitmesh cannot do with its arguments."
+);
+create_exception!(
+    limitmesh,
+    MeshError,
+    Error,
+    "A mesh that is none; the message names the row."
+);
+create_exception!(
+    limitmesh,
+    OptionError,
+    Error,
+    "An option that has no meaning, or not with the others."
+);
 create_exception!(
     limitmesh,
     ReadError,
@@ -54,9 +69,13 @@ impl From<CoreMeshError> for Failure {
         match error {
             CoreMeshError::BadOption { .. } => Self::Option(error.to_string()),
             // Rows of the arrays, by the arrays' names.
-            CoreMeshError::NotFinite { vertex, axis, value } => {
-                Self::Mesh(format!("vertices[{vertex}, {axis}] is {value}, expected a finite number"))
-            }
+            CoreMeshError::NotFinite {
+                vertex,
+                axis,
+                value,
+            } => Self::Mesh(format!(
+                "vertices[{vertex}, {axis}] is {value}, expected a finite number"
+            )),
             error => Self::Mesh(error.to_string()),
         }
     }
@@ -161,7 +180,9 @@ impl From<ReplayError> for Failure {
             ReplayError::Mesh(error) => error.into(),
             ReplayError::Limit(error) => error.into(),
             ReplayError::Cancelled(error) => error.into(),
-            ReplayError::Scheme { .. } | ReplayError::TooMany { .. } => Self::Option(error.to_string()),
+            ReplayError::Scheme { .. } | ReplayError::TooMany { .. } => {
+                Self::Option(error.to_string())
+            }
             error => Self::Mesh(error.to_string()),
         }
     }

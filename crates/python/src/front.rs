@@ -40,7 +40,11 @@ impl Worker {
         let pool = Pool::new(threads)?;
         let (jobs, received) = channel();
         pool.start(move || serve(&control, scheme, &received));
-        Ok(Self { jobs, pool, is_told: false })
+        Ok(Self {
+            jobs,
+            pool,
+            is_told: false,
+        })
     }
 
     fn end(self) {
@@ -51,7 +55,11 @@ impl Worker {
 
 /// Does jobs until nobody can send any more.
 fn serve(control: &Mesh, scheme: &'static dyn Scheme, jobs: &Receiver<Job>) {
-    let mut slot = Slot { control, scheme, front: None };
+    let mut slot = Slot {
+        control,
+        scheme,
+        front: None,
+    };
     for job in jobs {
         job(&mut slot);
     }
@@ -76,9 +84,16 @@ impl<'a> Slot<'a> {
     ) -> Result<&CoreFront<'a>, FrontError> {
         let mut front = match self.front.take() {
             Some(front) => front,
-            None => CoreFront::measured_by_observed(self.control, self.scheme, Measure::Distance, observer)?,
+            None => CoreFront::measured_by_observed(
+                self.control,
+                self.scheme,
+                Measure::Distance,
+                observer,
+            )?,
         };
-        let done = demand.map_or(Ok(()), |demand| front.update_observed(demand, observer).map(drop));
+        let done = demand.map_or(Ok(()), |demand| {
+            front.update_observed(demand, observer).map(drop)
+        });
         match done {
             Ok(()) => Ok(self.front.insert(front)),
             Err(why) => {
@@ -102,9 +117,15 @@ fn taken(place: &Place) -> Option<Worker> {
 
 /// Ends the threads of fronts that wait for a job.
 pub(crate) fn end_idle() {
-    let Ok(mut places) = PLACES.try_lock() else { return };
+    let Ok(mut places) = PLACES.try_lock() else {
+        return;
+    };
     places.retain(|place| place.strong_count() > 0);
-    places.iter().filter_map(Weak::upgrade).filter_map(|place| taken(&place)).for_each(Worker::end);
+    places
+        .iter()
+        .filter_map(Weak::upgrade)
+        .filter_map(|place| taken(&place))
+        .for_each(Worker::end);
 }
 
 /// What is asked of a front.
@@ -123,9 +144,13 @@ impl DemandIn {
         let cameras: Vec<_> = self.cameras.iter().map(camera).collect();
         let demand = match (self.pixels, self.tolerance) {
             (Some(pixels), _) => Demand::pixels(pixels, &cameras),
-            (None, tolerance) => Demand::tolerance(tolerance.map_or(0.0, |length| length.of(diagonal))),
+            (None, tolerance) => {
+                Demand::tolerance(tolerance.map_or(0.0, |length| length.of(diagonal)))
+            }
         };
-        let demand = self.triangles.map_or(demand.clone(), |most| demand.triangles(most));
+        let demand = self
+            .triangles
+            .map_or(demand.clone(), |most| demand.triangles(most));
         let demand = demand.max_levels(front_levels(self.max_levels)?);
         demand.check()?;
         Ok(demand)
@@ -173,12 +198,21 @@ impl News {
         let changes = front.changes();
         let (vertices, slots) = match is_known {
             true => (changes.vertices.clone(), changes.triangles.clone()),
-            false => ((0..positions.len() as u32).collect(), (0..triangles.len() as u32).collect()),
+            false => (
+                (0..positions.len() as u32).collect(),
+                (0..triangles.len() as u32).collect(),
+            ),
         };
         Self {
             counts: [positions.len(), triangles.len()],
-            positions: vertices.iter().map(|&v: &u32| positions[v as usize]).collect(),
-            corners: slots.iter().map(|&slot: &u32| triangles[slot as usize]).collect(),
+            positions: vertices
+                .iter()
+                .map(|&v: &u32| positions[v as usize])
+                .collect(),
+            corners: slots
+                .iter()
+                .map(|&slot: &u32| triangles[slot as usize])
+                .collect(),
             vertices,
             triangles: slots,
             numbers: (
@@ -210,8 +244,17 @@ impl Front {
             Ok((control.mesh, control.diagonal))
         })?;
         let place = Arc::default();
-        PLACES.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::downgrade(&place));
-        Ok(Self { control: Arc::new(control), diagonal, scheme, threads, place })
+        PLACES
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(Arc::downgrade(&place));
+        Ok(Self {
+            control: Arc::new(control),
+            diagonal,
+            scheme,
+            threads,
+            place,
+        })
     }
 
     /// Brings the front to a demand; without one, to the control mesh's own triangles if it is fresh.
@@ -222,7 +265,9 @@ impl Front {
         progress: Option<Py<PyAny>>,
         is_told: bool,
     ) -> PyResult<Told<'py>> {
-        let demand = demand.map(|demand| demand.demand(self.diagonal)).transpose()?;
+        let demand = demand
+            .map(|demand| demand.demand(self.diagonal))
+            .transpose()?;
         let mut worker = match taken(&self.place) {
             Some(worker) if worker.pool.is_here() => worker,
             other => {
@@ -239,7 +284,10 @@ impl Front {
         let job: Job = Box::new(move |slot| {
             end.finish(|observer| Ok(News::of(slot.updated(demand.as_ref(), observer)?, is_told)));
         });
-        worker.jobs.send(job).map_err(|_| PyRuntimeError::new_err("the front's thread has ended"))?;
+        worker
+            .jobs
+            .send(job)
+            .map_err(|_| PyRuntimeError::new_err("the front's thread has ended"))?;
         let (result, is_idle) = caller.wait(py);
         worker.is_told = matches!(result, Ok(Ok(_)));
         if is_idle {

@@ -33,14 +33,20 @@ impl Detail {
     /// # Errors
     /// Tolerances that do not fall.
     fn options(&self, diagonal: f64) -> Result<LodOptions, Failure> {
-        let lengths: Vec<f64> = self.tolerances.iter().map(|extent| extent.of(diagonal)).collect();
+        let lengths: Vec<f64> = self
+            .tolerances
+            .iter()
+            .map(|extent| extent.of(diagonal))
+            .collect();
         if let Some(row) = (1..lengths.len()).find(|&row| lengths[row] >= lengths[row - 1]) {
             let (own, before) = (lengths[row], lengths[row - 1]);
             return Err(Failure::Option(format!(
                 "tolerances[{row}] is {own}, expected less than the coarser one before it, which is {before}"
             )));
         }
-        let options = LodOptions::new(lengths).geomorphs(self.morph).max_memory(self.max_memory);
+        let options = LodOptions::new(lengths)
+            .geomorphs(self.morph)
+            .max_memory(self.max_memory);
         Ok(match self.max_triangles {
             None => options,
             cap => options.max_triangles(cap),
@@ -77,21 +83,38 @@ pub(crate) fn levels_of_detail<'py>(
         for level in levels {
             let channels = match control.channels.is_empty() {
                 true => Vec::new(),
-                false => carried(&control.channels, &control.mesh, recipe.scheme, &level.exact)?,
+                false => carried(
+                    &control.channels,
+                    &control.mesh,
+                    recipe.scheme,
+                    &level.exact,
+                )?,
             };
-            let refined = Refined::of_exact(level.exact, control.tables.clone()).with_channels(channels);
+            let refined =
+                Refined::of_exact(level.exact, control.tables.clone()).with_channels(channels);
             told.push(Told {
-                refined: if has_wide_indices { refined.widened() } else { refined },
+                refined: if has_wide_indices {
+                    refined.widened()
+                } else {
+                    refined
+                },
                 tolerance: level.tolerance,
                 deviation: level.parametric,
                 geomorph: level.geomorph,
             });
         }
         let seconds = start.elapsed().as_secs_f64();
-        told.iter_mut().for_each(|level| level.refined.took(seconds));
+        told.iter_mut()
+            .for_each(|level| level.refined.took(seconds));
         Ok(told)
     })?;
-    PyList::new(py, levels.into_iter().map(|level| level.told(py)).collect::<PyResult<Vec<_>>>()?)
+    PyList::new(
+        py,
+        levels
+            .into_iter()
+            .map(|level| level.told(py))
+            .collect::<PyResult<Vec<_>>>()?,
+    )
 }
 
 impl Told {
@@ -118,6 +141,11 @@ impl Told {
 
 /// How near a camera may come until a deviation shows as more than so many pixels.
 #[pyfunction]
-pub(crate) fn switching_distance(deviation: f64, pixels: f64, height: f64, fov_degrees: f64) -> f64 {
+pub(crate) fn switching_distance(
+    deviation: f64,
+    pixels: f64,
+    height: f64,
+    fov_degrees: f64,
+) -> f64 {
     limitmesh::refine::switching_distance(deviation, pixels, height, fov_degrees.to_radians())
 }

@@ -70,8 +70,10 @@ mod _limitmesh {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let names =
-            limitmesh::mesh::Diagnosis::default().findings().map(|(name, _)| name).collect::<Vec<_>>();
+        let names = limitmesh::mesh::Diagnosis::default()
+            .findings()
+            .map(|(name, _)| name)
+            .collect::<Vec<_>>();
         module.add("FINDINGS", PyTuple::new(module.py(), names)?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -26,7 +26,10 @@ pub(crate) fn limit<'py>(
     let (positions, normals) = run(py, threads, progress, move |observer| {
         let control = recipe.control(soup, observer)?;
         let table = LimitTable::new(recipe.scheme);
-        let (positions, normals) = (table.positions(&control.mesh)?, table.normals(&control.mesh)?);
+        let (positions, normals) = (
+            table.positions(&control.mesh)?,
+            table.normals(&control.mesh)?,
+        );
         let of_input = |all: &[[f64; 3]]| -> Vec<[f64; 3]> {
             let own = |v: &Option<u32>| v.map_or([f64::NAN; 3], |v| all[v as usize]);
             control.vertices.iter().map(own).collect()

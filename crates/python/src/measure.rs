@@ -48,8 +48,14 @@ pub(crate) fn measure<'py>(
     let (a, b) = (surface.soup()?, reference.soup()?);
     let distance = run(py, threads, progress, move |observer| {
         let (of_a, of_b) = (as_triangles(&a), as_triangles(&b));
-        let a = Triangles { positions: &a.positions, triangles: &of_a };
-        let b = Triangles { positions: &b.positions, triangles: &of_b };
+        let a = Triangles {
+            positions: &a.positions,
+            triangles: &of_a,
+        };
+        let b = Triangles {
+            positions: &b.positions,
+            triangles: &of_b,
+        };
         between(a, b, &how, observer)
     })?;
     told(py, &distance)
@@ -71,12 +77,18 @@ pub(crate) fn measure_limit<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let (surface, soup, recipe) = (surface.soup()?, reference.soup()?, Recipe::new(control)?);
     if how.certified && !is_certified(recipe.scheme) {
-        let what = format!("nothing is certain about limit surfaces of the scheme {}", recipe.scheme.name());
+        let what = format!(
+            "nothing is certain about limit surfaces of the scheme {}",
+            recipe.scheme.name()
+        );
         return Err(OptionError::new_err(what));
     }
     let distance = run(py, threads, progress, move |observer| {
         let triangles = as_triangles(&surface);
-        let a = Triangles { positions: &surface.positions, triangles: &triangles };
+        let a = Triangles {
+            positions: &surface.positions,
+            triangles: &triangles,
+        };
         let control = recipe.control(soup, observer)?;
         if how.certified {
             let mut options = LimitDistanceOptions::default().unfold(recipe.unfolds());
@@ -86,7 +98,8 @@ pub(crate) fn measure_limit<'py>(
             if let Some(work) = how.max_work {
                 options = options.max_work(work);
             }
-            let found = limit_distance_observed(a, &control.mesh, recipe.scheme, &options, observer)?;
+            let found =
+                limit_distance_observed(a, &control.mesh, recipe.scheme, &options, observer)?;
             return Ok(Distance::Certified(found.distance));
         }
         let suiting = || reference_levels(control.mesh.face_count(), a.triangles.len());
@@ -113,7 +126,9 @@ fn between(
 ) -> Result<Distance, Failure> {
     if !how.certified {
         let options = SamplingOptions::default().samples(how.samples);
-        return Ok(Distance::Sampled(hausdorff_observed(a, b, &options, observer)?));
+        return Ok(Distance::Sampled(hausdorff_observed(
+            a, b, &options, observer,
+        )?));
     }
     let mut options = CertifiedOptions::default();
     if let Some(gap) = how.gap {
@@ -122,7 +137,9 @@ fn between(
     if let Some(work) = how.max_work {
         options = options.max_work(work);
     }
-    Ok(Distance::Certified(certified_hausdorff_observed(a, b, &options, observer)?))
+    Ok(Distance::Certified(certified_hausdorff_observed(
+        a, b, &options, observer,
+    )?))
 }
 
 fn told<'py>(py: Python<'py>, distance: &Distance) -> PyResult<Bound<'py, PyDict>> {
@@ -187,7 +204,8 @@ pub(crate) fn examine<'py>(
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let (json, diagnosis) = run(py, threads, None, move |_| {
         let (mesh, faces, diagnosis) = recipe.plain(&soup)?;
-        let json = limitmesh_cli::examined(&mesh, &faces).map_err(|why| Failure::Mesh(why.to_string()))?;
+        let json =
+            limitmesh_cli::examined(&mesh, &faces).map_err(|why| Failure::Mesh(why.to_string()))?;
         Ok((json, diagnosis))
     })?;
     Ok((json, tell::diagnosis(py, &diagnosis)?))

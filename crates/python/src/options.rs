@@ -58,7 +58,8 @@ impl ControlOptions {
             "corners" => Ok(BoundaryRule::Corners),
             "fixed" => Ok(BoundaryRule::Fixed),
             other => {
-                let what = format!("boundary is '{other}', expected 'smooth', 'corners' or 'fixed'");
+                let what =
+                    format!("boundary is '{other}', expected 'smooth', 'corners' or 'fixed'");
                 Err(OptionError::new_err(what))
             }
         }
@@ -70,7 +71,8 @@ impl ControlOptions {
             "loop-warren" => Ok(&LoopWarren),
             "butterfly" => Ok(&ModifiedButterfly),
             other => {
-                let what = format!("scheme is '{other}', expected 'loop', 'loop-warren' or 'butterfly'");
+                let what =
+                    format!("scheme is '{other}', expected 'loop', 'loop-warren' or 'butterfly'");
                 Err(OptionError::new_err(what))
             }
         }
@@ -82,7 +84,14 @@ pub(crate) type CameraIn = ([f64; 3], [f64; 3], [f64; 3], f64, u32, u32);
 
 /// As the library has it.
 pub(crate) fn camera(&(eye, target, up, fov_degrees, width, height): &CameraIn) -> Camera {
-    Camera { eye, target, up, fov_degrees, width, height }
+    Camera {
+        eye,
+        target,
+        up,
+        fov_degrees,
+        width,
+        height,
+    }
 }
 
 /// Levels that a front may have at most: those asked for, or as many as there can be.
@@ -90,10 +99,14 @@ pub(crate) fn camera(&(eye, target, up, fov_degrees, width, height): &CameraIn) 
 /// # Errors
 /// There cannot be so many.
 pub(crate) fn front_levels(max_levels: Option<usize>) -> Result<u32, Failure> {
-    let Some(asked) = max_levels else { return Ok(MOST_LEVELS) };
+    let Some(asked) = max_levels else {
+        return Ok(MOST_LEVELS);
+    };
     match u32::try_from(asked) {
         Ok(levels) if levels <= MOST_LEVELS => Ok(levels),
-        _ => Err(Failure::Option(format!("max_levels is {asked}, expected at most {MOST_LEVELS}"))),
+        _ => Err(Failure::Option(format!(
+            "max_levels is {asked}, expected at most {MOST_LEVELS}"
+        ))),
     }
 }
 
@@ -130,8 +143,14 @@ pub(crate) struct Goals {
 impl Goals {
     /// Where the viewer stands, if that counts.
     pub(crate) fn viewer(&self) -> Option<View> {
-        let viewpoint = self.view.map(Viewpoint::Direction).or(self.eye.map(Viewpoint::Eye))?;
-        Some(View { viewpoint, dilatation: self.dilatation })
+        let viewpoint = self
+            .view
+            .map(Viewpoint::Direction)
+            .or(self.eye.map(Viewpoint::Eye))?;
+        Some(View {
+            viewpoint,
+            dilatation: self.dilatation,
+        })
     }
 
     /// Triangles that a method without a cap of its own on memory must not exceed, by number or at so many bytes each.
@@ -142,11 +161,20 @@ impl Goals {
 
     /// What such a cap is called where it ended a refinement.
     pub(crate) fn cap_name(&self, bytes_per_triangle: usize) -> &'static str {
-        if self.cap(bytes_per_triangle) == self.max_triangles { "triangle-cap" } else { "memory-cap" }
+        if self.cap(bytes_per_triangle) == self.max_triangles {
+            "triangle-cap"
+        } else {
+            "memory-cap"
+        }
     }
 
     /// As exact refinement has them, for a mesh with this diagonal. Triangles stay within one face where faces are to be told apart.
-    pub(crate) fn exact(&self, diagonal: f64, tells_faces_apart: bool, unfolds: bool) -> ExactOptions {
+    pub(crate) fn exact(
+        &self,
+        diagonal: f64,
+        tells_faces_apart: bool,
+        unfolds: bool,
+    ) -> ExactOptions {
         let mut options = ExactOptions::default()
             .max_memory(self.max_memory)
             .balance(self.balance)

@@ -32,7 +32,10 @@ impl Default for Trail {
 impl Trail {
     /// That of the vertices of uniform refinement.
     pub(crate) fn uniform(control: Mesh, levels: usize) -> Self {
-        Self::Uniform { control: Arc::new(control), levels }
+        Self::Uniform {
+            control: Arc::new(control),
+            levels,
+        }
     }
 
     fn is_unknown(&self) -> bool {
@@ -64,13 +67,27 @@ pub(crate) struct Origins {
 }
 
 /// By vertex the input's face, the input's vertices at a triangle of it, and the weights of these.
-type Rows<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray2<i64>>, Bound<'py, PyArray2<f64>>);
+type Rows<'py> = (
+    Bound<'py, PyArray1<i64>>,
+    Bound<'py, PyArray2<i64>>,
+    Bound<'py, PyArray2<f64>>,
+);
 
 impl Origins {
     /// None where the library tells of none.
     pub(crate) fn new(tables: Tables, trail: Trail) -> Option<Self> {
-        let Tables { parts, faces, corners, .. } = tables;
-        (!trail.is_unknown()).then_some(Self { trail, parts, faces, corners })
+        let Tables {
+            parts,
+            faces,
+            corners,
+            ..
+        } = tables;
+        (!trail.is_unknown()).then_some(Self {
+            trail,
+            parts,
+            faces,
+            corners,
+        })
     }
 }
 
@@ -92,6 +109,10 @@ impl Origins {
             }
             (faces, vertices, barycentric)
         });
-        Ok((PyArray1::from_vec(py, faces), tell::rows(py, vertices)?, tell::rows(py, barycentric)?))
+        Ok((
+            PyArray1::from_vec(py, faces),
+            tell::rows(py, vertices)?,
+            tell::rows(py, barycentric)?,
+        ))
     }
 }

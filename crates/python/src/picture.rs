@@ -25,15 +25,33 @@ pub(crate) fn picture<'py>(
 ) -> PyResult<Bound<'py, PyBytes>> {
     let (positions, triangles) = (soup::positions(&vertices)?, soup::triangles(&faces)?);
     let normals = normals.as_ref().map(soup::positions).transpose()?;
-    if triangles.as_flattened().iter().any(|&v| v as usize >= positions.len()) {
-        return Err(MeshError::new_err("a face names a vertex that there is not"));
+    if triangles
+        .as_flattened()
+        .iter()
+        .any(|&v| v as usize >= positions.len())
+    {
+        return Err(MeshError::new_err(
+            "a face names a vertex that there is not",
+        ));
     }
     let png = run(py, threads, None, move |_| {
         let failed = |why: limitmesh_render::RenderError| Failure::Mesh(why.to_string());
-        let surface = Triangles { positions: &positions, triangles: &triangles };
-        let camera = Camera::fit_tightly(surface, ViewDirection::default(), width, height).map_err(failed)?;
+        let surface = Triangles {
+            positions: &positions,
+            triangles: &triangles,
+        };
+        let camera = Camera::fit_tightly(surface, ViewDirection::default(), width, height)
+            .map_err(failed)?;
         let style = Style::default().wireframe(wireframe);
-        let image = render(surface, normals.as_deref(), None, &camera, &style, width, height);
+        let image = render(
+            surface,
+            normals.as_deref(),
+            None,
+            &camera,
+            &style,
+            width,
+            height,
+        );
         image.and_then(|image| image.encode_png()).map_err(failed)
     })?;
     Ok(PyBytes::new(py, &png))

@@ -45,14 +45,24 @@ impl Pool {
         let pool = ThreadPoolBuilder::new()
             .num_threads(count)
             .spawn_handler(|thread| -> io::Result<()> {
-                threads.push(Builder::new().name("limitmesh".to_owned()).spawn(|| thread.run())?);
+                threads.push(
+                    Builder::new()
+                        .name("limitmesh".to_owned())
+                        .spawn(|| thread.run())?,
+                );
                 Ok(())
             })
             // The panic is told by its hook, and by the job's channel that closes.
             .panic_handler(|_| ())
             .build()
-            .map_err(|why| PyRuntimeError::new_err(format!("{count} threads could not be started: {why}")))?;
-        Ok(Self { pool, threads, process: std::process::id() })
+            .map_err(|why| {
+                PyRuntimeError::new_err(format!("{count} threads could not be started: {why}"))
+            })?;
+        Ok(Self {
+            pool,
+            threads,
+            process: std::process::id(),
+        })
     }
 
     pub(crate) fn start(&self, job: impl FnOnce() + Send + 'static) {

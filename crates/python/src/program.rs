@@ -26,9 +26,15 @@ pub(crate) fn refine_file(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Option<String>, Vec<String>)> {
     run(py, threads, progress, move |observer| {
-        let caller = Caller(RefCell::new(Ears { observer, notes: Vec::new(), is_stopped: false }));
+        let caller = Caller(RefCell::new(Ears {
+            observer,
+            notes: Vec::new(),
+            is_stopped: false,
+        }));
         let result = refine_files(arguments, &caller);
-        let Ears { notes, is_stopped, .. } = caller.0.into_inner();
+        let Ears {
+            notes, is_stopped, ..
+        } = caller.0.into_inner();
         match result {
             _ if is_stopped => Err(Failure::Cancelled),
             Ok(found) => Ok((found.stopped_short, notes)),

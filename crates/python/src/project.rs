@@ -39,12 +39,16 @@ pub(crate) fn project<'py>(
         let control = recipe.control(soup, observer)?;
         let surface = LimitSurface::new(&control.mesh, recipe.scheme)?;
         let proximity = Proximity::new_observed(&surface, observer)?;
-        let closest = proximity.closest_observed(&points, tolerance.of(control.diagonal), observer)?;
+        let closest =
+            proximity.closest_observed(&points, tolerance.of(control.diagonal), observer)?;
         let places: Vec<_> = closest.iter().map(|at| (at.face, at.barycentric)).collect();
         let normals: Vec<[f64; 3]> = surface.at_all(&places).iter().map(|at| at.normal).collect();
         let behind = |row: usize| {
             let (point, at) = (points[row], closest[row].point);
-            (0..3).map(|axis| (point[axis] - at[axis]) * normals[row][axis]).sum::<f64>() < 0.0
+            (0..3)
+                .map(|axis| (point[axis] - at[axis]) * normals[row][axis])
+                .sum::<f64>()
+                < 0.0
         };
         let is_negative: Vec<bool> = match proximity.memberships_observed(&points, observer) {
             Ok(found) => found.iter().map(|&at| at == Membership::Inside).collect(),

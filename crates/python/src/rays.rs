@@ -62,11 +62,17 @@ pub(crate) fn intersect<'py>(
         let hits: Vec<(i64, Hit)> = match casting.first {
             true => {
                 let found = caster.first_of_all_observed(&rays, &options, observer)?;
-                (0..).zip(found).filter_map(|(ray, hit)| Some((ray, hit?))).collect()
+                (0..)
+                    .zip(found)
+                    .filter_map(|(ray, hit)| Some((ray, hit?)))
+                    .collect()
             }
             false => {
                 let found = caster.intersections_of_all_observed(&rays, &options, observer)?;
-                (0..).zip(found).flat_map(|(ray, hits)| hits.into_iter().map(move |hit| (ray, hit))).collect()
+                (0..)
+                    .zip(found)
+                    .flat_map(|(ray, hits)| hits.into_iter().map(move |hit| (ray, hit)))
+                    .collect()
             }
         };
         match surface.failure() {
@@ -82,7 +88,10 @@ pub(crate) fn intersect<'py>(
     Ok((
         PyArray1::from_vec(py, hits.iter().map(|&(ray, _)| ray).collect()),
         PyArray1::from_vec(py, hits.iter().map(|(_, hit)| hit.t).collect()),
-        PyArray1::from_vec(py, hits.iter().map(|(_, hit)| i64::from(hit.face.0)).collect()),
+        PyArray1::from_vec(
+            py,
+            hits.iter().map(|(_, hit)| i64::from(hit.face.0)).collect(),
+        ),
         tell::rows(py, hits.iter().map(|(_, hit)| hit.barycentric).collect())?,
         tell::rows(py, hits.iter().map(|(_, hit)| hit.position).collect())?,
         tell::rows(py, hits.iter().map(|(_, hit)| hit.normal).collect())?,

@@ -43,7 +43,10 @@ impl Replay {
             own.frame(&sources.positions(&positions, "positions")?, &mut frame)?;
             Ok(frame)
         })?;
-        Ok((tell::rows(py, frame.positions)?, tell::rows(py, frame.normals)?))
+        Ok((
+            tell::rows(py, frame.positions)?,
+            tell::rows(py, frame.normals)?,
+        ))
     }
 }
 
@@ -63,7 +66,13 @@ impl Sources {
     fn of(control: &Control, input: &[[f64; 3]]) -> Result<Self, Failure> {
         let mut rows = vec![u32::MAX; control.mesh.vertex_count()];
         let mut alike = Vec::new();
-        for (&own, &input) in control.mesh.triangles().as_flattened().iter().zip(&control.tables.corners) {
+        for (&own, &input) in control
+            .mesh
+            .triangles()
+            .as_flattened()
+            .iter()
+            .zip(&control.tables.corners)
+        {
             let row = &mut rows[own as usize];
             match *row {
                 u32::MAX => *row = input,
@@ -76,7 +85,13 @@ impl Sources {
         let of_row = |row: u32| input.get(row as usize);
         let is_elsewhere =
             |&(position, &row): &(&[f64; 3], &u32)| of_row(row).is_some_and(|own| own != position);
-        if let Some((at, &row)) = control.mesh.positions().iter().zip(&rows).find(is_elsewhere) {
+        if let Some((at, &row)) = control
+            .mesh
+            .positions()
+            .iter()
+            .zip(&rows)
+            .find(is_elsewhere)
+        {
             return Err(Failure::Mesh(format!(
                 "vertices[{row}] became one at {at:?}: sheets were cut apart within edges, or vertices welded within a distance, of \
                  which other positions tell nothing"
@@ -90,8 +105,10 @@ impl Sources {
     /// # Errors
     /// What is one vertex has several; `name` is what the rows are called.
     fn positions(&self, input: &[[f64; 3]], name: &str) -> Result<Vec<[f64; 3]>, Failure> {
-        if let Some([a, b]) =
-            self.alike.iter().find(|pair| input[pair[0] as usize] != input[pair[1] as usize])
+        if let Some([a, b]) = self
+            .alike
+            .iter()
+            .find(|pair| input[pair[0] as usize] != input[pair[1] as usize])
         {
             return Err(Failure::Mesh(format!(
                 "{name}[{a}] and {name}[{b}] are apart, which are one vertex in the control mesh; weld=None keeps all apart"
@@ -119,14 +136,25 @@ pub(crate) fn replay<'py>(
         let positions = soup.positions.clone();
         let control = recipe.control(soup, observer)?;
         let sources = Sources::of(&control, &positions)?;
-        let options = control.options(&goals, &recipe).flat_regions(false).origins(true);
+        let options = control
+            .options(&goals, &recipe)
+            .flat_regions(false)
+            .origins(true);
         let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
-        let own = limitmesh::refine::Replay::new_observed(&control.mesh, recipe.scheme, &found, observer)?;
+        let own = limitmesh::refine::Replay::new_observed(
+            &control.mesh,
+            recipe.scheme,
+            &found,
+            observer,
+        )?;
         let channels = match control.channels.is_empty() {
             true => Vec::new(),
             false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
         };
-        let replay = Replay { own: Arc::new(own), sources: Arc::new(sources) };
+        let replay = Replay {
+            own: Arc::new(own),
+            sources: Arc::new(sources),
+        };
         let refined = Refined::of_exact(found, control.tables).with_channels(channels);
         Ok((finished(refined, has_wide_indices, start), replay))
     })?;
@@ -163,10 +191,18 @@ pub(crate) fn refine_frames<'py>(
             .map(|(frame, own)| sources.positions(own, &format!("frames[{frame}]")))
             .collect::<Result<Vec<_>, _>>()?;
         let options = control.options(&goals, &recipe);
-        let found = exact_frames_observed(&control.mesh, recipe.scheme, &frames, &options, observer)?;
-        let Frames { mut refined, replay, errors, .. } = found;
+        let found =
+            exact_frames_observed(&control.mesh, recipe.scheme, &frames, &options, observer)?;
+        let Frames {
+            mut refined,
+            replay,
+            errors,
+            ..
+        } = found;
         let worst = errors.iter().map(|error| error.upper).fold(0.0, f64::max);
-        let is_beyond = goals.tolerance.is_some_and(|tolerance| worst > tolerance.of(control.diagonal));
+        let is_beyond = goals
+            .tolerance
+            .is_some_and(|tolerance| worst > tolerance.of(control.diagonal));
         if refined.stop == ExactStop::Met && is_beyond {
             refined.stop = ExactStop::Rounding;
         }
@@ -174,16 +210,26 @@ pub(crate) fn refine_frames<'py>(
             true => Vec::new(),
             false => carried(&control.channels, &control.mesh, recipe.scheme, &refined)?,
         };
-        let errors = errors.iter().map(|e| (e.lower, e.upper, e.certified, e.at.into())).collect();
+        let errors = errors
+            .iter()
+            .map(|e| (e.lower, e.upper, e.certified, e.at.into()))
+            .collect();
         let refined = Refined::of_exact(refined, control.tables).with_channels(channels);
-        let replay = Replay { own: Arc::new(replay), sources: Arc::new(sources) };
+        let replay = Replay {
+            own: Arc::new(replay),
+            sources: Arc::new(sources),
+        };
         Ok((finished(refined, has_wide_indices, start), errors, replay))
     })?;
     Ok((refined.told(py)?, errors, replay))
 }
 
 fn finished(refined: Refined, has_wide_indices: bool, start: Instant) -> Refined {
-    let mut refined = if has_wide_indices { refined.widened() } else { refined };
+    let mut refined = if has_wide_indices {
+        refined.widened()
+    } else {
+        refined
+    };
     refined.took(start.elapsed().as_secs_f64());
     refined
 }

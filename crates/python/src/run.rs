@@ -54,8 +54,19 @@ pub(crate) fn run<T: Send + 'static>(
 pub(crate) fn ends<T>(progress: Option<Py<PyAny>>) -> (WorkerEnd<T>, CallerEnd<T>) {
     let line = Arc::new(Line::default());
     let (sender, receiver) = sync_channel(1);
-    let worker = WorkerEnd { line: Arc::clone(&line), is_heard: progress.is_some(), sender };
-    (worker, CallerEnd { line, receiver, progress })
+    let worker = WorkerEnd {
+        line: Arc::clone(&line),
+        is_heard: progress.is_some(),
+        sender,
+    };
+    (
+        worker,
+        CallerEnd {
+            line,
+            receiver,
+            progress,
+        },
+    )
 }
 
 /// The end of whoever does a job.
@@ -68,12 +79,20 @@ pub(crate) struct WorkerEnd<T> {
 impl<T> WorkerEnd<T> {
     /// Does the job, and sends what came of it.
     pub(crate) fn finish(self, job: impl FnOnce(&mut Observer<'_>) -> Result<T, Failure>) {
-        let Self { line, is_heard, sender } = self;
+        let Self {
+            line,
+            is_heard,
+            sender,
+        } = self;
         let mut observer = |at: &Progress| {
             if is_heard {
                 *line.latest.lock().unwrap_or_else(PoisonError::into_inner) = Some(*at);
             }
-            if line.is_stopped.load(Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if line.is_stopped.load(Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         // Nobody listens any more if the caller went on.
         let _ = sender.send(job(&mut observer));
@@ -119,8 +138,25 @@ fn wait<T>(
 /// Handles signals and tells of progress.
 fn look_up(py: Python<'_>, line: &Line, progress: Option<&Py<PyAny>>) -> PyResult<()> {
     py.check_signals()?;
-    let Some(progress) = progress else { return Ok(()) };
-    let latest = line.latest.lock().unwrap_or_else(PoisonError::into_inner).take();
-    let Some(Progress { stage, done, total, triangles, .. }) = latest else { return Ok(()) };
-    progress.call1(py, (stage.to_string(), done, total, triangles)).map(drop)
+    let Some(progress) = progress else {
+        return Ok(());
+    };
+    let latest = line
+        .latest
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    let Some(Progress {
+        stage,
+        done,
+        total,
+        triangles,
+        ..
+    }) = latest
+    else {
+        return Ok(());
+    };
+    progress
+        .call1(py, (stage.to_string(), done, total, triangles))
+        .map(drop)
 }

@@ -46,7 +46,13 @@ pub(crate) fn simplify<'py>(
             }
         }
         // Copies of cut vertices are found through their corners.
-        for (own, &input) in control.mesh.triangles().as_flattened().iter().zip(&control.tables.corners) {
+        for (own, &input) in control
+            .mesh
+            .triangles()
+            .as_flattened()
+            .iter()
+            .zip(&control.tables.corners)
+        {
             if inputs[*own as usize] == u32::MAX {
                 inputs[*own as usize] = input;
             }
@@ -89,9 +95,16 @@ pub(crate) fn repair<'py>(
     let mended = run(py, threads, None, move |observer| {
         let control = recipe.control(soup, observer)?;
         let tags = control.mesh.tags();
-        let creases =
-            tags.creases.iter().map(|tag| (tag.vertices[0], tag.vertices[1], tag.sharpness)).collect();
-        let corner_tags = tags.corners.iter().map(|tag| (tag.vertex, tag.sharpness)).collect();
+        let creases = tags
+            .creases
+            .iter()
+            .map(|tag| (tag.vertices[0], tag.vertices[1], tag.sharpness))
+            .collect();
+        let corner_tags = tags
+            .corners
+            .iter()
+            .map(|tag| (tag.vertex, tag.sharpness))
+            .collect();
         let (positions, triangles) = control.mesh.into_positions_and_triangles();
         Ok(Mended {
             positions,
@@ -110,8 +123,14 @@ pub(crate) fn repair<'py>(
     dict.set_item("faces", tell::rows(py, mended.triangles)?)?;
     dict.set_item("parent_face", PyArray1::from_vec(py, mended.faces))?;
     dict.set_item("parent_vertices", corners)?;
-    let channels = mended.channels.into_iter().map(|channel| channels::told(py, channel));
-    dict.set_item("channels", PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
+    let channels = mended
+        .channels
+        .into_iter()
+        .map(|channel| channels::told(py, channel));
+    dict.set_item(
+        "channels",
+        PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?,
+    )?;
     dict.set_item("creases", mended.creases)?;
     dict.set_item("corners", mended.corner_tags)?;
     dict.set_item("diagnosis", tell::diagnosis(py, &mended.diagnosis)?)?;

@@ -31,20 +31,40 @@ impl MeshIn<'_> {
     pub(crate) fn soup(&self) -> PyResult<PolygonSoup> {
         let positions = positions(&self.vertices)?;
         let corners = self.corners.as_slice()?;
-        let starts = self.starts.as_ref().map(|starts| starts.as_slice()).transpose()?;
+        let starts = self
+            .starts
+            .as_ref()
+            .map(|starts| starts.as_slice())
+            .transpose()?;
         let faces = faces(corners, starts, positions.len())?;
         let count = positions.len();
         let vertex = |v: i64, what: &str, row: usize| match u32::try_from(v) {
             Ok(v) if (v as usize) < count => Ok(v),
-            _ => Err(OptionError::new_err(format!("{what}[{row}] names vertex {v}, {}", expected(count)))),
+            _ => Err(OptionError::new_err(format!(
+                "{what}[{row}] names vertex {v}, {}",
+                expected(count)
+            ))),
         };
-        let creases = self.creases.iter().enumerate().map(|(row, &(a, b, sharpness))| {
-            let vertices = [vertex(a, "creases", row)?, vertex(b, "creases", row)?];
-            Ok(CreaseTag { vertices, sharpness })
-        });
-        let tags =
-            self.corner_tags.iter().enumerate().map(|(row, &(v, sharpness))| {
-                Ok(CornerTag { vertex: vertex(v, "corners", row)?, sharpness })
+        let creases = self
+            .creases
+            .iter()
+            .enumerate()
+            .map(|(row, &(a, b, sharpness))| {
+                let vertices = [vertex(a, "creases", row)?, vertex(b, "creases", row)?];
+                Ok(CreaseTag {
+                    vertices,
+                    sharpness,
+                })
+            });
+        let tags = self
+            .corner_tags
+            .iter()
+            .enumerate()
+            .map(|(row, &(v, sharpness))| {
+                Ok(CornerTag {
+                    vertex: vertex(v, "corners", row)?,
+                    sharpness,
+                })
             });
         let channels = self.channels.iter().map(ChannelIn::channel);
         Ok(PolygonSoup {
@@ -80,7 +100,9 @@ pub(crate) fn triangles(array: &PyReadonlyArray2<'_, u32>) -> PyResult<Vec<[u32;
 fn faces(corners: &[i64], starts: Option<&[i64]>, count: usize) -> PyResult<PolygonFaces> {
     let polygons = starts.map_or(corners.len() / 3, |starts| starts.len().saturating_sub(1));
     if corners.len() > u32::MAX as usize || count > u32::MAX as usize {
-        return Err(MeshError::new_err("more vertices or corners than 32 bits can count"));
+        return Err(MeshError::new_err(
+            "more vertices or corners than 32 bits can count",
+        ));
     }
     let mut faces = PolygonFaces::with_capacity(polygons, corners.len());
     let mut own: Vec<u32> = Vec::new();
@@ -89,8 +111,9 @@ fn faces(corners: &[i64], starts: Option<&[i64]>, count: usize) -> PyResult<Poly
             None => 3 * face..3 * face + 3,
             Some(starts) => starts[face] as usize..starts[face + 1] as usize,
         };
-        let row =
-            corners.get(range).ok_or_else(|| MeshError::new_err("polygons that end beyond the corners"))?;
+        let row = corners
+            .get(range)
+            .ok_or_else(|| MeshError::new_err("polygons that end beyond the corners"))?;
         own.clear();
         for (column, &v) in row.iter().enumerate() {
             match u32::try_from(v) {

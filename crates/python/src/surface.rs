@@ -64,19 +64,31 @@ pub(crate) fn limit_surface<'py>(
         for ((&(face, weights), point), derivatives) in places.iter().zip(points).zip(derivatives) {
             let limit = Some(point.normal).filter(|normal| *normal != [0.0; 3]);
             let curvature = derivatives.and_then(|derivatives| derivatives.curvature());
-            let normal = derivatives.and_then(|derivatives| derivatives.normal()).or(limit);
-            found.positions.push(derivatives.map_or(point.position, |derivatives| derivatives.position));
+            let normal = derivatives
+                .and_then(|derivatives| derivatives.normal())
+                .or(limit);
+            found
+                .positions
+                .push(derivatives.map_or(point.position, |derivatives| derivatives.position));
             found.normals.push(normal.unwrap_or(NONE));
             let own = derivatives.and_then(|derivatives| derivatives.tangents());
             let tangents = own.or_else(|| surface.tangents_at_corner(face, weights));
             found.tangents.extend(tangents.unwrap_or([NONE; 2]));
-            found.first.extend(derivatives.map_or([NONE; 2], |derivatives| derivatives.first));
-            found.second.extend(derivatives.map_or([NONE; 3], |derivatives| derivatives.second));
-            found.directions.extend(curvature.map_or([NONE; 2], |curvature| curvature.directions));
-            found.curvatures.extend(curvature.map_or([f64::NAN; 4], |curvature| {
-                let [most, least] = curvature.principal;
-                [curvature.gaussian, curvature.mean, most, least]
-            }));
+            found
+                .first
+                .extend(derivatives.map_or([NONE; 2], |derivatives| derivatives.first));
+            found
+                .second
+                .extend(derivatives.map_or([NONE; 3], |derivatives| derivatives.second));
+            found
+                .directions
+                .extend(curvature.map_or([NONE; 2], |curvature| curvature.directions));
+            found
+                .curvatures
+                .extend(curvature.map_or([f64::NAN; 4], |curvature| {
+                    let [most, least] = curvature.principal;
+                    [curvature.gaussian, curvature.mean, most, least]
+                }));
         }
         Ok(found)
     })?;
@@ -102,7 +114,12 @@ fn places(faces: &[i64], weights: &[f64], count: usize) -> PyResult<Vec<(FaceId,
             count.max(1) - 1
         ))),
     };
-    faces.iter().zip(weights.as_chunks::<3>().0).enumerate().map(place).collect()
+    faces
+        .iter()
+        .zip(weights.as_chunks::<3>().0)
+        .enumerate()
+        .map(place)
+        .collect()
 }
 
 /// Which side of the surface over each triangle of the input is seen from an eye, or along a direction: 1 for the front, −1 for the
@@ -140,14 +157,22 @@ pub(crate) fn facing<'py>(
 
 /// The corners of all faces, if these are triangles.
 fn triangles(soup: &PolygonSoup) -> Option<Vec<u32>> {
-    soup.faces.iter().all(|face| face.len() == 3).then(|| soup.faces.iter().flatten().copied().collect())
+    soup.faces
+        .iter()
+        .all(|face| face.len() == 3)
+        .then(|| soup.faces.iter().flatten().copied().collect())
 }
 
 /// That the control mesh's triangles are the input's, corner by corner.
 fn check(control: &Control, corners: Option<&[u32]>) -> Result<(), Failure> {
-    let is_whole =
-        control.tables.parts.is_empty() && corners.is_some_and(|corners| control.tables.corners == corners);
-    let is_in_order = control.tables.faces.iter().zip(0..).all(|(&face, own)| face == own);
+    let is_whole = control.tables.parts.is_empty()
+        && corners.is_some_and(|corners| control.tables.corners == corners);
+    let is_in_order = control
+        .tables
+        .faces
+        .iter()
+        .zip(0..)
+        .all(|(&face, own)| face == own);
     match is_whole && is_in_order {
         true => Ok(()),
         false => Err(Failure::Mesh(

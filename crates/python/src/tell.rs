@@ -6,13 +6,19 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 /// Rows of three as an array.
-pub(crate) fn rows<T: Element>(py: Python<'_>, rows: Vec<[T; 3]>) -> PyResult<Bound<'_, PyArray2<T>>> {
+pub(crate) fn rows<T: Element>(
+    py: Python<'_>,
+    rows: Vec<[T; 3]>,
+) -> PyResult<Bound<'_, PyArray2<T>>> {
     let count = rows.len();
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }
 
 /// What was found in the input, for the Python half; none where nothing was, as in most meshes.
-pub(crate) fn diagnosis<'py>(py: Python<'py>, found: &Diagnosis) -> PyResult<Option<Bound<'py, PyDict>>> {
+pub(crate) fn diagnosis<'py>(
+    py: Python<'py>,
+    found: &Diagnosis,
+) -> PyResult<Option<Bound<'py, PyDict>>> {
     if found.findings().all(|(_, finding)| finding.is_empty()) {
         return Ok(None);
     }

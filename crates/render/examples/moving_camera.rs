@@ -22,8 +22,11 @@ const DRAWN: u32 = 13;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let picture = std::env::args_os().nth(1).map(PathBuf::from);
-    let picture = picture.unwrap_or_else(|| std::env::temp_dir().join("limitmesh-moving-camera.png"));
-    let soup = limitmesh_models::find("bunny").ok_or("no such built-in model")?.soup();
+    let picture =
+        picture.unwrap_or_else(|| std::env::temp_dir().join("limitmesh-moving-camera.png"));
+    let soup = limitmesh_models::find("bunny")
+        .ok_or("no such built-in model")?
+        .soup();
     let (control, _) = Mesh::from_soup(&soup, &Default::default())?;
     let size = control.diagonal();
     let [low, high] = control.as_triangles().bounding_box().unwrap_or_default();
@@ -41,8 +44,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         let part = f64::from(frame) / f64::from(FRAMES - 1);
         let (sine, cosine) = (core::f64::consts::FRAC_PI_2 * part).sin_cos();
         let away = (0.9 - 0.55 * part) * size;
-        let eye = [middle[0] + away * sine, middle[1] + 0.1 * size, middle[2] + away * cosine];
-        let camera = criterion::Camera { eye, target: middle, up, fov_degrees: 30.0, width, height };
+        let eye = [
+            middle[0] + away * sine,
+            middle[1] + 0.1 * size,
+            middle[2] + away * cosine,
+        ];
+        let camera = criterion::Camera {
+            eye,
+            target: middle,
+            up,
+            fov_degrees: 30.0,
+            width,
+            height,
+        };
         let changes = front.update(&Demand::pixels(LIMIT, &[camera]))?;
         let (new, all) = (changes.triangles.len(), front.triangles().len());
         println!(
@@ -50,15 +64,24 @@ fn main() -> Result<(), Box<dyn Error>> {
             front.pixels().unwrap_or(0.0)
         );
         if frame % DRAWN == 0 {
-            let surface = Triangles { positions: front.positions(), triangles: front.triangles() };
+            let surface = Triangles {
+                positions: front.positions(),
+                triangles: front.triangles(),
+            };
             let seen = Camera::perspective(eye, middle, up, 30.0)?;
             for (camera, what) in [(&seen, "from the camera"), (&outside, "from outside")] {
                 let image = render(surface, None, None, camera, &style, width, height)?;
-                panels.push(Panel::new(image, format!("frame {frame}, {what}: {all} triangles")));
+                panels.push(Panel::new(
+                    image,
+                    format!("frame {frame}, {what}: {all} triangles"),
+                ));
             }
         }
     }
-    std::fs::write(&picture, grid(&panels, &GridStyle::default().columns(2))?.encode_png()?)?;
+    std::fs::write(
+        &picture,
+        grid(&panels, &GridStyle::default().columns(2))?.encode_png()?,
+    )?;
     println!("drawn: {}", picture.display());
     Ok(())
 }

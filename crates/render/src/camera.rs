@@ -21,7 +21,10 @@ pub struct ViewDirection {
 impl ViewDirection {
     /// A direction of sight with the y axis up.
     pub fn along(sight: [f64; 3]) -> Self {
-        Self { sight, up: [0.0, 1.0, 0.0] }
+        Self {
+            sight,
+            up: [0.0, 1.0, 0.0],
+        }
     }
 
     /// The same direction with another up.
@@ -41,7 +44,10 @@ impl ViewDirection {
 
     /// From above: along −y, with −z up.
     pub fn top() -> Self {
-        Self { sight: [0.0, -1.0, 0.0], up: [0.0, 0.0, -1.0] }
+        Self {
+            sight: [0.0, -1.0, 0.0],
+            up: [0.0, 0.0, -1.0],
+        }
     }
 }
 
@@ -109,14 +115,20 @@ impl Camera {
         let [right, up, _] = basis(view)?;
         let extent = |axis: DVec3| {
             let ends = corners(surface).map(|p| (p - centre).dot(axis));
-            ends.fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
+            ends.fold((f64::MAX, f64::MIN), |(low, high), x| {
+                (low.min(x), high.max(x))
+            })
         };
         let ((left, right_end), (bottom, top)) = (extent(right), extent(up));
         let centre = centre + right * (0.5 * (left + right_end)) + up * (0.5 * (bottom + top));
         let aspect = f64::from(height) / f64::from(width);
         let half_height = (0.5 * (top - bottom)).max(0.5 * (right_end - left) * aspect);
         // A surface seen exactly edge-on has no extent: fall back to the sphere's.
-        let half_height = if half_height > 1e-6 * radius { half_height } else { radius };
+        let half_height = if half_height > 1e-6 * radius {
+            half_height
+        } else {
+            radius
+        };
         Self::orthographic(centre.to_array(), view, half_height / (1.0 - MARGIN))
     }
 
@@ -161,7 +173,13 @@ impl Camera {
         )?;
         let [right, up, sight] = basis(view)?;
         let projection = Projection::Orthographic { half_height };
-        Ok(Self { eye: DVec3::from_array(target), right, up, sight, projection })
+        Ok(Self {
+            eye: DVec3::from_array(target),
+            right,
+            up,
+            sight,
+            projection,
+        })
     }
 
     /// A perspective from `eye` towards `target`.
@@ -180,9 +198,18 @@ impl Camera {
         check_finite("camera target", &target)?;
         let tangent = half_tangent(field_of_view)?;
         let sight = DVec3::from_array(target) - DVec3::from_array(eye);
-        let [right, up, sight] = basis(ViewDirection { sight: sight.to_array(), up })?;
+        let [right, up, sight] = basis(ViewDirection {
+            sight: sight.to_array(),
+            up,
+        })?;
         let projection = Projection::Perspective { tangent };
-        Ok(Self { eye: DVec3::from_array(eye), right, up, sight, projection })
+        Ok(Self {
+            eye: DVec3::from_array(eye),
+            right,
+            up,
+            sight,
+            projection,
+        })
     }
 
     /// The unit direction of sight through the middle of the picture, from the viewer into the scene.
@@ -226,10 +253,15 @@ impl Camera {
         let scale = |unit: f64| 2.0 * unit / f64::from(height);
         let aside = |scale: f64| self.right * (x * scale) + self.up * (y * scale);
         let (origin, direction) = match self.projection {
-            Projection::Orthographic { half_height } => (self.eye + aside(scale(half_height)), self.sight),
+            Projection::Orthographic { half_height } => {
+                (self.eye + aside(scale(half_height)), self.sight)
+            }
             Projection::Perspective { tangent } => (self.eye, self.sight + aside(scale(tangent))),
         };
-        Ray { origin: origin.to_array(), direction: direction.to_array() }
+        Ray {
+            origin: origin.to_array(),
+            direction: direction.to_array(),
+        }
     }
 
     /// How long a pixel's side is at a depth.
@@ -280,7 +312,11 @@ fn basis(view: ViewDirection) -> Result<[DVec3; 3], RenderError> {
     let up = direction(view.up).unwrap_or(DVec3::Y);
     let mut right = sight.cross(up);
     if right.length_squared() < 1e-12 {
-        right = sight.cross(if sight.z.abs() < 0.9 { DVec3::NEG_Z } else { DVec3::Y });
+        right = sight.cross(if sight.z.abs() < 0.9 {
+            DVec3::NEG_Z
+        } else {
+            DVec3::Y
+        });
     }
     let right = right.normalize();
     Ok([right, right.cross(sight), sight])
@@ -290,7 +326,11 @@ fn basis(view: ViewDirection) -> Result<[DVec3; 3], RenderError> {
 fn direction(v: [f64; 3]) -> Option<DVec3> {
     let v = DVec3::from_array(v);
     let largest = v.abs().max_element();
-    if largest > 0.0 { (v / largest).try_normalize() } else { None }
+    if largest > 0.0 {
+        (v / largest).try_normalize()
+    } else {
+        None
+    }
 }
 
 fn half_tangent(field_of_view: f64) -> Result<f64, RenderError> {
@@ -305,14 +345,23 @@ fn half_tangent(field_of_view: f64) -> Result<f64, RenderError> {
 
 fn check_finite(what: &'static str, values: &[f64; 3]) -> Result<(), RenderError> {
     match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(RenderError::NotFinite { what, index: 0, value }),
+        Some(&value) => Err(RenderError::NotFinite {
+            what,
+            index: 0,
+            value,
+        }),
         None => Ok(()),
     }
 }
 
 /// The positions that triangles use; out-of-range indices are passed over, `render` reports them.
 fn corners<'a>(surface: Triangles<'a>) -> impl Iterator<Item = DVec3> + 'a {
-    let corner = |&v: &u32| surface.positions.get(v as usize).map(|&p| DVec3::from_array(p));
+    let corner = |&v: &u32| {
+        surface
+            .positions
+            .get(v as usize)
+            .map(|&p| DVec3::from_array(p))
+    };
     surface.triangles.iter().flatten().filter_map(corner)
 }
 
@@ -321,8 +370,16 @@ fn bounding_sphere(surface: Triangles<'_>) -> Result<(DVec3, f64), RenderError> 
     let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
     for (index, p) in corners(surface).enumerate() {
         if !p.is_finite() {
-            let value = p.to_array().into_iter().find(|x| !x.is_finite()).unwrap_or(f64::NAN);
-            return Err(RenderError::NotFinite { what: "the corner of triangle", index: index / 3, value });
+            let value = p
+                .to_array()
+                .into_iter()
+                .find(|x| !x.is_finite())
+                .unwrap_or(f64::NAN);
+            return Err(RenderError::NotFinite {
+                what: "the corner of triangle",
+                index: index / 3,
+                value,
+            });
         }
         (low, high) = (low.min(p), high.max(p));
     }
@@ -330,7 +387,9 @@ fn bounding_sphere(surface: Triangles<'_>) -> Result<(DVec3, f64), RenderError> 
         return Err(RenderError::Empty);
     }
     let centre = low * 0.5 + high * 0.5;
-    let radius = corners(surface).map(|p| p.distance(centre)).fold(0.0, f64::max);
+    let radius = corners(surface)
+        .map(|p| p.distance(centre))
+        .fold(0.0, f64::max);
     // A single point still needs a picture around it.
     Ok((centre, if radius > 0.0 { radius } else { 1.0 }))
 }

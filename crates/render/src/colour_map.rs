@@ -70,7 +70,9 @@ impl ColourMap {
 
     /// The map as a table of evenly spaced colours, fine enough that steps between them do not show.
     pub(crate) fn table(self) -> Vec<Linear> {
-        (0..TABLE).map(|i| self.linear_at(i as f64 / (TABLE - 1) as f64)).collect()
+        (0..TABLE)
+            .map(|i| self.linear_at(i as f64 / (TABLE - 1) as f64))
+            .collect()
     }
 }
 
@@ -90,8 +92,16 @@ fn spline(controls: &[Control], value: f64) -> Control {
     let t = at - i as f64;
     let (b, c) = (controls[i], controls[i + 1]);
     let beyond = |p: Control, q: Control| [0, 1, 2].map(|k| 2.0 * p[k] - q[k]);
-    let a = if i == 0 { beyond(b, c) } else { controls[i - 1] };
-    let d = if i + 1 == last { beyond(c, b) } else { controls[i + 2] };
+    let a = if i == 0 {
+        beyond(b, c)
+    } else {
+        controls[i - 1]
+    };
+    let d = if i + 1 == last {
+        beyond(c, b)
+    } else {
+        controls[i + 2]
+    };
     [0, 1, 2].map(|k| {
         let slopes = [0.5 * (c[k] - a[k]), 0.5 * (d[k] - b[k])];
         let (t2, t3) = (t * t, t * t * t);
@@ -141,20 +151,29 @@ mod tests {
 
     /// CIE 1976 lightness from linear sRGB: independent of Oklab.
     fn cie_lightness(rgb: Linear) -> f64 {
-        let luminance = 0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2]);
-        if luminance > 0.008_856 { 116.0 * luminance.cbrt() - 16.0 } else { 903.3 * luminance }
+        let luminance =
+            0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2]);
+        if luminance > 0.008_856 {
+            116.0 * luminance.cbrt() - 16.0
+        } else {
+            903.3 * luminance
+        }
     }
 
     #[test]
     fn lightness_rises_everywhere_and_evenly() {
         for map in [ColourMap::Lagoon, ColourMap::Ember, ColourMap::Grey] {
-            let lightness: Vec<f64> =
-                (0..=64).map(|i| cie_lightness(map.linear_at(f64::from(i) / 64.0))).collect();
+            let lightness: Vec<f64> = (0..=64)
+                .map(|i| cie_lightness(map.linear_at(f64::from(i) / 64.0)))
+                .collect();
             let mean = (lightness[64] - lightness[0]) / 64.0;
             assert!(mean > 1.0, "{map:?} spans too little");
             for (i, pair) in lightness.windows(2).enumerate() {
                 let step = pair[1] - pair[0];
-                assert!(step > 0.4 * mean && step < 1.9 * mean, "{map:?} step {i}: {step}, mean {mean}");
+                assert!(
+                    step > 0.4 * mean && step < 1.9 * mean,
+                    "{map:?} step {i}: {step}, mean {mean}"
+                );
             }
         }
     }
@@ -164,19 +183,30 @@ mod tests {
     #[test]
     fn order_survives_missing_cones() {
         let project = [
-            [[0.112_38, 0.887_62, 0.0], [0.112_38, 0.887_62, 0.0], [0.004_01, -0.004_01, 1.0]],
-            [[0.292_75, 0.707_25, 0.0], [0.292_75, 0.707_25, 0.0], [-0.022_34, 0.022_34, 1.0]],
+            [
+                [0.112_38, 0.887_62, 0.0],
+                [0.112_38, 0.887_62, 0.0],
+                [0.004_01, -0.004_01, 1.0],
+            ],
+            [
+                [0.292_75, 0.707_25, 0.0],
+                [0.292_75, 0.707_25, 0.0],
+                [-0.022_34, 0.022_34, 1.0],
+            ],
         ];
         for map in [ColourMap::Lagoon, ColourMap::Ember] {
             for matrix in project {
                 let lightness = (0..=32).map(|i| {
                     let rgb = map.linear_at(f64::from(i) / 32.0);
-                    let seen =
-                        matrix.map(|row| (0..3).map(|k| row[k] * f64::from(rgb[k])).sum::<f64>() as f32);
+                    let seen = matrix
+                        .map(|row| (0..3).map(|k| row[k] * f64::from(rgb[k])).sum::<f64>() as f32);
                     cie_lightness(seen)
                 });
                 let lightness: Vec<f64> = lightness.collect();
-                assert!(lightness.windows(2).all(|pair| pair[1] > pair[0]), "{map:?}: {lightness:?}");
+                assert!(
+                    lightness.windows(2).all(|pair| pair[1] > pair[0]),
+                    "{map:?}: {lightness:?}"
+                );
             }
         }
     }
@@ -184,7 +214,10 @@ mod tests {
     #[test]
     fn values_outside_get_the_ends() {
         assert_eq!(ColourMap::Lagoon.at(-3.0), ColourMap::Lagoon.at(0.0));
-        assert_eq!(ColourMap::Lagoon.at(f64::INFINITY), ColourMap::Lagoon.at(1.0));
+        assert_eq!(
+            ColourMap::Lagoon.at(f64::INFINITY),
+            ColourMap::Lagoon.at(1.0)
+        );
         assert_eq!(ColourMap::Ember.at(0.25), ColourMap::EmberReversed.at(0.75));
     }
 }

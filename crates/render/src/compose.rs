@@ -15,7 +15,10 @@ pub struct Panel {
 impl Panel {
     /// A picture with a caption.
     pub fn new(image: Image, caption: impl Into<String>) -> Self {
-        Self { image, caption: caption.into() }
+        Self {
+            image,
+            caption: caption.into(),
+        }
     }
 }
 
@@ -36,7 +39,12 @@ pub struct GridStyle {
 impl Default for GridStyle {
     fn default() -> Self {
         let caption = TextStyle::default().size(18.0);
-        Self { columns: 3, gap: 16, background: [255; 4], caption }
+        Self {
+            columns: 3,
+            gap: 16,
+            background: [255; 4],
+            caption,
+        }
     }
 }
 
@@ -67,7 +75,9 @@ impl Image {
     pub fn paste(&mut self, other: &Image, x: i64, y: i64) {
         for row in 0..other.height() {
             for column in 0..other.width() {
-                let Some([r, g, b, opacity]) = other.pixel(column, row) else { continue };
+                let Some([r, g, b, opacity]) = other.pixel(column, row) else {
+                    continue;
+                };
                 let (to_x, to_y) = (x + i64::from(column), y + i64::from(row));
                 self.blend(to_x, to_y, [r, g, b], f32::from(opacity) / 255.0);
             }
@@ -81,12 +91,24 @@ impl Image {
 /// No panels or no columns, or the result would be larger than a picture may be.
 pub fn grid(panels: &[Panel], style: &GridStyle) -> Result<Image, RenderError> {
     if panels.is_empty() || style.columns == 0 {
-        let (name, value) = if panels.is_empty() { ("panels", panels.len()) } else { ("columns", 0) };
-        return Err(RenderError::BadOption { name, value: value as f64, expected: "at least 1" });
+        let (name, value) = if panels.is_empty() {
+            ("panels", panels.len())
+        } else {
+            ("columns", 0)
+        };
+        return Err(RenderError::BadOption {
+            name,
+            value: value as f64,
+            expected: "at least 1",
+        });
     }
     let columns = style.columns.min(panels.len());
     let has_caption = panels.iter().any(|panel| !panel.caption.is_empty());
-    let caption = if has_caption { (2.0 * style.caption.size.clamp(1.0, 1000.0)).ceil() as u64 } else { 0 };
+    let caption = if has_caption {
+        (2.0 * style.caption.size.clamp(1.0, 1000.0)).ceil() as u64
+    } else {
+        0
+    };
     let mut widths = vec![0u64; columns];
     let mut heights = vec![0u64; panels.len().div_ceil(columns)];
     for (i, panel) in panels.iter().enumerate() {
@@ -121,5 +143,7 @@ pub fn grid(panels: &[Panel], style: &GridStyle) -> Result<Image, RenderError> {
 fn fitted(style: &TextStyle, text: &str, room: f32) -> Result<TextStyle, RenderError> {
     let width = text_width(text, style)?;
     let scale = if width > room { room / width } else { 1.0 };
-    Ok(style.size((style.size * scale).max(1.0)).align(Align::Centre))
+    Ok(style
+        .size((style.size * scale).max(1.0))
+        .align(Align::Centre))
 }

@@ -45,16 +45,25 @@ mod tests {
     #[test]
     fn pieces_have_the_whole_area_and_its_direction() {
         let positions = [[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
-        let surface = Triangles { positions: &positions, triangles: &[[0, 1, 2]] };
+        let surface = Triangles {
+            positions: &positions,
+            triangles: &[[0, 1, 2]],
+        };
         for parts in 1..6 {
             let (positions, triangles) = dice(surface, parts);
             assert_eq!(triangles.len(), parts * parts);
             assert_eq!(positions.len(), (parts + 1) * (parts + 2) / 2);
-            let pieces = Triangles { positions: &positions, triangles: &triangles };
+            let pieces = Triangles {
+                positions: &positions,
+                triangles: &triangles,
+            };
             for face in 0..triangles.len() {
                 let [a, b, c] = pieces.corners(face);
                 let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                assert!((doubled - 6.0 / (parts * parts) as f64).abs() < 1e-12, "{doubled}");
+                assert!(
+                    (doubled - 6.0 / (parts * parts) as f64).abs() < 1e-12,
+                    "{doubled}"
+                );
             }
         }
     }

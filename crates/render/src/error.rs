@@ -90,6 +90,14 @@ impl RenderError {
         range: std::ops::RangeInclusive<f64>,
         expected: &'static str,
     ) -> Result<(), Self> {
-        if range.contains(&value) { Ok(()) } else { Err(Self::BadOption { name, value, expected }) }
+        if range.contains(&value) {
+            Ok(())
+        } else {
+            Err(Self::BadOption {
+                name,
+                value,
+                expected,
+            })
+        }
     }
 }

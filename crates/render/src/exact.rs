@@ -39,7 +39,13 @@ pub fn render_exact(
     style: &Style,
     size: (u32, u32),
 ) -> Result<Image, RenderError> {
-    render_exact_observed(rays, camera, style, size, &mut |_| ControlFlow::Continue(()))
+    render_exact_observed(
+        rays,
+        camera,
+        style,
+        size,
+        &mut |_| ControlFlow::Continue(()),
+    )
 }
 
 /// [`render_exact`], telling how many rays were followed.
@@ -55,7 +61,16 @@ pub fn render_exact_observed(
 ) -> Result<Image, RenderError> {
     check_size(width.into(), height.into())?;
     style.check()?;
-    let mut canvas = Canvas { rays, camera, style, width, height, observer, followed: 0, total: 0 };
+    let mut canvas = Canvas {
+        rays,
+        camera,
+        style,
+        width,
+        height,
+        observer,
+        followed: 0,
+        total: 0,
+    };
     let pixels = width as usize * height as usize;
     let middle = |pixel: usize| {
         let (x, y) = (pixel % width as usize, pixel / width as usize);
@@ -63,14 +78,19 @@ pub fn render_exact_observed(
     };
     canvas.total = pixels;
     let seen: Vec<Option<Seen>> = canvas.cast(pixels, middle)?;
-    let close: Vec<usize> = (0..pixels).filter(|&pixel| !canvas.is_smooth(&seen, pixel)).collect();
+    let close: Vec<usize> = (0..pixels)
+        .filter(|&pixel| !canvas.is_smooth(&seen, pixel))
+        .collect();
     let places = sample_places(style.samples);
     let count = places.len();
     canvas.total += close.len() * count;
     let within = |sample: usize| {
         let (pixel, [x, y]) = (close[sample / count], places[sample % count]);
         let [left, top] = middle(pixel).map(f64::floor);
-        [left + f64::from(x) / f64::from(STEPS), top + f64::from(y) / f64::from(STEPS)]
+        [
+            left + f64::from(x) / f64::from(STEPS),
+            top + f64::from(y) / f64::from(STEPS),
+        ]
     };
     let samples = canvas.cast(close.len() * count, within)?;
     let mut image = Image::new(width, height, style.background)?;
@@ -80,7 +100,10 @@ pub fn render_exact_observed(
         image.row_mut(x as u32, y as u32)[..4].copy_from_slice(&mixed(seen, background));
     };
     (0..pixels).for_each(|pixel| paint(pixel, &seen[pixel..=pixel]));
-    close.iter().zip(samples.chunks(count)).for_each(|(&pixel, samples)| paint(pixel, samples));
+    close
+        .iter()
+        .zip(samples.chunks(count))
+        .for_each(|(&pixel, samples)| paint(pixel, samples));
     Ok(image)
 }
 
@@ -112,14 +135,19 @@ impl Canvas<'_, '_> {
         count: usize,
         place: impl Fn(usize) -> [f64; 2] + Sync + Send,
     ) -> Result<Vec<Option<Seen>>, RenderError> {
-        let from = if self.camera.is_perspective() { 0.0 } else { f64::NEG_INFINITY };
+        let from = if self.camera.is_perspective() {
+            0.0
+        } else {
+            f64::NEG_INFINITY
+        };
         let options = RayOptions::default().between(from, f64::INFINITY);
         let mut all = Vec::with_capacity(count);
         while all.len() < count {
             let first = all.len();
             let batch = BATCH.min(count - first);
             let (camera, width, height) = (self.camera, self.width, self.height);
-            let rays: Vec<Ray> = parallel::map(batch, |at| camera.ray(place(first + at), width, height));
+            let rays: Vec<Ray> =
+                parallel::map(batch, |at| camera.ray(place(first + at), width, height));
             let (followed, total, observer) = (self.followed, self.total, &mut *self.observer);
             let tell = &mut |at: &Progress| {
                 let mut at = *at;
@@ -129,7 +157,9 @@ impl Canvas<'_, '_> {
             let hits = self.rays.first_of_all_observed(&rays, &options, tell);
             let hits = hits.map_err(|_| RenderError::Cancelled)?;
             let style = self.style;
-            all.extend(parallel::map(batch, |at| hits[at].map(|hit| seen(camera, style, &hit))));
+            all.extend(parallel::map(batch, |at| {
+                hits[at].map(|hit| seen(camera, style, &hit))
+            }));
             self.followed += batch;
         }
         Ok(all)
@@ -150,7 +180,9 @@ impl Canvas<'_, '_> {
         let side = self.camera.pixel_at(own.depth, self.height);
         (0..4).all(|i| {
             let (dx, dy) = (i % 3, i / 3);
-            let (Some(a), Some(b)) = (at(dx, dy), at(2 - dx, 2 - dy)) else { return false };
+            let (Some(a), Some(b)) = (at(dx, dy), at(2 - dx, 2 - dy)) else {
+                return false;
+            };
             let bend = (a.depth - 2.0 * own.depth + b.depth).abs();
             let is_inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
             (bend <= STRAIGHT * side || !is_inside && a.normal.dot(b.normal) >= SMOOTH)
@@ -173,9 +205,17 @@ fn seen(camera: &Camera, style: &Style, hit: &Hit) -> Seen {
         Crossing::Grazing => outside.dot(viewer) >= 0.0,
     };
     let normal = if is_front { outside } else { -outside };
-    let albedo = colour::linear(if is_front { style.surface_colour } else { style.back_colour });
+    let albedo = colour::linear(if is_front {
+        style.surface_colour
+    } else {
+        style.back_colour
+    });
     let colour = shade(&style.lighting, albedo, in_frame(normal), in_frame(viewer));
-    Seen { colour, depth: hit.t, normal }
+    Seen {
+        colour,
+        depth: hit.t,
+        normal,
+    }
 }
 
 /// A pixel's bytes from what is seen in it.
@@ -183,7 +223,9 @@ fn mixed(seen: &[Option<Seen>], background: [u8; 4]) -> [u8; 4] {
     let (mut sum, mut count) = ([0.0f32; 3], 0);
     for seen in seen.iter().flatten() {
         count += 1;
-        sum.iter_mut().zip(seen.colour).for_each(|(sum, channel)| *sum += channel);
+        sum.iter_mut()
+            .zip(seen.colour)
+            .for_each(|(sum, channel)| *sum += channel);
     }
     if count == 0 {
         return background;

@@ -32,24 +32,42 @@ pub struct Scale {
 impl Scale {
     /// From `low` to `high` in the default colours.
     pub fn new(low: f64, high: f64) -> Self {
-        Self { low, high, map: ColourMap::default(), is_logarithmic: false, above: None }
+        Self {
+            low,
+            high,
+            map: ColourMap::default(),
+            is_logarithmic: false,
+            above: None,
+        }
     }
 
     /// From `low` to `high`, both above 0, by their ratio.
     pub fn logarithmic(low: f64, high: f64) -> Self {
-        Self { is_logarithmic: true, ..Self::new(low, high) }
+        Self {
+            is_logarithmic: true,
+            ..Self::new(low, high)
+        }
     }
 
     /// The same with a colour of its own for values above the upper end.
     pub fn marking_above(self, colour: [u8; 3]) -> Self {
-        Self { above: Some(colour), ..self }
+        Self {
+            above: Some(colour),
+            ..self
+        }
     }
 
     /// From the least to the greatest of the values that are finite (0 to 1 without any).
     pub fn of(values: &[f64]) -> Self {
         let finite = values.iter().copied().filter(|v| v.is_finite());
-        let ends = finite.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
-        if ends.0 <= ends.1 { Self::new(ends.0, ends.1) } else { Self::new(0.0, 1.0) }
+        let ends = finite.fold((f64::MAX, f64::MIN), |(low, high), v| {
+            (low.min(v), high.max(v))
+        });
+        if ends.0 <= ends.1 {
+            Self::new(ends.0, ends.1)
+        } else {
+            Self::new(0.0, 1.0)
+        }
     }
 
     /// The same range in other colours.
@@ -70,10 +88,18 @@ impl Scale {
         if self.is_logarithmic {
             let span = (self.high / self.low).ln();
             // Values from 0 down have no logarithm: they stand below all.
-            return if span > 0.0 { (value.max(f64::MIN_POSITIVE) / self.low).ln() / span } else { 0.5 };
+            return if span > 0.0 {
+                (value.max(f64::MIN_POSITIVE) / self.low).ln() / span
+            } else {
+                0.5
+            };
         }
         let span = self.high - self.low;
-        if span > 0.0 { (value - self.low) / span } else { 0.5 }
+        if span > 0.0 {
+            (value - self.low) / span
+        } else {
+            0.5
+        }
     }
 
     fn check(&self) -> Result<(), RenderError> {
@@ -87,7 +113,12 @@ impl Scale {
                 "a number above 0",
             )?;
         }
-        RenderError::check_range("the scale's lower end", self.low, -half..=half, "a finite number")?;
+        RenderError::check_range(
+            "the scale's lower end",
+            self.low,
+            -half..=half,
+            "a finite number",
+        )?;
         RenderError::check_range(
             "the scale's upper end",
             self.high,
@@ -116,9 +147,17 @@ pub fn render_scalar(
     scale.check()?;
     picture::check_count("values", values.len(), surface)?;
     if let Some((index, &value)) = values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-        return Err(RenderError::NotFinite { what: "value", index, value });
+        return Err(RenderError::NotFinite {
+            what: "value",
+            index,
+            value,
+        });
     }
-    let paint = Paint::Scalar { values, scale, table: scale.map.table() };
+    let paint = Paint::Scalar {
+        values,
+        scale,
+        table: scale.map.table(),
+    };
     picture::draw(surface, normals, &paint, camera, style, width, height)
 }
 
@@ -139,22 +178,36 @@ pub struct ColourBar {
 impl ColourBar {
     /// A bar without title.
     pub fn new(scale: Scale) -> Self {
-        Self { scale, title: String::new(), unit: String::new(), text_size: None }
+        Self {
+            scale,
+            title: String::new(),
+            unit: String::new(),
+            text_size: None,
+        }
     }
 
     /// What the numbers are.
     pub fn title(self, title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..self }
+        Self {
+            title: title.into(),
+            ..self
+        }
     }
 
     /// Their unit.
     pub fn unit(self, unit: impl Into<String>) -> Self {
-        Self { unit: unit.into(), ..self }
+        Self {
+            unit: unit.into(),
+            ..self
+        }
     }
 
     /// Size of the text in pixels, from 1 to 1000.
     pub fn text_size(self, size: f32) -> Self {
-        Self { text_size: Some(size), ..self }
+        Self {
+            text_size: Some(size),
+            ..self
+        }
     }
 
     /// The ticks' values and labels, from below to above.
@@ -165,7 +218,9 @@ impl ColourBar {
         } else {
             ticks::linear(low, high, 6)
         };
-        all.into_iter().filter_map(|tick| Some((tick.value, tick.label?))).collect()
+        all.into_iter()
+            .filter_map(|tick| Some((tick.value, tick.label?)))
+            .collect()
     }
 
     /// The picture with the bar on its right, on `background`.
@@ -174,10 +229,15 @@ impl ColourBar {
     /// The result would be wider than a picture may be, or the scale or text size is out of range.
     pub fn beside(&self, picture: &Image, background: [u8; 4]) -> Result<Image, RenderError> {
         self.scale.check()?;
-        let size = self.text_size.unwrap_or((picture.height() as f32 / 40.0).max(11.0));
+        let size = self
+            .text_size
+            .unwrap_or((picture.height() as f32 / 40.0).max(11.0));
         let text = TextStyle::default().size(size);
-        let title =
-            if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) };
+        let title = if self.unit.is_empty() {
+            self.title.clone()
+        } else {
+            format!("{} ({})", self.title, self.unit)
+        };
         let heading = text.bold(true);
         let ticks = self.ticks();
         let mut widest = 0.0f32;
@@ -191,21 +251,38 @@ impl ColourBar {
         image.paste(picture, 0, 0);
         let left = (picture.width() as f32 + size).round();
         let height = picture.height() as f32;
-        let (top, bottom) = ((0.12 * height + size).min(0.4 * height).round(), (0.90 * height).round());
-        let room = if self.scale.above.is_some() { 1.7 * size } else { size };
+        let (top, bottom) = (
+            (0.12 * height + size).min(0.4 * height).round(),
+            (0.90 * height).round(),
+        );
+        let room = if self.scale.above.is_some() {
+            1.7 * size
+        } else {
+            size
+        };
         image.draw_text(left, top - room, title.trim(), &heading)?;
         self.draw_bar(&mut image, [left, top], [left + bar, bottom]);
         if let Some(above) = self.scale.above {
             let (from, to) = ([left, top - 0.7 * size], [left + bar, top - 0.1 * size]);
             image.fill_rectangle(from, to, above);
-            image.draw_text(left + bar + 1.6 * gap, to[1], "more", &text.align(Align::Left))?;
+            image.draw_text(
+                left + bar + 1.6 * gap,
+                to[1],
+                "more",
+                &text.align(Align::Left),
+            )?;
         }
         for (value, label) in &ticks {
             let y = bottom + (top - bottom) * self.scale.place(*value) as f32;
             let mark = (0.07 * size).max(1.0);
             let from = [left + bar, (y - 0.5 * mark).round()];
             image.fill_rectangle(from, [left + bar + gap, from[1] + mark], text.colour);
-            image.draw_text(left + bar + 1.6 * gap, y + 0.36 * size, label, &text.align(Align::Left))?;
+            image.draw_text(
+                left + bar + 1.6 * gap,
+                y + 0.36 * size,
+                label,
+                &text.align(Align::Left),
+            )?;
         }
         Ok(image)
     }
@@ -213,7 +290,11 @@ impl ColourBar {
     /// The gradient in a thin frame.
     fn draw_bar(&self, image: &mut Image, from: [f32; 2], to: [f32; 2]) {
         let frame = TextStyle::default().colour;
-        image.fill_rectangle([from[0] - 1.0, from[1] - 1.0], [to[0] + 1.0, to[1] + 1.0], frame);
+        image.fill_rectangle(
+            [from[0] - 1.0, from[1] - 1.0],
+            [to[0] + 1.0, to[1] + 1.0],
+            frame,
+        );
         let table = self.scale.map.table();
         for y in from[1] as i64..to[1] as i64 {
             let value = (f64::from(to[1]) - (y as f64 + 0.5)) / f64::from(to[1] - from[1]);

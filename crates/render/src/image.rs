@@ -19,7 +19,11 @@ impl Image {
     /// A side is zero or longer than [`MAX_SIDE`](crate::MAX_SIDE).
     pub fn new(width: u32, height: u32, colour: [u8; 4]) -> Result<Self, RenderError> {
         check_size(width.into(), height.into())?;
-        Ok(Self { width, height, rgba: colour.repeat(width as usize * height as usize) })
+        Ok(Self {
+            width,
+            height,
+            rgba: colour.repeat(width as usize * height as usize),
+        })
     }
 
     /// A picture from its bytes, four a pixel.
@@ -36,7 +40,11 @@ impl Image {
                 expected: "4 for each pixel",
             });
         }
-        Ok(Self { width, height, rgba })
+        Ok(Self {
+            width,
+            height,
+            rgba,
+        })
     }
 
     /// Pixels in a row.
@@ -74,17 +82,27 @@ impl Image {
     /// # Errors
     /// The encoder's own; none is expected, since it writes to memory.
     pub fn encode_png(&self) -> Result<Vec<u8>, RenderError> {
-        let failed = |error: png::EncodingError| RenderError::Encode { reason: error.to_string() };
+        let failed = |error: png::EncodingError| RenderError::Encode {
+            reason: error.to_string(),
+        };
         let opaque = self.rgba.chunks_exact(4).all(|pixel| pixel[3] == 255);
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
+        encoder.set_color(if opaque {
+            png::ColorType::Rgb
+        } else {
+            png::ColorType::Rgba
+        });
         encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
         encoder.set_compression(png::Compression::Balanced);
         let mut writer = encoder.write_header().map_err(failed)?;
         if opaque {
-            let rgb: Vec<u8> = self.rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+            let rgb: Vec<u8> = self
+                .rgba
+                .chunks_exact(4)
+                .flat_map(|p| [p[0], p[1], p[2]])
+                .collect();
             writer.write_image_data(&rgb).map_err(failed)?;
         } else {
             writer.write_image_data(&self.rgba).map_err(failed)?;

@@ -43,7 +43,10 @@ pub fn render(
             check_count("vertex colours", colours.len(), surface)?;
             Paint::Vertex(colours)
         }
-        None => Paint::Sides(colour::linear(style.surface_colour), colour::linear(style.back_colour)),
+        None => Paint::Sides(
+            colour::linear(style.surface_colour),
+            colour::linear(style.back_colour),
+        ),
     };
     draw(surface, normals, &paint, camera, style, width, height)
 }
@@ -55,9 +58,17 @@ pub(crate) enum Paint<'a> {
     /// A colour at each vertex.
     Vertex(&'a [[u8; 3]]),
     /// A number at each vertex, looked up in a table of the scale's colours.
-    Scalar { values: &'a [f64], scale: &'a Scale, table: Vec<Linear> },
+    Scalar {
+        values: &'a [f64],
+        scale: &'a Scale,
+        table: Vec<Linear>,
+    },
     /// Materials, perhaps with textures.
-    Materials { covering: &'a Covering<'a>, outside: Linear, inside: Linear },
+    Materials {
+        covering: &'a Covering<'a>,
+        outside: Linear,
+        inside: Linear,
+    },
 }
 
 pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
@@ -65,13 +76,29 @@ pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
     if fits(width) && fits(height) {
         Ok(())
     } else {
-        Err(RenderError::Size { width, height, limit: MAX_SIDE })
+        Err(RenderError::Size {
+            width,
+            height,
+            limit: MAX_SIDE,
+        })
     }
 }
 
-pub(crate) fn check_count(what: &'static str, met: usize, surface: Triangles<'_>) -> Result<(), RenderError> {
+pub(crate) fn check_count(
+    what: &'static str,
+    met: usize,
+    surface: Triangles<'_>,
+) -> Result<(), RenderError> {
     let expected = surface.positions.len();
-    if met == expected { Ok(()) } else { Err(RenderError::Count { what, met, expected }) }
+    if met == expected {
+        Ok(())
+    } else {
+        Err(RenderError::Count {
+            what,
+            met,
+            expected,
+        })
+    }
 }
 
 fn check_finite(what: &'static str, values: &[[f64; 3]]) -> Result<(), RenderError> {
@@ -96,7 +123,11 @@ fn check_surface(surface: Triangles<'_>) -> Result<(), RenderError> {
     let count = surface.positions.len();
     for (triangle, corners) in surface.triangles.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {
-            return Err(RenderError::VertexOutOfRange { triangle, vertex, count });
+            return Err(RenderError::VertexOutOfRange {
+                triangle,
+                vertex,
+                count,
+            });
         }
     }
     check_finite("position", surface.positions)
@@ -123,7 +154,9 @@ pub(crate) fn draw(
     let seen = |n: DVec3| DVec3::new(n.dot(right), n.dot(up), n.dot(back)).normalize_or_zero();
     let normals = match (style.shading, normals) {
         (Shading::Flat, _) => Vec::new(),
-        (Shading::Smooth, Some(given)) => parallel::map(given.len(), |v| seen(DVec3::from_array(given[v]))),
+        (Shading::Smooth, Some(given)) => {
+            parallel::map(given.len(), |v| seen(DVec3::from_array(given[v])))
+        }
         (Shading::Smooth, None) => {
             let sums = area_normals(surface);
             parallel::map(sums.len(), |v| seen(sums[v]))
@@ -135,7 +168,15 @@ pub(crate) fn draw(
         Vec::new()
     };
     let bins = Bins::new(&projected, width, height);
-    let scene = Scene { surface, camera, style, paint, projected: &projected, normals, inks };
+    let scene = Scene {
+        surface,
+        camera,
+        style,
+        paint,
+        projected: &projected,
+        normals,
+        inks,
+    };
     let places = sample_places(style.samples);
     match style.samples {
         1 => scene.tiles::<1>(&bins, &places, width, height),
@@ -224,8 +265,9 @@ impl Scene<'_> {
             let piece = &self.projected.pieces[piece as usize];
             tile.cover(places, area, self.projected.triangle(piece), piece.face);
         }
-        let mut bytes =
-            Vec::with_capacity((area.right - area.left) as usize * (area.bottom - area.top) as usize * 4);
+        let mut bytes = Vec::with_capacity(
+            (area.right - area.left) as usize * (area.bottom - area.top) as usize * 4,
+        );
         let mut groups = Vec::with_capacity(S);
         for y in area.top..area.bottom {
             for x in area.left..area.right {
@@ -238,7 +280,12 @@ impl Scene<'_> {
     }
 
     /// A pixel's bytes from what is seen at its samples.
-    fn pixel<const S: usize>(&self, groups: &[Group], [x, y]: [i32; 2], places: &[[i32; 2]; S]) -> [u8; 4] {
+    fn pixel<const S: usize>(
+        &self,
+        groups: &[Group],
+        [x, y]: [i32; 2],
+        places: &[[i32; 2]; S],
+    ) -> [u8; 4] {
         let background = self.style.background;
         let behind = f32::from(background[3]) / 255.0;
         let mut sum = [0.0; 3];
@@ -262,14 +309,21 @@ impl Scene<'_> {
     }
 
     /// The colour of a group: light at the middle of its samples, lines sample by sample.
-    fn group<const S: usize>(&self, group: &Group, pixel: [f64; 2], places: &[[i32; 2]; S]) -> Linear {
+    fn group<const S: usize>(
+        &self,
+        group: &Group,
+        pixel: [f64; 2],
+        places: &[[i32; 2]; S],
+    ) -> Linear {
         let step = 1.0 / f64::from(STEPS);
         let per = step / f64::from(group.count);
         let middle = [0, 1].map(|i| pixel[i] + f64::from(group.sum[i]) * per);
         let triangle = self.surface.triangles[group.face as usize];
         let lines = Lines::new(triangle.map(|v| self.projected.homogeneous[v as usize]));
         let colour = self.light(group.face, &lines, middle);
-        let Some(ink) = self.inks.get(group.face as usize) else { return colour };
+        let Some(ink) = self.inks.get(group.face as usize) else {
+            return colour;
+        };
         let share = line_share(&lines, ink, group, pixel, places);
         colour::mix(colour, colour::linear(self.style.wire_colour), share)
     }
@@ -303,7 +357,11 @@ impl Scene<'_> {
         let side = |outside: &Linear, inside: &Linear| if lines.front { *outside } else { *inside };
         match self.paint {
             Paint::Sides(outside, inside) => side(outside, inside),
-            Paint::Materials { covering, outside, inside } => {
+            Paint::Materials {
+                covering,
+                outside,
+                inside,
+            } => {
                 let own = covering.colour(face, weights, lines.steps(x, y));
                 own.unwrap_or_else(|| side(outside, inside))
             }
@@ -317,9 +375,15 @@ impl Scene<'_> {
                 }
                 mixed
             }
-            Paint::Scalar { values, scale, table } => {
+            Paint::Scalar {
+                values,
+                scale,
+                table,
+            } => {
                 let corners = triangle.iter().zip(weights);
-                let value = corners.map(|(&vertex, weight)| values[vertex as usize] * weight).sum();
+                let value = corners
+                    .map(|(&vertex, weight)| values[vertex as usize] * weight)
+                    .sum();
                 match scale.above {
                     Some(mark) if value > scale.high => colour::linear(mark),
                     _ => look_up(table, scale.place(value)),
@@ -343,7 +407,12 @@ fn gather<const S: usize>(faces: &[u32; S], places: &[[i32; 2]; S], groups: &mut
                 group.count += 1;
                 group.sum = [group.sum[0] + x, group.sum[1] + y];
             }
-            None => groups.push(Group { face, members: 1 << s, count: 1, sum: [x, y] }),
+            None => groups.push(Group {
+                face,
+                members: 1 << s,
+                count: 1,
+                sum: [x, y],
+            }),
         }
     }
 }
@@ -360,7 +429,11 @@ fn line_share<const S: usize>(
     let blur = 1.0 / (S as f32).sqrt();
     let corner = lines.lines.map(|[a, b, c]| {
         let length = a.hypot(b);
-        if length > 0.0 { ((a * pixel[0] + b * pixel[1] + c) / length) as f32 } else { 0.0 }
+        if length > 0.0 {
+            ((a * pixel[0] + b * pixel[1] + c) / length) as f32
+        } else {
+            0.0
+        }
     });
     // No point of a pixel is farther from its corner than its diagonal.
     let near = |i: usize| corner[i].abs() < ink.reach[i] + 2.0;

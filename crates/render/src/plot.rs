@@ -49,26 +49,42 @@ pub struct Axis {
 impl Axis {
     /// A linear axis.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), ..Self::default() }
+        Self {
+            title: title.into(),
+            ..Self::default()
+        }
     }
 
     /// The numbers' unit.
     pub fn unit(self, unit: impl Into<String>) -> Self {
-        Self { unit: unit.into(), ..self }
+        Self {
+            unit: unit.into(),
+            ..self
+        }
     }
 
     /// Makes it logarithmic.
     pub fn logarithmic(self) -> Self {
-        Self { spread: Spread::Logarithmic, ..self }
+        Self {
+            spread: Spread::Logarithmic,
+            ..self
+        }
     }
 
     /// First and last number.
     pub fn range(self, first: f64, last: f64) -> Self {
-        Self { range: Some([first, last]), ..self }
+        Self {
+            range: Some([first, last]),
+            ..self
+        }
     }
 
     fn heading(&self) -> String {
-        if self.unit.is_empty() { self.title.clone() } else { format!("{} ({})", self.title, self.unit) }
+        if self.unit.is_empty() {
+            self.title.clone()
+        } else {
+            format!("{} ({})", self.title, self.unit)
+        }
     }
 }
 
@@ -93,12 +109,22 @@ pub struct Series {
 impl Series {
     /// Marked points joined by a line.
     pub fn new(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        Self { name: name.into(), points, line: true, markers: true, dashed: false, colour: None }
+        Self {
+            name: name.into(),
+            points,
+            line: true,
+            markers: true,
+            dashed: false,
+            colour: None,
+        }
     }
 
     /// Marked points alone.
     pub fn scatter(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
-        Self { line: false, ..Self::new(name, points) }
+        Self {
+            line: false,
+            ..Self::new(name, points)
+        }
     }
 
     /// Whether each point is marked.
@@ -113,7 +139,10 @@ impl Series {
 
     /// 8-bit sRGB.
     pub fn colour(self, colour: [u8; 3]) -> Self {
-        Self { colour: Some(colour), ..self }
+        Self {
+            colour: Some(colour),
+            ..self
+        }
     }
 }
 
@@ -215,7 +244,15 @@ impl Plot {
     /// A plot without series.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         let (legend, series) = (Legend::default(), Vec::new());
-        Self { title: title.into(), x, y, series, legend, width: 640.0, height: 420.0 }
+        Self {
+            title: title.into(),
+            x,
+            y,
+            series,
+            legend,
+            width: 640.0,
+            height: 420.0,
+        }
     }
 
     /// Adds a series.
@@ -231,7 +268,11 @@ impl Plot {
 
     /// Width and height in pixels, at least 160 each.
     pub fn size(self, width: f64, height: f64) -> Self {
-        Self { width, height, ..self }
+        Self {
+            width,
+            height,
+            ..self
+        }
     }
 
     /// The plot as an SVG file.
@@ -240,7 +281,10 @@ impl Plot {
     /// Numbers that are not finite, or not above zero on a logarithmic axis; a range that is empty; no points at
     /// all; a size too small for axes and labels.
     pub fn to_svg(&self) -> Result<String, RenderError> {
-        for (name, side) in [("the plot's width", self.width), ("the plot's height", self.height)] {
+        for (name, side) in [
+            ("the plot's width", self.width),
+            ("the plot's height", self.height),
+        ] {
             RenderError::check_range(name, side, 160.0..=20_000.0, "from 160 to 20000 pixels")?;
         }
         let field = self.field()?;
@@ -278,7 +322,14 @@ impl Plot {
                 expected: "at least 60 pixels: a larger plot or shorter names",
             });
         }
-        Ok(Field { left, right, top, bottom, x, y })
+        Ok(Field {
+            left,
+            right,
+            top,
+            bottom,
+            x,
+            y,
+        })
     }
 
     fn has_legend(&self) -> bool {
@@ -298,7 +349,11 @@ impl Plot {
     fn range(&self, axis: usize, settings: &Axis) -> Result<Range, RenderError> {
         let spread = settings.spread;
         let check = |index: usize, value: f64| match spread {
-            _ if !value.is_finite() => Err(RenderError::NotFinite { what: "plotted point", index, value }),
+            _ if !value.is_finite() => Err(RenderError::NotFinite {
+                what: "plotted point",
+                index,
+                value,
+            }),
             Spread::Logarithmic if value <= 0.0 => Err(RenderError::BadOption {
                 name: "a number on a logarithmic axis",
                 value,
@@ -307,7 +362,12 @@ impl Plot {
             _ => Ok(()),
         };
         let (mut low, mut high) = (f64::MAX, f64::MIN);
-        for (index, point) in self.series.iter().flat_map(|series| &series.points).enumerate() {
+        for (index, point) in self
+            .series
+            .iter()
+            .flat_map(|series| &series.points)
+            .enumerate()
+        {
             check(index, point[axis])?;
             (low, high) = (low.min(point[axis]), high.max(point[axis]));
         }
@@ -320,21 +380,44 @@ impl Plot {
                 first.next_up()..=f64::MAX,
                 "above the first",
             )?;
-            return Ok(Range { low: first, high: last, spread });
+            return Ok(Range {
+                low: first,
+                high: last,
+                spread,
+            });
         }
         if low > high {
             return Err(RenderError::Empty);
         }
         Ok(match spread {
             Spread::Linear => {
-                let room = if high > low { 0.05 * (high - low) } else { 0.5 * high.abs().max(1.0) };
+                let room = if high > low {
+                    0.05 * (high - low)
+                } else {
+                    0.5 * high.abs().max(1.0)
+                };
                 // An axis of amounts starts at zero rather than just below it.
-                let from = if low >= 0.0 && low < 0.35 * high { 0.0 } else { low - room };
-                Range { low: from, high: high + room, spread }
+                let from = if low >= 0.0 && low < 0.35 * high {
+                    0.0
+                } else {
+                    low - room
+                };
+                Range {
+                    low: from,
+                    high: high + room,
+                    spread,
+                }
             }
             Spread::Logarithmic => {
-                let room = if high > low { (high / low).powf(0.06) } else { 2.0 };
-                let (low, high) = ((low / room).max(f64::MIN_POSITIVE), (high * room).min(f64::MAX));
+                let room = if high > low {
+                    (high / low).powf(0.06)
+                } else {
+                    2.0
+                };
+                let (low, high) = (
+                    (low / room).max(f64::MIN_POSITIVE),
+                    (high * room).min(f64::MAX),
+                );
                 Range { low, high, spread }
             }
         })
@@ -368,13 +451,24 @@ impl Plot {
             let [_, y] = field.at([field.x.low, tick.value]);
             let label = tick.label.as_deref().unwrap_or_default();
             if !label.is_empty() {
-                drawing.label([field.left - 8.0, y + 0.35 * TICK_SIZE], label, &text.align(Align::Right));
+                drawing.label(
+                    [field.left - 8.0, y + 0.35 * TICK_SIZE],
+                    label,
+                    &text.align(Align::Right),
+                );
             }
         }
-        let corners = [[field.left, field.top], [field.left, field.bottom], [field.right, field.bottom]];
+        let corners = [
+            [field.left, field.top],
+            [field.left, field.bottom],
+            [field.right, field.bottom],
+        ];
         drawing.polyline(&corners, &Pen::line(FRAME, 1.2));
         let title = Label::default().size(TITLE_SIZE).align(Align::Centre);
-        let (across, upwards) = (0.5 * (field.left + field.right), 0.5 * (field.top + field.bottom));
+        let (across, upwards) = (
+            0.5 * (field.left + field.right),
+            0.5 * (field.top + field.bottom),
+        );
         drawing.label([across, field.bottom + 42.0], &self.x.heading(), &title);
         drawing.label([20.0, upwards], &self.y.heading(), &title.turn(90.0));
     }
@@ -383,8 +477,12 @@ impl Plot {
         if !self.has_legend() {
             return Ok(());
         }
-        let named: Vec<(usize, &Series)> =
-            self.series.iter().enumerate().filter(|(_, series)| !series.name.is_empty()).collect();
+        let named: Vec<(usize, &Series)> = self
+            .series
+            .iter()
+            .enumerate()
+            .filter(|(_, series)| !series.name.is_empty())
+            .collect();
         let (row, width) = (20.0, self.legend_width()?);
         let height = row * named.len() as f64;
         let (left, top) = match self.legend {
@@ -418,7 +516,11 @@ fn colour_of(series: &Series, index: usize) -> [u8; 3] {
 fn draw_stroke(drawing: &mut Drawing, points: &[[f64; 2]], series: &Series, index: usize) {
     if series.line {
         let pen = Pen::line(colour_of(series, index), 2.0);
-        let pen = if series.dashed { pen.dashes(&[6.0, 5.0]) } else { pen };
+        let pen = if series.dashed {
+            pen.dashes(&[6.0, 5.0])
+        } else {
+            pen
+        };
         drawing.polyline(points, &pen);
     }
 }
@@ -450,7 +552,10 @@ fn draw_marker(drawing: &mut Drawing, [x, y]: [f64; 2], index: usize, colour: [u
     };
     match index % 4 {
         0 => drawing.circle([x, y], 4.0, &pen),
-        1 => shape(drawing, &[[-3.7, -3.7], [3.7, -3.7], [3.7, 3.7], [-3.7, 3.7]]),
+        1 => shape(
+            drawing,
+            &[[-3.7, -3.7], [3.7, -3.7], [3.7, 3.7], [-3.7, 3.7]],
+        ),
         2 => shape(drawing, &[[0.0, -4.8], [4.5, 3.4], [-4.5, 3.4]]),
         _ => shape(drawing, &[[0.0, -5.0], [5.0, 0.0], [0.0, 5.0], [-5.0, 0.0]]),
     }
@@ -461,18 +566,29 @@ mod tests {
     use super::*;
 
     fn plot(points: Vec<[f64; 2]>) -> Plot {
-        Plot::new("Error", Axis::new("triangles"), Axis::new("distance").unit("%"))
-            .with(Series::new("limit normal", points))
+        Plot::new(
+            "Error",
+            Axis::new("triangles"),
+            Axis::new("distance").unit("%"),
+        )
+        .with(Series::new("limit normal", points))
     }
 
     /// The centres of the circles that mark the first series.
     fn circles(file: &str) -> Vec<[f64; 2]> {
         let value = |line: &str, name: &str| {
             let start = line.find(name).unwrap() + name.len();
-            line[start..].split('"').next().unwrap().parse::<f64>().unwrap()
+            line[start..]
+                .split('"')
+                .next()
+                .unwrap()
+                .parse::<f64>()
+                .unwrap()
         };
         let lines = file.lines().filter(|line| line.contains("<circle"));
-        lines.map(|line| [value(line, "cx=\""), value(line, "cy=\"")]).collect()
+        lines
+            .map(|line| [value(line, "cx=\""), value(line, "cy=\"")])
+            .collect()
     }
 
     #[test]
@@ -485,14 +601,18 @@ mod tests {
         let [first, second, third] = [centres[0], centres[1], centres[2]];
         for axis in 0..2 {
             let steps = [second[axis] - first[axis], third[axis] - second[axis]];
-            assert!((steps[0] - steps[1]).abs() < 0.01 && steps[0].abs() > 50.0, "{steps:?}");
+            assert!(
+                (steps[0] - steps[1]).abs() < 0.01 && steps[0].abs() > 50.0,
+                "{steps:?}"
+            );
         }
         assert!(centres[0][1] < centres[2][1], "larger is higher");
     }
 
     #[test]
     fn points_beyond_a_given_range_are_left_out() {
-        let mut plot = plot(vec![[0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [9.0, 1.0]]).legend(Legend::None);
+        let mut plot =
+            plot(vec![[0.0, 1.0], [1.0, 1.0], [2.0, 1.0], [9.0, 1.0]]).legend(Legend::None);
         plot.x = plot.x.range(0.5, 3.0);
         assert_eq!(circles(&plot.to_svg().unwrap()).len(), 2);
     }
@@ -508,6 +628,9 @@ mod tests {
         let mut swapped = plot(vec![[0.0, 1.0]]);
         swapped.x = swapped.x.range(2.0, 1.0);
         assert!(swapped.to_svg().is_err());
-        assert!(plot(vec![[1.0, 1.0]]).to_svg().is_ok(), "a single point has a plot");
+        assert!(
+            plot(vec![[1.0, 1.0]]).to_svg().is_ok(),
+            "a single point has a plot"
+        );
     }
 }

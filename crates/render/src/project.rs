@@ -29,7 +29,11 @@ pub(crate) struct Corner {
 }
 
 /// Marks corners of the mesh that lie behind the eye or too far out.
-const OUTSIDE: Corner = Corner { x: i32::MIN, y: i32::MIN, depth: 0.0 };
+const OUTSIDE: Corner = Corner {
+    x: i32::MIN,
+    y: i32::MIN,
+    depth: 0.0,
+};
 
 /// A triangle or a part of one, ready for rasterising.
 #[derive(Clone, Copy, Debug)]
@@ -66,12 +70,23 @@ impl Frustum {
         let per_distance = if high > low { 1.0 / (high - low) } else { 0.0 };
         let near = (NEAR * high).max(f64::MIN_POSITIVE);
         let perspective = camera.is_perspective();
-        Self { width: width.into(), height: height.into(), near, perspective, low, per_distance }
+        Self {
+            width: width.into(),
+            height: height.into(),
+            near,
+            perspective,
+            low,
+            per_distance,
+        }
     }
 
     /// Signed distances from the five planes that a triangle may be clipped at; inside is not negative.
     fn planes(&self, p: &Homogeneous) -> [f64; 5] {
-        let near = if self.perspective { p.w - self.near } else { 1.0 };
+        let near = if self.perspective {
+            p.w - self.near
+        } else {
+            1.0
+        };
         [
             near,
             p.x + BORDER * p.w,
@@ -93,26 +108,44 @@ impl Frustum {
         } else {
             1.0 - (p.distance - self.low) * self.per_distance
         };
-        Corner { x: grid(p.x), y: grid(p.y), depth }
+        Corner {
+            x: grid(p.x),
+            y: grid(p.y),
+            depth,
+        }
     }
 
     /// Corner of a vertex of the mesh, or the mark that it needs clipping.
     fn corner_or_mark(&self, p: &Homogeneous) -> Corner {
-        if self.contains(p) { self.corner(p) } else { OUTSIDE }
+        if self.contains(p) {
+            self.corner(p)
+        } else {
+            OUTSIDE
+        }
     }
 }
 
 /// Projects a surface whose indices and positions have been checked.
-pub(crate) fn project(surface: Triangles<'_>, camera: &Camera, width: u32, height: u32) -> Projected {
+pub(crate) fn project(
+    surface: Triangles<'_>,
+    camera: &Camera,
+    width: u32,
+    height: u32,
+) -> Projected {
     let positions = surface.positions;
-    let homogeneous = parallel::map(positions.len(), |v| camera.homogeneous(positions[v], width, height));
+    let homogeneous = parallel::map(positions.len(), |v| {
+        camera.homogeneous(positions[v], width, height)
+    });
     let frustum = Frustum::new(camera, &homogeneous, width, height);
     let mut corners = parallel::map(positions.len(), |v| frustum.corner_or_mark(&homogeneous[v]));
     let mut pieces = Vec::with_capacity(surface.triangles.len());
     for (face, &triangle) in surface.triangles.iter().enumerate() {
         let face = face as u32;
         if triangle.iter().all(|&v| corners[v as usize] != OUTSIDE) {
-            pieces.push(Piece { corners: triangle, face });
+            pieces.push(Piece {
+                corners: triangle,
+                face,
+            });
         } else {
             let polygon = clip(&frustum, triangle.map(|v| homogeneous[v as usize]));
             let first = corners.len() as u32;
@@ -121,7 +154,11 @@ pub(crate) fn project(surface: Triangles<'_>, camera: &Camera, width: u32, heigh
             pieces.extend(fan.map(|corners| Piece { corners, face }));
         }
     }
-    Projected { homogeneous, corners, pieces }
+    Projected {
+        homogeneous,
+        corners,
+        pieces,
+    }
 }
 
 /// The part of a triangle inside of all planes: a convex polygon, perhaps empty.
@@ -140,8 +177,11 @@ fn clip(frustum: &Frustum, triangle: [Homogeneous; 3]) -> Vec<Homogeneous> {
                 kept.push(*a);
             }
             if (da >= 0.0) != (db >= 0.0) {
-                let crossing =
-                    if da >= 0.0 { between(a, b, da / (da - db)) } else { between(b, a, db / (db - da)) };
+                let crossing = if da >= 0.0 {
+                    between(a, b, da / (da - db))
+                } else {
+                    between(b, a, db / (db - da))
+                };
                 kept.push(crossing);
             }
         }

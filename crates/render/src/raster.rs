@@ -22,7 +22,9 @@ pub(crate) fn sample_places(side: u32) -> Vec<[i32; 2]> {
     let n = side as i32;
     let step = STEPS / (n * n);
     let place = |i: i32, j: i32| step * (n * i + j) + step / 2;
-    (0..n * n).map(|s| [place(s % n, s / n), place(s / n, s % n)]).collect()
+    (0..n * n)
+        .map(|s| [place(s % n, s / n), place(s / n, s % n)])
+        .collect()
 }
 
 /// A rectangle of pixels; right and bottom are excluded.
@@ -40,7 +42,12 @@ impl Rectangle {
         let (x, y) = (corners.map(|c| c.x), corners.map(|c| c.y));
         let low = |v: [i32; 3]| v[0].min(v[1]).min(v[2]).div_euclid(STEPS);
         let high = |v: [i32; 3]| v[0].max(v[1]).max(v[2]).div_euclid(STEPS) + 1;
-        Self { left: low(x), top: low(y), right: high(x), bottom: high(y) }
+        Self {
+            left: low(x),
+            top: low(y),
+            right: high(x),
+            bottom: high(y),
+        }
     }
 
     fn intersection(self, other: Self) -> Self {
@@ -68,7 +75,12 @@ pub(crate) struct Bins {
 impl Bins {
     pub(crate) fn new(projected: &Projected, width: u32, height: u32) -> Self {
         let (columns, rows) = (width.div_ceil(TILE), height.div_ceil(TILE));
-        let picture = Rectangle { left: 0, top: 0, right: width as i32, bottom: height as i32 };
+        let picture = Rectangle {
+            left: 0,
+            top: 0,
+            right: width as i32,
+            bottom: height as i32,
+        };
         let touched = |piece: &Piece| tiles_touched(projected.triangle(piece), picture, columns);
         let mut starts = vec![0; columns as usize * rows as usize + 1];
         for tile in projected.pieces.iter().flat_map(touched) {
@@ -85,7 +97,12 @@ impl Bins {
                 next[tile] += 1;
             }
         }
-        Self { columns, picture, starts, pieces }
+        Self {
+            columns,
+            picture,
+            starts,
+            pieces,
+        }
     }
 
     /// Number of tiles.
@@ -102,21 +119,37 @@ impl Bins {
     pub(crate) fn rectangle(&self, tile: usize) -> Rectangle {
         let (column, row) = (tile as u32 % self.columns, tile as u32 / self.columns);
         let (left, top) = ((column * TILE) as i32, (row * TILE) as i32);
-        let whole = Rectangle { left, top, right: left + TILE as i32, bottom: top + TILE as i32 };
+        let whole = Rectangle {
+            left,
+            top,
+            right: left + TILE as i32,
+            bottom: top + TILE as i32,
+        };
         whole.intersection(self.picture)
     }
 }
 
 /// Indices of the tiles that a triangle's bounding rectangle touches.
-fn tiles_touched(corners: [Corner; 3], picture: Rectangle, columns: u32) -> impl Iterator<Item = usize> {
+fn tiles_touched(
+    corners: [Corner; 3],
+    picture: Rectangle,
+    columns: u32,
+) -> impl Iterator<Item = usize> {
     let seen = Rectangle::around(corners).intersection(picture);
     let tile = |pixel: i32| pixel.max(0) as usize / TILE as usize;
     let (rows, across) = if seen.is_empty() {
         (0..0, 0..0)
     } else {
-        (tile(seen.top)..tile(seen.bottom - 1) + 1, tile(seen.left)..tile(seen.right - 1) + 1)
+        (
+            tile(seen.top)..tile(seen.bottom - 1) + 1,
+            tile(seen.left)..tile(seen.right - 1) + 1,
+        )
     };
-    rows.flat_map(move |row| across.clone().map(move |column| row * columns as usize + column))
+    rows.flat_map(move |row| {
+        across
+            .clone()
+            .map(move |column| row * columns as usize + column)
+    })
 }
 
 /// What is seen at each sample of a tile: the depth and the triangle of the nearest surface.
@@ -128,7 +161,10 @@ pub(crate) struct Tile<const S: usize> {
 impl<const S: usize> Tile<S> {
     pub(crate) fn new() -> Self {
         let pixels = (TILE * TILE) as usize;
-        Self { depth: vec![[-1.0; S]; pixels], face: vec![[NOTHING; S]; pixels] }
+        Self {
+            depth: vec![[-1.0; S]; pixels],
+            face: vec![[NOTHING; S]; pixels],
+        }
     }
 
     /// Forgets everything.
@@ -145,8 +181,16 @@ impl<const S: usize> Tile<S> {
 
     /// Lets `face` with these corners cover what is farther away in the tile. Of two surfaces at the same depth
     /// the earlier one stays.
-    pub(crate) fn cover(&mut self, places: &[[i32; 2]; S], tile: Rectangle, corners: [Corner; 3], face: u32) {
-        let Some(setup) = Setup::new(corners) else { return };
+    pub(crate) fn cover(
+        &mut self,
+        places: &[[i32; 2]; S],
+        tile: Rectangle,
+        corners: [Corner; 3],
+        face: u32,
+    ) {
+        let Some(setup) = Setup::new(corners) else {
+            return;
+        };
         let bounds = Rectangle::around(corners);
         let seen = bounds.intersection(tile);
         // Within two tiles' extent the edge functions stay under 2³⁰, and 32 bits are twice as fast.
@@ -182,9 +226,12 @@ impl<const S: usize> Tile<S> {
                 let (depths, faces) = (&mut self.depth[pixel], &mut self.face[pixel]);
                 let whole = (0..3).all(|e| base[e] + low[e] >= zero);
                 for s in 0..S {
-                    let depth = (start + rises[s]).clamp(setup.depth_range[0], setup.depth_range[1]);
+                    let depth =
+                        (start + rises[s]).clamp(setup.depth_range[0], setup.depth_range[1]);
                     let inside = whole
-                        || (base[0] + offsets[0][s]) | (base[1] + offsets[1][s]) | (base[2] + offsets[2][s])
+                        || (base[0] + offsets[0][s])
+                            | (base[1] + offsets[1][s])
+                            | (base[2] + offsets[2][s])
                             >= zero;
                     let nearer = inside & (depth > depths[s]);
                     depths[s] = if nearer { depth } else { depths[s] };
@@ -261,10 +308,19 @@ impl Setup {
             (rise_b * cy as f64 - rise_c * by as f64) / area,
             (rise_c * bx as f64 - rise_b * cx as f64) / area,
         ];
-        let range =
-            [depths[0].min(depths[1]).min(depths[2]) as f32, depths[0].max(depths[1]).max(depths[2]) as f32];
+        let range = [
+            depths[0].min(depths[1]).min(depths[2]) as f32,
+            depths[0].max(depths[1]).max(depths[2]) as f32,
+        ];
         let depth_at_first = depths[0];
-        Some(Self { corners, directions, bias, depth_at_first, depth_slope: slope, depth_range: range })
+        Some(Self {
+            corners,
+            directions,
+            bias,
+            depth_at_first,
+            depth_slope: slope,
+            depth_range: range,
+        })
     }
 
     /// Edge function `e` at a point of the grid.
@@ -306,7 +362,12 @@ mod tests {
     /// How often each sample of the tile's pixels is covered when every triangle starts afresh.
     fn counts(triangles: &[[Corner; 3]]) -> Vec<u32> {
         let places: [[i32; 2]; 16] = sample_places(4).try_into().unwrap();
-        let area = Rectangle { left: 0, top: 0, right: TILE as i32, bottom: TILE as i32 };
+        let area = Rectangle {
+            left: 0,
+            top: 0,
+            right: TILE as i32,
+            bottom: TILE as i32,
+        };
         let mut counts = vec![0; (TILE * TILE * 16) as usize];
         for &triangle in triangles {
             let mut tile = Tile::<16>::new();
@@ -326,7 +387,9 @@ mod tests {
                 let mut seen: Vec<i32> = places.iter().map(|p| p[axis]).collect();
                 seen.sort_unstable();
                 let step = STEPS / (side * side) as i32;
-                let expected: Vec<i32> = (0..(side * side) as i32).map(|i| i * step + step / 2).collect();
+                let expected: Vec<i32> = (0..(side * side) as i32)
+                    .map(|i| i * step + step / 2)
+                    .collect();
                 assert_eq!(seen, expected);
             }
         }
@@ -336,8 +399,16 @@ mod tests {
     fn shared_edges_through_samples_are_covered_once() {
         // Samples lie at odd multiples of 8 steps: this fan's edges pass exactly through many of them.
         let centre = corner(16 * 256 + 8, 16 * 256 + 8);
-        let rim =
-            [(8, 8), (4104, 8), (8200, 8), (8200, 4104), (8200, 8200), (4104, 8200), (8, 8200), (8, 4104)];
+        let rim = [
+            (8, 8),
+            (4104, 8),
+            (8200, 8),
+            (8200, 4104),
+            (8200, 8200),
+            (4104, 8200),
+            (8, 8200),
+            (8, 4104),
+        ];
         let fan: Vec<[Corner; 3]> = (0..8)
             .map(|i| {
                 let ((ax, ay), (bx, by)) = (rim[i], rim[(i + 1) % 8]);
@@ -354,7 +425,10 @@ mod tests {
         for y in 0..TILE as i32 {
             for x in 0..TILE as i32 {
                 let places = sample_places(4);
-                expected += places.iter().filter(|p| inside(p[0], x) && inside(p[1], y)).count() as u32;
+                expected += places
+                    .iter()
+                    .filter(|p| inside(p[0], x) && inside(p[1], y))
+                    .count() as u32;
             }
         }
         assert_eq!(covered, expected);

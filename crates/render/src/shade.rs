@@ -46,5 +46,9 @@ fn wrapped(cosine: f64, wrap: f64) -> f64 {
 /// Brings what is brighter than white back softly: the identity up to 0.8, never above 1.
 fn shoulder(value: f32) -> f32 {
     const FROM: f32 = 0.8;
-    if value <= FROM { value } else { 1.0 - (1.0 - FROM) * (-(value - FROM) / (1.0 - FROM)).exp() }
+    if value <= FROM {
+        value
+    } else {
+        1.0 - (1.0 - FROM) * (-(value - FROM) / (1.0 - FROM)).exp()
+    }
 }

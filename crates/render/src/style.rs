@@ -34,12 +34,24 @@ pub struct Lighting {
 impl Lighting {
     /// The default: reads shape well on a surface of one colour.
     pub fn studio() -> Self {
-        Self { key: 1.0, fill: 0.18, ambient: 0.19, rim: 0.25, gloss: 0.08 }
+        Self {
+            key: 1.0,
+            fill: 0.18,
+            ambient: 0.19,
+            rim: 0.25,
+            gloss: 0.08,
+        }
     }
 
     /// Weak contrast and no highlight, so that colours that carry data stay comparable to their legend.
     pub fn even() -> Self {
-        Self { key: 0.48, fill: 0.16, ambient: 0.64, rim: 0.0, gloss: 0.0 }
+        Self {
+            key: 0.48,
+            fill: 0.16,
+            ambient: 0.64,
+            rim: 0.0,
+            gloss: 0.0,
+        }
     }
 }
 
@@ -102,7 +114,10 @@ impl Style {
 
     /// The edges' colour.
     pub fn wire_colour(self, wire_colour: [u8; 3]) -> Self {
-        Self { wire_colour, ..self }
+        Self {
+            wire_colour,
+            ..self
+        }
     }
 
     /// The edges' width in pixels, above 0 and at most 64.
@@ -117,12 +132,18 @@ impl Style {
 
     /// The colour of faces seen from outside.
     pub fn surface_colour(self, surface_colour: [u8; 3]) -> Self {
-        Self { surface_colour, ..self }
+        Self {
+            surface_colour,
+            ..self
+        }
     }
 
     /// The colour of faces seen from inside.
     pub fn back_colour(self, back_colour: [u8; 3]) -> Self {
-        Self { back_colour, ..self }
+        Self {
+            back_colour,
+            ..self
+        }
     }
 
     /// The lights' strengths.
@@ -138,14 +159,28 @@ impl Style {
     pub(crate) fn check(&self) -> Result<(), RenderError> {
         if !matches!(self.samples, 1 | 2 | 4 | 8) {
             let value = f64::from(self.samples);
-            return Err(RenderError::BadOption { name: "samples", value, expected: "1, 2, 4 or 8" });
+            return Err(RenderError::BadOption {
+                name: "samples",
+                value,
+                expected: "1, 2, 4 or 8",
+            });
         }
         let width = f64::from(self.wire_width);
         RenderError::check_range("wire width", width, 0.01..=64.0, "from 0.01 to 64 pixels")?;
-        let Lighting { key, fill, ambient, rim, gloss } = self.lighting;
-        for (name, value) in
-            [("key", key), ("fill", fill), ("ambient", ambient), ("rim", rim), ("gloss", gloss)]
-        {
+        let Lighting {
+            key,
+            fill,
+            ambient,
+            rim,
+            gloss,
+        } = self.lighting;
+        for (name, value) in [
+            ("key", key),
+            ("fill", fill),
+            ("ambient", ambient),
+            ("rim", rim),
+            ("gloss", gloss),
+        ] {
             RenderError::check_range(name, value.into(), 0.0..=100.0, "a strength from 0 to 100")?;
         }
         Ok(())

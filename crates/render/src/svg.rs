@@ -39,29 +39,49 @@ pub struct Pen {
 
 impl Default for Pen {
     fn default() -> Self {
-        Self { stroke: Some([26, 30, 38]), width: 1.5, dashes: Vec::new(), fill: None, opacity: 1.0 }
+        Self {
+            stroke: Some([26, 30, 38]),
+            width: 1.5,
+            dashes: Vec::new(),
+            fill: None,
+            opacity: 1.0,
+        }
     }
 }
 
 impl Pen {
     /// A solid line.
     pub fn line(colour: [u8; 3], width: f64) -> Self {
-        Self { stroke: Some(colour), width, ..Self::default() }
+        Self {
+            stroke: Some(colour),
+            width,
+            ..Self::default()
+        }
     }
 
     /// An area without outline.
     pub fn area(colour: [u8; 3]) -> Self {
-        Self { stroke: None, fill: Some(colour), ..Self::default() }
+        Self {
+            stroke: None,
+            fill: Some(colour),
+            ..Self::default()
+        }
     }
 
     /// Lengths of dashes and gaps in turn, in pixels.
     pub fn dashes(self, dashes: &[f64]) -> Self {
-        Self { dashes: dashes.to_vec(), ..self }
+        Self {
+            dashes: dashes.to_vec(),
+            ..self
+        }
     }
 
     /// The area's colour.
     pub fn fill(self, colour: [u8; 3]) -> Self {
-        Self { fill: Some(colour), ..self }
+        Self {
+            fill: Some(colour),
+            ..self
+        }
     }
 
     /// 0 invisible to 1 opaque.
@@ -91,7 +111,14 @@ pub struct Label {
 impl Default for Label {
     fn default() -> Self {
         let colour = [26, 30, 38];
-        Self { size: 14.0, bold: false, italic: false, colour, align: Align::Left, turn: 0.0 }
+        Self {
+            size: 14.0,
+            bold: false,
+            italic: false,
+            colour,
+            align: Align::Left,
+            turn: 0.0,
+        }
     }
 }
 
@@ -150,12 +177,24 @@ impl Drawing {
     /// # Errors
     /// A side is not above zero or longer than 100 000.
     pub fn new(width: f64, height: f64) -> Result<Self, RenderError> {
-        for (name, side) in [("the drawing's width", width), ("the drawing's height", height)] {
+        for (name, side) in [
+            ("the drawing's width", width),
+            ("the drawing's height", height),
+        ] {
             RenderError::check_range(name, side, 1.0..=MAX_SIDE, "from 1 to 100000 pixels")?;
         }
-        let mut drawing =
-            Self { width, height, body: String::new(), bad_number: None, bad_place: 0, elements: 0 };
-        drawing.polygon(&[[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]], &Pen::area([255; 3]));
+        let mut drawing = Self {
+            width,
+            height,
+            body: String::new(),
+            bad_number: None,
+            bad_place: 0,
+            elements: 0,
+        };
+        drawing.polygon(
+            &[[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]],
+            &Pen::area([255; 3]),
+        );
         Ok(drawing)
     }
 
@@ -176,7 +215,11 @@ impl Drawing {
         }
         let text = format!("{value:.3}");
         let text = text.trim_end_matches('0').trim_end_matches('.');
-        if text == "-0" { "0".into() } else { text.into() }
+        if text == "-0" {
+            "0".into()
+        } else {
+            text.into()
+        }
     }
 
     fn colour(colour: [u8; 3]) -> String {
@@ -214,8 +257,10 @@ impl Drawing {
     }
 
     fn through(&mut self, name: &str, points: &[[f64; 2]], pen: &Pen) {
-        let places: Vec<String> =
-            points.iter().map(|p| format!("{},{}", self.number(p[0]), self.number(p[1]))).collect();
+        let places: Vec<String> = points
+            .iter()
+            .map(|p| format!("{},{}", self.number(p[0]), self.number(p[1])))
+            .collect();
         let pen = self.pen(pen);
         self.element(&format!("<{name} points=\"{}\"{pen}/>", places.join(" ")));
     }
@@ -245,12 +290,22 @@ impl Drawing {
         let (ux, uy) = (dx / length, dy / length);
         let head = (4.0 + 3.0 * pen.width).min(length);
         let half = 0.36 * head;
-        let at =
-            |along: f64, across: f64| [to[0] - ux * along - uy * across, to[1] - uy * along + ux * across];
+        let at = |along: f64, across: f64| {
+            [
+                to[0] - ux * along - uy * across,
+                to[1] - uy * along + ux * across,
+            ]
+        };
         self.line(from, at(0.8 * head, 0.0), pen);
         if let Some(stroke) = pen.stroke {
             let tip = [to, at(head, half), at(0.75 * head, 0.0), at(head, -half)];
-            self.polygon(&tip, &Pen { opacity: pen.opacity, ..Pen::area(stroke) });
+            self.polygon(
+                &tip,
+                &Pen {
+                    opacity: pen.opacity,
+                    ..Pen::area(stroke)
+                },
+            );
         }
     }
 
@@ -277,22 +332,36 @@ impl Drawing {
         let [x0, y0, x1, y1, r] = [x0, y0, x1, y1, radius].map(|value| self.number(value));
         let large = u8::from(span > 180.0);
         let pen = self.pen(pen);
-        self.element(&format!("<path d=\"M {x0} {y0} A {r} {r} 0 {large} 0 {x1} {y1}\"{pen}/>"));
+        self.element(&format!(
+            "<path d=\"M {x0} {y0} A {r} {r} 0 {large} 0 {x1} {y1}\"{pen}/>"
+        ));
     }
 
     /// A line of text with its baseline at `at`. Any characters are allowed; those that XML cannot hold are left
     /// out.
     pub fn label(&mut self, at: [f64; 2], text: &str, label: &Label) {
-        let [x, y, size, turn] = [at[0], at[1], label.size, -label.turn].map(|value| self.number(value));
+        let [x, y, size, turn] =
+            [at[0], at[1], label.size, -label.turn].map(|value| self.number(value));
         let anchor = match label.align {
             Align::Left => "start",
             Align::Centre => "middle",
             Align::Right => "end",
         };
-        let weight = if label.bold { " font-weight=\"bold\"" } else { "" };
-        let slope = if label.italic { " font-style=\"italic\"" } else { "" };
-        let turned =
-            if label.turn == 0.0 { String::new() } else { format!(" transform=\"rotate({turn} {x} {y})\"") };
+        let weight = if label.bold {
+            " font-weight=\"bold\""
+        } else {
+            ""
+        };
+        let slope = if label.italic {
+            " font-style=\"italic\""
+        } else {
+            ""
+        };
+        let turned = if label.turn == 0.0 {
+            String::new()
+        } else {
+            format!(" transform=\"rotate({turn} {x} {y})\"")
+        };
         let (colour, text) = (Self::colour(label.colour), escaped(text));
         self.element(&format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" text-anchor=\"{anchor}\" fill=\"{colour}\"{weight}{slope}{turned}>{text}</text>"
@@ -305,7 +374,11 @@ impl Drawing {
     /// A number given to one of the elements was not finite.
     pub fn finish(mut self) -> Result<String, RenderError> {
         if let Some(value) = self.bad_number {
-            return Err(RenderError::NotFinite { what: "drawing element", index: self.bad_place, value });
+            return Err(RenderError::NotFinite {
+                what: "drawing element",
+                index: self.bad_place,
+                value,
+            });
         }
         let (width, height) = (self.width, self.height);
         let (width, height) = (self.number(width), self.number(height));
@@ -347,7 +420,11 @@ mod tests {
     #[test]
     fn text_cannot_break_out_of_its_element() {
         let mut drawing = Drawing::new(10.0, 10.0).unwrap();
-        drawing.label([0.0, 0.0], "</text><script a='\"&\u{0}\n", &Label::default());
+        drawing.label(
+            [0.0, 0.0],
+            "</text><script a='\"&\u{0}\n",
+            &Label::default(),
+        );
         let file = drawing.finish().unwrap();
         assert!(file.contains(">&lt;/text&gt;&lt;script a=&#39;&quot;&amp; </text>"));
     }
@@ -357,7 +434,10 @@ mod tests {
         let mut drawing = Drawing::new(10.0, 10.0).unwrap();
         drawing.circle([1.0, f64::NAN], 2.0, &Pen::default());
         let error = drawing.finish().unwrap_err();
-        assert!(matches!(error, RenderError::NotFinite { index: 1, .. }), "{error}");
+        assert!(
+            matches!(error, RenderError::NotFinite { index: 1, .. }),
+            "{error}"
+        );
         assert!(Drawing::new(f64::NAN, 1.0).is_err() && Drawing::new(0.0, 1.0).is_err());
     }
 
@@ -376,6 +456,11 @@ mod tests {
     fn no_negative_zero_and_no_needless_decimals() {
         let mut drawing = Drawing::new(10.0, 10.0).unwrap();
         drawing.line([-0.0001, 1.5], [2.0, 1.0 / 3.0], &Pen::default());
-        assert!(drawing.finish().unwrap().contains("points=\"0,1.5 2,0.333\""));
+        assert!(
+            drawing
+                .finish()
+                .unwrap()
+                .contains("points=\"0,1.5 2,0.333\"")
+        );
     }
 }

@@ -35,7 +35,12 @@ pub struct TextStyle {
 
 impl Default for TextStyle {
     fn default() -> Self {
-        Self { size: 16.0, bold: false, colour: [26, 30, 38], align: Align::Left }
+        Self {
+            size: 16.0,
+            bold: false,
+            colour: [26, 30, 38],
+            align: Align::Left,
+        }
     }
 }
 
@@ -80,8 +85,14 @@ fn lowered(character: char) -> Option<char> {
 }
 
 fn font(bold: bool) -> Result<FontRef<'static>, RenderError> {
-    let bytes = if bold { notosans::BOLD_TTF } else { notosans::REGULAR_TTF };
-    FontRef::try_from_slice(bytes).map_err(|error| RenderError::Encode { reason: error.to_string() })
+    let bytes = if bold {
+        notosans::BOLD_TTF
+    } else {
+        notosans::REGULAR_TTF
+    };
+    FontRef::try_from_slice(bytes).map_err(|error| RenderError::Encode {
+        reason: error.to_string(),
+    })
 }
 
 /// A glyph of a line: which, how large, and where its origin is relative to the line's start.
@@ -109,7 +120,12 @@ fn layout(font: &FontRef<'_>, text: &str, size: f32) -> (Vec<Placed>, f32) {
         {
             x += scaled.kern(before, glyph);
         }
-        line.push(Placed { character, size, x, raised });
+        line.push(Placed {
+            character,
+            size,
+            x,
+            raised,
+        });
         x += scaled.h_advance(glyph);
         previous = Some((glyph, size));
     }
@@ -135,10 +151,26 @@ impl Image {
     ///
     /// # Errors
     /// The size is out of range or the anchor is not finite.
-    pub fn draw_text(&mut self, x: f32, y: f32, text: &str, style: &TextStyle) -> Result<(), RenderError> {
-        RenderError::check_range("text size", style.size.into(), 1.0..=1000.0, "from 1 to 1000 pixels")?;
+    pub fn draw_text(
+        &mut self,
+        x: f32,
+        y: f32,
+        text: &str,
+        style: &TextStyle,
+    ) -> Result<(), RenderError> {
+        RenderError::check_range(
+            "text size",
+            style.size.into(),
+            1.0..=1000.0,
+            "from 1 to 1000 pixels",
+        )?;
         for value in [x, y] {
-            RenderError::check_range("text anchor", value.into(), -1e6..=1e6, "a place near the picture")?;
+            RenderError::check_range(
+                "text anchor",
+                value.into(),
+                -1e6..=1e6,
+                "a place near the picture",
+            )?;
         }
         let font = font(style.bold)?;
         let (line, width) = layout(&font, text, style.size);
@@ -149,13 +181,21 @@ impl Image {
         };
         for placed in line {
             let origin = point(start + placed.x, y - placed.raised);
-            let glyph =
-                font.glyph_id(placed.character).with_scale_and_position(em_scale(&font, placed.size), origin);
-            let Some(outline) = font.outline_glyph(glyph) else { continue };
+            let glyph = font
+                .glyph_id(placed.character)
+                .with_scale_and_position(em_scale(&font, placed.size), origin);
+            let Some(outline) = font.outline_glyph(glyph) else {
+                continue;
+            };
             let corner = outline.px_bounds().min;
             let (left, top) = (corner.x as i64, corner.y as i64);
             outline.draw(|dx, dy, coverage| {
-                self.blend(left + i64::from(dx), top + i64::from(dy), style.colour, coverage);
+                self.blend(
+                    left + i64::from(dx),
+                    top + i64::from(dy),
+                    style.colour,
+                    coverage,
+                );
             });
         }
         Ok(())
@@ -164,7 +204,9 @@ impl Image {
     /// Lays a colour over a pixel. Mixed in sRGB rather than in linear light: dark glyphs on white keep the
     /// weight that they were drawn for.
     pub(crate) fn blend(&mut self, x: i64, y: i64, colour: [u8; 3], opacity: f32) {
-        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
+        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else {
+            return;
+        };
         if x >= self.width() || y >= self.height() {
             return;
         }

@@ -35,22 +35,36 @@ impl Texture {
     /// # Errors
     /// The bytes are neither, or the picture has a longer side than [`MAX_SIDE`].
     pub fn decode(bytes: &[u8]) -> Result<Self, RenderError> {
-        let failed = |why: image::ImageError| RenderError::Decode { reason: why.to_string() };
+        let failed = |why: image::ImageError| RenderError::Decode {
+            reason: why.to_string(),
+        };
         let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
             .with_guessed_format()
-            .map_err(|why| RenderError::Decode { reason: why.to_string() })?;
+            .map_err(|why| RenderError::Decode {
+                reason: why.to_string(),
+            })?;
         let mut limits = image::Limits::default();
         limits.max_image_width = Some(MAX_SIDE);
         limits.max_image_height = Some(MAX_SIDE);
         reader.limits(limits);
         let picture = reader.decode().map_err(failed)?.into_rgb8();
         let (width, height) = (picture.width() as usize, picture.height() as usize);
-        Ok(Self::new(width, height, picture.pixels().map(|pixel| pixel.0).collect()))
+        Ok(Self::new(
+            width,
+            height,
+            picture.pixels().map(|pixel| pixel.0).collect(),
+        ))
     }
 
     /// A picture that was drawn before.
     pub fn from_image(image: &Image) -> Self {
-        let pixels = image.rgba().as_chunks::<4>().0.iter().map(|&[r, g, b, _]| [r, g, b]).collect();
+        let pixels = image
+            .rgba()
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|&[r, g, b, _]| [r, g, b])
+            .collect();
         Self::new(image.width() as usize, image.height() as usize, pixels)
     }
 
@@ -62,15 +76,26 @@ impl Texture {
             let (x, y) = (at % side / FIELD, at / side / FIELD);
             let (right, up) = (x as f32 / FIELDS as f32, 1.0 - y as f32 / FIELDS as f32);
             let tint = colour::mix([0.10, 0.25, 0.75], [0.80, 0.20, 0.12], right);
-            let light = if (x + y) % 2 == 0 { 0.55 + 0.3 * up } else { 0.05 + 0.3 * up };
+            let light = if (x + y) % 2 == 0 {
+                0.55 + 0.3 * up
+            } else {
+                0.05 + 0.3 * up
+            };
             colour::encode(colour::mix(tint, [1.0; 3], light))
         };
         Self::new(side, side, (0..side * side).map(pixel).collect())
     }
 
     fn new(width: usize, height: usize, pixels: Vec<[u8; 3]>) -> Self {
-        let mut levels = vec![Level { width, height, pixels }];
-        while let Some(last) = levels.last().filter(|last| last.width > 1 || last.height > 1) {
+        let mut levels = vec![Level {
+            width,
+            height,
+            pixels,
+        }];
+        while let Some(last) = levels
+            .last()
+            .filter(|last| last.width > 1 || last.height > 1)
+        {
             let half = last.half();
             levels.push(half);
         }
@@ -110,7 +135,11 @@ impl Texture {
         if share == 0.0 {
             return colour;
         }
-        colour::mix(colour, self.levels[(below + 1).min(last)].at(place), share as f32)
+        colour::mix(
+            colour,
+            self.levels[(below + 1).min(last)].at(place),
+            share as f32,
+        )
     }
 }
 
@@ -123,13 +152,20 @@ impl Level {
             for x in 0..width {
                 let mut sum = [0.0; 3];
                 for [dx, dy] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-                    let own = self.pixel((2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1));
+                    let own = self.pixel(
+                        (2 * x + dx).min(self.width - 1),
+                        (2 * y + dy).min(self.height - 1),
+                    );
                     (0..3).for_each(|channel| sum[channel] += own[channel] / 4.0);
                 }
                 pixels.push(colour::encode(sum));
             }
         }
-        Self { width, height, pixels }
+        Self {
+            width,
+            height,
+            pixels,
+        }
     }
 
     fn pixel(&self, x: usize, y: usize) -> Linear {
@@ -152,7 +188,10 @@ impl Level {
 fn around(place: f64, count: usize) -> (usize, f32) {
     let x = (place - place.floor()) * count as f64 - 0.5;
     let before = x.floor();
-    ((before.max(-1.0) as i64).rem_euclid(count as i64) as usize, (x - before) as f32)
+    (
+        (before.max(-1.0) as i64).rem_euclid(count as i64) as usize,
+        (x - before) as f32,
+    )
 }
 
 #[cfg(test)]
@@ -192,7 +231,8 @@ mod tests {
 
     #[test]
     fn pictures_come_back_from_their_files() {
-        let image = Image::from_rgba(2, 1, vec![10, 20, 30, 255, 200, 100, 0, 255]).expect("a picture");
+        let image =
+            Image::from_rgba(2, 1, vec![10, 20, 30, 255, 200, 100, 0, 255]).expect("a picture");
         let file = image.encode_png().expect("a file");
         assert_eq!(Texture::decode(&file), Ok(Texture::from_image(&image)));
         let why = Texture::decode(b"no picture").expect_err("no picture");

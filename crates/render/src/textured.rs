@@ -33,13 +33,33 @@ pub struct Covering<'a> {
 impl Covering<'_> {
     fn check(&self, surface: Triangles<'_>) -> Result<(), RenderError> {
         let count = |what, met: usize, expected: usize| {
-            if met == expected { Ok(()) } else { Err(RenderError::Count { what, met, expected }) }
+            if met == expected {
+                Ok(())
+            } else {
+                Err(RenderError::Count {
+                    what,
+                    met,
+                    expected,
+                })
+            }
         };
-        count("materials of triangles", self.of_triangle.len(), surface.triangles.len())?;
-        count("texture coordinates of corners", self.corners.len(), 3 * surface.triangles.len())?;
+        count(
+            "materials of triangles",
+            self.of_triangle.len(),
+            surface.triangles.len(),
+        )?;
+        count(
+            "texture coordinates of corners",
+            self.corners.len(),
+            3 * surface.triangles.len(),
+        )?;
         for (index, place) in self.corners.iter().enumerate() {
             if let Some(&value) = place.iter().find(|x| !x.is_finite()) {
-                return Err(RenderError::NotFinite { what: "texture coordinate", index, value });
+                return Err(RenderError::NotFinite {
+                    what: "texture coordinate",
+                    index,
+                    value,
+                });
             }
         }
         Ok(())
@@ -47,13 +67,28 @@ impl Covering<'_> {
 
     /// The colour at a point of a triangle; `steps` is how its barycentric coordinates change from pixel to pixel. `None` without a
     /// material.
-    pub(crate) fn colour(&self, triangle: u32, weights: [f64; 3], steps: [[f64; 3]; 2]) -> Option<Linear> {
-        let material = self.materials.get(self.of_triangle[triangle as usize] as usize)?;
+    pub(crate) fn colour(
+        &self,
+        triangle: u32,
+        weights: [f64; 3],
+        steps: [[f64; 3]; 2],
+    ) -> Option<Linear> {
+        let material = self
+            .materials
+            .get(self.of_triangle[triangle as usize] as usize)?;
         let own = material.colour.map(|channel| channel.clamp(0.0, 1.0));
-        let Some(texture) = &material.texture else { return Some(own) };
+        let Some(texture) = &material.texture else {
+            return Some(own);
+        };
         let corners = &self.corners[3 * triangle as usize..][..3];
         let mixed = |weights: [f64; 3]| {
-            [0, 1].map(|axis| corners.iter().zip(weights).map(|(corner, weight)| corner[axis] * weight).sum())
+            [0, 1].map(|axis| {
+                corners
+                    .iter()
+                    .zip(weights)
+                    .map(|(corner, weight)| corner[axis] * weight)
+                    .sum()
+            })
         };
         let seen = texture.mean(mixed(weights), steps.map(mixed));
         Some([0, 1, 2].map(|channel| own[channel] * seen[channel]))
@@ -90,6 +125,10 @@ pub fn render_textured(
 ) -> Result<Image, RenderError> {
     covering.check(surface)?;
     let [outside, inside] = [style.surface_colour, style.back_colour].map(colour::linear);
-    let paint = Paint::Materials { covering, outside, inside };
+    let paint = Paint::Materials {
+        covering,
+        outside,
+        inside,
+    };
     picture::draw(surface, normals, &paint, camera, style, width, height)
 }

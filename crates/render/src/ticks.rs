@@ -31,14 +31,22 @@ pub(crate) fn linear(low: f64, high: f64, count: usize) -> Vec<Tick> {
     let (first, last) = ((low / step - slack).ceil(), (high / step + slack).floor());
     // Steps below the numbers' own resolution cannot be told apart.
     if !(last - first).is_finite() || first.abs().max(last.abs()) > 1e12 {
-        let mut ends = [low, high].map(|value| Tick { value, label: Some(number(value)) }).to_vec();
+        let mut ends = [low, high]
+            .map(|value| Tick {
+                value,
+                label: Some(number(value)),
+            })
+            .to_vec();
         ends.dedup_by(|b, a| a.label == b.label);
         return ends;
     }
     let largest = low.abs().max(high.abs());
     let ticks = (first as i64..=last as i64).map(|i| {
         let value = i as f64 * mantissa * 10f64.powi(exponent);
-        Tick { value, label: Some(in_steps(i, mantissa, exponent, largest)) }
+        Tick {
+            value,
+            label: Some(in_steps(i, mantissa, exponent, largest)),
+        }
     });
     ticks.collect()
 }
@@ -56,7 +64,11 @@ fn in_steps(i: i64, mantissa: f64, exponent: i32, largest: f64) -> String {
     } else {
         let decimals = (magnitude - exponent).max(0) as usize;
         let shown = whole * 10f64.powi(exponent - magnitude);
-        format!("{}×10{}", minus(format!("{shown:.decimals$}")), raised(magnitude))
+        format!(
+            "{}×10{}",
+            minus(format!("{shown:.decimals$}")),
+            raised(magnitude)
+        )
     }
 }
 
@@ -78,7 +90,10 @@ pub(crate) fn logarithmic(low: f64, high: f64, count: usize) -> Vec<Tick> {
             let decade = digit == 1 && exponent.rem_euclid(every) == 0;
             let between = decades < 2.0 && (digit == 2 || digit == 5) || decades < 0.7;
             if decade || (between && every == 1) {
-                ticks.push(Tick { value, label: Some(power_label(digit, exponent, plain)) });
+                ticks.push(Tick {
+                    value,
+                    label: Some(power_label(digit, exponent, plain)),
+                });
             } else if every == 1 || digit == 1 {
                 ticks.push(Tick { value, label: None });
             }
@@ -108,11 +123,18 @@ pub(crate) fn number(value: f64) -> String {
         let shown = trimmed(format!("{:.3}", value / 10f64.powi(magnitude)));
         return format!("{}×10{}", minus(shown), raised(magnitude));
     }
-    minus(trimmed(format!("{value:.*}", (3 - magnitude).max(0) as usize)))
+    minus(trimmed(format!(
+        "{value:.*}",
+        (3 - magnitude).max(0) as usize
+    )))
 }
 
 fn trimmed(text: String) -> String {
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').into()
+    } else {
+        text
+    }
 }
 
 /// A hyphen becomes a minus sign, and "−0.0" loses it.
@@ -142,25 +164,45 @@ mod tests {
 
     #[test]
     fn round_numbers_on_a_linear_scale() {
-        assert_eq!(labels(&linear(0.0, 1.0, 5)), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(
+            labels(&linear(0.0, 1.0, 5)),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
         assert_eq!(labels(&linear(-3.0, 7.0, 5)), ["−2", "0", "2", "4", "6"]);
         assert_eq!(labels(&linear(0.0, 0.0009, 4))[1], "2×10⁻⁴");
-        assert_eq!(labels(&linear(0.0, 3e7, 3)), ["0", "1×10⁷", "2×10⁷", "3×10⁷"]);
+        assert_eq!(
+            labels(&linear(0.0, 3e7, 3)),
+            ["0", "1×10⁷", "2×10⁷", "3×10⁷"]
+        );
         assert_eq!(labels(&linear(5.0, 5.0, 3)), ["5"]);
     }
 
     #[test]
     fn decades_on_a_logarithmic_scale() {
-        assert_eq!(labels(&logarithmic(1e-4, 1e2, 8)), ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²"]);
-        assert_eq!(labels(&logarithmic(1.0, 20.0, 8)), ["1", "2", "5", "10", "20"]);
-        assert_eq!(labels(&logarithmic(0.01, 1e4, 8)), ["0.01", "0.1", "1", "10", "100", "1000", "10000"]);
+        assert_eq!(
+            labels(&logarithmic(1e-4, 1e2, 8)),
+            ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²"]
+        );
+        assert_eq!(
+            labels(&logarithmic(1.0, 20.0, 8)),
+            ["1", "2", "5", "10", "20"]
+        );
+        assert_eq!(
+            labels(&logarithmic(0.01, 1e4, 8)),
+            ["0.01", "0.1", "1", "10", "100", "1000", "10000"]
+        );
         assert_eq!(logarithmic(1.0, 1000.0, 8).len(), 28);
     }
 
     #[test]
     fn numbers_as_people_write_them() {
-        let cases =
-            [(0.0, "0"), (-1.5, "−1.5"), (1234.5, "1234"), (0.012_345, "0.01235"), (1.5e-7, "1.5×10⁻⁷")];
+        let cases = [
+            (0.0, "0"),
+            (-1.5, "−1.5"),
+            (1234.5, "1234"),
+            (0.012_345, "0.01235"),
+            (1.5e-7, "1.5×10⁻⁷"),
+        ];
         for (value, text) in cases {
             assert_eq!(number(value), text);
         }

@@ -37,7 +37,11 @@ pub(crate) struct Lines {
 impl Lines {
     pub(crate) fn new([a, b, c]: [Homogeneous; 3]) -> Self {
         let cross = |p: Homogeneous, q: Homogeneous| {
-            [p.y * q.w - p.w * q.y, p.w * q.x - p.x * q.w, p.x * q.y - p.y * q.x]
+            [
+                p.y * q.w - p.w * q.y,
+                p.w * q.x - p.x * q.w,
+                p.x * q.y - p.y * q.x,
+            ]
         };
         let lines = [cross(b, c), cross(c, a), cross(a, b)];
         // y runs downwards in the picture, so counter-clockwise triangles have a negative determinant.
@@ -49,9 +53,15 @@ impl Lines {
     #[inline]
     pub(crate) fn barycentric(&self, x: f64, y: f64) -> [f64; 3] {
         let sign = if self.front { -1.0 } else { 1.0 };
-        let weights = self.lines.map(|[a, b, c]| (sign * (a * x + b * y + c)).max(0.0));
+        let weights = self
+            .lines
+            .map(|[a, b, c]| (sign * (a * x + b * y + c)).max(0.0));
         let sum = weights[0] + weights[1] + weights[2];
-        if sum > 0.0 && sum.is_finite() { weights.map(|w| w / sum) } else { [1.0 / 3.0; 3] }
+        if sum > 0.0 && sum.is_finite() {
+            weights.map(|w| w / sum)
+        } else {
+            [1.0 / 3.0; 3]
+        }
     }
 
     /// How barycentric coordinates change from a point of the picture to the next pixel to the right and below, on the triangle's
@@ -87,7 +97,11 @@ fn size(corners: [Homogeneous; 3]) -> f32 {
     let side = |p: [f64; 2], q: [f64; 2]| (q[0] - p[0]).hypot(q[1] - p[1]);
     let perimeter = side(a, b) + side(b, c) + side(c, a);
     let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
-    if perimeter > 0.0 { (6.0 * area / perimeter) as f32 } else { 0.0 }
+    if perimeter > 0.0 {
+        (6.0 * area / perimeter) as f32
+    } else {
+        0.0
+    }
 }
 
 /// What is needed to know of one side of an edge.
@@ -106,14 +120,18 @@ pub(crate) fn ink(triangles: &[[u32; 3]], points: &[Homogeneous], width: f32) ->
     });
     let mut inks: Vec<Ink> = looks
         .iter()
-        .map(|(_, size)| Ink { reach: [width; 3], opacity: fade(size / width.max(1.0)) })
+        .map(|(_, size)| Ink {
+            reach: [width; 3],
+            opacity: fade(size / width.max(1.0)),
+        })
         .collect();
     let (starts, mut sides) = edges_by_lower_end(triangles, points.len());
     for vertex in 0..points.len() {
         let here = &mut sides[starts[vertex]..starts[vertex + 1]];
         here.sort_unstable_by_key(|side| (side.other_end, side.face, side.corner));
         for edge in here.chunk_by(|a, b| a.other_end == b.other_end) {
-            let faces_one_way = |s: &Side| looks[s.face as usize].0 == looks[edge[0].face as usize].0;
+            let faces_one_way =
+                |s: &Side| looks[s.face as usize].0 == looks[edge[0].face as usize].0;
             if edge.len() > 1 && edge.iter().all(faces_one_way) {
                 for side in edge {
                     inks[side.face as usize].reach[side.corner as usize] = 0.5 * width;
@@ -146,11 +164,22 @@ fn edges_by_lower_end(triangles: &[[u32; 3]], vertices: usize) -> (Vec<usize>, V
         starts[vertex + 1] += starts[vertex];
     }
     let mut next = starts.clone();
-    let mut sides = vec![Side { other_end: 0, face: 0, corner: 0 }; triangles.len() * 3];
+    let mut sides = vec![
+        Side {
+            other_end: 0,
+            face: 0,
+            corner: 0
+        };
+        triangles.len() * 3
+    ];
     for (face, triangle) in triangles.iter().enumerate() {
         for corner in 0..3u8 {
             let (low, other_end) = ends(triangle, corner.into());
-            sides[next[low]] = Side { other_end, face: face as u32, corner };
+            sides[next[low]] = Side {
+                other_end,
+                face: face as u32,
+                corner,
+            };
             next[low] += 1;
         }
     }
@@ -171,7 +200,9 @@ mod tests {
             w: 1.0,
             distance: 1.0,
         };
-        let points: Vec<Homogeneous> = (0..SIDE * SIDE).map(|v| point(v % SIDE, v / SIDE)).collect();
+        let points: Vec<Homogeneous> = (0..SIDE * SIDE)
+            .map(|v| point(v % SIDE, v / SIDE))
+            .collect();
         let cells = (0..(SIDE - 1) * (SIDE - 1)).map(|cell| (cell % (SIDE - 1), cell / (SIDE - 1)));
         let triangles: Vec<[u32; 3]> = cells
             .flat_map(|(x, y)| {
@@ -191,7 +222,12 @@ mod tests {
 
     /// An equilateral triangle by its altitude in pixels, drawn with lines of a width.
     fn opacity(altitude: f64, width: f32) -> f32 {
-        let point = |x: f64, y: f64| Homogeneous { x, y, w: 1.0, distance: 1.0 };
+        let point = |x: f64, y: f64| Homogeneous {
+            x,
+            y,
+            w: 1.0,
+            distance: 1.0,
+        };
         let half = altitude / 3f64.sqrt();
         let corners = [point(-half, 0.0), point(half, 0.0), point(0.0, altitude)];
         ink(&[[0, 1, 2]], &corners, width)[0].opacity

@@ -18,11 +18,23 @@ pub(crate) struct Cage {
 }
 
 pub(crate) fn octahedron() -> Mesh {
-    let positions = [0, 1, 2]
-        .into_iter()
-        .flat_map(|axis| [1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == axis { sign } else { 0.0 })));
-    let triangles = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
-    Mesh { positions: positions.collect(), triangles: triangles.to_vec() }
+    let positions = [0, 1, 2].into_iter().flat_map(|axis| {
+        [1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == axis { sign } else { 0.0 }))
+    });
+    let triangles = [
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
+    Mesh {
+        positions: positions.collect(),
+        triangles: triangles.to_vec(),
+    }
 }
 
 /// A fan around a vertex that bends up and down, open.
@@ -30,14 +42,23 @@ pub(crate) fn fan() -> Mesh {
     let mut positions = vec![[0.0, 0.0, 0.4]];
     let angle = |i: u32| 4.0 * f64::from(i) / 5.0;
     positions.extend((0..=5).map(|i| [angle(i).cos(), angle(i).sin(), 0.3 * f64::from(i % 2)]));
-    Mesh { positions, triangles: (1..=5).map(|i| [0, i, i + 1]).collect() }
+    Mesh {
+        positions,
+        triangles: (1..=5).map(|i| [0, i, i + 1]).collect(),
+    }
 }
 
 impl Cage {
     pub(crate) fn new(control: Mesh) -> Self {
         let whole = [[WHOLE, 0, 0], [0, WHOLE, 0], [0, 0, WHOLE]];
-        let parts = (0..control.triangles.len() as u32).map(|face| (face, whole)).collect();
-        Self { mesh: control.clone(), control, parts }
+        let parts = (0..control.triangles.len() as u32)
+            .map(|face| (face, whole))
+            .collect();
+        Self {
+            mesh: control.clone(),
+            control,
+            parts,
+        }
     }
 
     /// One step of Loop's scheme, borders included.
@@ -51,11 +72,15 @@ impl Cage {
             }
         }
         let at = |v: u32| mesh.positions[v as usize];
-        let mean =
-            |points: &[(Vector, f64)]| points.iter().fold([0.0; 3], |sum, &(p, w)| add(sum, scale(p, w)));
+        let mean = |points: &[(Vector, f64)]| {
+            points
+                .iter()
+                .fold([0.0; 3], |sum, &(p, w)| add(sum, scale(p, w)))
+        };
         let mut positions: Vec<Vector> = (0..mesh.positions.len() as u32)
             .map(|v| {
-                let around: Vec<&[u32; 2]> = opposite.keys().filter(|edge| edge.contains(&v)).collect();
+                let around: Vec<&[u32; 2]> =
+                    opposite.keys().filter(|edge| edge.contains(&v)).collect();
                 let other = |edge: &[u32; 2]| edge[0] + edge[1] - v;
                 let border: Vec<u32> = around
                     .iter()
@@ -83,7 +108,10 @@ impl Cage {
         }
         let mut refined = Self {
             control: self.control.clone(),
-            mesh: Mesh { positions, ..Mesh::default() },
+            mesh: Mesh {
+                positions,
+                ..Mesh::default()
+            },
             parts: Vec::new(),
         };
         for (&[a, b, c], &(face, [p, q, r])) in mesh.triangles.iter().zip(parts) {
@@ -107,7 +135,9 @@ impl Cage {
     pub(crate) fn settled(mut self, steps: usize) -> Self {
         let count = self.mesh.positions.len();
         let further = (0..steps).fold(self.clone(), |cage, _| cage.refined());
-        self.mesh.positions.copy_from_slice(&further.mesh.positions[..count]);
+        self.mesh
+            .positions
+            .copy_from_slice(&further.mesh.positions[..count]);
         self
     }
 
@@ -119,14 +149,23 @@ impl Cage {
         );
         let mut bytes = [head.as_bytes(), &[0, 0, 0, 0]].concat();
         for face in 0..self.control.triangles.len() as u32 {
-            varint(&mut bytes, 2 * self.parts.iter().filter(|&&(parent, _)| parent == face).count() as u32);
+            varint(
+                &mut bytes,
+                2 * self
+                    .parts
+                    .iter()
+                    .filter(|&&(parent, _)| parent == face)
+                    .count() as u32,
+            );
         }
         let mut known = BTreeSet::new();
         for (triangle, (_, part)) in self.mesh.triangles.iter().zip(&self.parts) {
             for (v, weights) in triangle.iter().zip(part) {
                 if known.insert(v) {
                     bytes.extend([255, 30]);
-                    weights[1..].iter().for_each(|&weight| varint(&mut bytes, weight));
+                    weights[1..]
+                        .iter()
+                        .for_each(|&weight| varint(&mut bytes, weight));
                 }
             }
         }

@@ -8,15 +8,25 @@ use limitmesh_check::mesh::Mesh;
 use crate::cage::{Cage, octahedron};
 
 fn obj(mesh: &Mesh) -> String {
-    let vertices = mesh.positions.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n"));
-    let faces = mesh.triangles.iter().map(|t| t.map(|v| v + 1)).map(|[a, b, c]| format!("f {a} {b} {c}\n"));
+    let vertices = mesh
+        .positions
+        .iter()
+        .map(|[x, y, z]| format!("v {x} {y} {z}\n"));
+    let faces = mesh
+        .triangles
+        .iter()
+        .map(|t| t.map(|v| v + 1))
+        .map(|[a, b, c]| format!("f {a} {b} {c}\n"));
     vertices.chain(faces).collect()
 }
 
 /// Runs the program in a folder; its exit code and what it says.
 fn run(folder: &PathBuf, words: &[&str]) -> (Option<i32>, String) {
-    let ran =
-        Command::new(env!("CARGO_BIN_EXE_limitmesh-check")).args(words).current_dir(folder).output().unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_limitmesh-check"))
+        .args(words)
+        .current_dir(folder)
+        .output()
+        .unwrap();
     let said = [ran.stdout, ran.stderr].concat();
     (ran.status.code(), String::from_utf8(said).unwrap())
 }
@@ -33,10 +43,16 @@ fn three_files_are_confirmed_or_refused() {
     let files = ["control.obj", "result.obj", "result.proof"];
     let (code, said) = run(&folder, &files);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.starts_with("confirmed: 128 triangles") && said.contains("0.09"), "{said}");
+    assert!(
+        said.starts_with("confirmed: 128 triangles") && said.contains("0.09"),
+        "{said}"
+    );
     let (code, said) = run(&folder, &[&files[..], &["--at", "0.01"]].concat());
     assert_eq!(code, Some(1), "{said}");
-    assert!(said.starts_with("refused: ") && said.contains("\n  triangle "), "{said}");
+    assert!(
+        said.starts_with("refused: ") && said.contains("\n  triangle "),
+        "{said}"
+    );
     // One vertex moved by twice the length is refused by name; moved by next to nothing it is near enough, but another result.
     let mut moved = cage.clone();
     moved.mesh.positions[20][2] += 1e-6;
@@ -55,20 +71,41 @@ fn three_files_are_confirmed_or_refused() {
         (&["control.obj", "result.obj", "control.obj"], "is no proof"),
         (&["none.obj", "result.obj", "result.proof"], "none.obj"),
         (&["control.obj"], "usage"),
-        (&["control.obj", "result.obj", "result.proof", "--at", "x"], "no number"),
-        (&["control.obj", "result.obj", "result.proof", "--at", "0"], "too small"),
-        (&["control.obj", "result.obj", "result.proof", "--at"], "lacks its value"),
-        (&["result.obj", "control.obj", "result.proof"], "the order is"),
+        (
+            &["control.obj", "result.obj", "result.proof", "--at", "x"],
+            "no number",
+        ),
+        (
+            &["control.obj", "result.obj", "result.proof", "--at", "0"],
+            "too small",
+        ),
+        (
+            &["control.obj", "result.obj", "result.proof", "--at"],
+            "lacks its value",
+        ),
+        (
+            &["result.obj", "control.obj", "result.proof"],
+            "the order is",
+        ),
     ] {
         let (code, said) = run(&folder, words);
-        assert!(code == Some(2) && said.contains(what), "{words:?}: {code:?}, {said}");
+        assert!(
+            code == Some(2) && said.contains(what),
+            "{words:?}: {code:?}, {said}"
+        );
     }
     // The control mesh can be looked at, and is the same then.
     let (code, said) = run(&folder, &[&files[..], &["--control", "shown.obj"]].concat());
     assert_eq!(code, Some(0), "{said}");
-    let shown = limitmesh_check::read::mesh("shown.obj", &std::fs::read(folder.join("shown.obj")).unwrap());
+    let shown = limitmesh_check::read::mesh(
+        "shown.obj",
+        &std::fs::read(folder.join("shown.obj")).unwrap(),
+    );
     assert_eq!(shown.unwrap(), cage.control);
-    for (word, what) in [("--help", "usage"), ("--version", env!("CARGO_PKG_VERSION"))] {
+    for (word, what) in [
+        ("--help", "usage"),
+        ("--version", env!("CARGO_PKG_VERSION")),
+    ] {
         let (code, said) = run(&folder, &[word]);
         assert!(code == Some(0) && said.contains(what), "{said}");
     }

@@ -9,16 +9,21 @@ const TEXT_PLY: &str = "ply\nformat ascii 1.0\ncomment a\nelement vertex 3\nprop
 
 #[test]
 fn all_formats_give_the_same_mesh() {
-    let obj = "# a\nv 0 0 0\nv 1 0 0 0.5\nv 0 1.5 0\nvt 0 0\nf 1/1/1 2//3 -1\nt crease 2/1/0 0 1 3\n";
+    let obj =
+        "# a\nv 0 0 0\nv 1 0 0 0.5\nv 0 1.5 0\nvt 0 0\nf 1/1/1 2//3 -1\nt crease 2/1/0 0 1 3\n";
     let off = "OFF # a\n3 1 0\n\n0 0 0\n1 0 0\n0 1.5 0\n3 0 1 2 255 0 0\n";
     let expected = mesh("a.obj", obj.as_bytes()).unwrap();
-    assert_eq!(expected.positions, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.5, 0.0]]);
+    assert_eq!(
+        expected.positions,
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.5, 0.0]]
+    );
     assert_eq!(expected.triangles, [[0, 1, 2]]);
     assert_eq!(mesh("b.OFF", off.as_bytes()).unwrap(), expected);
     assert_eq!(mesh("c.ply", TEXT_PLY.as_bytes()).unwrap(), expected);
     for (order, is_big) in [("binary_little_endian", false), ("binary_big_endian", true)] {
-        let mut bytes =
-            TEXT_PLY[..TEXT_PLY.find("end_header").unwrap() + 11].replace("ascii", order).into_bytes();
+        let mut bytes = TEXT_PLY[..TEXT_PLY.find("end_header").unwrap() + 11]
+            .replace("ascii", order)
+            .into_bytes();
         let mut push = |own: &[u8]| {
             let mut own = own.to_vec();
             if is_big {
@@ -46,7 +51,11 @@ fn what_is_no_mesh_of_triangles_is_said() {
         ("a.stl", "solid", "ends with none"),
         ("a.obj", "v 0 0\n", "ends early"),
         ("a.obj", "v 0 0 x\n", "no number"),
-        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3 4\n", "4 corners"),
+        (
+            "a.obj",
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3 4\n",
+            "4 corners",
+        ),
         ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n", "not there"),
         ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n", "twice"),
         ("a.obj", "v 0 0 nan\n", "no position"),
@@ -63,14 +72,26 @@ fn what_is_no_mesh_of_triangles_is_said() {
         assert!(what.contains(words), "{text:?}: {what}");
     }
     // Elements without properties take no memory.
-    assert!(mesh("a.ply", b"ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n").is_ok());
+    assert!(
+        mesh(
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 4000000000\nend_header\n"
+        )
+        .is_ok()
+    );
 }
 
 /// The examples of FIPS 180-2, and a length on each side of a block's.
 #[test]
 fn digests_are_those_of_the_standard() {
-    assert_eq!(digest(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-    assert_eq!(digest(b""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    assert_eq!(
+        digest(b"abc"),
+        "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    );
+    assert_eq!(
+        digest(b""),
+        "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
+    );
     assert_eq!(
         digest(b"abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1"

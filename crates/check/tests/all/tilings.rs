@@ -39,11 +39,17 @@ fn faults_of_the_tiling_are_named() {
     assert!(turned.contains("in the same direction"), "{turned}");
     // The same triangles with corners of their own: nothing holds them together.
     let torn = with(&|cage| {
-        let corners: Vec<Vector> =
-            cage.mesh.triangles.iter().flatten().map(|&v| cage.mesh.positions[v as usize]).collect();
+        let corners: Vec<Vector> = cage
+            .mesh
+            .triangles
+            .iter()
+            .flatten()
+            .map(|&v| cage.mesh.positions[v as usize])
+            .collect();
         cage.mesh.positions = corners;
-        cage.mesh.triangles =
-            (0..cage.mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        cage.mesh.triangles = (0..cage.mesh.triangles.len() as u32)
+            .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+            .collect();
     });
     assert!(torn.contains("does not go on"), "{torn}");
 }
@@ -52,7 +58,10 @@ fn faults_of_the_tiling_are_named() {
 #[test]
 fn faces_with_the_same_corners_are_two() {
     let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.1], [0.3, 1.0, 0.0]];
-    let control = Mesh { positions: positions.clone(), triangles: vec![[0, 1, 2], [0, 2, 1]] };
+    let control = Mesh {
+        positions: positions.clone(),
+        triangles: vec![[0, 1, 2], [0, 2, 1]],
+    };
     let half = scale(add(positions[1], positions[2]), 0.5);
     let (a, b, c) = ([WHOLE, 0, 0], [0, WHOLE, 0], [0, 0, WHOLE]);
     let (m, m_other) = ([0, WHOLE / 2, WHOLE / 2], [0, WHOLE / 2, WHOLE / 2]);
@@ -61,7 +70,12 @@ fn faces_with_the_same_corners_are_two() {
             positions: [positions.clone(), vec![half]].concat(),
             triangles: vec![[0, 1, 3], [0, 3, 2], [0, 3, 1], [0, 2, 3]],
         },
-        parts: vec![(0, [a, b, m]), (0, [a, m, c]), (1, [a, m_other, c]), (1, [a, b, m_other])],
+        parts: vec![
+            (0, [a, b, m]),
+            (0, [a, m, c]),
+            (1, [a, m_other, c]),
+            (1, [a, b, m_other]),
+        ],
         control,
     };
     // Edge a m runs twice the same way: refused. With a middle for each side it is right.
@@ -72,12 +86,20 @@ fn faces_with_the_same_corners_are_two() {
             positions: [positions.clone(), vec![half], positions, vec![half]].concat(),
             triangles: vec![[0, 1, 3], [4, 5, 7], [0, 3, 1], [4, 7, 5]],
         },
-        parts: vec![(0, [a, b, m]), (0, [a, b, m]), (1, [a, m, c]), (1, [a, m, c])],
+        parts: vec![
+            (0, [a, b, m]),
+            (0, [a, b, m]),
+            (1, [a, m, c]),
+            (1, [a, m, c]),
+        ],
         ..whole
     };
     let refused = halves.refused(FAR).unwrap();
     assert!(
-        refused.iter().all(|(_, what)| what.contains("does not go on")) && !refused.is_empty(),
+        refused
+            .iter()
+            .all(|(_, what)| what.contains("does not go on"))
+            && !refused.is_empty(),
         "{refused:?}"
     );
 }
@@ -93,7 +115,10 @@ fn proofs_that_are_damaged_are_no_proofs() {
     assert_eq!(read(&bytes).unwrap(), []);
     (0..bytes.len()).for_each(|end| assert!(read(&bytes[..end]).is_err(), "{end}"));
     assert!(read(&[&bytes[..], &[0]].concat()).is_err());
-    let end = bytes.windows(5).position(|window| window == b"\nend\n").unwrap();
+    let end = bytes
+        .windows(5)
+        .position(|window| window == b"\nend\n")
+        .unwrap();
     // Any other byte gives an error, a refusal, or a proof that holds as well.
     for place in end..bytes.len() {
         for value in [0, 1, 7, 153, 158, 200, 255] {
@@ -109,12 +134,16 @@ fn proofs_that_are_damaged_are_no_proofs() {
         read(&tagged).map_err(|what| what.contains("does not have"))
     };
     let three = 3f64.to_le_bytes();
-    assert_eq!(sharp(&[&[1, 0, 2][..], &three, &[1, 3], &three].concat()), Ok(vec![]));
+    assert_eq!(
+        sharp(&[&[1, 0, 2][..], &three, &[1, 3], &three].concat()),
+        Ok(vec![])
+    );
     assert_eq!(sharp(&[&[1, 0, 1][..], &three, &[0]].concat()), Err(true));
     assert_eq!(sharp(&[&[0, 1, 99][..], &three].concat()), Err(true));
     let mut other = cage.clone();
     other.control.positions[3][0] += 1e-9;
     let proof = limitmesh_check::proof::Proof::read(&bytes).unwrap();
-    let what = limitmesh_check::verdict::refused(&other.control, &other.mesh, &proof, FAR).unwrap_err();
+    let what =
+        limitmesh_check::verdict::refused(&other.control, &other.mesh, &proof, FAR).unwrap_err();
     assert!(what.contains("another control mesh"), "{what}");
 }

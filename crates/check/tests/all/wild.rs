@@ -11,7 +11,10 @@ struct Random(u64);
 impl Random {
     /// A number from 0 to 1.
     fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -22,7 +25,10 @@ impl Random {
 
 /// The corners of triangles.
 fn corners(mesh: &Mesh) -> Vec<[Vector; 3]> {
-    mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize])).collect()
+    mesh.triangles
+        .iter()
+        .map(|t| t.map(|v| mesh.positions[v as usize]))
+        .collect()
 }
 
 fn from_segment(p: Vector, a: Vector, b: Vector) -> f64 {
@@ -34,21 +40,36 @@ fn from_segment(p: Vector, a: Vector, b: Vector) -> f64 {
 fn from_triangle(p: Vector, [a, b, c]: [Vector; 3]) -> f64 {
     let normal = cross(sub(b, a), sub(c, a));
     let sides = [(a, b), (b, c), (c, a)];
-    if sides.iter().all(|&(a, b)| dot(cross(sub(b, a), sub(p, a)), normal) >= 0.0) && length(normal) > 0.0 {
+    if sides
+        .iter()
+        .all(|&(a, b)| dot(cross(sub(b, a), sub(p, a)), normal) >= 0.0)
+        && length(normal) > 0.0
+    {
         return dot(sub(p, a), normal).abs() / length(normal);
     }
-    sides.iter().map(|&(a, b)| from_segment(p, a, b)).fold(f64::INFINITY, f64::min)
+    sides
+        .iter()
+        .map(|&(a, b)| from_segment(p, a, b))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The greatest distance of points of the one from the other.
 fn one_way(from: &[[Vector; 3]], to: &[[Vector; 3]], steps: u32) -> f64 {
     let points = from.iter().flat_map(|&[a, b, c]| {
-        (0..=steps).flat_map(move |i| (0..=steps - i).map(move |j| (i, j))).map(move |(i, j)| {
-            let [i, j] = [i, j].map(|x| f64::from(x) / f64::from(steps));
-            add(add(scale(a, 1.0 - i - j), scale(b, i)), scale(c, j))
-        })
+        (0..=steps)
+            .flat_map(move |i| (0..=steps - i).map(move |j| (i, j)))
+            .map(move |(i, j)| {
+                let [i, j] = [i, j].map(|x| f64::from(x) / f64::from(steps));
+                add(add(scale(a, 1.0 - i - j), scale(b, i)), scale(c, j))
+            })
     });
-    points.map(|p| to.iter().map(|&t| from_triangle(p, t)).fold(f64::INFINITY, f64::min)).fold(0.0, f64::max)
+    points
+        .map(|p| {
+            to.iter()
+                .map(|&t| from_triangle(p, t))
+                .fold(f64::INFINITY, f64::min)
+        })
+        .fold(0.0, f64::max)
 }
 
 #[test]
@@ -58,11 +79,20 @@ fn nothing_is_confirmed_below_the_true_distance() {
     for case in 0..80 {
         let mut control = if case % 2 == 0 { octahedron() } else { fan() };
         let noise = 0.4 * random.unit();
-        control.positions.iter_mut().for_each(|p| *p = add(*p, scale(random.vector(), noise)));
+        control
+            .positions
+            .iter_mut()
+            .for_each(|p| *p = add(*p, scale(random.vector(), noise)));
         let cage = Cage::new(control);
         // The surface is within a thousandth of this mesh.
-        let surface = (0..4).fold(cage.clone(), |cage, _| cage.refined()).settled(1);
-        let mut moved = if case % 3 == 0 { cage.settled(4) } else { cage.refined().settled(4) };
+        let surface = (0..4)
+            .fold(cage.clone(), |cage, _| cage.refined())
+            .settled(1);
+        let mut moved = if case % 3 == 0 {
+            cage.settled(4)
+        } else {
+            cage.refined().settled(4)
+        };
         let (far, share) = ([0.02, 0.1, 0.4, 1.0][case / 2 % 4], random.unit());
         for p in &mut moved.mesh.positions {
             if random.unit() < share {
@@ -85,7 +115,10 @@ fn nothing_is_confirmed_below_the_true_distance() {
         }
     }
     // It is tight, too.
-    assert!(confirmed > 70 && least < 1.2, "{confirmed} confirmed, at best at {least} times the distance");
+    assert!(
+        confirmed > 70 && least < 1.2,
+        "{confirmed} confirmed, at best at {least} times the distance"
+    );
 }
 
 /// Two triangles at an angle, each the part of one of two control faces that are flat: nearly folded ones lie far beyond the surface.
@@ -103,11 +136,16 @@ fn folds_are_not_taken_for_flat() {
             triangles: vec![[0, 1, 2], [1, 0, 3]],
         };
         let mut cage = Cage::new(flat(0.0));
-        let surface = (0..5).fold(cage.clone(), |cage, _| cage.refined()).settled(1);
+        let surface = (0..5)
+            .fold(cage.clone(), |cage, _| cage.refined())
+            .settled(1);
         cage.mesh = flat(angle);
         let [surface, mesh] = [&surface.mesh, &cage.mesh].map(corners);
         let distance = one_way(&mesh, &surface, 20).max(one_way(&surface, &mesh, 1));
-        assert!(!cage.refused(0.99 * distance - 0.002).unwrap().is_empty(), "{degrees}");
+        assert!(
+            !cage.refused(0.99 * distance - 0.002).unwrap().is_empty(),
+            "{degrees}"
+        );
         // All places are nearer than that.
         assert!(cage.refused(2.0).unwrap().is_empty(), "{degrees}");
     }
@@ -129,10 +167,16 @@ fn corners_a_little_beyond_a_line_count() {
                     }
                 }
             }
-            assert!(cage.refused(1.1 * within).unwrap().is_empty(), "{v} {nudge:?}");
+            assert!(
+                cage.refused(1.1 * within).unwrap().is_empty(),
+                "{v} {nudge:?}"
+            );
             let up = cage.mesh.positions[v];
             cage.mesh.positions[v] = add(up, scale(up, 2.0 * within / length(up)));
-            assert!(!cage.refused(1.1 * within).unwrap().is_empty(), "{v} {nudge:?}, moved");
+            assert!(
+                !cage.refused(1.1 * within).unwrap().is_empty(),
+                "{v} {nudge:?}, moved"
+            );
         }
     }
 }
@@ -143,16 +187,29 @@ fn units_change_nothing() {
     let good = Cage::new(octahedron()).settled(6);
     let least = |unit: f64| {
         let mut cage = good.clone();
-        let all = cage.control.positions.iter_mut().chain(&mut cage.mesh.positions);
+        let all = cage
+            .control
+            .positions
+            .iter_mut()
+            .chain(&mut cage.mesh.positions);
         all.for_each(|p| *p = scale(*p, unit));
         let within = |i: i32| 0.01 * unit * 1.02f64.powi(i);
         // Out of range is no confirmation either.
-        (0..250).find(|&i| cage.refused(within(i)).is_ok_and(|refused| refused.is_empty()))
+        (0..250).find(|&i| {
+            cage.refused(within(i))
+                .is_ok_and(|refused| refused.is_empty())
+        })
     };
     let usual = least(1.0).unwrap();
     for exponent in (-360..=360).step_by(8) {
         let found = least(2f64.powi(exponent));
-        assert!(found.is_none_or(|found| found == usual), "2^{exponent}: {found:?}, not {usual}");
-        assert!(found.is_some() || !(-270..270).contains(&exponent), "2^{exponent}");
+        assert!(
+            found.is_none_or(|found| found == usual),
+            "2^{exponent}: {found:?}, not {usual}"
+        );
+        assert!(
+            found.is_some() || !(-270..270).contains(&exponent),
+            "2^{exponent}"
+        );
     }
 }

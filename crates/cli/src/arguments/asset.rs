@@ -76,7 +76,11 @@ impl AssetArguments {
             Weld::Within(distance) => distance / stretch,
             _ => 0.0,
         };
-        Joining::Ignoring { skins: ignores(Mover::Skin), morphs: ignores(Mover::Morphs), distance }
+        Joining::Ignoring {
+            skins: ignores(Mover::Skin),
+            morphs: ignores(Mover::Morphs),
+            distance,
+        }
     }
 
     /// The first of these options that is given.
@@ -89,6 +93,8 @@ impl AssetArguments {
             (!self.weld_ignores.is_empty(), "--weld-ignores"),
             (self.morph_tolerance.is_some(), "--morph-tolerance"),
         ];
-        all.into_iter().find(|&(is_given, _)| is_given).map(|(_, option)| option)
+        all.into_iter()
+            .find(|&(is_given, _)| is_given)
+            .map(|(_, option)| option)
     }
 }

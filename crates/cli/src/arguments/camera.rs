@@ -15,8 +15,13 @@ const FORM: &str = "eye, target and up (three numbers each), the vertical angle 
 /// A camera as an option has it.
 pub(super) fn camera(text: &str) -> Result<Camera, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-    let [numbers @ .., fov, size] = parts.as_slice() else { return Err(format!("give {FORM}")) };
-    let numbers = numbers.iter().map(|part| finite(part)).collect::<Result<Vec<f64>, String>>()?;
+    let [numbers @ .., fov, size] = parts.as_slice() else {
+        return Err(format!("give {FORM}"));
+    };
+    let numbers = numbers
+        .iter()
+        .map(|part| finite(part))
+        .collect::<Result<Vec<f64>, String>>()?;
     let [a, b, c, d, e, f, g, h, i] = numbers[..] else {
         return Err(format!(
             "it has {} numbers before the angle of view and the size; give {FORM}",
@@ -25,7 +30,14 @@ pub(super) fn camera(text: &str) -> Result<Camera, String> {
     };
     let Size { width, height } = size.parse()?;
     let fov_degrees = finite(fov)?;
-    let camera = Camera { eye: [a, b, c], target: [d, e, f], up: [g, h, i], fov_degrees, width, height };
+    let camera = Camera {
+        eye: [a, b, c],
+        target: [d, e, f],
+        up: [g, h, i],
+        fov_degrees,
+        width,
+        height,
+    };
     camera.check().map_err(|why| why.to_string())?;
     Ok(camera)
 }
@@ -35,7 +47,8 @@ pub(super) fn camera(text: &str) -> Result<Camera, String> {
 /// # Errors
 /// The file cannot be read, a line is no camera, or there is none.
 pub(crate) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    let text = std::fs::read_to_string(path)
+        .with_context(|| format!("{} cannot be read", path.display()))?;
     let mut cameras = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -47,7 +60,11 @@ pub(crate) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
             Err(what) => anyhow::bail!("{}, line {}: {what}", path.display(), i + 1),
         }
     }
-    anyhow::ensure!(!cameras.is_empty(), "{} has no camera; give {FORM}", path.display());
+    anyhow::ensure!(
+        !cameras.is_empty(),
+        "{} has no camera; give {FORM}",
+        path.display()
+    );
     Ok(cameras)
 }
 
@@ -65,7 +82,10 @@ mod tests {
             width: 1920,
             height: 1080,
         };
-        assert_eq!(camera("0,-1.5,5, 0,0,0, 0,1,0, 45, 1920x1080"), Ok(expected));
+        assert_eq!(
+            camera("0,-1.5,5, 0,0,0, 0,1,0, 45, 1920x1080"),
+            Ok(expected)
+        );
     }
 
     #[test]

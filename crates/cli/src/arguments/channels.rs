@@ -62,16 +62,25 @@ impl FromStr for Choice {
     fn from_str(text: &str) -> Result<Self, String> {
         // Names may have an equals sign, modes have none.
         let Some((name, mode)) = text.rsplit_once('=') else {
-            return Err(format!("'{text}' has no =; give NAME=smooth, linear, nearest or drop"));
+            return Err(format!(
+                "'{text}' has no =; give NAME=smooth, linear, nearest or drop"
+            ));
         };
         let mode = match mode {
             "smooth" => Mode::Smooth,
             "linear" => Mode::Linear,
             "nearest" => Mode::Nearest,
             "drop" => Mode::Drop,
-            _ => return Err(format!("'{mode}' is none of smooth, linear, nearest and drop")),
+            _ => {
+                return Err(format!(
+                    "'{mode}' is none of smooth, linear, nearest and drop"
+                ));
+            }
         };
-        Ok(Self { name: name.to_owned(), mode })
+        Ok(Self {
+            name: name.to_owned(),
+            mode,
+        })
     }
 }
 
@@ -112,9 +121,17 @@ impl ChannelArguments {
     ///
     /// # Errors
     /// Lists those that there are.
-    pub(crate) fn check<'a>(&self, input: &str, names: impl Iterator<Item = &'a str>) -> anyhow::Result<()> {
+    pub(crate) fn check<'a>(
+        &self,
+        input: &str,
+        names: impl Iterator<Item = &'a str>,
+    ) -> anyhow::Result<()> {
         let names: Vec<&str> = names.collect();
-        let Some(unknown) = self.channel.iter().find(|choice| !names.contains(&choice.name.as_str())) else {
+        let Some(unknown) = self
+            .channel
+            .iter()
+            .find(|choice| !names.contains(&choice.name.as_str()))
+        else {
             return Ok(());
         };
         let known = if names.is_empty() {
@@ -122,7 +139,10 @@ impl ChannelArguments {
         } else {
             format!("there are: {}", names.join("; "))
         };
-        usage(format!("--channel: {input} has no channel '{}'; {known}", unknown.name))
+        usage(format!(
+            "--channel: {input} has no channel '{}'; {known}",
+            unknown.name
+        ))
     }
 
     /// Refuses tolerances for channels that are not there or are left out: those that come out have these names, and some are of texture
@@ -137,23 +157,37 @@ impl ChannelArguments {
     ) -> anyhow::Result<()> {
         let names: Vec<(&str, bool)> = names.filter(|(name, _)| !self.drops(name)).collect();
         if self.uv_tolerance.is_some() && !names.iter().any(|&(_, is_texture)| is_texture) {
-            return usage(format!("--uv-tolerance: {input} has no texture coordinates that come out"));
+            return usage(format!(
+                "--uv-tolerance: {input} has no texture coordinates that come out"
+            ));
         }
-        let is_unknown = |own: &&AttributeTolerance| !names.iter().any(|&(name, _)| name == own.name);
-        let Some(unknown) = self.attribute_tolerance.iter().find(is_unknown) else { return Ok(()) };
+        let is_unknown =
+            |own: &&AttributeTolerance| !names.iter().any(|&(name, _)| name == own.name);
+        let Some(unknown) = self.attribute_tolerance.iter().find(is_unknown) else {
+            return Ok(());
+        };
         let known: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
         let known = if known.is_empty() {
             "none comes out".to_owned()
         } else {
             format!("those that come out are: {}", known.join("; "))
         };
-        usage(format!("--attribute-tolerance: {input} has no channel '{}'; {known}", unknown.name))
+        usage(format!(
+            "--attribute-tolerance: {input} has no channel '{}'; {known}",
+            unknown.name
+        ))
     }
 
     /// Refuses tolerances for what is never blended.
     fn check_tolerance(&self, channel: &Channel) -> anyhow::Result<()> {
-        let is_inherited = channel.interpolation == Interpolation::Nearest || channel.domain == Domain::Face;
-        if is_inherited && self.attribute_tolerance.iter().any(|own| own.name == channel.name) {
+        let is_inherited =
+            channel.interpolation == Interpolation::Nearest || channel.domain == Domain::Face;
+        if is_inherited
+            && self
+                .attribute_tolerance
+                .iter()
+                .any(|own| own.name == channel.name)
+        {
             return usage(format!(
                 "--attribute-tolerance: '{}' is inherited, never blended: nothing is between its values",
                 channel.name
@@ -164,9 +198,16 @@ impl ChannelArguments {
 
     /// How far the values of a channel may be off.
     pub(crate) fn tolerance(&self, channel: &Channel) -> Option<f64> {
-        let own = self.attribute_tolerance.iter().rev().find(|own| own.name == channel.name);
+        let own = self
+            .attribute_tolerance
+            .iter()
+            .rev()
+            .find(|own| own.name == channel.name);
         let is_texture = channel.semantic == Semantic::TextureCoordinates;
-        let texture = self.uv_tolerance.filter(|_| is_texture).map(|TextureTolerance(tolerance)| tolerance);
+        let texture = self
+            .uv_tolerance
+            .filter(|_| is_texture)
+            .map(|TextureTolerance(tolerance)| tolerance);
         own.map(|own| own.tolerance).or(texture)
     }
 
@@ -182,20 +223,26 @@ impl ChannelArguments {
     /// Something is to be smooth or linear, or within a tolerance.
     pub(crate) fn check_inherited(&self) -> anyhow::Result<()> {
         if let Some(option) = self.given_tolerance() {
-            return usage(format!("{option} is for values that are blended; triangles inherit these"));
+            return usage(format!(
+                "{option} is for values that are blended; triangles inherit these"
+            ));
         }
         let is_blended = |choice: &&Choice| matches!(choice.mode, Mode::Smooth | Mode::Linear);
         match self.channel.iter().find(is_blended) {
-            Some(Choice { name, .. }) => {
-                usage(format!("--channel: '{name}' is inherited by triangles; it can be nearest or drop"))
-            }
+            Some(Choice { name, .. }) => usage(format!(
+                "--channel: '{name}' is inherited by triangles; it can be nearest or drop"
+            )),
             None => Ok(()),
         }
     }
 
     /// The names of channels that are to be left out.
     pub(crate) fn dropped(&self) -> Vec<String> {
-        let is_first = |i: usize| !self.channel[..i].iter().any(|other| other.name == self.channel[i].name);
+        let is_first = |i: usize| {
+            !self.channel[..i]
+                .iter()
+                .any(|other| other.name == self.channel[i].name)
+        };
         let all = self.channel.iter().enumerate();
         all.filter(|(i, own)| self.drops(&own.name) && is_first(*i))
             .map(|(_, own)| own.name.clone())
@@ -208,7 +255,11 @@ impl ChannelArguments {
     }
 
     fn mode(&self, name: &str) -> Option<Mode> {
-        self.channel.iter().rev().find(|choice| choice.name == name).map(|choice| choice.mode)
+        self.channel
+            .iter()
+            .rev()
+            .find(|choice| choice.name == name)
+            .map(|choice| choice.mode)
     }
 
     /// Channels of the input as they are to be interpolated.
@@ -224,7 +275,11 @@ impl ChannelArguments {
 
     fn apply_to(&self, channel: &mut Channel) -> anyhow::Result<()> {
         let is_texture = channel.semantic == Semantic::TextureCoordinates;
-        let usual = if is_texture { self.uv.rule() } else { Some(SeamRule::None) };
+        let usual = if is_texture {
+            self.uv.rule()
+        } else {
+            Some(SeamRule::None)
+        };
         channel.interpolation = match self.mode(&channel.name) {
             None if is_texture => usual.map_or(Interpolation::Linear, Interpolation::Smooth),
             None | Some(Mode::Drop) => return Ok(()),
@@ -237,10 +292,14 @@ impl ChannelArguments {
         }
         let name = &channel.name;
         if channel.domain == Domain::Face {
-            return usage(format!("--channel: '{name}' has one value a face; it can be nearest or drop"));
+            return usage(format!(
+                "--channel: '{name}' has one value a face; it can be nearest or drop"
+            ));
         }
         if !channel.labels.is_empty() {
-            return usage(format!("--channel: '{name}' has names for values; it can be nearest or drop"));
+            return usage(format!(
+                "--channel: '{name}' has names for values; it can be nearest or drop"
+            ));
         }
         if channel.semantic == Semantic::Label {
             // Numbers are blended, whatever type the file has for them.
@@ -257,7 +316,12 @@ mod tests {
     #[test]
     fn choices_are_read() {
         let read = |text: &str| text.parse::<Choice>();
-        let choice = |name: &str, mode| Ok(Choice { name: name.to_owned(), mode });
+        let choice = |name: &str, mode| {
+            Ok(Choice {
+                name: name.to_owned(),
+                mode,
+            })
+        };
         assert_eq!(read("s,t=linear"), choice("s,t", Mode::Linear));
         assert_eq!(read("a=b=drop"), choice("a=b", Mode::Drop));
         assert!(read("s,t").is_err_and(|what| what.contains("no =")));

@@ -64,13 +64,18 @@ impl FromStr for Places {
         // The name of a file may hold commas and blanks, but not numbers alone between them.
         let words: Vec<&str> = words(text).collect();
         let is_place = words.len() > 1 && words.iter().all(|word| word.parse::<f64>().is_ok());
-        if is_place { text.parse().map(Self::One) } else { Ok(Self::File(text.into())) }
+        if is_place {
+            text.parse().map(Self::One)
+        } else {
+            Ok(Self::File(text.into()))
+        }
     }
 }
 
 /// What stands between commas and blanks.
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| c == ',' || c.is_whitespace()).filter(|word| !word.is_empty())
+    text.split(|c: char| c == ',' || c.is_whitespace())
+        .filter(|word| !word.is_empty())
 }
 
 /// As much of a text as an error may show.
@@ -91,13 +96,22 @@ impl FromStr for Place {
         let [face, weights @ ..] = &words[..] else {
             return Err("it is empty; give FACE,W0,W1,W2".to_owned());
         };
-        let weights = weights.iter().map(|weight| finite(weight)).collect::<Result<Vec<_>, _>>()?;
+        let weights = weights
+            .iter()
+            .map(|weight| finite(weight))
+            .collect::<Result<Vec<_>, _>>()?;
         let weights = <[f64; 3]>::try_from(weights).map_err(|weights| {
-            format!("'{text}' has {} weights; give three: FACE,W0,W1,W2", weights.len())
+            format!(
+                "'{text}' has {} weights; give three: FACE,W0,W1,W2",
+                weights.len()
+            )
         })?;
-        let face = face
-            .parse()
-            .map_err(|_| format!("'{}' is not the number of a face, counted from 0", shortened(face)))?;
+        let face = face.parse().map_err(|_| {
+            format!(
+                "'{}' is not the number of a face, counted from 0",
+                shortened(face)
+            )
+        })?;
         let weights = limitmesh::barycentric(weights).map_err(|why| format!("'{text}': {why}"))?;
         Ok(Self { face, weights })
     }

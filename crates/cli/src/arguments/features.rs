@@ -101,7 +101,13 @@ pub(crate) struct FeatureArguments {
     ///
     /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only,
     /// 3MF files none of these.
-    #[arg(long, value_enum, value_name = "WHAT", hide_default_value = true, default_value_t)]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHAT",
+        hide_default_value = true,
+        default_value_t
+    )]
     pub(crate) creases_from: CreasesFrom,
 
     /// What becomes of open boundaries [default: smooth]
@@ -122,7 +128,10 @@ impl FeatureArguments {
 
     /// Whether it was to be found by looking at the mesh.
     pub(crate) fn is_auto(&self) -> bool {
-        matches!(self.crease_angle, Some(CreaseAngle::Auto | CreaseAngle::Found(_)))
+        matches!(
+            self.crease_angle,
+            Some(CreaseAngle::Auto | CreaseAngle::Found(_))
+        )
     }
 
     /// The same for whom edges are sharp that look so, unless something else is asked for.
@@ -139,7 +148,9 @@ impl FeatureArguments {
             (self.boundary.is_some(), "--boundary"),
             (self.concave_corners.is_some(), "--concave-corners"),
         ];
-        all.into_iter().find(|&(is_given, _)| is_given).map(|(_, option)| option)
+        all.into_iter()
+            .find(|&(is_given, _)| is_given)
+            .map(|(_, option)| option)
     }
 
     /// Refuses what has no meaning for assets.
@@ -149,9 +160,9 @@ impl FeatureArguments {
     pub(crate) fn check_of_asset(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None | CreasesFrom::Normals => Ok(()),
-            _ => {
-                usage("of glTF assets --creases-from follows normals alone; --crease-angle is for all files")
-            }
+            _ => usage(
+                "of glTF assets --creases-from follows normals alone; --crease-angle is for all files",
+            ),
         }
     }
 
@@ -162,7 +173,9 @@ impl FeatureArguments {
     pub(crate) fn check_of_package(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None => Ok(()),
-            _ => usage("--creases-from is for OBJ, PLY, OFF, STL and glTF files; --crease-angle is for all"),
+            _ => usage(
+                "--creases-from is for OBJ, PLY, OFF, STL and glTF files; --crease-angle is for all",
+            ),
         }
     }
 
@@ -171,7 +184,11 @@ impl FeatureArguments {
         let is_asked = self.angle().is_some()
             || self.creases_from != CreasesFrom::None
             || self.boundary.unwrap_or_default() != Boundary::Smooth;
-        let usual = if is_asked { ConcaveCorners::Divided } else { ConcaveCorners::AsTagged };
+        let usual = if is_asked {
+            ConcaveCorners::Divided
+        } else {
+            ConcaveCorners::AsTagged
+        };
         self.concave_corners.unwrap_or(usual)
     }
 
@@ -201,6 +218,10 @@ impl FeatureArguments {
             ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,
             ConcaveCorners::AsTagged => (mesh, Default::default()),
         };
-        Ok(Featured { mesh, concave, along_needles })
+        Ok(Featured {
+            mesh,
+            concave,
+            along_needles,
+        })
     }
 }

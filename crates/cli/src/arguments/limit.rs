@@ -24,7 +24,10 @@ pub(crate) struct LimitArguments {
 impl LimitArguments {
     /// For a file whose unit is known, or not.
     pub(crate) fn in_unit(self, unit: Option<Unit>) -> Self {
-        Self { build: self.build.in_unit(unit), ..self }
+        Self {
+            build: self.build.in_unit(unit),
+            ..self
+        }
     }
 
     /// The scheme that holds.
@@ -43,6 +46,8 @@ impl LimitArguments {
     /// The first of these options that is given, but for those that say how files are read.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let scheme = self.scheme.map(|_| "--scheme");
-        scheme.or(self.features.given()).or(self.interpolation.given())
+        scheme
+            .or(self.features.given())
+            .or(self.interpolation.given())
     }
 }

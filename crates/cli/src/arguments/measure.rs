@@ -33,7 +33,11 @@ pub(crate) struct MeasureArguments {
     pub(crate) surface: PathBuf,
 
     /// The mesh to measure it against: a file or builtin:NAME
-    #[arg(value_name = "B", required_unless_present = "limit_of", conflicts_with = "limit_of")]
+    #[arg(
+        value_name = "B",
+        required_unless_present = "limit_of",
+        conflicts_with = "limit_of"
+    )]
     pub(crate) reference: Option<PathBuf>,
 
     /// Measure against the limit surface of this control mesh

@@ -30,7 +30,9 @@ pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use evaluate::{EvaluateArguments, Place, Places};
 pub(crate) use exact::ExactArguments;
-pub(crate) use features::{Boundary, ConcaveCorners, CreaseAngle, CreasesFrom, FeatureArguments, Featured};
+pub(crate) use features::{
+    Boundary, ConcaveCorners, CreaseAngle, CreasesFrom, FeatureArguments, Featured,
+};
 pub(crate) use info::InfoArguments;
 pub(crate) use interpolation::InterpolationArguments;
 pub(crate) use limit::LimitArguments;
@@ -42,7 +44,9 @@ pub(crate) use quantity::{Length, Unit};
 pub(crate) use refine::{MOST_EXACT, Method, RefineArguments, Way};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{BuildArguments, FileFormat, OverwriteArguments, RefiningScheme, SchemeName, Seam};
+pub(crate) use shared::{
+    BuildArguments, FileFormat, OverwriteArguments, RefiningScheme, SchemeName, Seam,
+};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, Size};
 

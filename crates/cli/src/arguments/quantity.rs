@@ -48,17 +48,26 @@ const IN_PACKAGES: [(Unit, LengthUnit); 6] = [
 impl Unit {
     /// How it is written after a number.
     pub(crate) fn name(self) -> &'static str {
-        UNITS.iter().find(|unit| unit.0 == self).map_or("", |unit| unit.1)
+        UNITS
+            .iter()
+            .find(|unit| unit.0 == self)
+            .map_or("", |unit| unit.1)
     }
 
     /// The unit that a 3MF package names.
     pub(crate) fn of_package(unit: LengthUnit) -> Self {
-        IN_PACKAGES.iter().find(|pair| pair.1 == unit).map_or(Self::Mm, |pair| pair.0)
+        IN_PACKAGES
+            .iter()
+            .find(|pair| pair.1 == unit)
+            .map_or(Self::Mm, |pair| pair.0)
     }
 
     /// As a 3MF package has it.
     pub(crate) fn in_package(self) -> LengthUnit {
-        IN_PACKAGES.iter().find(|pair| pair.0 == self).map_or(LengthUnit::Millimeter, |pair| pair.1)
+        IN_PACKAGES
+            .iter()
+            .find(|pair| pair.0 == self)
+            .map_or(LengthUnit::Millimeter, |pair| pair.1)
     }
 
     /// How many of another unit it is.
@@ -67,7 +76,10 @@ impl Unit {
     }
 
     fn micrometres(self) -> f64 {
-        UNITS.iter().find(|unit| unit.0 == self).map_or(1.0, |unit| unit.2)
+        UNITS
+            .iter()
+            .find(|unit| unit.0 == self)
+            .map_or(1.0, |unit| unit.2)
     }
 }
 
@@ -100,7 +112,11 @@ impl Length {
 /// A number that is finite.
 pub(super) fn finite(text: &str) -> Result<f64, String> {
     let value = f64::from_str(text.trim()).map_err(|_| format!("'{text}' is not a number"))?;
-    if value.is_finite() { Ok(value) } else { Err(format!("{value} is not a finite number")) }
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(format!("{value} is not a finite number"))
+    }
 }
 
 /// A number, perhaps with a unit of length after it.
@@ -109,10 +125,18 @@ pub(super) fn length(text: &str) -> Result<Length, String> {
     // The longest first: `mm` ends with `m`.
     let mut units = UNITS;
     units.sort_by_key(|unit| std::cmp::Reverse(unit.1.len()));
-    let found = units.iter().find_map(|&(unit, name, _)| Some((text.strip_suffix(name)?, unit)));
+    let found = units
+        .iter()
+        .find_map(|&(unit, name, _)| Some((text.strip_suffix(name)?, unit)));
     match found {
-        Some((number, unit)) => Ok(Length { value: finite(number)?, unit: Some(unit) }),
-        None => Ok(Length { value: finite(text)?, unit: None }),
+        Some((number, unit)) => Ok(Length {
+            value: finite(number)?,
+            unit: Some(unit),
+        }),
+        None => Ok(Length {
+            value: finite(text)?,
+            unit: None,
+        }),
     }
 }
 
@@ -153,8 +177,9 @@ fn without_separators(text: &str) -> Option<String> {
     };
     let groups: Vec<&str> = text.split(separator).collect();
     let is_digits = |group: &&str| !group.is_empty() && group.bytes().all(|b| b.is_ascii_digit());
-    let fits =
-        groups.iter().all(is_digits) && groups[0].len() <= 3 && groups[1..].iter().all(|g| g.len() == 3);
+    let fits = groups.iter().all(is_digits)
+        && groups[0].len() <= 3
+        && groups[1..].iter().all(|g| g.len() == 3);
     fits.then(|| groups.concat())
 }
 
@@ -167,11 +192,16 @@ pub(super) fn bytes(text: &str) -> Result<f64, String> {
         (None, Some(rest)) => (rest, Some(1000.0)),
         (None, None) => (upper.as_str(), None),
     };
-    let power =
-        rest.char_indices().next_back().and_then(|(i, unit)| Some((i, "KMGT".find(unit)? as i32 + 1)));
-    let wrong = || format!("'{text}' is no number of bytes, such as 500M, 500MB or 500MiB (K, M, G or T)");
+    let power = rest
+        .char_indices()
+        .next_back()
+        .and_then(|(i, unit)| Some((i, "KMGT".find(unit)? as i32 + 1)));
+    let wrong =
+        || format!("'{text}' is no number of bytes, such as 500M, 500MB or 500MiB (K, M, G or T)");
     match power {
-        Some((i, power)) => Ok(finite(&rest[..i]).map_err(|_| wrong())? * base.unwrap_or(1024.0).powi(power)),
+        Some((i, power)) => {
+            Ok(finite(&rest[..i]).map_err(|_| wrong())? * base.unwrap_or(1024.0).powi(power))
+        }
         // `500B` are bytes, `500iB` is nothing.
         None if base != Some(1024.0) => finite(rest).map_err(|_| wrong()),
         None => Err(wrong()),
@@ -201,8 +231,8 @@ mod tests {
             assert_eq!(count(text), Ok(expected), "{text}");
         }
         let wrong = [
-            "", "k", "1.5", "-1", "1,5", "20,00", ",000", "1e-3", "NaN", "inf", "1e30", "20kk", "0x10",
-            "many",
+            "", "k", "1.5", "-1", "1,5", "20,00", ",000", "1e-3", "NaN", "inf", "1e30", "20kk",
+            "0x10", "many",
         ];
         for bad in wrong {
             assert!(count(bad).is_err(), "{bad}");
@@ -241,7 +271,12 @@ mod tests {
         assert_eq!(of("1in", Some(Unit::Mm)).unwrap(), 25.4);
         assert_eq!(of("2m", Some(Unit::Mm)).unwrap(), 2000.0);
         assert_eq!(of("50µm", Some(Unit::Mm)).unwrap(), 0.05);
-        assert!(of("1mm", None).unwrap_err().to_string().contains("--unit mm"));
+        assert!(
+            of("1mm", None)
+                .unwrap_err()
+                .to_string()
+                .contains("--unit mm")
+        );
         for bad in ["mm", "1 furlong", "1 mm mm", "inf mm", ""] {
             assert!(length(bad).is_err(), "{bad}");
         }

@@ -324,7 +324,11 @@ impl RefineArguments {
     /// The file to write; a dry run has none.
     pub(crate) fn output_name(&self) -> String {
         let name = |path: &PathBuf| {
-            if is_standard_output(path) { "standard output".to_owned() } else { path.display().to_string() }
+            if is_standard_output(path) {
+                "standard output".to_owned()
+            } else {
+                path.display().to_string()
+            }
         };
         self.output.as_ref().map_or(String::new(), name)
     }
@@ -334,13 +338,17 @@ impl RefineArguments {
     /// # Errors
     /// Neither the name of the file nor an option says which.
     pub(crate) fn format(&self) -> anyhow::Result<Option<Format>> {
-        let Some(path) = &self.output else { return Ok(self.to.map(FileFormat::format)) };
+        let Some(path) = &self.output else {
+            return Ok(self.to.map(FileFormat::format));
+        };
         match self.to {
             Some(to) => Ok(Some(to.format())),
             None if is_standard_output(path) => {
                 usage("standard output has no name that tells its format; it needs --to")
             }
-            None => Ok(Some(Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?)),
+            None => Ok(Some(
+                Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?,
+            )),
         }
     }
 

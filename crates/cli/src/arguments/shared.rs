@@ -81,7 +81,9 @@ impl RefiningScheme {
             Self::Loop => Ok(SchemeName::Loop),
             Self::LoopWarren => Ok(SchemeName::LoopWarren),
             Self::Butterfly => Ok(SchemeName::Butterfly),
-            Self::Sqrt3 => usage("--scheme sqrt3 does not split triangles in four, as is needed here"),
+            Self::Sqrt3 => {
+                usage("--scheme sqrt3 does not split triangles in four, as is needed here")
+            }
         }
     }
 }
@@ -161,7 +163,9 @@ impl BuildArguments {
 
 /// The schemes whose limit surfaces are polynomials, as rays and projections need them.
 pub(super) fn loop_family() -> impl TypedValueParser<Value = SchemeName> {
-    let own = SchemeName::value_variants().iter().filter(|name| name.scheme().loop_family().is_some());
+    let own = SchemeName::value_variants()
+        .iter()
+        .filter(|name| name.scheme().loop_family().is_some());
     PossibleValuesParser::new(own.filter_map(ValueEnum::to_possible_value))
         .try_map(|name| SchemeName::from_str(&name, false))
 }

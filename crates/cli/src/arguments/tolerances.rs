@@ -12,8 +12,12 @@ impl FromStr for TextureTolerance {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let Some((texels, size)) = text.split_once('@') else { return values::above_zero(text).map(Self) };
-        Ok(Self(values::above_zero(texels)? / values::positive(size)? as f64))
+        let Some((texels, size)) = text.split_once('@') else {
+            return values::above_zero(text).map(Self);
+        };
+        Ok(Self(
+            values::above_zero(texels)? / values::positive(size)? as f64,
+        ))
     }
 }
 
@@ -32,7 +36,10 @@ impl FromStr for AttributeTolerance {
         let Some((name, tolerance)) = text.rsplit_once('=') else {
             return Err(format!("'{text}' has no =; give NAME=NUMBER"));
         };
-        Ok(Self { name: name.to_owned(), tolerance: values::above_zero(tolerance)? })
+        Ok(Self {
+            name: name.to_owned(),
+            tolerance: values::above_zero(tolerance)?,
+        })
     }
 }
 
@@ -49,7 +56,11 @@ impl FromStr for MorphTolerance {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        if text == "none" { Ok(Self::None) } else { values::tolerance(text).map(Self::Within) }
+        if text == "none" {
+            Ok(Self::None)
+        } else {
+            values::tolerance(text).map(Self::Within)
+        }
     }
 }
 
@@ -64,11 +75,20 @@ mod tests {
         for wrong in ["0", "-1", "nan", "inf", "1@0", "@", "1@2@3", "x"] {
             assert!(wrong.parse::<TextureTolerance>().is_err(), "{wrong}");
         }
-        let expected = AttributeTolerance { name: "a=b".to_owned(), tolerance: 0.1 };
+        let expected = AttributeTolerance {
+            name: "a=b".to_owned(),
+            tolerance: 0.1,
+        };
         assert_eq!("a=b=0.1".parse(), Ok(expected));
-        assert!("a".parse::<AttributeTolerance>().is_err_and(|why| why.contains("no =")));
+        assert!(
+            "a".parse::<AttributeTolerance>()
+                .is_err_and(|why| why.contains("no ="))
+        );
         assert_eq!("none".parse(), Ok(MorphTolerance::None));
-        assert_eq!("1%".parse(), Ok(MorphTolerance::Within(Extent::Percent(1.0))));
+        assert_eq!(
+            "1%".parse(),
+            Ok(MorphTolerance::Within(Extent::Percent(1.0)))
+        );
         assert!("-1".parse::<MorphTolerance>().is_err());
     }
 }

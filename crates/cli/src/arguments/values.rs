@@ -26,7 +26,9 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
     if value > 0.0 && value <= 180.0 {
         Ok(value)
     } else {
-        Err(format!("{value}° is out of range: an angle is above 0 and at most 180 degrees"))
+        Err(format!(
+            "{value}° is out of range: an angle is above 0 and at most 180 degrees"
+        ))
     }
 }
 
@@ -45,7 +47,11 @@ pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
 /// A factor of at least 0.
 pub(super) fn factor(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
-    if value >= 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is at least 0")) }
+    if value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(format!("{value} is out of range: it is at least 0"))
+    }
 }
 
 /// A welding distance; `None` for the word `none`.
@@ -53,7 +59,8 @@ pub(super) fn weld(text: &str) -> Result<WeldDistance, String> {
     if text == "none" {
         return Ok(WeldDistance::None);
     }
-    let distance = quantity::length(text).map_err(|what| format!("{what}; give a distance or 'none'"))?;
+    let distance =
+        quantity::length(text).map_err(|what| format!("{what}; give a distance or 'none'"))?;
     if distance.value < 0.0 {
         return Err(format!("{text} is out of range: a distance is at least 0"));
     }
@@ -120,9 +127,9 @@ pub(super) fn tolerance(text: &str) -> Result<Extent, String> {
         Extent::Length(Length { value, .. }) | Extent::Percent(value) if value <= 0.0 => {
             Err(format!("{text} is out of range: a tolerance is above 0"))
         }
-        Extent::Percent(percent) if percent > 100.0 => {
-            Err(format!("{text} is out of range: 100% is the size of the whole mesh"))
-        }
+        Extent::Percent(percent) if percent > 100.0 => Err(format!(
+            "{text} is out of range: 100% is the size of the whole mesh"
+        )),
         tolerance => Ok(tolerance),
     }
 }
@@ -130,8 +137,12 @@ pub(super) fn tolerance(text: &str) -> Result<Extent, String> {
 /// Three numbers with commas between them.
 pub(super) fn point(text: &str) -> Result<[f64; 3], String> {
     let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
-    <[f64; 3]>::try_from(numbers)
-        .map_err(|numbers| format!("it has {} numbers; give three with commas: X,Y,Z", numbers.len()))
+    <[f64; 3]>::try_from(numbers).map_err(|numbers| {
+        format!(
+            "it has {} numbers; give three with commas: X,Y,Z",
+            numbers.len()
+        )
+    })
 }
 
 /// A direction: a point that is not the origin.
@@ -161,24 +172,39 @@ pub(super) fn detail_levels(text: &str) -> Result<usize, String> {
 /// A number above 0 and below 1.
 pub(super) fn ratio(text: &str) -> Result<f64, String> {
     let value = above_zero(text)?;
-    if value < 1.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0 and below 1")) }
+    if value < 1.0 {
+        Ok(value)
+    } else {
+        Err(format!(
+            "{value} is out of range: it is above 0 and below 1"
+        ))
+    }
 }
 
 /// An angle of view in degrees, above 0 and below 180.
 pub(super) fn field_of_view(text: &str) -> Result<f64, String> {
     let value = above_zero(text)?;
-    if value < 180.0 { Ok(value) } else { Err(format!("{value}° is out of range: it is below 180 degrees")) }
+    if value < 180.0 {
+        Ok(value)
+    } else {
+        Err(format!("{value}° is out of range: it is below 180 degrees"))
+    }
 }
 
 /// A number above 0.
 pub(super) fn above_zero(text: &str) -> Result<f64, String> {
     let value = finite(text)?;
-    if value > 0.0 { Ok(value) } else { Err(format!("{value} is out of range: it is above 0")) }
+    if value > 0.0 {
+        Ok(value)
+    } else {
+        Err(format!("{value} is out of range: it is above 0"))
+    }
 }
 
 /// A time above 0.
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
-    Duration::try_from_secs_f64(above_zero(text)?).map_err(|_| format!("{text} seconds are too many"))
+    Duration::try_from_secs_f64(above_zero(text)?)
+        .map_err(|_| format!("{text} seconds are too many"))
 }
 
 /// A number of bytes, as [`quantity::bytes`] reads it.
@@ -202,7 +228,8 @@ pub(super) fn work(text: &str) -> Result<u64, String> {
 }
 
 fn count(text: &str) -> Result<usize, String> {
-    usize::try_from(quantity::count(text)?).map_err(|_| format!("{text} is too many for this machine"))
+    usize::try_from(quantity::count(text)?)
+        .map_err(|_| format!("{text} is too many for this machine"))
 }
 
 /// A number of samples.
@@ -243,12 +270,17 @@ impl FromStr for Size {
         let wrong = || format!("'{text}' is no size; give WxH in pixels, such as 1600x1200");
         let (width, height) = text.split_once(['x', 'X', '×']).ok_or_else(wrong)?;
         let side = |side: &str| u32::from_str(side.trim()).map_err(|_| wrong());
-        let size = Self { width: side(width)?, height: side(height)? };
+        let size = Self {
+            width: side(width)?,
+            height: side(height)?,
+        };
         let fits = |side: u32| (1..=MAX_SIDE).contains(&side);
         if fits(size.width) && fits(size.height) {
             Ok(size)
         } else {
-            Err(format!("{text} is out of range: each side has 1 to {MAX_SIDE} pixels"))
+            Err(format!(
+                "{text} is out of range: each side has 1 to {MAX_SIDE} pixels"
+            ))
         }
     }
 }
@@ -269,7 +301,13 @@ mod tests {
         }
         assert!(direction("0,0,0").is_err());
         assert!(direction("0,0,-0").is_err());
-        assert_eq!(weld("0.5"), Ok(WeldDistance::Within(Length { value: 0.5, unit: None })));
+        assert_eq!(
+            weld("0.5"),
+            Ok(WeldDistance::Within(Length {
+                value: 0.5,
+                unit: None
+            }))
+        );
         assert_eq!(weld("none"), Ok(WeldDistance::None));
         assert!(weld("-0.5").is_err());
     }
@@ -280,7 +318,13 @@ mod tests {
         assert_eq!(extent("0.5"), plain(0.5));
         assert_eq!(extent("0.01%"), Ok(Extent::Percent(0.01)));
         assert_eq!(extent(" 2 % "), Ok(Extent::Percent(2.0)));
-        assert_eq!(extent("0.05mm"), Ok(Extent::Length(Length { value: 0.05, unit: Some(Unit::Mm) })));
+        assert_eq!(
+            extent("0.05mm"),
+            Ok(Extent::Length(Length {
+                value: 0.05,
+                unit: Some(Unit::Mm)
+            }))
+        );
         for bad in ["", "%", "-1", "-1%", "-1mm", "1 parsec", "NaN", "inf%"] {
             assert!(extent(bad).is_err(), "{bad}");
         }
@@ -288,11 +332,20 @@ mod tests {
 
     #[test]
     fn tolerances_are_above_0_and_at_most_the_whole() {
-        assert_eq!(tolerance("1e-300"), Ok(Extent::Length(Length { value: 1e-300, unit: None })));
+        assert_eq!(
+            tolerance("1e-300"),
+            Ok(Extent::Length(Length {
+                value: 1e-300,
+                unit: None
+            }))
+        );
         assert_eq!(tolerance("100%"), Ok(Extent::Percent(100.0)));
         for bad in ["0", "-0", "0%", "-1", "-0.1%", "-1mm"] {
             let what = tolerance(bad).unwrap_err();
-            assert_eq!(what, format!("{bad} is out of range: a tolerance is above 0"));
+            assert_eq!(
+                what,
+                format!("{bad} is out of range: a tolerance is above 0")
+            );
         }
         for bad in ["NaN", "inf", "1e999", "1000%", "%", "", "0.1%%", "fine"] {
             assert!(tolerance(bad).is_err(), "{bad}");
@@ -309,7 +362,13 @@ mod tests {
 
     #[test]
     fn sizes_are_read() {
-        assert_eq!("640x480".parse(), Ok(Size { width: 640, height: 480 }));
+        assert_eq!(
+            "640x480".parse(),
+            Ok(Size {
+                width: 640,
+                height: 480
+            })
+        );
         for bad in ["640", "0x5", "640x", "99999x10", "-1x5"] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
         }

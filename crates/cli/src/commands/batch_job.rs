@@ -12,7 +12,9 @@ use crate::progress::Progress;
 pub(crate) fn run(arguments: &BatchJobArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     interrupt::end_with_standard_input();
     let verdict = match embedded::refined(arguments.words.iter().cloned(), progress) {
-        Ok(refined) => refined.stopped_short.map_or(Verdict::Done, |why| Verdict::StoppedShort { why }),
+        Ok(refined) => refined
+            .stopped_short
+            .map_or(Verdict::Done, |why| Verdict::StoppedShort { why }),
         Err(Failure::Usage(message)) => Verdict::Options { message },
         Err(Failure::Input(message)) => Verdict::File { message },
     };

@@ -34,17 +34,27 @@ pub(super) fn between(
     progress: &Progress,
 ) -> anyhow::Result<CertifiedHausdorff> {
     let mut observer = progress.observer();
-    let (surface, reference) = (Bvh::new_observed(a, &mut observer)?, Bvh::new_observed(b, &mut observer)?);
+    let (surface, reference) = (
+        Bvh::new_observed(a, &mut observer)?,
+        Bvh::new_observed(b, &mut observer)?,
+    );
     let mut options = CertifiedOptions::default();
     if let Some(gap) = arguments.gap {
         options = options
-            .gap(Some(gap.length(reference.diagonal(), arguments.limit.build.unit)?))
+            .gap(Some(
+                gap.length(reference.diagonal(), arguments.limit.build.unit)?,
+            ))
             .relative_gap(0.0);
     }
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);
     }
-    Ok(certified_hausdorff_between_observed(&surface, &reference, &options, &mut observer)?)
+    Ok(certified_hausdorff_between_observed(
+        &surface,
+        &reference,
+        &options,
+        &mut observer,
+    )?)
 }
 
 /// How the command ends; `capped` are the triangles of a mesh that could not be finer to stand for a limit surface.
@@ -71,14 +81,22 @@ pub(super) fn outcome(measured: &CertifiedHausdorff, capped: Option<usize>) -> O
 pub(super) fn in_words(measured: &CertifiedHausdorff, whole: Whole) -> String {
     let [lower, upper] = interval(measured.lower(), measured.upper());
     let mut text = format!("symmetric Hausdorff distance  from {lower} to {upper}");
-    if let [Some(lower), Some(upper)] = [measured.lower(), measured.upper()].map(|x| whole.percent(x)) {
+    if let [Some(lower), Some(upper)] =
+        [measured.lower(), measured.upper()].map(|x| whole.percent(x))
+    {
         let [lower, upper] = interval(lower, upper);
-        text.push_str(&format!("  ({lower} % to {upper} % of {})", whole.in_words()));
+        text.push_str(&format!(
+            "  ({lower} % to {upper} % of {})",
+            whole.in_words()
+        ));
     }
     text.push_str("\ncertified: the true distance lies in this interval\n\n");
     let mut rows = vec![["", "at least", "at most", ""].map(str::to_owned).to_vec()];
     let mut places = String::new();
-    for (name, bounds) in [("forward", &measured.forward), ("backward", &measured.backward)] {
+    for (name, bounds) in [
+        ("forward", &measured.forward),
+        ("backward", &measured.backward),
+    ] {
         rows.push(row(name, bounds));
         places.push_str(&format!(
             "{name} maximum near {}, closest point {}\n",

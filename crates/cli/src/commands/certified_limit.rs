@@ -39,14 +39,23 @@ pub(super) fn measure(
             scheme.name()
         ));
     }
-    let gap =
-        arguments.gap.map(|gap| gap.length(control.diagonal(), arguments.limit.build.unit)).transpose()?;
+    let gap = arguments
+        .gap
+        .map(|gap| gap.length(control.diagonal(), arguments.limit.build.unit))
+        .transpose()?;
     let mut options = LimitDistanceOptions::default().gap(gap).unfold(unfolds);
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);
     }
-    let found = limit_distance_observed(surface, control, scheme, &options, &mut progress.observer())?;
+    let found =
+        limit_distance_observed(surface, control, scheme, &options, &mut progress.observer())?;
     let capped = found.is_capped.then_some(found.reference.face_count());
     let (measured, reference) = (found.distance, found.reference);
-    Ok(Certified { measured, reference, error: found.error, levels: found.levels, capped })
+    Ok(Certified {
+        measured,
+        reference,
+        error: found.error,
+        levels: found.levels,
+        capped,
+    })
 }

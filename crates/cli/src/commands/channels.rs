@@ -7,7 +7,9 @@ use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
-use limitmesh_io::{Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost};
+use limitmesh_io::{
+    Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost,
+};
 
 use super::named_files;
 use crate::arguments::{ChannelArguments, RefineArguments};
@@ -29,12 +31,20 @@ impl<'a> Destination<'a> {
     /// That of a refinement.
     pub(super) fn of(arguments: &'a RefineArguments, format: Option<Format>) -> Self {
         let files = (arguments.input(), arguments.output.as_deref());
-        Self { format, ascii: arguments.ascii, chosen: &arguments.channels, files }
+        Self {
+            format,
+            ascii: arguments.ascii,
+            chosen: &arguments.channels,
+            files,
+        }
     }
 }
 
 fn names(channels: &[Channel]) -> String {
-    let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+    let names: Vec<&str> = channels
+        .iter()
+        .map(|channel| channel.name.as_str())
+        .collect();
     names.join("; ")
 }
 
@@ -58,9 +68,12 @@ impl Channels {
         to: &Destination<'_>,
         progress: &Progress,
     ) -> Self {
-        let Some(format) = to.format else { return Self::default() };
+        let Some(format) = to.format else {
+            return Self::default();
+        };
         let is_dropped = |channel: &Channel| to.chosen.drops(&channel.name);
-        let (dropped, channels): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(is_dropped);
+        let (dropped, channels): (Vec<Channel>, Vec<Channel>) =
+            channels.into_iter().partition(is_dropped);
         if !dropped.is_empty() {
             progress.note(format!("left out: {} (by --channel)", names(&dropped)));
         }
@@ -68,19 +81,30 @@ impl Channels {
         let reaches = |channel: &Channel| holds(format, &options, channel);
         let (kept, lost): (Vec<Channel>, Vec<Channel>) = channels.into_iter().partition(reaches);
         if !lost.is_empty() {
-            progress.note(format!("left out: {} (the output's format has no place for them)", names(&lost)));
+            progress.note(format!(
+                "left out: {} (the output's format has no place for them)",
+                names(&lost)
+            ));
         }
         let found = named_files::find(&material_libraries, &texture_files, &kept, to, progress);
         if kept.is_empty() {
             return Self::default();
         }
-        Self { channels: kept, material_libraries, texture_files, found }
+        Self {
+            channels: kept,
+            material_libraries,
+            texture_files,
+            found,
+        }
     }
 
     /// Those of a mesh of an asset.
     pub(super) fn of_asset(mut channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
         channels.retain(|channel| !arguments.channels.drops(&channel.name));
-        Self { channels, ..Self::default() }
+        Self {
+            channels,
+            ..Self::default()
+        }
     }
 
     /// All of them.
@@ -91,7 +115,9 @@ impl Channels {
     /// Those of a mesh some of whose faces were divided.
     pub(super) fn on_parts(&mut self, parts: &FaceParts, mesh: &Mesh) {
         if !parts.is_empty() {
-            self.channels.iter_mut().for_each(|channel| *channel = channel.on_parts(parts, mesh));
+            self.channels
+                .iter_mut()
+                .for_each(|channel| *channel = channel.on_parts(parts, mesh));
         }
     }
 
@@ -114,7 +140,12 @@ impl Channels {
             return Ok(Self::default());
         }
         let channels = carried(&self.channels, control, scheme, found)?;
-        let Self { material_libraries, texture_files, found, .. } = self;
+        let Self {
+            material_libraries,
+            texture_files,
+            found,
+            ..
+        } = self;
         Ok(Self {
             channels,
             material_libraries: material_libraries.clone(),
@@ -125,20 +156,34 @@ impl Channels {
 
     /// Whether the output has vertices several times, for texture coordinates that differ there.
     pub(super) fn split_vertices(&self, format: Format, surface: Triangles<'_>) -> bool {
-        let Triangles { positions, triangles } = surface;
+        let Triangles {
+            positions,
+            triangles,
+        } = surface;
         format == Format::Ply && splits_vertices(&self.channels, triangles, positions.len())
     }
 
     /// What becomes of vertices with several values: that they are written several times, if [`Self::split_vertices`] says so, or of which
     /// channels one value is, and for how many.
-    pub(super) fn note(&self, format: Format, surface: Triangles<'_>, splits: bool) -> Option<String> {
+    pub(super) fn note(
+        &self,
+        format: Format,
+        surface: Triangles<'_>,
+        splits: bool,
+    ) -> Option<String> {
         if splits {
             let note = "vertices on seams of texture coordinates are written once for each side, as the input has them";
             return Some(note.to_owned());
         }
         let lost = |channel: &Channel| {
             let vertices = values_lost(format, channel, surface.triangles, surface.positions.len());
-            (vertices > 0).then(|| format!("{} at {}", channel.name, counted(vertices, "vertex", "vertices")))
+            (vertices > 0).then(|| {
+                format!(
+                    "{} at {}",
+                    channel.name,
+                    counted(vertices, "vertex", "vertices")
+                )
+            })
         };
         let lost: Vec<String> = self.channels.iter().filter_map(lost).collect();
         (!lost.is_empty()).then(|| format!("one of several values is written: {}", lost.join("; ")))
@@ -146,7 +191,11 @@ impl Channels {
 
     /// Adds them to what is written.
     pub(super) fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
-        let output = output.channels(&self.channels).material_libraries(&self.material_libraries);
-        output.texture_files(&self.texture_files).materials(&self.found)
+        let output = output
+            .channels(&self.channels)
+            .material_libraries(&self.material_libraries);
+        output
+            .texture_files(&self.texture_files)
+            .materials(&self.found)
     }
 }

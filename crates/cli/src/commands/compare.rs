@@ -27,22 +27,40 @@ use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport, percent};
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     let input = input::load(&arguments.input, &arguments.limit.build, progress)?;
     let limit = arguments.limit.in_unit(input.unit);
-    let arguments = &CompareArguments { limit, ..arguments.clone() };
+    let arguments = &CompareArguments {
+        limit,
+        ..arguments.clone()
+    };
     let diagonal = input.mesh.diagonal();
-    let Prepared { mesh: control, limit, .. } = limit_control::as_asked(input, &arguments.limit, progress)?;
+    let Prepared {
+        mesh: control,
+        limit,
+        ..
+    } = limit_control::as_asked(input, &arguments.limit, progress)?;
     let scheme = arguments.limit.scheme().scheme();
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
     let levels = reference::affordable_levels(control.face_count(), wanted);
-    progress.stage(format!("refining by {levels} levels to stand for the limit surface"));
+    progress.stage(format!(
+        "refining by {levels} levels to stand for the limit surface"
+    ));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let own = arguments.limit.scheme().into();
-    let judge = Judge { arguments, limit, scheme: own, reference: &reference, tree: &tree, diagonal };
+    let judge = Judge {
+        arguments,
+        limit,
+        scheme: own,
+        reference: &reference,
+        tree: &tree,
+        diagonal,
+    };
 
     let mut methods = Vec::with_capacity(11);
     progress.stage("limit-normal");
-    let options = StepwiseOptions::default().levels(arguments.levels).max_triangles(Some(MOST_TRIANGLES));
+    let options = StepwiseOptions::default()
+        .levels(arguments.levels)
+        .max_triangles(Some(MOST_TRIANGLES));
     let criterion = LimitNormal::new(arguments.angle.to_radians());
     let start = Instant::now();
     let proposed = stepwise(&control, scheme, &criterion, &options)?;
@@ -57,12 +75,20 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     )?);
     drop(proposed);
 
-    progress.stage(format!("amresh: finding the angle for {} triangles", thousands(count)));
+    progress.stage(format!(
+        "amresh: finding the angle for {} triangles",
+        thousands(count)
+    ));
     // Far too fine attempts are cut off: that they are too fine is all that matters of them.
     let cap = count.saturating_mul(2).max(control.face_count());
     let options = options.max_triangles(Some(cap));
     let matched = match_angle(count, arguments.angle, |angle| {
-        stepwise(&control, scheme, &NeighbourNormal::new(angle.to_radians()), &options)
+        stepwise(
+            &control,
+            scheme,
+            &NeighbourNormal::new(angle.to_radians()),
+            &options,
+        )
     })?;
     let angle = Some(matched.angle_degrees);
     let refinement = &matched.refinement;
@@ -81,14 +107,22 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     }
     let unfolds = limit.features.concave_corners() == ConcaveCorners::Divided;
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
-    let mut kinds = vec![("exact", plain.clone()), ("exact-balance", plain.clone().balance(true))];
+    let mut kinds = vec![
+        ("exact", plain.clone()),
+        ("exact-balance", plain.clone().balance(true)),
+    ];
     if count <= MOST_OPTIMISED {
         kinds.push(("exact-optimize", plain.optimize(true)));
     }
     for (name, options) in kinds {
         progress.stage(name);
         let start = Instant::now();
-        let Exact { mesh, levels, error, .. } = exact(&control, scheme, &options)?;
+        let Exact {
+            mesh,
+            levels,
+            error,
+            ..
+        } = exact(&control, scheme, &options)?;
         let took = start.elapsed();
         let proven = error.certified.then_some([error.lower, error.upper]);
         methods.push(judge.judge((name, None), (&mesh, levels), proven, took)?);
@@ -100,10 +134,21 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
             Err(why) => progress.note(format!("{name} left out: {why}")),
         }
     }
-    let of_part = limit.interpolation.is_of_part.then_some("--crease-angle auto");
+    let of_part = limit
+        .interpolation
+        .is_of_part
+        .then_some("--crease-angle auto");
     let sqrt3 = match limit.interpolation.given().or(of_part) {
-        Some(option) => Err(anyhow::anyhow!("{option} is for schemes that split triangles in four")),
-        None => by_sqrt3(&control, count, reference.mesh.face_count(), &judge, progress),
+        Some(option) => Err(anyhow::anyhow!(
+            "{option} is for schemes that split triangles in four"
+        )),
+        None => by_sqrt3(
+            &control,
+            count,
+            reference.mesh.face_count(),
+            &judge,
+            progress,
+        ),
     };
     match sqrt3 {
         Ok(found) => methods.push(found),
@@ -144,7 +189,11 @@ fn by_restricted(
 ) -> anyhow::Result<ComparedMethod> {
     let start = Instant::now();
     let mut front = Front::measured_by(control, scheme, measure)?;
-    front.update(&Demand::tolerance(0.0).triangles(count).max_levels(methods::DEEPEST))?;
+    front.update(
+        &Demand::tolerance(0.0)
+            .triangles(count)
+            .max_levels(methods::DEEPEST),
+    )?;
     let mesh = front.mesh()?;
     let took = start.elapsed();
     let angle = (measure == Measure::PlanarityAngle).then(|| front.limit().to_degrees());
@@ -165,9 +214,17 @@ fn by_sqrt3(
         sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(count)))?;
     let took = start.elapsed();
     let (mesh_of, levels_of) = methods::sqrt3_reference(control, 0, most)?;
-    let reference = Reference { mesh: mesh_of, levels: levels_of };
+    let reference = Reference {
+        mesh: mesh_of,
+        levels: levels_of,
+    };
     let tree = Bvh::new(reference.mesh.as_triangles())?;
-    let judge = Judge { scheme: RefiningScheme::Sqrt3, reference: &reference, tree: &tree, ..*judge };
+    let judge = Judge {
+        scheme: RefiningScheme::Sqrt3,
+        reference: &reference,
+        tree: &tree,
+        ..*judge
+    };
     judge.judge(("sqrt3", None), (&mesh, levels), None, took)
 }
 
@@ -235,17 +292,29 @@ impl Judge<'_> {
 }
 
 fn in_words(arguments: &CompareArguments, judge: &Judge<'_>, methods: &[ComparedMethod]) -> String {
-    let heads =
-        ["method", "angle", "levels", "triangles", "distance %", "proven %", "mean %", "least angle", "time"];
+    let heads = [
+        "method",
+        "angle",
+        "levels",
+        "triangles",
+        "distance %",
+        "proven %",
+        "mean %",
+        "least angle",
+        "time",
+    ];
     let mut rows = vec![heads.map(str::to_owned).to_vec()];
     for m in methods {
         rows.push(vec![
             m.method.to_owned(),
-            m.angle_degrees.map_or_else(|| "-".to_owned(), |angle| format!("{angle:.3}°")),
+            m.angle_degrees
+                .map_or_else(|| "-".to_owned(), |angle| format!("{angle:.3}°")),
             m.levels.to_string(),
             thousands(m.triangles),
             number(m.symmetric_percent),
-            m.certified.as_ref().map_or_else(|| "-".to_owned(), |c| upper_bound(c.upper_percent)),
+            m.certified
+                .as_ref()
+                .map_or_else(|| "-".to_owned(), |c| upper_bound(c.upper_percent)),
             number(m.mean_percent),
             format!("{:.2}°", m.min_angle_degrees),
             seconds(m.seconds),

@@ -42,7 +42,11 @@ impl Cover {
                 let bytes = std::fs::read(path).with_context(name)?;
                 Self::of_texture(input, Texture::decode(&bytes).with_context(name)?).map(Some)
             }
-            None => input.asset.as_ref().map(|asset| Self::of_asset(input, asset)).transpose(),
+            None => input
+                .asset
+                .as_ref()
+                .map(|asset| Self::of_asset(input, asset))
+                .transpose(),
         }
     }
 
@@ -56,9 +60,18 @@ impl Cover {
             ));
         };
         let count = input.mesh.face_count();
-        let corners = (0..3 * count).map(|corner| place(&input.mesh, channel, corner)).collect();
-        let materials = vec![Material { colour: [1.0; 3], texture: Some(texture) }];
-        Ok(Self { materials, of_triangle: vec![0; count], corners })
+        let corners = (0..3 * count)
+            .map(|corner| place(&input.mesh, channel, corner))
+            .collect();
+        let materials = vec![Material {
+            colour: [1.0; 3],
+            texture: Some(texture),
+        }];
+        Ok(Self {
+            materials,
+            of_triangle: vec![0; count],
+            corners,
+        })
     }
 
     /// The base colours of a document's materials.
@@ -72,10 +85,18 @@ impl Cover {
                 0 => TEXTURE.to_owned(),
                 set => format!("TEXCOORD_{set}"),
             });
-            let own = colour.texture.as_ref().zip(set.and_then(|name| channel(&name)));
-            let picture = own.map(|(texture, _)| Texture::decode(&texture.file)).transpose();
+            let own = colour
+                .texture
+                .as_ref()
+                .zip(set.and_then(|name| channel(&name)));
+            let picture = own
+                .map(|(texture, _)| Texture::decode(&texture.file))
+                .transpose();
             let [r, g, b, _] = colour.factor.map(|x| x as f32);
-            materials.push(Material { colour: [r, g, b], texture: picture.context("a material's texture")? });
+            materials.push(Material {
+                colour: [r, g, b],
+                texture: picture.context("a material's texture")?,
+            });
             laid.push(own.map(|(texture, channel)| (Transform::of(texture), channel)));
         }
         let (mut of_triangle, mut corners) = (Vec::new(), Vec::new());
@@ -90,12 +111,20 @@ impl Cover {
                 }));
             }
         }
-        Ok(Self { materials, of_triangle, corners })
+        Ok(Self {
+            materials,
+            of_triangle,
+            corners,
+        })
     }
 
     /// As it is drawn.
     pub(super) fn covering(&self) -> Covering<'_> {
-        Covering { materials: &self.materials, of_triangle: &self.of_triangle, corners: &self.corners }
+        Covering {
+            materials: &self.materials,
+            of_triangle: &self.of_triangle,
+            corners: &self.corners,
+        }
     }
 }
 

@@ -21,25 +21,45 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         Places::One(_) => None,
     });
     input::check_once(core::iter::once(&arguments.control).chain(files))?;
-    let places: Vec<Place> = arguments.at.iter().map(places).collect::<anyhow::Result<Vec<_>>>()?.concat();
+    let places: Vec<Place> = arguments
+        .at
+        .iter()
+        .map(places)
+        .collect::<anyhow::Result<Vec<_>>>()?
+        .concat();
     let input = input::load(&arguments.control, &arguments.limit.build, progress)?;
     let (name, limit) = (input.name.clone(), arguments.limit.in_unit(input.unit));
-    let Prepared { mesh, face_inputs: faces, .. } = limit_control::prepared(input, &limit, progress)?;
+    let Prepared {
+        mesh,
+        face_inputs: faces,
+        ..
+    } = limit_control::prepared(input, &limit, progress)?;
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(
             "{name}: places are on the {count} of the control mesh, which are not the file's faces; --json names these as input_face"
         ));
     }
-    if let Some(place) = places.iter().find(|place| place.face as usize >= mesh.face_count()) {
+    if let Some(place) = places
+        .iter()
+        .find(|place| place.face as usize >= mesh.face_count())
+    {
         let count = counted(mesh.face_count(), "triangle", "triangles");
-        bail!("{name}: there is no face {}: the control mesh has {count}, counted from 0", place.face);
+        bail!(
+            "{name}: there is no face {}: the control mesh has {count}, counted from 0",
+            place.face
+        );
     }
-    progress.stage(format!("evaluating {}", counted(places.len(), "place", "places")));
-    let surface =
-        LimitSurface::new(&mesh, arguments.limit.scheme().scheme()).with_context(|| name.clone())?;
-    let at: Vec<(FaceId, [f64; 3])> =
-        places.iter().map(|place| (FaceId(place.face), place.weights)).collect();
+    progress.stage(format!(
+        "evaluating {}",
+        counted(places.len(), "place", "places")
+    ));
+    let surface = LimitSurface::new(&mesh, arguments.limit.scheme().scheme())
+        .with_context(|| name.clone())?;
+    let at: Vec<(FaceId, [f64; 3])> = places
+        .iter()
+        .map(|place| (FaceId(place.face), place.weights))
+        .collect();
     let (points, derivatives) = (surface.at_all(&at), surface.derivatives_at(&at));
     if let Some(error) = surface.failure() {
         bail!("{name}: {error}");
@@ -47,11 +67,21 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
     let found = places.into_iter().zip(points).zip(derivatives);
     let report = |((place, limits), derivatives): ((Place, SurfacePoint), _)| {
         let tangents = surface.tangents_at_corner(FaceId(place.face), place.weights);
-        EvaluationReport::new(place, faces[place.face as usize], limits, tangents, derivatives)
+        EvaluationReport::new(
+            place,
+            faces[place.face as usize],
+            limits,
+            tangents,
+            derivatives,
+        )
     };
     let reports: Vec<EvaluationReport> = found.map(report).collect();
     progress.clear();
-    output::print(&if arguments.json { output::json(&reports)? } else { in_words(&reports) })?;
+    output::print(&if arguments.json {
+        output::json(&reports)?
+    } else {
+        in_words(&reports)
+    })?;
     Ok(Outcome::Done)
 }
 
@@ -67,7 +97,10 @@ fn places(given: &Places) -> anyhow::Result<Vec<Place>> {
         std::fs::read_to_string(path)
     };
     let text = text.with_context(|| {
-        format!("'{}' is no place FACE,W0,W1,W2, and cannot be read as a file of places", path.display())
+        format!(
+            "'{}' is no place FACE,W0,W1,W2, and cannot be read as a file of places",
+            path.display()
+        )
     })?;
     // Editors may mark a file as UTF-8.
     let lines = text
@@ -75,19 +108,35 @@ fn places(given: &Places) -> anyhow::Result<Vec<Place>> {
         .lines()
         .zip(1..)
         .map(|(line, row)| (line.split('#').next().unwrap_or("").trim(), row));
-    let places = lines.filter(|(line, _)| !line.is_empty()).map(|(line, row)| {
-        line.parse().map_err(|what| anyhow::anyhow!("{}: line {row}: {what}", path.display()))
-    });
+    let places = lines
+        .filter(|(line, _)| !line.is_empty())
+        .map(|(line, row)| {
+            line.parse()
+                .map_err(|what| anyhow::anyhow!("{}: line {row}: {what}", path.display()))
+        });
     let places = places.collect::<anyhow::Result<Vec<Place>>>()?;
     if places.is_empty() {
-        bail!("{} has no places; give one a line: FACE W0 W1 W2", path.display());
+        bail!(
+            "{} has no places; give one a line: FACE W0 W1 W2",
+            path.display()
+        );
     }
     Ok(places)
 }
 
 fn in_words(reports: &[EvaluationReport]) -> String {
     let mut rows = vec![
-        ["face", "weights", "point", "normal", "Gaussian", "mean", "principal"].map(str::to_owned).to_vec(),
+        [
+            "face",
+            "weights",
+            "point",
+            "normal",
+            "Gaussian",
+            "mean",
+            "principal",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
     ];
     let none = || "-".to_owned();
     rows.extend(reports.iter().map(|report| {

@@ -27,11 +27,15 @@ pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if is_picture(path) || matches!(Format::from_path(path), Ok(Format::Ply)) {
         return output::check_writable(path);
     }
-    usage(format!("{}: a heat map is a .ply or a .png file", path.display()))
+    usage(format!(
+        "{}: a heat map is a .ply or a .png file",
+        path.display()
+    ))
 }
 
 fn is_picture(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// Writes the surface coloured by its distance to the reference.
@@ -58,7 +62,10 @@ fn write_mesh(
 ) -> anyhow::Result<()> {
     let distances = distances_to_observed(surface.positions, reference, &mut progress.observer())?;
     let scale = scale(&distances);
-    let colours: Vec<[u8; 3]> = distances.iter().map(|&distance| scale.colour(distance)).collect();
+    let colours: Vec<[u8; 3]> = distances
+        .iter()
+        .map(|&distance| scale.colour(distance))
+        .collect();
     let output = Output::new(surface).quality(&distances).colours(&colours);
     output::write_mesh(path, Format::Ply, &output, &WriteOptions::default())
 }
@@ -72,14 +79,24 @@ fn draw(
     progress: &Progress,
 ) -> anyhow::Result<()> {
     let (positions, triangles) = dice(surface, parts(surface.triangles.len()));
-    let cut = Triangles { positions: &positions, triangles: &triangles };
+    let cut = Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    };
     let mut distances = distances_to_observed(&positions, reference, &mut progress.observer())?;
     let per_length = whole.percent(1.0);
     if let Some(percent) = per_length {
-        distances.iter_mut().for_each(|distance| *distance *= percent);
+        distances
+            .iter_mut()
+            .for_each(|distance| *distance *= percent);
     }
     let unit = per_length.map_or_else(String::new, |_| format!("% of the {}'s diagonal", whole.of));
-    draw_values(path, cut, &distances, (scale(&distances), "distance", &unit))
+    draw_values(
+        path,
+        cut,
+        &distances,
+        (scale(&distances), "distance", &unit),
+    )
 }
 
 /// A picture of values at the vertices, with a colour bar that says what they are.
@@ -90,9 +107,19 @@ pub(super) fn draw_values(
     (scale, title, unit): (Scale, &str, &str),
 ) -> anyhow::Result<()> {
     let Size { width, height } = SIZE;
-    let style = Style::default().shading(Shading::Flat).lighting(Lighting::even());
+    let style = Style::default()
+        .shading(Shading::Flat)
+        .lighting(Lighting::even());
     let camera = Camera::fit_tightly(surface, ViewDirection::default(), width, height)?;
-    let image = render_scalar(surface, None, values, &scale, &camera, &style, (width, height))?;
+    let image = render_scalar(
+        surface,
+        None,
+        values,
+        &scale,
+        &camera,
+        &style,
+        (width, height),
+    )?;
     let bar = ColourBar::new(scale).title(title).unit(unit);
     output::write_file(path, &bar.beside(&image, style.background)?.encode_png()?)
 }
@@ -104,7 +131,9 @@ fn scale(distances: &[f64]) -> Scale {
 
 /// Into how many parts each side is cut.
 fn parts(triangles: usize) -> usize {
-    (PICTURE_TRIANGLES / triangles.max(1)).isqrt().clamp(1, MOST_PARTS)
+    (PICTURE_TRIANGLES / triangles.max(1))
+        .isqrt()
+        .clamp(1, MOST_PARTS)
 }
 
 #[cfg(test)]

@@ -21,8 +21,8 @@ use crate::parts;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
-    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation, PackageInformation,
-    VERSION,
+    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation,
+    PackageInformation, VERSION,
 };
 
 /// Examines a file and prints what it holds.
@@ -33,17 +33,33 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         );
     }
     if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
-        return usage(format!("{option} belongs to a limit surface; it needs --limit"));
+        return usage(format!(
+            "{option} belongs to a limit surface; it needs --limit"
+        ));
     }
-    let input::Soup { name, format, soup, normals, asset, package, unit, .. } =
-        input::read(&arguments.input, &arguments.build, progress)?;
+    let input::Soup {
+        name,
+        format,
+        soup,
+        normals,
+        asset,
+        package,
+        unit,
+        ..
+    } = input::read(&arguments.input, &arguments.build, progress)?;
     let options = arguments.build.in_unit(unit).options()?;
     let mut corners = BTreeMap::<usize, usize>::new();
     for face in soup.faces.iter() {
         *corners.entry(face.len()).or_default() += 1;
     }
-    let polygons = corners.into_iter().map(|(corners, count)| PolygonCount { corners, count }).collect();
-    let tags = TagCounts { creases: soup.creases.len(), corners: soup.corners.len() };
+    let polygons = corners
+        .into_iter()
+        .map(|(corners, count)| PolygonCount { corners, count })
+        .collect();
+    let tags = TagCounts {
+        creases: soup.creases.len(),
+        corners: soup.corners.len(),
+    };
     let input = InputReport {
         path: name.clone(),
         format,
@@ -52,14 +68,24 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         left_out: soup.left_out.clone(),
         channels: soup.channels.iter().map(Into::into).collect(),
     };
-    progress.stage(format!("connecting {}", counted(input.faces, "face", "faces")));
+    progress.stage(format!(
+        "connecting {}",
+        counted(input.faces, "face", "faces")
+    ));
     let (mesh, diagnosis, trace) =
         Mesh::from_soup_traced(&soup, &options).map_err(|error| input::describe(&name, error))?;
     if let Some(near) = input::nearly_closed(&mesh, options.weld, input::welded(&soup)) {
         progress.note(format!("{name}: {near}"));
     }
-    let limit =
-        arguments.limit.then(|| limit_of(&soup, normals.as_ref(), (&mesh, &trace), arguments, progress));
+    let limit = arguments.limit.then(|| {
+        limit_of(
+            &soup,
+            normals.as_ref(),
+            (&mesh, &trace),
+            arguments,
+            progress,
+        )
+    });
     let limit = limit.transpose().with_context(|| name.clone())?.flatten();
     drop(soup);
     progress.stage("examining the mesh");
@@ -84,7 +110,9 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         if found.is_empty() {
             text.push_str("  nothing to prepare or repair\n");
         }
-        found.iter().for_each(|line| text.push_str(&format!("  {line}\n")));
+        found
+            .iter()
+            .for_each(|line| text.push_str(&format!("  {line}\n")));
         text.push_str("\ncontrol mesh\n");
         text.push_str(&describe_mesh(&report.mesh));
         if let Some(limit) = &report.limit {
@@ -105,23 +133,55 @@ fn limit_of(
 ) -> anyhow::Result<Option<Bulk>> {
     let on_mesh = |channel: &Channel| channel.on_mesh(soup, mesh, trace);
     let normals = normals.map(on_mesh).transpose()?;
-    let channels = soup.channels.iter().map(on_mesh).collect::<Result<Vec<_>, _>>()?;
+    let channels = soup
+        .channels
+        .iter()
+        .map(on_mesh)
+        .collect::<Result<Vec<_>, _>>()?;
     let is_tagged = !soup.creases.is_empty() || !soup.corners.is_empty();
-    let hints = Hints { is_tagged, normals: normals.as_ref(), channels: &channels };
-    let asked = (arguments.features.or_auto(), InterpolationArguments::default());
+    let hints = Hints {
+        is_tagged,
+        normals: normals.as_ref(),
+        channels: &channels,
+    };
+    let asked = (
+        arguments.features.or_auto(),
+        InterpolationArguments::default(),
+    );
     let decided = parts::decided(asked, (mesh, &trace.faces), &hints, true);
-    decided.note.into_iter().for_each(|note| progress.note(note));
-    let edges = hints.edges(mesh, decided.features.creases_from, &arguments.input.display().to_string())?;
-    let mesh = decided.features.apply(mesh.clone().with_creases(&edges))?.mesh;
+    decided
+        .note
+        .into_iter()
+        .for_each(|note| progress.note(note));
+    let edges = hints.edges(
+        mesh,
+        decided.features.creases_from,
+        &arguments.input.display().to_string(),
+    )?;
+    let mesh = decided
+        .features
+        .apply(mesh.clone().with_creases(&edges))?
+        .mesh;
     let asked = (decided.interpolation, arguments.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
     Bulk::of_limit(&mesh, &Loop)
 }
 
 fn describe_file(report: &InformationReport) -> String {
-    let InputReport { path, format, vertices, faces, left_out, channels } = &report.input;
+    let InputReport {
+        path,
+        format,
+        vertices,
+        faces,
+        left_out,
+        channels,
+    } = &report.input;
     let is_asset = ["gltf", "glb"].contains(format);
-    let format = if *format == "builtin" { "built-in model".to_owned() } else { format.to_uppercase() };
+    let format = if *format == "builtin" {
+        "built-in model".to_owned()
+    } else {
+        format.to_uppercase()
+    };
     let mut text = format!(
         "{path}: {format}, {}, {}",
         counted(*vertices, "vertex", "vertices"),
@@ -142,25 +202,40 @@ fn describe_file(report: &InformationReport) -> String {
     }
     if !left_out.is_empty() {
         // Assets that are edited keep them.
-        let are = if is_asset { "not looked at, kept from glTF to glTF" } else { "left out" };
+        let are = if is_asset {
+            "not looked at, kept from glTF to glTF"
+        } else {
+            "left out"
+        };
         text.push_str(&format!("{are}: {}\n", left_out.join("; ")));
     }
     let TagCounts { creases, corners } = report.tags;
     if creases + corners > 0 {
-        let (creases, corners) =
-            (counted(creases, "crease", "creases"), counted(corners, "corner", "corners"));
+        let (creases, corners) = (
+            counted(creases, "crease", "creases"),
+            counted(corners, "corner", "corners"),
+        );
         text.push_str(&format!("tagged: {creases}, {corners}\n"));
     }
-    report.asset.iter().for_each(|asset| text.push_str(&describe_asset(asset)));
-    report.package.iter().for_each(|package| text.push_str(&describe_package(package)));
+    report
+        .asset
+        .iter()
+        .for_each(|asset| text.push_str(&describe_asset(asset)));
+    report
+        .package
+        .iter()
+        .for_each(|package| text.push_str(&describe_package(package)));
     text
 }
 
 /// What a glTF document holds, a line for each mesh and primitive.
 fn describe_asset(asset: &AssetInformation) -> String {
     let mut text = String::from("\nasset\n");
-    let counts: Vec<String> =
-        asset.counts.iter().map(|(name, count)| format!("{name}: {}", thousands(*count))).collect();
+    let counts: Vec<String> = asset
+        .counts
+        .iter()
+        .map(|(name, count)| format!("{name}: {}", thousands(*count)))
+        .collect();
     if !counts.is_empty() {
         text.push_str(&format!("  {}\n", counts.join(", ")));
     }
@@ -168,7 +243,10 @@ fn describe_asset(asset: &AssetInformation) -> String {
         text.push_str(&format!("  extensions: {}\n", asset.extensions.join(", ")));
     }
     for (number, mesh) in asset.meshes.iter().enumerate() {
-        let name = mesh.name.as_ref().map_or(String::new(), |name| format!(" '{name}'"));
+        let name = mesh
+            .name
+            .as_ref()
+            .map_or(String::new(), |name| format!(" '{name}'"));
         let shown = match mesh.shown {
             1 => String::new(),
             0 => ", not in the scene".to_owned(),
@@ -178,12 +256,23 @@ fn describe_asset(asset: &AssetInformation) -> String {
         for (number, primitive) in mesh.primitives.iter().enumerate() {
             let vertices = counted(primitive.vertices, "vertex", "vertices");
             let indices = counted(primitive.indices, "index", "indices");
-            let mut parts =
-                vec![format!("{}, {vertices}, {indices}", primitive.mode), primitive.attributes.join(" ")];
+            let mut parts = vec![
+                format!("{}, {vertices}, {indices}", primitive.mode),
+                primitive.attributes.join(" "),
+            ];
             if primitive.morph_targets > 0 {
-                parts.push(counted(primitive.morph_targets, "morph target", "morph targets"));
+                parts.push(counted(
+                    primitive.morph_targets,
+                    "morph target",
+                    "morph targets",
+                ));
             }
-            parts.extend(primitive.material.iter().map(|name| format!("material '{name}'")));
+            parts.extend(
+                primitive
+                    .material
+                    .iter()
+                    .map(|name| format!("material '{name}'")),
+            );
             if !primitive.extensions.is_empty() {
                 parts.push(primitive.extensions.join(" "));
             }
@@ -198,7 +287,10 @@ fn describe_package(package: &PackageInformation) -> String {
     let items = counted(package.items, "item is", "items are");
     let mut text = format!("\npackage\n  in {}; {items} built", package.unit);
     if package.assemblies > 0 {
-        text.push_str(&format!(", {} of others", counted(package.assemblies, "object", "objects")));
+        text.push_str(&format!(
+            ", {} of others",
+            counted(package.assemblies, "object", "objects")
+        ));
     }
     text.push('\n');
     for object in &package.objects {
@@ -218,7 +310,11 @@ fn describe_package(package: &PackageInformation) -> String {
 }
 
 fn describe_mesh(mesh: &MeshInformation) -> String {
-    let closed = if mesh.watertight { "watertight" } else { "open" };
+    let closed = if mesh.watertight {
+        "watertight"
+    } else {
+        "open"
+    };
     let boundary = counted(mesh.boundary_loops, "boundary loop", "boundary loops");
     let irregular = 100.0 * mesh.irregular_vertices as f64 / mesh.vertices.max(1) as f64;
     let lines = [
@@ -258,9 +354,10 @@ fn describe_mesh(mesh: &MeshInformation) -> String {
 }
 
 fn bulk_in_words(bulk: &Bulk) -> String {
-    let volume = bulk
-        .volume
-        .map_or_else(|| "no volume, as it is open".to_owned(), |v| format!("volume {}", number(v)));
+    let volume = bulk.volume.map_or_else(
+        || "no volume, as it is open".to_owned(),
+        |v| format!("volume {}", number(v)),
+    );
     format!("area {}, {volume}", number(bulk.area))
 }
 
@@ -270,11 +367,19 @@ const BAR: usize = 40;
 /// How many edges there are by the angle between their faces, and which look sharp.
 fn dihedrals_in_words(dihedrals: &Dihedrals) -> String {
     let most = dihedrals.histogram.iter().copied().max().unwrap_or(0);
-    let rows = dihedrals.histogram.iter().enumerate().filter(|&(_, &count)| count > 0);
+    let rows = dihedrals
+        .histogram
+        .iter()
+        .enumerate()
+        .filter(|&(_, &count)| count > 0);
     let rows: Vec<Vec<String>> = rows
         .map(|(step, &count)| {
             let bar = "#".repeat((BAR * count).div_ceil(most.max(1)));
-            vec![format!("  {}° to {}°", 10 * step, 10 * step + 10), thousands(count), bar]
+            vec![
+                format!("  {}° to {}°", 10 * step, 10 * step + 10),
+                thousands(count),
+                bar,
+            ]
         })
         .collect();
     if rows.is_empty() {
@@ -293,12 +398,19 @@ fn dihedrals_in_words(dihedrals: &Dihedrals) -> String {
             }
         }
     };
-    format!("\nedges by the angle between their faces: {look}\n{}", bars(&rows))
+    format!(
+        "\nedges by the angle between their faces: {look}\n{}",
+        bars(&rows)
+    )
 }
 
 /// A table whose last column is to the left.
 fn bars(rows: &[Vec<String>]) -> String {
     let (heads, bars): (Vec<Vec<String>>, Vec<&String>) =
         rows.iter().map(|row| (row[..2].to_vec(), &row[2])).unzip();
-    table(&heads).lines().zip(bars).map(|(line, bar)| format!("{line}  {bar}\n")).collect()
+    table(&heads)
+        .lines()
+        .zip(bars)
+        .map(|(line, bar)| format!("{line}  {bar}\n"))
+        .collect()
 }

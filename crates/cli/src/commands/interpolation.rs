@@ -1,7 +1,9 @@
 //! The step before refinement that makes the limit surface pass through the vertices: what it does, and what is said of it.
 
 use limitmesh::Mesh;
-use limitmesh::interpolate::{InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed};
+use limitmesh::interpolate::{
+    InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed,
+};
 use limitmesh::part::{FoldedRegion, Unfolded, interpolate_unfolded_observed};
 use limitmesh::scheme::Scheme;
 
@@ -21,10 +23,15 @@ pub(super) fn apply(
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {
     let diagonal = mesh.diagonal();
-    let Some(within) = arguments.within(diagonal, unit)? else { return Ok((mesh, None)) };
+    let Some(within) = arguments.within(diagonal, unit)? else {
+        return Ok((mesh, None));
+    };
     if arguments.is_of_part {
-        let Unfolded { interpolated, folded, .. } =
-            interpolate_unfolded_observed(&mesh, scheme, &mut progress.observer())?;
+        let Unfolded {
+            interpolated,
+            folded,
+            ..
+        } = interpolate_unfolded_observed(&mesh, scheme, &mut progress.observer())?;
         if let Some(largest) = folded.first() {
             progress.note(folded_in_words(&interpolated, folded.len(), largest));
         }
@@ -43,7 +50,11 @@ fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion)
     let vertices = counted(found.passed_by.len(), "vertex", "vertices");
     let faces = counted(largest.faces.len(), "face", "faces");
     let [low, high] = largest.bounding_box.map(point);
-    let largest = if regions == 1 { "it has" } else { "the largest has" };
+    let largest = if regions == 1 {
+        "it has"
+    } else {
+        "the largest has"
+    };
     format!(
         "the surface passes by {vertices}: through them it would fold in {}; {largest} {faces}, from {low} to {high}",
         counted(regions, "region", "regions")
@@ -55,7 +66,8 @@ fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
     let mut vertices = counted(found.mesh.vertex_count() - passed_by, "vertex", "vertices");
     if passed_by > 0 {
         let others = counted(passed_by, "vertex", "vertices");
-        vertices += &format!(", and by {others} beside much longer edges of sharp lines and boundaries");
+        vertices +=
+            &format!(", and by {others} beside much longer edges of sharp lines and boundaries");
     }
     let percent = percent(found.displacement, diagonal.max(f64::MIN_POSITIVE));
     let moved = format!(
@@ -65,13 +77,18 @@ fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
         found.most_displaced.index()
     );
     match found.method {
-        InterpolationMethod::Unchanged => format!("the limit surface passes through {vertices} as it is"),
+        InterpolationMethod::Unchanged => {
+            format!("the limit surface passes through {vertices} as it is")
+        }
         InterpolationMethod::LeastSquares => format!(
             "no control points let the limit surface pass through {vertices}: by least squares it passes within {}; {moved}",
             upper_bound(found.residual)
         ),
         _ if within > 0.0 => {
-            format!("the limit surface passes within {} of {vertices}: {moved}", number(found.residual))
+            format!(
+                "the limit surface passes within {} of {vertices}: {moved}",
+                number(found.residual)
+            )
         }
         _ => format!("the limit surface passes through {vertices}: {moved}"),
     }

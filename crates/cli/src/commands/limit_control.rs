@@ -28,7 +28,10 @@ pub(super) fn prepared(
     arguments: &LimitArguments,
     progress: &Progress,
 ) -> anyhow::Result<Prepared> {
-    let limit = LimitArguments { features: arguments.features.or_auto(), ..*arguments };
+    let limit = LimitArguments {
+        features: arguments.features.or_auto(),
+        ..*arguments
+    };
     as_asked(input, &limit, progress)
 }
 
@@ -42,17 +45,29 @@ pub(super) fn as_asked(
     progress: &Progress,
 ) -> anyhow::Result<Prepared> {
     let asked = (arguments.features, arguments.interpolation);
-    let decided = parts::decided(asked, (&input.mesh, &input.trace.faces), &input.hints(), true);
+    let decided = parts::decided(
+        asked,
+        (&input.mesh, &input.trace.faces),
+        &input.hints(),
+        true,
+    );
     if let Some(note) = decided.note {
         progress.note(format!("{}: {note}", input.name));
     }
-    let limit =
-        LimitArguments { features: decided.features, interpolation: decided.interpolation, ..*arguments };
+    let limit = LimitArguments {
+        features: decided.features,
+        interpolation: decided.interpolation,
+        ..*arguments
+    };
     let Input { mesh, trace, .. } = input.with_creases(limit.features.creases_from)?;
     let Featured { mesh, concave, .. } = limit.features.apply(mesh)?;
     let asked = (limit.interpolation, limit.build.unit);
     let (mesh, _) = interpolation::apply(mesh, asked, limit.scheme().scheme(), progress)?;
     let input_of = |face| trace.faces[concave.parts.whole(face) as usize];
     let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
-    Ok(Prepared { mesh, face_inputs, limit })
+    Ok(Prepared {
+        mesh,
+        face_inputs,
+        limit,
+    })
 }

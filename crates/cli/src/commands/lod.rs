@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use limitmesh::mesh::SplitSurface;
-use limitmesh::refine::{ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance};
+use limitmesh::refine::{
+    ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance,
+};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
 use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
@@ -44,11 +46,16 @@ impl Written {
     /// What becomes of vertices with several values.
     fn note(&self, format: Format) -> Option<String> {
         let surface = self.split.as_triangles();
-        self.channels.note(format, surface, self.channels.split_vertices(format, surface))
+        self.channels.note(
+            format,
+            surface,
+            self.channels.split_vertices(format, surface),
+        )
     }
 
     fn output(&self) -> Output<'_> {
-        self.channels.add_to(Output::new(self.split.as_triangles()).normals(&self.split.normals))
+        self.channels
+            .add_to(Output::new(self.split.as_triangles()).normals(&self.split.normals))
     }
 }
 
@@ -59,7 +66,8 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
             "levels of detail are written to files, not to standard output; give a name such as levels.glb",
         );
     }
-    let format = Format::from_path(&arguments.output).or_else(|unknown| usage(unknown.to_string()))?;
+    let format =
+        Format::from_path(&arguments.output).or_else(|unknown| usage(unknown.to_string()))?;
     if arguments.morph && !format.is_gltf() && format != Format::Ply {
         let name = arguments.output.display();
         return usage(format!(
@@ -72,25 +80,53 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
         ));
     }
     check_files(arguments, format)?;
-    let kept = [Normals::kept(Some(format)), if format.is_gltf() { &[MATERIALS] } else { &[] }].concat();
-    let input = input::load_for(&arguments.input, &arguments.build, (&kept, &arguments.channels), progress)?;
+    let kept = [
+        Normals::kept(Some(format)),
+        if format.is_gltf() { &[MATERIALS] } else { &[] },
+    ]
+    .concat();
+    let input = input::load_for(
+        &arguments.input,
+        &arguments.build,
+        (&kept, &arguments.channels),
+        progress,
+    )?;
     let asked = (arguments.features.or_auto(), arguments.interpolation);
-    let decided = parts::decided(asked, (&input.mesh, &input.trace.faces), &input.hints(), true);
-    decided.note.into_iter().for_each(|note| progress.note(note));
+    let decided = parts::decided(
+        asked,
+        (&input.mesh, &input.trace.faces),
+        &input.hints(),
+        true,
+    );
+    decided
+        .note
+        .into_iter()
+        .for_each(|note| progress.note(note));
     let input = input.with_creases(decided.features.creases_from)?;
-    let arguments = &LodArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
+    let arguments = &LodArguments {
+        build: arguments.build.in_unit(input.unit),
+        ..arguments.clone()
+    };
     let unit = WrittenUnit::of(&arguments.input, &arguments.build, format);
     unit.note(&arguments.output.display().to_string(), progress);
     let diagonal = input.mesh.diagonal();
     let told = InputReport::of(&input, &arguments.channels);
-    let Input { mesh, channels, material_libraries, texture_files, asset, .. } = input;
+    let Input {
+        mesh,
+        channels,
+        material_libraries,
+        texture_files,
+        asset,
+        ..
+    } = input;
     let to = Destination {
         format: Some(format),
         ascii: arguments.ascii,
         chosen: &arguments.channels,
         files: (&arguments.input, Some(&arguments.output)),
     };
-    let mut channels = Channels::of_input(channels, [material_libraries, texture_files], &to, progress);
+    let mut channels =
+        Channels::of_input(channels, [material_libraries, texture_files], &to, progress);
     let asset = asset.filter(|_| format.is_gltf());
     if asset.is_some() {
         progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
@@ -108,27 +144,49 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let mut levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
     let found = levels.len();
     leave_out_needless(&mut levels, progress);
-    let written = levels.iter().rev().map(|level| written(level, &mesh, &channels, arguments));
+    let written = levels
+        .iter()
+        .rev()
+        .map(|level| written(level, &mesh, &channels, arguments));
     let written = written.collect::<anyhow::Result<Vec<_>>>()?;
     if let Some(note) = written.first().and_then(|finest| finest.note(format)) {
         progress.note(note);
     }
     let reports = reports(&levels, &mesh, arguments, format);
     progress.stage(format!("writing {}", arguments.output.display()));
-    write(arguments, (format, &unit), &written, &reports, asset.as_ref())?;
+    write(
+        arguments,
+        (format, &unit),
+        &written,
+        &reports,
+        asset.as_ref(),
+    )?;
     progress.clear();
     progress.note(in_words(&reports, arguments));
     let certified = levels.iter().all(|level| level.exact.error.certified);
     if let Some(path) = &arguments.report {
-        let picture =
-            PictureReport { pixels: arguments.pixels, height: arguments.height, fov_degrees: arguments.fov };
-        let report =
-            LodReport { version: VERSION, input: told, diagonal, certified, picture, levels: reports };
+        let picture = PictureReport {
+            pixels: arguments.pixels,
+            height: arguments.height,
+            fov_degrees: arguments.fov,
+        };
+        let report = LodReport {
+            version: VERSION,
+            input: told,
+            diagonal,
+            certified,
+            picture,
+            levels: reports,
+        };
         output::write_json(path, &report)?;
     }
     // Levels end with the first that could not be reached.
-    let short = levels.last().filter(|last| last.exact.stop != ExactStop::Met);
-    Ok(short.map_or(Outcome::Done, |last| Outcome::StoppedShort(in_short(last, found, &asked))))
+    let short = levels
+        .last()
+        .filter(|last| last.exact.stop != ExactStop::Met);
+    Ok(short.map_or(Outcome::Done, |last| {
+        Outcome::StoppedShort(in_short(last, found, &asked))
+    }))
 }
 
 /// Why the last level is not as near as it should be: the one with that number, counted from 1, of those asked for.
@@ -153,9 +211,13 @@ fn check_files(arguments: &LodArguments, format: Format) -> anyhow::Result<()> {
         given => given,
     };
     let files = if format.is_gltf() { 1 } else { levels };
-    let mut written: Vec<PathBuf> = (0..files).map(|lod| path(&arguments.output, format, lod)).collect();
+    let mut written: Vec<PathBuf> = (0..files)
+        .map(|lod| path(&arguments.output, format, lod))
+        .collect();
     written.extend(arguments.report.clone());
-    written.iter().try_for_each(|path| output::check_writable(path))?;
+    written
+        .iter()
+        .try_for_each(|path| output::check_writable(path))?;
     let written: Vec<&Path> = written.iter().map(PathBuf::as_path).collect();
     output::check_replaced(&written, &[&arguments.input], Some(arguments.overwrite))?;
     output::check_once(&written)
@@ -168,9 +230,16 @@ fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64
         let finest = length(&arguments.tolerance.unwrap_or(USUAL_TOLERANCE))?;
         let ratio = arguments.ratio.unwrap_or(USUAL_RATIO);
         let levels = arguments.levels.unwrap_or(USUAL_LEVELS);
-        (0..levels).rev().map(|level| finest / ratio.powi(level as i32)).collect()
+        (0..levels)
+            .rev()
+            .map(|level| finest / ratio.powi(level as i32))
+            .collect()
     } else {
-        arguments.tolerances.iter().map(length).collect::<anyhow::Result<Vec<f64>>>()?
+        arguments
+            .tolerances
+            .iter()
+            .map(length)
+            .collect::<anyhow::Result<Vec<f64>>>()?
     };
     if let Some(at) = lengths.windows(2).position(|pair| pair[1] >= pair[0]) {
         return usage(format!(
@@ -196,8 +265,12 @@ fn leave_out_needless(levels: &mut Vec<Level>, progress: &Progress) {
             counted(own, "triangle", "triangles"),
             match own == next {
                 true =>
-                    "the next finer one has as many, since none is coarser than the control mesh".to_owned(),
-                false => format!("place by place, the next finer one, of {}, is no nearer", thousands(next)),
+                    "the next finer one has as many, since none is coarser than the control mesh"
+                        .to_owned(),
+                false => format!(
+                    "place by place, the next finer one, of {}, is no nearer",
+                    thousands(next)
+                ),
             }
         ));
         finer.geomorph = None;
@@ -214,16 +287,34 @@ fn written(
     let channels = channels.refined(control, &level.exact, arguments.scheme.scheme())?;
     let (split, normals) = level.split_surface();
     let coarser = level.geomorph.as_ref().map(|morph| {
-        let positions = split.sources.iter().map(|&v| morph.positions[v as usize]).collect();
+        let positions = split
+            .sources
+            .iter()
+            .map(|&v| morph.positions[v as usize])
+            .collect();
         [positions, normals]
     });
-    Ok(Written { split, coarser, channels })
+    Ok(Written {
+        split,
+        coarser,
+        channels,
+    })
 }
 
 /// What is said of the levels, the finest first.
-fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: Format) -> Vec<LevelReport> {
+fn reports(
+    levels: &[Level],
+    control: &Mesh,
+    arguments: &LodArguments,
+    format: Format,
+) -> Vec<LevelReport> {
     let distance = |deviation| {
-        switching_distance(deviation, arguments.pixels, arguments.height, arguments.fov.to_radians())
+        switching_distance(
+            deviation,
+            arguments.pixels,
+            arguments.height,
+            arguments.fov.to_radians(),
+        )
     };
     // The part of the picture's height that a ball around the control mesh takes where its nearest point is so far away.
     let coverage = |distance: f64| {
@@ -241,7 +332,11 @@ fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: F
         let exact = &level.exact;
         // Where the coarser level takes over: it is good enough from there on.
         let coarser = i.checked_sub(1).map(shown);
-        let start = level.geomorph.as_ref().zip(coarser).map(|(morph, coarser)| morph.start.max(coarser));
+        let start = level
+            .geomorph
+            .as_ref()
+            .zip(coarser)
+            .map(|(morph, coarser)| morph.start.max(coarser));
         let ends = start.or(coarser);
         LevelReport {
             lod,
@@ -262,7 +357,13 @@ fn reports(levels: &[Level], control: &Mesh, arguments: &LodArguments, format: F
             stop: exact_stop_name(exact.stop),
         }
     };
-    levels.iter().enumerate().rev().enumerate().map(report).collect()
+    levels
+        .iter()
+        .enumerate()
+        .rev()
+        .enumerate()
+        .map(report)
+        .collect()
 }
 
 /// The file of a level.
@@ -296,32 +397,68 @@ fn write(
                 }
             })
             .collect();
-        let name = arguments.output.file_stem().unwrap_or_default().to_string_lossy();
+        let name = arguments
+            .output
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
         return interrupt::whole_or_not(&arguments.output, || {
-            write_levels(&arguments.output, format, (&name, &levels), asset, options.unit)
+            write_levels(
+                &arguments.output,
+                format,
+                (&name, &levels),
+                asset,
+                options.unit,
+            )
         })
         .context("levels of detail");
     }
     for (lod, level) in levels.iter().enumerate() {
         let axis = |axis: usize| -> Vec<f64> {
-            level.coarser.iter().flat_map(|[positions, _]| positions).map(|position| position[axis]).collect()
+            level
+                .coarser
+                .iter()
+                .flat_map(|[positions, _]| positions)
+                .map(|position| position[axis])
+                .collect()
         };
         let coarse = [axis(0), axis(1), axis(2)];
         let names = ["coarse_x", "coarse_y", "coarse_z"];
         let properties: Vec<Property<'_>> = match level.coarser {
-            Some(_) => names.iter().zip(&coarse).map(|(name, own)| Property::numbers(name, own)).collect(),
+            Some(_) => names
+                .iter()
+                .zip(&coarse)
+                .map(|(name, own)| Property::numbers(name, own))
+                .collect(),
             None => Vec::new(),
         };
         let written = level.output().vertex_properties(&properties);
         let positions = unit.positions(written.surface.positions);
-        let written = Output { surface: Triangles { positions: &positions, ..written.surface }, ..written };
-        output::write_mesh(&path(&arguments.output, format, lod), format, &written, &options)?;
+        let written = Output {
+            surface: Triangles {
+                positions: &positions,
+                ..written.surface
+            },
+            ..written
+        };
+        output::write_mesh(
+            &path(&arguments.output, format, lod),
+            format,
+            &written,
+            &options,
+        )?;
     }
     Ok(())
 }
 
 fn in_words(reports: &[LevelReport], arguments: &LodArguments) -> String {
-    let head = ["level", "triangles", "distance to the surface", "place by place", "from a distance of"];
+    let head = [
+        "level",
+        "triangles",
+        "distance to the surface",
+        "place by place",
+        "from a distance of",
+    ];
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     rows.extend(reports.iter().map(|report| {
         let interval = match report.upper {
@@ -330,7 +467,13 @@ fn in_words(reports: &[LevelReport], arguments: &LodArguments) -> String {
         };
         let name = format!("LOD{}", report.lod);
         let distance = number(report.switching_distance);
-        vec![name, thousands(report.triangles), interval, upper_bound(report.parametric), distance]
+        vec![
+            name,
+            thousands(report.triangles),
+            interval,
+            upper_bound(report.parametric),
+            distance,
+        ]
     }));
     let levels = counted(reports.len(), "level", "levels");
     let of = arguments.output.display();

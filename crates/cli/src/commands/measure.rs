@@ -18,17 +18,26 @@ use crate::progress::Progress;
 use crate::reference;
 use crate::report::Whole;
 use crate::report::measurement::{HausdorffReport, MeasureSeconds};
-use crate::report::{CertifiedReport, DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION};
+use crate::report::{
+    CertifiedReport, DistanceReport, LimitReport, MeasureReport, SurfaceReport, VERSION,
+};
 
 /// Measures one surface against another.
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
     let surface = input::load(&arguments.surface, &arguments.limit.build, progress)?;
-    let second = arguments.limit_of.as_deref().or(arguments.reference.as_deref()).unwrap_or(Path::new(""));
+    let second = arguments
+        .limit_of
+        .as_deref()
+        .or(arguments.reference.as_deref())
+        .unwrap_or(Path::new(""));
     let second = input::load(second, &arguments.limit.build, progress)?;
     let limit = arguments.limit.in_unit(second.unit);
-    let arguments = &MeasureArguments { limit, ..arguments.clone() };
+    let arguments = &MeasureArguments {
+        limit,
+        ..arguments.clone()
+    };
     let surface = surface.in_unit(second.unit, progress)?;
     let a = surface.mesh.as_triangles();
     let (control, reference_report, whole) = reference(second, a, arguments, progress)?;
@@ -36,7 +45,9 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
 
     let start = Instant::now();
     let (reference, reference_report, measured) = match reference_report.limit {
-        Some(_) if arguments.certified => against_limit(a, &control, reference_report, arguments, progress)?,
+        Some(_) if arguments.certified => {
+            against_limit(a, &control, reference_report, arguments, progress)?
+        }
         _ => {
             let b = control.as_triangles();
             progress.stage(format!(
@@ -54,7 +65,10 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
         surface: describe(&surface, Some(Bulk::of(&surface.mesh))),
         reference: reference_report,
         hausdorff: measured.report(whole),
-        seconds: MeasureSeconds { prepare, measure: start.elapsed().as_secs_f64() },
+        seconds: MeasureSeconds {
+            prepare,
+            measure: start.elapsed().as_secs_f64(),
+        },
     };
     if let Some(path) = &arguments.heatmap {
         progress.stage(format!("writing {}", path.display()));
@@ -84,16 +98,28 @@ impl Distance {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         if arguments.certified {
-            return Ok(Self::Certified(certified::between(a, b, arguments, progress)?, None));
+            return Ok(Self::Certified(
+                certified::between(a, b, arguments, progress)?,
+                None,
+            ));
         }
         let options = SamplingOptions::default().samples(arguments.samples);
-        Ok(Self::Sampled(hausdorff_observed(a, b, &options, &mut progress.observer())?))
+        Ok(Self::Sampled(hausdorff_observed(
+            a,
+            b,
+            &options,
+            &mut progress.observer(),
+        )?))
     }
 
     fn report(&self, whole: Whole) -> DistanceReport {
         match self {
-            Self::Sampled(measured) => DistanceReport::Sampled(HausdorffReport::new(measured, whole)),
-            Self::Certified(measured, _) => DistanceReport::Certified(CertifiedReport::new(measured, whole)),
+            Self::Sampled(measured) => {
+                DistanceReport::Sampled(HausdorffReport::new(measured, whole))
+            }
+            Self::Certified(measured, _) => {
+                DistanceReport::Certified(CertifiedReport::new(measured, whole))
+            }
         }
     }
 
@@ -113,17 +139,27 @@ fn against_limit(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Distance)> {
-    let unfolds = report.limit.as_ref().is_some_and(|limit| limit.concave_corners == ConcaveCorners::Divided);
+    let unfolds = report
+        .limit
+        .as_ref()
+        .is_some_and(|limit| limit.concave_corners == ConcaveCorners::Divided);
     let found = certified_limit::measure(surface, (control, unfolds), arguments, progress)?;
-    let limit =
-        report.limit.map(|limit| LimitReport { levels: found.levels, error: Some(found.error), ..limit });
+    let limit = report.limit.map(|limit| LimitReport {
+        levels: found.levels,
+        error: Some(found.error),
+        ..limit
+    });
     let report = SurfaceReport {
         vertices: found.reference.vertex_count(),
         triangles: found.reference.face_count(),
         limit,
         ..report
     };
-    Ok((found.reference, report, Distance::Certified(found.measured, found.capped)))
+    Ok((
+        found.reference,
+        report,
+        Distance::Certified(found.measured, found.capped),
+    ))
 }
 
 /// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
@@ -136,12 +172,18 @@ fn reference(
 ) -> anyhow::Result<(Mesh, SurfaceReport, Whole)> {
     if arguments.limit_of.is_none() {
         let report = describe(&input, Some(Bulk::of(&input.mesh)));
-        let whole = Whole { diagonal: input.mesh.diagonal(), of: "second mesh" };
+        let whole = Whole {
+            diagonal: input.mesh.diagonal(),
+            of: "second mesh",
+        };
         return Ok((input.mesh, report, whole));
     }
     let scheme = arguments.limit.scheme();
     let report = describe(&input, None);
-    let whole = Whole { diagonal: input.mesh.diagonal(), of: "control mesh" };
+    let whole = Whole {
+        diagonal: input.mesh.diagonal(),
+        of: "control mesh",
+    };
     let Prepared { mesh, limit, .. } = limit_control::prepared(input, &arguments.limit, progress)?;
     // Beyond what numbers hold they are not known; distances are.
     let bulk = Bulk::of_limit(&mesh, scheme.scheme()).ok().flatten();
@@ -149,11 +191,20 @@ fn reference(
         (mesh, 0)
     } else {
         let levels = reference::levels_for(&mesh, measured, arguments.reference_levels)?;
-        progress.stage(format!("refining {} by {levels} levels to stand for its limit surface", report.path));
-        (reference::at_level(&mesh, scheme.scheme(), levels)?.mesh, levels)
+        progress.stage(format!(
+            "refining {} by {levels} levels to stand for its limit surface",
+            report.path
+        ));
+        (
+            reference::at_level(&mesh, scheme.scheme(), levels)?.mesh,
+            levels,
+        )
     };
     let chosen = arguments.reference_levels.is_none();
-    let limit = LimitReport { chosen, ..LimitReport::new(&limit, whole.diagonal, levels)? };
+    let limit = LimitReport {
+        chosen,
+        ..LimitReport::new(&limit, whole.diagonal, levels)?
+    };
     let report = SurfaceReport {
         vertices: mesh.vertex_count(),
         triangles: mesh.face_count(),
@@ -179,7 +230,10 @@ fn describe(input: &Input, bulk: Option<Bulk>) -> SurfaceReport {
 
 fn in_words(report: &MeasureReport, measured: &Distance, whole: Whole) -> String {
     let mut text = format!("from  {}\n", surface_in_words(&report.surface));
-    text.push_str(&format!("to    {}\n\n", surface_in_words(&report.reference)));
+    text.push_str(&format!(
+        "to    {}\n\n",
+        surface_in_words(&report.reference)
+    ));
     text.push_str(&match measured {
         Distance::Sampled(measured) => sampled_in_words(measured, whole),
         Distance::Certified(measured, _) => certified::in_words(measured, whole),
@@ -193,18 +247,35 @@ fn bulk_in_words(surface: &SurfaceReport, reference: &SurfaceReport) -> String {
     let line = |what: &str, own: Option<f64>, other: Option<f64>| {
         let (own, other) = (own?, other?);
         let percent = 100.0 * (own - other) / other;
-        let more = if percent.is_finite() { format!("  ({percent:+.3} %)") } else { String::new() };
-        Some(format!("{what:<7} {} against {}{more}\n", number(own), number(other)))
+        let more = if percent.is_finite() {
+            format!("  ({percent:+.3} %)")
+        } else {
+            String::new()
+        };
+        Some(format!(
+            "{what:<7} {} against {}{more}\n",
+            number(own),
+            number(other)
+        ))
     };
-    let lines =
-        [line("area", surface.area, reference.area), line("volume", surface.volume, reference.volume)];
+    let lines = [
+        line("area", surface.area, reference.area),
+        line("volume", surface.volume, reference.volume),
+    ];
     let lines: String = lines.into_iter().flatten().collect();
-    if lines.is_empty() { lines } else { format!("\n{lines}") }
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("\n{lines}")
+    }
 }
 
 fn sampled_in_words(measured: &Hausdorff, whole: Whole) -> String {
     let percent = |length: f64| {
-        whole.percent(length).map_or_else(|| "-".to_owned(), |percent| format!("{} %", number(percent)))
+        whole.percent(length).map_or_else(
+            || "-".to_owned(),
+            |percent| format!("{} %", number(percent)),
+        )
     };
     let mut text = format!(
         "symmetric Hausdorff distance  {}  ({} of {})\n",
@@ -226,11 +297,18 @@ fn directions(measured: &Hausdorff, percent: impl Fn(f64) -> String) -> String {
     let cells = |words: [&str; 5]| words.map(str::to_owned).to_vec();
     let mut rows = vec![cells(["", "max", "mean", "RMS", "95 %"])];
     let mut places = String::new();
-    for (name, one) in [("forward", &measured.forward), ("backward", &measured.backward)] {
+    for (name, one) in [
+        ("forward", &measured.forward),
+        ("backward", &measured.backward),
+    ] {
         let values = [one.max, one.mean, one.rms, one.percentile_95];
         rows.push([vec![name.to_owned()], values.map(number).to_vec()].concat());
         rows.push([vec![String::new()], values.map(&percent).to_vec()].concat());
-        places.push_str(&format!("{name} maximum at {}, closest point {}\n", point(one.at), point(one.to)));
+        places.push_str(&format!(
+            "{name} maximum at {}, closest point {}\n",
+            point(one.at),
+            point(one.to)
+        ));
     }
     format!("{}\n{places}", table(&rows))
 }
@@ -239,14 +317,26 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
     let triangles = counted(surface.triangles, "triangle", "triangles");
     let mut text = match &surface.limit {
         None => format!("{}: {triangles}", surface.path),
-        Some(LimitReport { error: Some(error), .. }) => {
+        Some(LimitReport {
+            error: Some(error), ..
+        }) => {
             let error = upper_bound(*error);
-            format!("limit surface of {}: {triangles}, certainly within {error} of it", surface.path)
+            format!(
+                "limit surface of {}: {triangles}, certainly within {error} of it",
+                surface.path
+            )
         }
         Some(limit) => {
-            let chosen = if limit.chosen { ", chosen to suit its size" } else { "" };
+            let chosen = if limit.chosen {
+                ", chosen to suit its size"
+            } else {
+                ""
+            };
             let levels = counted(limit.levels, "level", "levels");
-            format!("limit surface of {}: {triangles} ({levels}{chosen})", surface.path)
+            format!(
+                "limit surface of {}: {triangles} ({levels}{chosen})",
+                surface.path
+            )
         }
     };
     if !surface.diagnosis.clean {
@@ -259,9 +349,15 @@ fn surface_in_words(surface: &SurfaceReport) -> String {
 fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
     let levels = arguments.reference_levels.map(|_| "--reference-levels");
     if let (Some(option), None) = (levels.or(arguments.limit.given()), &arguments.limit_of) {
-        return usage(format!("{option} belongs to a limit surface; it needs --limit-of"));
+        return usage(format!(
+            "{option} belongs to a limit surface; it needs --limit-of"
+        ));
     }
-    let given = [Some(&arguments.surface), arguments.reference.as_ref(), arguments.limit_of.as_ref()];
+    let given = [
+        Some(&arguments.surface),
+        arguments.reference.as_ref(),
+        arguments.limit_of.as_ref(),
+    ];
     input::check_once(given.into_iter().flatten())?;
     certified::check(arguments)?;
     if let Some(heatmap) = &arguments.heatmap {

@@ -18,14 +18,21 @@ pub(crate) struct ModelEntry {
 
 /// Lists the built-in models.
 pub(crate) fn run(arguments: &ModelsArguments) -> anyhow::Result<Outcome> {
-    let entries =
-        limitmesh_models::all().iter().map(|model| ModelEntry { name: model.name, about: model.about });
+    let entries = limitmesh_models::all().iter().map(|model| ModelEntry {
+        name: model.name,
+        about: model.about,
+    });
     if arguments.json {
         output::print(&output::json(&entries.collect::<Vec<_>>())?)?;
     } else {
-        let width = entries.clone().map(|entry| entry.name.len()).max().unwrap_or(0);
-        let lines: String =
-            entries.map(|ModelEntry { name, about }| format!("builtin:{name:<width$}  {about}\n")).collect();
+        let width = entries
+            .clone()
+            .map(|entry| entry.name.len())
+            .max()
+            .unwrap_or(0);
+        let lines: String = entries
+            .map(|ModelEntry { name, about }| format!("builtin:{name:<width$}  {about}\n"))
+            .collect();
         output::print(&lines)?;
     }
     Ok(Outcome::Done)

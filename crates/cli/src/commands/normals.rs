@@ -33,25 +33,39 @@ impl Normals {
 
     /// Whether files of a format hold any.
     pub(super) fn are_held(format: Format) -> bool {
-        matches!(format, Format::Ply | Format::Obj | Format::Gltf | Format::Glb)
+        matches!(
+            format,
+            Format::Ply | Format::Obj | Format::Gltf | Format::Glb
+        )
     }
 
     /// What a soup leaves out that an output has after all, of another source.
     pub(super) fn kept(format: Option<Format>) -> &'static [&'static str] {
-        if format.is_some_and(Self::are_held) { &["normals"] } else { &[] }
+        if format.is_some_and(Self::are_held) {
+            &["normals"]
+        } else {
+            &[]
+        }
     }
 
     /// Adds them to what is written; `is_split` if a vertex is to stand once for each side where the format needs that.
-    pub(super) fn add_to<'a>(&'a self, output: Output<'a>, format: Format, is_split: bool) -> Output<'a> {
+    pub(super) fn add_to<'a>(
+        &'a self,
+        output: Output<'a>,
+        format: Format,
+        is_split: bool,
+    ) -> Output<'a> {
         match self {
             _ if !Self::are_held(format) => output,
             Self::ByVertex(normals) => output.normals(normals),
             Self::BySide(split) if format == Format::Obj => {
                 output.normals_of_corners(&split.normals, &split.triangles)
             }
-            Self::BySide(split) if is_split || format.is_gltf() => {
-                Output { surface: split.as_triangles(), ..output }.normals(&split.normals)
+            Self::BySide(split) if is_split || format.is_gltf() => Output {
+                surface: split.as_triangles(),
+                ..output
             }
+            .normals(&split.normals),
             // Averages over both sides would make flat faces look like pillows.
             Self::BySide(_) => output,
         }

@@ -11,17 +11,26 @@ use crate::format::counted;
 use crate::output;
 
 /// Size of pictures that are drawn beside other work.
-pub(super) const SIZE: Size = Size { width: 1200, height: 900 };
+pub(super) const SIZE: Size = Size {
+    width: 1200,
+    height: 900,
+};
 
 /// Refuses a name that is no PNG file's, before any work is done.
 pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if output::is_standard_output(path) {
         return Ok(());
     }
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+    if path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    {
         return output::check_writable(path);
     }
-    usage(format!("{}: pictures are PNG files; give a name that ends with .png", path.display()))
+    usage(format!(
+        "{}: pictures are PNG files; give a name that ends with .png",
+        path.display()
+    ))
 }
 
 /// The view of a picture: along a direction of sight, or from the front, a little from the side and above.
@@ -31,7 +40,11 @@ pub(super) fn view_direction(sight: Option<[f64; 3]>) -> ViewDirection {
 
 /// Says what a picture shows.
 pub(super) fn drawn(path: &Path, triangles: usize) -> String {
-    format!("{}: {} drawn", path.display(), counted(triangles, "triangle", "triangles"))
+    format!(
+        "{}: {} drawn",
+        path.display(),
+        counted(triangles, "triangle", "triangles")
+    )
 }
 
 /// Draws a surface and writes the picture.

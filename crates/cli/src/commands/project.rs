@@ -28,29 +28,53 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     input::check_once([&arguments.points, &arguments.onto].into_iter())?;
     let kind = arguments.output.as_deref().map(Kind::of).transpose()?;
     if let Some(output) = &arguments.output {
-        output::check_replaced(&[output], &[&arguments.points, &arguments.onto], Some(arguments.overwrite))?;
+        output::check_replaced(
+            &[output],
+            &[&arguments.points, &arguments.onto],
+            Some(arguments.overwrite),
+        )?;
     }
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
     let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;
     let limit = arguments.limit.in_unit(control.unit);
-    let arguments = &ProjectArguments { limit, ..arguments.clone() };
+    let arguments = &ProjectArguments {
+        limit,
+        ..arguments.clone()
+    };
     let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
     let scheme = arguments.limit.scheme();
     let Prepared { mesh, .. } = limit_control::prepared(control, &arguments.limit, progress)?;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
-        return usage(format!("{} has no triangles to draw; -o writes .ply or .csv", points.name));
+        return usage(format!(
+            "{} has no triangles to draw; -o writes .ply or .csv",
+            points.name
+        ));
     }
-    let tolerance = arguments.tolerance.length(diagonal, arguments.limit.build.unit)?;
+    let tolerance = arguments
+        .tolerance
+        .length(diagonal, arguments.limit.build.unit)?;
 
-    progress.stage(format!("projecting {}", counted(points.positions.len(), "point", "points")));
+    progress.stage(format!(
+        "projecting {}",
+        counted(points.positions.len(), "point", "points")
+    ));
     let surface = LimitSurface::new(&mesh, scheme.scheme()).with_context(|| name.clone())?;
-    let found = Found::of(&surface, &points.positions, tolerance, progress).with_context(|| name.clone())?;
+    let found = Found::of(&surface, &points.positions, tolerance, progress)
+        .with_context(|| name.clone())?;
     let report = ProjectionReport {
         version: VERSION,
-        points: PointsReport { path: points.name.clone(), count: points.positions.len() },
-        control: ControlReport { path: name, triangles: mesh.face_count(), diagonal, scheme },
+        points: PointsReport {
+            path: points.name.clone(),
+            count: points.positions.len(),
+        },
+        control: ControlReport {
+            path: name,
+            triangles: mesh.face_count(),
+            diagonal,
+            scheme,
+        },
         tolerance,
         sign: found.sign,
         distance: found.statistics(&points.positions),
@@ -65,7 +89,11 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
         }
     }
     progress.clear();
-    output::print(&if arguments.json { output::json(&report)? } else { in_words(&report) })?;
+    output::print(&if arguments.json {
+        output::json(&report)?
+    } else {
+        in_words(&report)
+    })?;
     Ok(Outcome::Done)
 }
 
@@ -80,12 +108,19 @@ enum Kind {
 impl Kind {
     /// By the name of the file, before any work is done.
     fn of(path: &Path) -> anyhow::Result<Self> {
-        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_ascii_lowercase());
         let kind = match extension.as_ref().and_then(|extension| extension.to_str()) {
             Some("ply") => Self::Ply,
             Some("csv") => Self::Csv,
             Some("png") => Self::Picture,
-            _ => return usage(format!("{}: -o writes .ply, .csv or .png files", path.display())),
+            _ => {
+                return usage(format!(
+                    "{}: -o writes .ply, .csv or .png files",
+                    path.display()
+                ));
+            }
         };
         output::check_writable(path)?;
         Ok(kind)
@@ -109,23 +144,35 @@ impl Found {
     ) -> anyhow::Result<Self> {
         let proximity = Proximity::new_observed(surface, &mut progress.observer())?;
         let closest = proximity.closest_observed(points, tolerance, &mut progress.observer())?;
-        let (is_negative, sign) = match proximity.memberships_observed(points, &mut progress.observer()) {
-            Ok(found) => (found.iter().map(|&at| at == Membership::Inside).collect(), "inside"),
-            Err(ProximityError::Open { .. }) => (behind(surface, points, &closest), "normal"),
-            Err(error) => return Err(error.into()),
-        };
+        let (is_negative, sign) =
+            match proximity.memberships_observed(points, &mut progress.observer()) {
+                Ok(found) => (
+                    found.iter().map(|&at| at == Membership::Inside).collect(),
+                    "inside",
+                ),
+                Err(ProximityError::Open { .. }) => (behind(surface, points, &closest), "normal"),
+                Err(error) => return Err(error.into()),
+            };
         let signed = closest.iter().zip::<Vec<bool>>(is_negative);
-        let signed = signed.map(|(at, negative)| if negative { -at.distance } else { at.distance }).collect();
-        Ok(Self { closest, signed, sign })
+        let signed = signed
+            .map(|(at, negative)| if negative { -at.distance } else { at.distance })
+            .collect();
+        Ok(Self {
+            closest,
+            signed,
+            sign,
+        })
     }
 
     fn statistics(&self, points: &[[f64; 3]]) -> Option<DistancesReport> {
         let mut sorted: Vec<f64> = self.closest.iter().map(|at| at.distance).collect();
-        let farthest = (0..sorted.len()).max_by(|&a, &b| sorted[a].total_cmp(&sorted[b]).then(b.cmp(&a)))?;
+        let farthest =
+            (0..sorted.len()).max_by(|&a, &b| sorted[a].total_cmp(&sorted[b]).then(b.cmp(&a)))?;
         sorted.sort_unstable_by(f64::total_cmp);
         let count = sorted.len() as f64;
         // Nearest rank: the least value that so many do not exceed.
-        let percentile = |share: f64| sorted[((share * count).ceil() as usize).clamp(1, sorted.len()) - 1];
+        let percentile =
+            |share: f64| sorted[((share * count).ceil() as usize).clamp(1, sorted.len()) - 1];
         // Squares of what is scaled to at most 1 neither vanish nor overflow.
         let greatest = percentile(1.0);
         let scaled = |x: f64| if greatest > 0.0 { x / greatest } else { 0.0 };
@@ -140,7 +187,11 @@ impl Found {
             signed_mean: greatest * (self.signed.iter().map(|&x| scaled(x)).sum::<f64>() / count),
             least: ends(f64::INFINITY, f64::min),
             greatest: ends(f64::NEG_INFINITY, f64::max),
-            negative: self.signed.iter().filter(|&&distance| distance < 0.0).count(),
+            negative: self
+                .signed
+                .iter()
+                .filter(|&&distance| distance < 0.0)
+                .count(),
             farthest: FarthestReport {
                 index: farthest,
                 point: points[farthest],
@@ -155,16 +206,32 @@ impl Found {
 
     /// Blue below 0, red above, alike on both sides.
     fn scale(&self) -> Scale {
-        let most = self.closest.iter().map(|at| at.distance).fold(0.0, f64::max);
+        let most = self
+            .closest
+            .iter()
+            .map(|at| at.distance)
+            .fold(0.0, f64::max);
         Scale::new(-most, most).with_map(ColourMap::Diverging)
     }
 
     fn write_ply(&self, path: &Path, points: &Points) -> anyhow::Result<()> {
         let scale = self.scale();
-        let colours: Vec<[u8; 3]> = self.signed.iter().map(|&distance| scale.colour(distance)).collect();
+        let colours: Vec<[u8; 3]> = self
+            .signed
+            .iter()
+            .map(|&distance| scale.colour(distance))
+            .collect();
         let by = |value: fn(&Closest) -> f64| self.closest.iter().map(value).collect::<Vec<f64>>();
-        let closest = [by(|at| at.point[0]), by(|at| at.point[1]), by(|at| at.point[2])];
-        let weights = [by(|at| at.barycentric[0]), by(|at| at.barycentric[1]), by(|at| at.barycentric[2])];
+        let closest = [
+            by(|at| at.point[0]),
+            by(|at| at.point[1]),
+            by(|at| at.point[2]),
+        ];
+        let weights = [
+            by(|at| at.barycentric[0]),
+            by(|at| at.barycentric[1]),
+            by(|at| at.barycentric[2]),
+        ];
         let faces: Vec<u32> = self.closest.iter().map(|at| at.face.0).collect();
         let [x, y, z] = &closest;
         let [w0, w1, w2] = &weights;
@@ -177,25 +244,44 @@ impl Found {
             Property::numbers("w1", w1),
             Property::numbers("w2", w2),
         ];
-        let surface = Triangles { positions: &points.positions, triangles: &points.triangles };
-        let output = Output { vertex_properties: &properties, ..Output::new(surface) };
+        let surface = Triangles {
+            positions: &points.positions,
+            triangles: &points.triangles,
+        };
+        let output = Output {
+            vertex_properties: &properties,
+            ..Output::new(surface)
+        };
         let output = output.quality(&self.signed).colours(&colours);
         output::write_mesh(path, Format::Ply, &output, &WriteOptions::default())
     }
 
     fn csv(&self, points: &[[f64; 3]]) -> String {
-        let mut text = "x,y,z,distance,closest_x,closest_y,closest_z,control_face,w0,w1,w2\n".to_owned();
+        let mut text =
+            "x,y,z,distance,closest_x,closest_y,closest_z,control_face,w0,w1,w2\n".to_owned();
         for ((point, at), signed) in points.iter().zip(&self.closest).zip(&self.signed) {
             let joined = |values: [f64; 3]| values.map(|value| value.to_string()).join(",");
-            let (point, closest, weights) = (joined(*point), joined(at.point), joined(at.barycentric));
-            text.push_str(&format!("{point},{signed},{closest},{},{weights}\n", at.face.0));
+            let (point, closest, weights) =
+                (joined(*point), joined(at.point), joined(at.barycentric));
+            text.push_str(&format!(
+                "{point},{signed},{closest},{},{weights}\n",
+                at.face.0
+            ));
         }
         text
     }
 
     fn draw(&self, path: &Path, points: &Points) -> anyhow::Result<()> {
-        let surface = Triangles { positions: &points.positions, triangles: &points.triangles };
-        heatmap::draw_values(path, surface, &self.signed, (self.scale(), "signed distance", ""))
+        let surface = Triangles {
+            positions: &points.positions,
+            triangles: &points.triangles,
+        };
+        heatmap::draw_values(
+            path,
+            surface,
+            &self.signed,
+            (self.scale(), "signed distance", ""),
+        )
     }
 }
 
@@ -204,11 +290,15 @@ fn behind(surface: &LimitSurface<'_>, points: &[[f64; 3]], closest: &[Closest]) 
     let places: Vec<_> = closest.iter().map(|at| (at.face, at.barycentric)).collect();
     let normals = surface.at_all(&places);
     let pairs = closest.iter().zip(points.iter().zip(&normals));
-    pairs.map(|(at, (&point, there))| dot(minus(point, at.point), there.normal) < 0.0).collect()
+    pairs
+        .map(|(at, (&point, there))| dot(minus(point, at.point), there.normal) < 0.0)
+        .collect()
 }
 
 fn in_words(report: &ProjectionReport) -> String {
-    let ProjectionReport { points, control, .. } = report;
+    let ProjectionReport {
+        points, control, ..
+    } = report;
     let mut text = format!(
         "{} of {} onto the limit surface of {} ({})\n",
         counted(points.count, "point", "points"),
@@ -216,20 +306,37 @@ fn in_words(report: &ProjectionReport) -> String {
         control.path,
         counted(control.triangles, "triangle", "triangles"),
     );
-    let Some(distance) = &report.distance else { return text };
+    let Some(distance) = &report.distance else {
+        return text;
+    };
     let percent = |length: f64| {
         let percent = percent(length, control.diagonal);
-        if percent.is_finite() { format!("  ({} %)", number(percent)) } else { String::new() }
+        if percent.is_finite() {
+            format!("  ({} %)", number(percent))
+        } else {
+            String::new()
+        }
     };
     for (what, length) in [
         ("mean", distance.mean),
         ("RMS", distance.root_mean_square),
         ("95 %", distance.percentile_95),
-        ("greatest", distance.greatest.abs().max(distance.least.abs())),
+        (
+            "greatest",
+            distance.greatest.abs().max(distance.least.abs()),
+        ),
     ] {
-        text.push_str(&format!("  {what:<9} {}{}\n", number(length), percent(length)));
+        text.push_str(&format!(
+            "  {what:<9} {}{}\n",
+            number(length),
+            percent(length)
+        ));
     }
-    let inside = if report.sign == "inside" { "inside" } else { "behind it, by its normals" };
+    let inside = if report.sign == "inside" {
+        "inside"
+    } else {
+        "behind it, by its normals"
+    };
     text.push_str(&format!(
         "signed from {} to {}, {} on the average; {} {inside}\n",
         number(distance.least),

@@ -43,11 +43,22 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     if let Some(angle) = arguments.crease_angle.and_then(CreaseAngle::degrees) {
         mesh = mesh.with_creases_above(angle.to_radians())?;
     }
-    progress.stage(format!("drawing {}", counted(mesh.face_count(), "triangle", "triangles")));
-    let shading = if arguments.flat { Shading::Flat } else { Shading::Smooth };
-    let style = Style::default().shading(shading).wireframe(arguments.wireframe);
+    progress.stage(format!(
+        "drawing {}",
+        counted(mesh.face_count(), "triangle", "triangles")
+    ));
+    let shading = if arguments.flat {
+        Shading::Flat
+    } else {
+        Shading::Smooth
+    };
+    let style = Style::default()
+        .shading(shading)
+        .wireframe(arguments.wireframe);
     let view = picture::view_direction(arguments.view);
-    let normals = input.normals.filter(|_| !arguments.smooth && arguments.crease_angle.is_none());
+    let normals = input
+        .normals
+        .filter(|_| !arguments.smooth && arguments.crease_angle.is_none());
     let is_free = !arguments.smooth && arguments.crease_angle.is_none();
     let split = match &normals {
         _ if arguments.flat => None,
@@ -64,7 +75,14 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
             let covered = (surface, normals, &cover.covering());
             picture::draw_covered(&arguments.output, covered, view, &style, arguments.size)?;
         }
-        None => picture::draw(&arguments.output, surface, normals, view, &style, arguments.size)?,
+        None => picture::draw(
+            &arguments.output,
+            surface,
+            normals,
+            view,
+            &style,
+            arguments.size,
+        )?,
     }
     progress.note(picture::drawn(&arguments.output, mesh.face_count()));
     Ok(Outcome::Done)
@@ -79,7 +97,10 @@ fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Out
     let name = input.name.clone();
     let limit = LimitArguments {
         scheme: arguments.scheme,
-        features: FeatureArguments { crease_angle: arguments.crease_angle, ..FeatureArguments::default() },
+        features: FeatureArguments {
+            crease_angle: arguments.crease_angle,
+            ..FeatureArguments::default()
+        },
         interpolation: InterpolationArguments::default(),
         build: arguments.build,
     };
@@ -90,14 +111,25 @@ fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Out
     if mesh.face_count() == 0 {
         bail!("{name}: there are no faces to draw");
     }
-    let levels = (0..4).find(|&levels| mesh.face_count() << (2 * levels + 2) > FRAMED).unwrap_or(4);
+    let levels = (0..4)
+        .find(|&levels| mesh.face_count() << (2 * levels + 2) > FRAMED)
+        .unwrap_or(4);
     let outline = limit_reference(&mesh, scheme, levels).with_context(|| name.clone())?;
     let (view, size) = (picture::view_direction(arguments.view), arguments.size);
     let camera = Camera::fit_tightly(outline.as_triangles(), view, size.width, size.height)?;
     let size = (size.width, size.height);
-    let image = render_exact_observed(&rays, &camera, &Style::default(), size, &mut progress.observer())?;
+    let image = render_exact_observed(
+        &rays,
+        &camera,
+        &Style::default(),
+        size,
+        &mut progress.observer(),
+    )?;
     output::write_file(&arguments.output, &image.encode_png()?)?;
     let faces = counted(mesh.face_count(), "control face", "control faces");
-    progress.note(format!("{}: the limit surface of {faces} drawn by rays", arguments.output.display()));
+    progress.note(format!(
+        "{}: the limit surface of {faces} drawn by rays",
+        arguments.output.display()
+    ));
     Ok(Outcome::Done)
 }

@@ -13,7 +13,9 @@ const SHARP: f64 = 30.0;
 /// # Errors
 /// None: the angle is one.
 pub(super) fn without_normals(mesh: &Mesh) -> Result<SplitSurface, MeshError> {
-    Ok(SplitSurface::by_faces(&mesh.clone().with_creases_above(SHARP.to_radians())?))
+    Ok(SplitSurface::by_faces(
+        &mesh.clone().with_creases_above(SHARP.to_radians())?,
+    ))
 }
 
 /// A mesh with the normals that its file has; with those of its faces where it has none.
@@ -24,7 +26,9 @@ pub(super) fn by_normals(mesh: &Mesh, normals: &Channel) -> SplitSurface {
     let faces_against = |face: usize| {
         let [a, b, c] = mesh.triangles()[face].map(|v| mesh.positions()[v as usize]);
         let own = cross(minus(b, a), minus(c, a));
-        (3 * face..3 * face + 3).flat_map(|corner| [0, 1, 2].map(|i| own[i] * number(corner, i))).sum::<f64>()
+        (3 * face..3 * face + 3)
+            .flat_map(|corner| [0, 1, 2].map(|i| own[i] * number(corner, i)))
+            .sum::<f64>()
             < 0.0
     };
     let is_against: Vec<bool> = (0..mesh.face_count()).map(faces_against).collect();

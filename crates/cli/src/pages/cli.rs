@@ -27,8 +27,10 @@ fn page() -> String {
     let mut page = BEGINNING.to_owned();
     let about = whole.get_long_about().map(ToString::to_string);
     writeln!(page, "\n{}", text(about)).unwrap();
-    let shown: Vec<&Command> =
-        whole.get_subcommands().filter(|own| !own.is_hide_set() && own.get_name() != "help").collect();
+    let shown: Vec<&Command> = whole
+        .get_subcommands()
+        .filter(|own| !own.is_hide_set() && own.get_name() != "help")
+        .collect();
     page.push_str("\n| command | what it does |\n|---|---|\n");
     for command in &shown {
         let name = command.get_name();
@@ -40,17 +42,27 @@ fn page() -> String {
         page.push_str(&entry(argument));
     }
     page.push_str(&examples(&whole));
-    shown.iter().for_each(|command| page.push_str(&section(command)));
+    shown
+        .iter()
+        .for_each(|command| page.push_str(&section(command)));
     page
 }
 
 /// What a command does, how it is called, its options by their headings, and examples.
 fn section(command: &Command) -> String {
     let mut page = format!("\n## limitmesh {}\n\n", command.get_name());
-    let about = command.get_long_about().or(command.get_about()).map(ToString::to_string);
+    let about = command
+        .get_long_about()
+        .or(command.get_about())
+        .map(ToString::to_string);
     writeln!(page, "{}\n", text(about)).unwrap();
     let usage = command.clone().render_usage().to_string();
-    writeln!(page, "```text\n{}\n```", usage.trim_start_matches("Usage:").trim()).unwrap();
+    writeln!(
+        page,
+        "```text\n{}\n```",
+        usage.trim_start_matches("Usage:").trim()
+    )
+    .unwrap();
     let own: Vec<&Arg> = command
         .get_arguments()
         .filter(|argument| !argument.is_global_set() && !argument.is_hide_set())
@@ -65,7 +77,9 @@ fn section(command: &Command) -> String {
     }
     for name in headings {
         writeln!(page, "\n### {}: {name}\n", command.get_name()).unwrap();
-        own.iter().filter(|argument| heading(argument) == name).for_each(|own| page.push_str(&entry(own)));
+        own.iter()
+            .filter(|argument| heading(argument) == name)
+            .for_each(|own| page.push_str(&entry(own)));
     }
     page + &examples(command)
 }
@@ -73,16 +87,27 @@ fn section(command: &Command) -> String {
 /// What follows a command's options in its help.
 fn examples(command: &Command) -> String {
     let help = command.get_after_long_help().or(command.get_after_help());
-    help.map_or_else(String::new, |help| format!("\n```text\n{}\n```\n", help.to_string().trim()))
+    help.map_or_else(String::new, |help| {
+        format!("\n```text\n{}\n```\n", help.to_string().trim())
+    })
 }
 
 fn heading(argument: &Arg) -> &str {
-    argument.get_help_heading().unwrap_or(if argument.is_positional() { "arguments" } else { "options" })
+    argument
+        .get_help_heading()
+        .unwrap_or(if argument.is_positional() {
+            "arguments"
+        } else {
+            "options"
+        })
 }
 
 /// An argument as an item of a list: how it is written, its help, the values that it takes and its default.
 fn entry(argument: &Arg) -> String {
-    let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string);
+    let help = argument
+        .get_long_help()
+        .or(argument.get_help())
+        .map(ToString::to_string);
     let mut item = format!(
         "* **`{}`**: {}\n",
         call(argument),
@@ -90,16 +115,27 @@ fn entry(argument: &Arg) -> String {
     );
     let takes_values = argument.get_action().takes_values();
     let values = argument.get_possible_values();
-    for value in values.iter().filter(|value| takes_values && !value.is_hide_set()) {
+    for value in values
+        .iter()
+        .filter(|value| takes_values && !value.is_hide_set())
+    {
         match value.get_help() {
-            Some(help) => writeln!(item, "  * `{}`: {}", value.get_name(), text(Some(help.to_string()))),
+            Some(help) => writeln!(
+                item,
+                "  * `{}`: {}",
+                value.get_name(),
+                text(Some(help.to_string()))
+            ),
             None => writeln!(item, "  * `{}`", value.get_name()),
         }
         .unwrap();
     }
     let defaults = argument.get_default_values();
     if takes_values && !defaults.is_empty() {
-        let defaults: Vec<String> = defaults.iter().map(|own| format!("`{}`", own.display())).collect();
+        let defaults: Vec<String> = defaults
+            .iter()
+            .map(|own| format!("`{}`", own.display()))
+            .collect();
         writeln!(item, "\n  Default: {}.", defaults.join(", ")).unwrap();
     }
     item
@@ -110,15 +146,28 @@ fn call(argument: &Arg) -> String {
     let short = argument.get_short().map(|short| format!("-{short}"));
     let long = argument.get_long().map(|long| format!("--{long}"));
     let names: Vec<String> = short.into_iter().chain(long).collect();
-    let values = argument.get_value_names().filter(|_| argument.get_action().takes_values());
+    let values = argument
+        .get_value_names()
+        .filter(|_| argument.get_action().takes_values());
     let values = values.map_or_else(String::new, |names| {
-        names.iter().map(|name| format!("<{name}>")).collect::<Vec<_>>().join(" ")
+        names
+            .iter()
+            .map(|name| format!("<{name}>"))
+            .collect::<Vec<_>>()
+            .join(" ")
     });
     format!("{} {values}", names.join(", ")).trim().to_owned()
 }
 
 /// Help as Markdown, on as many lines as it has, without spaces at their ends; what would be formatting is escaped.
 fn text(help: Option<String>) -> String {
-    let help = help.unwrap_or_default().replace('*', "\\*").replace('<', "\\<").replace('|', "\\|");
-    help.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+    let help = help
+        .unwrap_or_default()
+        .replace('*', "\\*")
+        .replace('<', "\\<")
+        .replace('|', "\\|");
+    help.lines()
+        .map(str::trim_end)
+        .collect::<Vec<_>>()
+        .join("\n")
 }

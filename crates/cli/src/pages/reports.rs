@@ -39,9 +39,16 @@ fn the_page_and_the_schema_are_those_of_the_types() {
 fn page(schema: &Value) -> String {
     let mut page = BEGINNING.to_owned();
     let mut names: Vec<String> = Vec::new();
-    for (command, name, is_list) in REPORTS.into_iter().chain([("a line of `batch`", BATCH_LINE, false)]) {
-        let command =
-            if command.contains('`') { command.to_owned() } else { format!("`limitmesh {command}`") };
+    for (command, name, is_list) in
+        REPORTS
+            .into_iter()
+            .chain([("a line of `batch`", BATCH_LINE, false)])
+    {
+        let command = if command.contains('`') {
+            command.to_owned()
+        } else {
+            format!("`limitmesh {command}`")
+        };
         let list = if is_list { "a list of " } else { "" };
         writeln!(page, "| {command} | {list}{} |", link(name)).unwrap();
         names.push(name.to_owned());
@@ -82,12 +89,23 @@ fn section(schema: &Value, name: &str, definition: &Value) -> String {
 
 fn table(schema: &Value, definition: &Value) -> String {
     let mut page = "\n| field | type | what |\n|---|---|---|\n".to_owned();
-    let Some(properties) = definition["properties"].as_object() else { return String::new() };
+    let Some(properties) = definition["properties"].as_object() else {
+        return String::new();
+    };
     // Required fields are in the order of the report.
-    let required = definition["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let required = definition["required"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str);
     let mut order: Vec<&str> = required.collect();
-    order
-        .extend(properties.keys().map(String::as_str).filter(|key| !order.contains(key)).collect::<Vec<_>>());
+    order.extend(
+        properties
+            .keys()
+            .map(String::as_str)
+            .filter(|key| !order.contains(key))
+            .collect::<Vec<_>>(),
+    );
     for field in order {
         let own = &properties[field];
         let (kind, may_be_null) = kind(schema, own);
@@ -106,8 +124,11 @@ fn kind(schema: &Value, own: &Value) -> (String, bool) {
     }
     if let Some(variants) = own["anyOf"].as_array() {
         let is_null = |variant: &&Value| variant["type"] == "null";
-        let kinds: Vec<String> =
-            variants.iter().filter(|own| !is_null(own)).map(|own| kind(schema, own).0).collect();
+        let kinds: Vec<String> = variants
+            .iter()
+            .filter(|own| !is_null(own))
+            .map(|own| kind(schema, own).0)
+            .collect();
         return (kinds.join(" or "), variants.iter().any(|own| is_null(&own)));
     }
     if let Some(value) = own["const"].as_str() {
@@ -138,9 +159,16 @@ fn kind(schema: &Value, own: &Value) -> (String, bool) {
 
 /// The words that a type of words alone may be.
 fn values(definition: &Value) -> Option<String> {
-    let variants = definition["oneOf"].as_array().map(|all| all.iter().map(|own| &own["const"]).collect());
-    let all: Vec<&Value> = variants.or(definition["enum"].as_array().map(|all| all.iter().collect()))?;
-    let words: Option<Vec<String>> = all.iter().map(|own| Some(format!("`{}`", own.as_str()?))).collect();
+    let variants = definition["oneOf"]
+        .as_array()
+        .map(|all| all.iter().map(|own| &own["const"]).collect());
+    let all: Vec<&Value> = variants.or(definition["enum"]
+        .as_array()
+        .map(|all| all.iter().collect()))?;
+    let words: Option<Vec<String>> = all
+        .iter()
+        .map(|own| Some(format!("`{}`", own.as_str()?)))
+        .collect();
     Some(words?.join(", "))
 }
 
@@ -165,5 +193,8 @@ fn link(name: &str) -> String {
 }
 
 fn in_a_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
+    text.split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
+        .replace('|', "\\|")
 }

@@ -9,16 +9,28 @@ use crate::commands::batch::BatchLine;
 use crate::commands::models::ModelEntry;
 use crate::report::projection::ProjectionReport;
 use crate::report::{
-    AssetReport, ComparedMethod, EvaluationReport, FramesReport, InformationReport, LodReport, MeasureReport,
-    PredictionReport, RefineReport,
+    AssetReport, ComparedMethod, EvaluationReport, FramesReport, InformationReport, LodReport,
+    MeasureReport, PredictionReport, RefineReport,
 };
 
 /// What each command reports: how it is asked, the name of the report's type, and whether it is a list of these.
 pub(super) const REPORTS: [(&str, &str, bool); 11] = [
     ("refine --report FILE.json", "RefineReport", false),
-    ("`limitmesh refine --report FILE.json`, glTF to glTF or 3MF to 3MF", "AssetReport", false),
-    ("refine --shared-topology --report FILE.json", "FramesReport", false),
-    ("refine --dry-run --report FILE.json", "PredictionReport", false),
+    (
+        "`limitmesh refine --report FILE.json`, glTF to glTF or 3MF to 3MF",
+        "AssetReport",
+        false,
+    ),
+    (
+        "refine --shared-topology --report FILE.json",
+        "FramesReport",
+        false,
+    ),
+    (
+        "refine --dry-run --report FILE.json",
+        "PredictionReport",
+        false,
+    ),
     ("measure --json", "MeasureReport", false),
     ("info --json", "InformationReport", false),
     ("evaluate --json", "EvaluationReport", true),
@@ -33,7 +45,9 @@ pub(super) const BATCH_LINE: &str = "BatchLine";
 
 /// The schema of all reports; each is a definition by the name of its type.
 pub(super) fn schema() -> Value {
-    let mut generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
+    let mut generator = SchemaSettings::draft2020_12()
+        .for_serialize()
+        .into_generator();
     generator.subschema_for::<RefineReport>();
     generator.subschema_for::<AssetReport>();
     generator.subschema_for::<FramesReport>();
@@ -63,9 +77,14 @@ pub(super) fn schema() -> Value {
 /// What the library finds in a mesh, by its names.
 pub(crate) fn findings(generator: &mut SchemaGenerator) -> Schema {
     let finding = generator.subschema_for::<Finding>();
-    let names: Vec<&str> = Diagnosis::default().findings().map(|(name, _)| name).collect();
-    let properties: serde_json::Map<String, Value> =
-        names.iter().map(|name| ((*name).to_owned(), finding.clone().to_value())).collect();
+    let names: Vec<&str> = Diagnosis::default()
+        .findings()
+        .map(|(name, _)| name)
+        .collect();
+    let properties: serde_json::Map<String, Value> = names
+        .iter()
+        .map(|name| ((*name).to_owned(), finding.clone().to_value()))
+        .collect();
     let schema = json!({ "type": "object", "properties": properties, "required": names });
     schema.try_into().unwrap()
 }

@@ -45,14 +45,31 @@ impl ChannelReport {
     /// Of a channel that is carried as options say.
     pub(crate) fn chosen(channel: &Channel, arguments: &ChannelArguments) -> Self {
         let found = Self::from(channel);
-        let interpolation = if arguments.drops(&channel.name) { "drop" } else { found.interpolation };
-        Self { interpolation, ..found }
+        let interpolation = if arguments.drops(&channel.name) {
+            "drop"
+        } else {
+            found.interpolation
+        };
+        Self {
+            interpolation,
+            ..found
+        }
     }
 
     /// Of an attribute of triangles that others inherit from them.
     pub(crate) fn inherited(name: &str, faces: usize, arguments: &ChannelArguments) -> Self {
-        let interpolation = if arguments.drops(name) { "drop" } else { "nearest" };
-        Self { name: name.to_owned(), domain: "face", arity: 1, interpolation, values: faces }
+        let interpolation = if arguments.drops(name) {
+            "drop"
+        } else {
+            "nearest"
+        };
+        Self {
+            name: name.to_owned(),
+            domain: "face",
+            arity: 1,
+            interpolation,
+            values: faces,
+        }
     }
 
     /// `texture coordinates (2 numbers a corner)`.

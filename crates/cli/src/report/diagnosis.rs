@@ -19,7 +19,13 @@ pub(crate) struct DiagnosisReport {
 
 impl From<&Diagnosis> for DiagnosisReport {
     fn from(d: &Diagnosis) -> Self {
-        let findings = d.findings().map(|(name, finding)| (name, finding.clone())).collect();
-        Self { clean: d.is_clean(), findings }
+        let findings = d
+            .findings()
+            .map(|(name, finding)| (name, finding.clone()))
+            .collect();
+        Self {
+            clean: d.is_clean(),
+            findings,
+        }
     }
 }

@@ -73,15 +73,36 @@ impl EvaluationReport {
             input_face,
             barycentric: weights,
             point: derivatives.map_or(limits.position, |derivatives| derivatives.position),
-            normal: derivatives.and_then(|derivatives| derivatives.normal()).or(limit_normal),
-            tangents: derivatives.and_then(|derivatives| derivatives.tangents()).or(corner),
-            derivatives: derivatives.map(|Derivatives { first: [u, v], second: [uu, uv, vv], .. }| {
-                DerivativesReport { u, v, uu, uv, vv }
-            }),
-            curvature: derivatives.and_then(|derivatives| derivatives.curvature()).map(|curvature| {
-                let Curvature { gaussian, mean, principal, directions, .. } = curvature;
-                CurvatureReport { gaussian, mean, principal, directions }
-            }),
+            normal: derivatives
+                .and_then(|derivatives| derivatives.normal())
+                .or(limit_normal),
+            tangents: derivatives
+                .and_then(|derivatives| derivatives.tangents())
+                .or(corner),
+            derivatives: derivatives.map(
+                |Derivatives {
+                     first: [u, v],
+                     second: [uu, uv, vv],
+                     ..
+                 }| { DerivativesReport { u, v, uu, uv, vv } },
+            ),
+            curvature: derivatives
+                .and_then(|derivatives| derivatives.curvature())
+                .map(|curvature| {
+                    let Curvature {
+                        gaussian,
+                        mean,
+                        principal,
+                        directions,
+                        ..
+                    } = curvature;
+                    CurvatureReport {
+                        gaussian,
+                        mean,
+                        principal,
+                        directions,
+                    }
+                }),
         }
     }
 }

@@ -114,7 +114,13 @@ pub(crate) struct PackageObject {
 
 impl From<PackageContents> for PackageInformation {
     fn from(contents: PackageContents) -> Self {
-        let PackageContents { objects, assemblies, items, unit, .. } = contents;
+        let PackageContents {
+            objects,
+            assemblies,
+            items,
+            unit,
+            ..
+        } = contents;
         let object = |found: ObjectContents| PackageObject {
             name: found.name,
             vertices: found.vertices,
@@ -124,7 +130,12 @@ impl From<PackageContents> for PackageInformation {
             others: found.others,
         };
         let objects = objects.into_iter().map(object).collect();
-        Self { unit: Unit::of_package(unit).name(), items, assemblies, objects }
+        Self {
+            unit: Unit::of_package(unit).name(),
+            items,
+            assemblies,
+            objects,
+        }
     }
 }
 

@@ -34,7 +34,12 @@ pub(crate) struct InterpolationReport {
 }
 
 impl InterpolationReport {
-    pub(crate) fn new(found: &Interpolated, within: f64, diagonal: f64, folded_regions: usize) -> Self {
+    pub(crate) fn new(
+        found: &Interpolated,
+        within: f64,
+        diagonal: f64,
+        folded_regions: usize,
+    ) -> Self {
         Self {
             within,
             method: match found.method {

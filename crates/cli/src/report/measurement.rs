@@ -88,7 +88,11 @@ impl LimitReport {
     ///
     /// # Errors
     /// A length has a unit, and the mesh's is not known.
-    pub(crate) fn new(arguments: &LimitArguments, diagonal: f64, levels: usize) -> anyhow::Result<Self> {
+    pub(crate) fn new(
+        arguments: &LimitArguments,
+        diagonal: f64,
+        levels: usize,
+    ) -> anyhow::Result<Self> {
         let features = &arguments.features;
         Ok(Self {
             scheme: arguments.scheme().into(),

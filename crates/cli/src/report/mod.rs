@@ -21,14 +21,17 @@ pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
 pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use evaluation::EvaluationReport;
 pub(crate) use frames::{FrameReport, FramesReport, FramesSeconds};
-pub(crate) use information::{AssetInformation, InformationReport, MeshInformation, PackageInformation};
+pub(crate) use information::{
+    AssetInformation, InformationReport, MeshInformation, PackageInformation,
+};
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use lod::{LevelReport, LodReport, MorphReport, PictureReport};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
 pub(crate) use refinement::{
     AssetMeshReport, AssetReport, AttributeReport, CameraReport, ErrorReport, EstimateReport,
-    ExactParametersReport, InputDistanceReport, MeshReport, MethodReport, OutputReport, ParametersReport,
-    PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport, StepEntry, ViewReport,
+    ExactParametersReport, InputDistanceReport, MeshReport, MethodReport, OutputReport,
+    ParametersReport, PredictionReport, RefineReport, RoundEntry, SecondsReport, SizeReport,
+    StepEntry, ViewReport,
 };
 pub(crate) use whole::{Whole, percent};
 
@@ -67,7 +70,11 @@ impl InputReport {
             vertices: input.diagnosis.input_vertices,
             faces: input.diagnosis.input_faces,
             left_out: input.left_out.clone(),
-            channels: input.channels.iter().map(|own| ChannelReport::chosen(own, arguments)).collect(),
+            channels: input
+                .channels
+                .iter()
+                .map(|own| ChannelReport::chosen(own, arguments))
+                .collect(),
         }
     }
 }

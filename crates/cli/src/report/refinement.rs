@@ -10,7 +10,8 @@ use serde::Serialize;
 use super::diagnosis::DiagnosisReport;
 use super::{InputReport, InterpolationReport, percent};
 use crate::arguments::{
-    Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme, Seam,
+    Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme,
+    Seam,
 };
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
@@ -236,7 +237,10 @@ impl ParametersReport {
     /// What all methods have; the rest null.
     pub(crate) fn common(arguments: &RefineArguments) -> Self {
         // A unit that is missing was found before.
-        let weld = arguments.build.options().map_or_else(|_| Weld::default(), |options| options.weld);
+        let weld = arguments
+            .build
+            .options()
+            .map_or_else(|_| Weld::default(), |options| options.weld);
         Self {
             method: arguments.method,
             angle_degrees: None,
@@ -379,8 +383,22 @@ pub(crate) struct CameraReport {
 
 impl From<&Camera> for CameraReport {
     fn from(camera: &Camera) -> Self {
-        let &Camera { eye, target, up, fov_degrees, width, height } = camera;
-        Self { eye, target, up, fov_degrees, width, height }
+        let &Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+            width,
+            height,
+        } = camera;
+        Self {
+            eye,
+            target,
+            up,
+            fov_degrees,
+            width,
+            height,
+        }
     }
 }
 
@@ -451,7 +469,12 @@ const NARROW: f64 = 1.25;
 impl ErrorReport {
     /// Of a mesh whose control mesh has that diagonal.
     pub(crate) fn new(bounds: &ErrorBounds, diagonal: f64) -> Self {
-        Self::of([bounds.lower, bounds.upper], diagonal, bounds.at, bounds.certified)
+        Self::of(
+            [bounds.lower, bounds.upper],
+            diagonal,
+            bounds.at,
+            bounds.certified,
+        )
     }
 
     /// Of a mesh whose vertices all lie on the limit surface, with a distance that is estimated.
@@ -485,8 +508,9 @@ impl ErrorReport {
     /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after
     /// lengths; what it is at least only where that is not far below.
     pub(crate) fn in_words(&self, unit: &str) -> Vec<String> {
-        let extent =
-            |percent: String, length: String| format!("{percent} % of the diagonal ({length}{unit})");
+        let extent = |percent: String, length: String| {
+            format!("{percent} % of the diagonal ({length}{unit})")
+        };
         vec![match (self.upper, self.upper_percent) {
             (Some(upper), Some(percent)) if !self.certified => format!(
                 "about {} from the limit surface by samples, not certified",
@@ -513,7 +537,12 @@ impl InputDistanceReport {
     /// Of a mesh whose control mesh has that diagonal.
     pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
         let percent = |length: f64| percent(length, diagonal);
-        Self { lower, upper, lower_percent: percent(lower), upper_percent: percent(upper) }
+        Self {
+            lower,
+            upper,
+            lower_percent: percent(lower),
+            upper_percent: percent(upper),
+        }
     }
 
     /// `within 0.8123 % of the diagonal (0.01234) of the input, certified; at least 0.7901 %`, with a unit after lengths.

@@ -25,7 +25,11 @@ impl Whole {
 /// A length in per cent of a diagonal, however long both are.
 pub(crate) fn percent(length: f64, diagonal: f64) -> f64 {
     let hundredfold = 100.0 * length;
-    if hundredfold.is_finite() { hundredfold / diagonal } else { 100.0 * (length / diagonal) }
+    if hundredfold.is_finite() {
+        hundredfold / diagonal
+    } else {
+        100.0 * (length / diagonal)
+    }
 }
 
 #[cfg(test)]
@@ -37,6 +41,13 @@ mod tests {
         assert_eq!(percent(1.5, 3.0), 50.0);
         assert_eq!(percent(8e307, 1.6e308), 50.0);
         assert_eq!(percent(f64::INFINITY, 1.0), f64::INFINITY);
-        assert_eq!(Whole { diagonal: 0.0, of: "mesh" }.percent(0.0), None);
+        assert_eq!(
+            Whole {
+                diagonal: 0.0,
+                of: "mesh"
+            }
+            .percent(0.0),
+            None
+        );
     }
 }

@@ -12,11 +12,22 @@ use crate::glb::{Builder, Glb};
 /// A cube of which the top has another material than the rest, and a second mesh, an octahedron ten times as large.
 fn asset(folder: &TempDir) -> PathBuf {
     let mut builder = Builder::new();
-    let corners: Vec<[f32; 3]> =
-        (0..8u32).map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 })).collect();
+    let corners: Vec<[f32; 3]> = (0..8u32)
+        .map(|i| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 }))
+        .collect();
     let position = builder.points(&corners);
-    let sides = [[0u32, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
-    let halves: Vec<[u32; 3]> = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    let sides = [
+        [0u32, 2, 3, 1],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [4, 5, 7, 6],
+    ];
+    let halves: Vec<[u32; 3]> = sides
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+        .collect();
     for (triangles, material) in [(&halves[..10], 0), (&halves[10..], 1)] {
         let indices = builder.indices(triangles);
         builder.primitive(
@@ -24,17 +35,31 @@ fn asset(folder: &TempDir) -> PathBuf {
         );
     }
     let points: Vec<[f32; 3]> = (0..6)
-        .map(|i| [0, 1, 2].map(|axis| if i / 2 == axis { [-10.0, 10.0][i % 2] } else { 0.0 }))
+        .map(|i| {
+            [0, 1, 2].map(|axis| {
+                if i / 2 == axis {
+                    [-10.0, 10.0][i % 2]
+                } else {
+                    0.0
+                }
+            })
+        })
         .collect();
     let position = builder.points(&points);
     let faces = (0..8u32).map(|i| {
         let [x, y, z] = [0, 1, 2].map(|axis| 2 * axis + (i >> axis & 1));
-        if i.count_ones() % 2 == 1 { [x, y, z] } else { [x, z, y] }
+        if i.count_ones() % 2 == 1 {
+            [x, y, z]
+        } else {
+            [x, z, y]
+        }
     });
     let indices = builder.indices(&faces.collect::<Vec<_>>());
-    let large =
-        json!({"name": "Large", "primitives": [{"attributes": {"POSITION": position}, "indices": indices}]});
-    builder.json["meshes"].as_array_mut().expect("meshes").push(large);
+    let large = json!({"name": "Large", "primitives": [{"attributes": {"POSITION": position}, "indices": indices}]});
+    builder.json["meshes"]
+        .as_array_mut()
+        .expect("meshes")
+        .push(large);
     builder.json["meshes"][0]["name"] = json!("Box");
     builder.json["materials"] = json!([{"name": "body"}, {"name": "lid"}]);
     builder.json["nodes"] = json!([{"mesh": 0, "children": [1]}, {"mesh": 1}]);
@@ -47,8 +72,18 @@ fn asset(folder: &TempDir) -> PathBuf {
 fn replaced(input: &Path, output: &Path) -> Vec<(usize, usize)> {
     let [before, after] = [input, output].map(|path| Glb::read(path).json);
     let mut found = Vec::new();
-    for (mesh, old) in before["meshes"].as_array().expect("meshes").iter().enumerate() {
-        for (i, old) in old["primitives"].as_array().expect("primitives").iter().enumerate() {
+    for (mesh, old) in before["meshes"]
+        .as_array()
+        .expect("meshes")
+        .iter()
+        .enumerate()
+    {
+        for (i, old) in old["primitives"]
+            .as_array()
+            .expect("primitives")
+            .iter()
+            .enumerate()
+        {
             if after["meshes"][mesh]["primitives"][i] != *old {
                 found.push((mesh, i));
             }
@@ -68,15 +103,33 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
         ("--material lid", vec![(0, 1)]),
         ("--material body --mesh Box", vec![(0, 0)]),
     ] {
-        run(&format!("refine {{}} -o {{}} --tolerance 1% {options}"), &[&input, &output]).expect(0);
+        run(
+            &format!("refine {{}} -o {{}} --tolerance 1% {options}"),
+            &[&input, &output],
+        )
+        .expect(0);
         assert_eq!(replaced(&input, &output), expected, "{options}");
     }
     let refused = |options: &str, words: &str| {
-        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(1).saying(words);
+        run(
+            &format!("refine {{}} -o {{}} {options}"),
+            &[&input, &output],
+        )
+        .expect(1)
+        .saying(words);
     };
-    refused("--mesh box", "no mesh is called 'box'; there is 'Box', 'Large'");
-    refused("--material top", "no material is called 'top'; there is 'body', 'lid'");
-    refused("--material lid --mesh Large", "no mesh that was named has a primitive of a material that was");
+    refused(
+        "--mesh box",
+        "no mesh is called 'box'; there is 'Box', 'Large'",
+    );
+    refused(
+        "--material top",
+        "no material is called 'top'; there is 'body', 'lid'",
+    );
+    refused(
+        "--material lid --mesh Large",
+        "no mesh that was named has a primitive of a material that was",
+    );
     run("refine builtin:cube -o {} --material lid", &[&output])
         .expect(2)
         .saying("--material is for glTF assets");
@@ -86,26 +139,43 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
 fn borders_to_what_stays_do_not_open() {
     let folder = folder();
     let (input, output) = (asset(&folder), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 0.2% --material body", &[&input, &output])
-        .expect(0)
-        .saying("4 edges where primitives meet others that stay are kept straight");
+    run(
+        "refine {} -o {} --tolerance 0.2% --material body",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("4 edges where primitives meet others that stay are kept straight");
     let glb = Glb::read(&output);
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
     // By places: where sharp edges divide the corners around the rim, vertices stand once for each side.
     let place = |v: u32| points[v as usize].map(f64::to_bits);
     let mut sides: HashSet<[[u64; 3]; 2]> = HashSet::new();
-    for [a, b, c] in glb.triangles(0).into_iter().map(|corners| corners.map(place)) {
+    for [a, b, c] in glb
+        .triangles(0)
+        .into_iter()
+        .map(|corners| corners.map(place))
+    {
         sides.extend([[a, b], [b, c], [c, a]]);
     }
-    let open: Vec<[[u64; 3]; 2]> = sides.iter().copied().filter(|&[a, b]| !sides.contains(&[b, a])).collect();
+    let open: Vec<[[u64; 3]; 2]> = sides
+        .iter()
+        .copied()
+        .filter(|&[a, b]| !sides.contains(&[b, a]))
+        .collect();
     // The rim is the lid's square as it was, and surrounds it once.
     let mut length = 0.0;
-    for end in open.iter().map(|edge| edge.map(|place| place.map(f64::from_bits))) {
+    for end in open
+        .iter()
+        .map(|edge| edge.map(|place| place.map(f64::from_bits)))
+    {
         for p in end {
             assert_eq!(p[2], 1.0);
             assert!((p[0].abs().max(p[1].abs()) - 1.0).abs() < 1e-7, "{p:?}");
         }
-        length += (0..3).map(|i| (end[0][i] - end[1][i]).powi(2)).sum::<f64>().sqrt();
+        length += (0..3)
+            .map(|i| (end[0][i] - end[1][i]).powi(2))
+            .sum::<f64>()
+            .sqrt();
     }
     assert!((length - 8.0).abs() < 1e-6, "{length}");
 }
@@ -118,7 +188,13 @@ fn per_cents_are_of_the_scene_or_of_the_mesh() {
         let command = format!("refine {{}} -o {{}} --tolerance 1% --report - {options}");
         let report = run(&command, &[&input, &output]).expect(0).json();
         let meshes = report["meshes"].as_array().expect("meshes").iter();
-        meshes.map(|mesh| mesh["parameters"]["exact"]["tolerance"].as_f64().expect("a number")).collect()
+        meshes
+            .map(|mesh| {
+                mesh["parameters"]["exact"]["tolerance"]
+                    .as_f64()
+                    .expect("a number")
+            })
+            .collect()
     };
     // The box has a side of 2, the octahedron corners 10 from its middle.
     let [cube, large] = [2.0, 20.0].map(|side: f64| 0.01 * side * 3f64.sqrt());
@@ -127,7 +203,13 @@ fn per_cents_are_of_the_scene_or_of_the_mesh() {
         (tolerances("--relative-to scene"), [large, large]),
         (tolerances("--relative-to mesh"), [cube, large]),
     ] {
-        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+        assert!(
+            found
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-9),
+            "{found:?} {expected:?}"
+        );
     }
 }
 
@@ -138,7 +220,8 @@ fn images_are_copied_or_linked() {
     let glb = Glb::read(&input);
     let mut json = glb.json.clone();
     json["images"] = json!([{"uri": "pictures/a%20b.png"}, {"uri": "data:image/png;base64,AAAA"}]);
-    json["buffers"] = json!([{"byteLength": glb.json["buffers"][0]["byteLength"], "uri": "in.bin"}]);
+    json["buffers"] =
+        json!([{"byteLength": glb.json["buffers"][0]["byteLength"], "uri": "in.bin"}]);
     let [from, to] = ["from here", "to/there"].map(|name| folder.path().join(name));
     std::fs::create_dir_all(from.join("pictures")).expect("a folder");
     std::fs::create_dir_all(&to).expect("a folder");
@@ -153,20 +236,38 @@ fn images_are_copied_or_linked() {
         assert_eq!(json["images"][1]["uri"], "data:image/png;base64,AAAA");
         json["images"][0]["uri"].as_str().expect("a URI").to_owned()
     };
-    run("refine {} -o {} --tolerance 5% --link-resources", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 5% --link-resources",
+        &[&input, &output],
+    )
+    .expect(0);
     assert_eq!(uri(&output), "../../from%20here/pictures/a%20b.png");
     // Buffers are read, and stay with the document.
     assert!(to.join("in.bin").exists() && !to.join("pictures").exists());
     // In the folder of the input there is nothing to say.
     let beside = from.join("out.gltf");
-    run("refine {} -o {} --tolerance 5% --link-resources", &[&input, &beside]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 5% --link-resources",
+        &[&input, &beside],
+    )
+    .expect(0);
     assert_eq!(uri(&beside), "pictures/a%20b.png");
     run("refine {} -o {} --tolerance 5%", &[&input, &output]).expect(0);
     assert_eq!(uri(&output), "pictures/a%20b.png");
-    assert_eq!(std::fs::read(to.join("pictures/a b.png")).expect("a copy"), b"a picture");
-    run("refine {} -o {} --tolerance 5% --link-resources", &[&input, &to.join("out.glb")]).expect(0);
+    assert_eq!(
+        std::fs::read(to.join("pictures/a b.png")).expect("a copy"),
+        b"a picture"
+    );
+    run(
+        "refine {} -o {} --tolerance 5% --link-resources",
+        &[&input, &to.join("out.glb")],
+    )
+    .expect(0);
     let linked = Glb::read(&to.join("out.glb")).json;
-    assert_eq!(linked["images"][0]["uri"], "../../from%20here/pictures/a%20b.png");
+    assert_eq!(
+        linked["images"][0]["uri"],
+        "../../from%20here/pictures/a%20b.png"
+    );
 }
 
 /// What is left of a document without what may change: the document's lists of buffers, views and accessors beyond the old ones, where
@@ -178,7 +279,15 @@ fn rest(json: &Value, old: &Value) -> Value {
         if let Some(list) = rest.get_mut(key).and_then(Value::as_array_mut) {
             list.truncate(count);
             for own in list.iter_mut().filter_map(Value::as_object_mut) {
-                for key in ["bufferView", "byteOffset", "byteLength", "byteStride", "target", "min", "max"] {
+                for key in [
+                    "bufferView",
+                    "byteOffset",
+                    "byteLength",
+                    "byteStride",
+                    "target",
+                    "min",
+                    "max",
+                ] {
                     own.remove(key);
                 }
             }
@@ -228,7 +337,11 @@ fn nothing_but_meshes_changes_in_assets_of_others() {
             false => Glb::text(path),
         };
         let (before, after) = (read(&input), read(&output));
-        assert_eq!(rest(&before.json, &before.json), rest(&after.json, &before.json), "{name}");
+        assert_eq!(
+            rest(&before.json, &before.json),
+            rest(&after.json, &before.json),
+            "{name}"
+        );
         // The bytes that anything has still are the same, those of images among them, and images beside the document.
         if name.ends_with("glb") {
             let view = |glb: &Glb, view: usize| -> Vec<u8> {
@@ -239,8 +352,9 @@ fn nothing_but_meshes_changes_in_assets_of_others() {
             };
             let count = before.json["bufferViews"].as_array().map_or(0, Vec::len);
             let images = before.json["images"].as_array().into_iter().flatten();
-            let images: Vec<usize> =
-                images.filter_map(|image| Some(image["bufferView"].as_u64()? as usize)).collect();
+            let images: Vec<usize> = images
+                .filter_map(|image| Some(image["bufferView"].as_u64()? as usize))
+                .collect();
             for number in 0..count {
                 let (old, new) = (view(&before, number), view(&after, number));
                 let is_gone = new.len() == 1 && !images.contains(&number);
@@ -256,9 +370,17 @@ fn nothing_but_meshes_changes_in_assets_of_others() {
             );
         }
         for image in before.json["images"].as_array().into_iter().flatten() {
-            if let Some(uri) = image["uri"].as_str().filter(|uri| !uri.starts_with("data:")) {
-                let [old, new] = [&input, &output].map(|path| std::fs::read(path.with_file_name(uri)));
-                assert_eq!(old.expect("an image"), new.expect("its copy"), "{name}: {uri}");
+            if let Some(uri) = image["uri"]
+                .as_str()
+                .filter(|uri| !uri.starts_with("data:"))
+            {
+                let [old, new] =
+                    [&input, &output].map(|path| std::fs::read(path.with_file_name(uri)));
+                assert_eq!(
+                    old.expect("an image"),
+                    new.expect("its copy"),
+                    "{name}: {uri}"
+                );
             }
         }
     }

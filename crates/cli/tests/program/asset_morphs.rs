@@ -48,30 +48,52 @@ fn asset(folder: &TempDir, has_normals: bool) -> PathBuf {
     let (position, normal) = (builder.points(&points), builder.points(&normals));
     let indices = builder.indices(&triangles);
     let bend = builder.points(&points.iter().map(|&p| moved(0, p)).collect::<Vec<_>>());
-    let zeros =
-        json!({"componentType": 5126, "count": 24, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]});
+    let zeros = json!({"componentType": 5126, "count": 24, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]});
     let none = builder.accessor(zeros.clone());
-    let corners: Vec<usize> = (0..24).filter(|&v| moved(2, points[v]) != [0.0; 3]).collect();
+    let corners: Vec<usize> = (0..24)
+        .filter(|&v| moved(2, points[v]) != [0.0; 3])
+        .collect();
     let places = builder.view(corners.iter().map(|&v| v as u8));
-    let values = builder.view(corners.iter().flat_map(|&v| moved(2, points[v])).flat_map(f32::to_le_bytes));
+    let values = builder.view(
+        corners
+            .iter()
+            .flat_map(|&v| moved(2, points[v]))
+            .flat_map(f32::to_le_bytes),
+    );
     let mut sparse = zeros;
     sparse["max"] = json!([0.5, 0.25, 1.0]);
     sparse["sparse"] = json!({"count": corners.len(), "indices": {"bufferView": places, "componentType": 5121},
         "values": {"bufferView": values}});
     let corner = builder.accessor(sparse);
-    let texture = builder.floats(&points.iter().flat_map(|p| [p[0], p[2]]).collect::<Vec<_>>(), 2);
-    let slide = builder.floats(&points.iter().flat_map(|p| [0.25, 0.5 * p[2]]).collect::<Vec<_>>(), 2);
+    let texture = builder.floats(
+        &points.iter().flat_map(|p| [p[0], p[2]]).collect::<Vec<_>>(),
+        2,
+    );
+    let slide = builder.floats(
+        &points
+            .iter()
+            .flat_map(|p| [0.25, 0.5 * p[2]])
+            .collect::<Vec<_>>(),
+        2,
+    );
     let mut primitive = json!({"attributes": {"POSITION": position, "NORMAL": normal, "TEXCOORD_0": texture},
         "indices": indices, "extras": {"kept": [1, 2]},
         "targets": [{"POSITION": bend, "NORMAL": none, "TEXCOORD_0": slide}, {"POSITION": none},
             {"POSITION": corner}, {"TANGENT": none}]});
     if !has_normals {
-        primitive["attributes"].as_object_mut().expect("attributes").remove("NORMAL");
-        primitive["targets"][0].as_object_mut().expect("a target").remove("NORMAL");
+        primitive["attributes"]
+            .as_object_mut()
+            .expect("attributes")
+            .remove("NORMAL");
+        primitive["targets"][0]
+            .as_object_mut()
+            .expect("a target")
+            .remove("NORMAL");
     }
     builder.primitive(primitive);
     builder.json["meshes"][0]["weights"] = json!([0.5, 0, 0.25, 0]);
-    builder.json["meshes"][0]["extras"] = json!({"targetNames": ["bend", "none", "corner", "tangents"]});
+    builder.json["meshes"][0]["extras"] =
+        json!({"targetNames": ["bend", "none", "corner", "tangents"]});
     let input = folder.path().join("in.glb");
     builder.write(&input);
     input
@@ -91,16 +113,30 @@ fn blended(base: &[[f64; 3]], added: &[Vec<[f64; 3]>], weights: &[f64]) -> Vec<[
 fn refined_morphs_are_limits_of_morphs() {
     let folder = folder();
     let (input, output) = (asset(&folder, true), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 0.2% --crease-angle none", &[&input, &output])
-        .expect(0)
-        .saying("left out: TANGENT of morph targets");
+    run(
+        "refine {} -o {} --tolerance 0.2% --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("left out: TANGENT of morph targets");
     let glb = Glb::read(&output);
     let primitive = glb.primitive(0);
     let targets = primitive["targets"].as_array().expect("targets");
-    let names = |target: &Value| target.as_object().expect("names").keys().cloned().collect::<Vec<_>>();
+    let names = |target: &Value| {
+        target
+            .as_object()
+            .expect("names")
+            .keys()
+            .cloned()
+            .collect::<Vec<_>>()
+    };
     let found: Vec<Vec<String>> = targets.iter().map(names).collect();
-    let expected: [&[&str]; TARGETS] =
-        [&["NORMAL", "POSITION", "TEXCOORD_0"], &["POSITION"], &["NORMAL", "POSITION"], &["POSITION"]];
+    let expected: [&[&str]; TARGETS] = [
+        &["NORMAL", "POSITION", "TEXCOORD_0"],
+        &["POSITION"],
+        &["NORMAL", "POSITION"],
+        &["POSITION"],
+    ];
     assert_eq!(found, expected);
     let before = Glb::read(&input);
     for key in ["weights", "extras"] {
@@ -109,27 +145,59 @@ fn refined_morphs_are_limits_of_morphs() {
     assert_eq!(primitive["extras"], json!({"kept": [1, 2]}));
 
     let base = glb.points(&primitive["attributes"]["POSITION"]);
-    let added: Vec<Vec<[f64; 3]>> = targets.iter().map(|target| glb.points(&target["POSITION"])).collect();
+    let added: Vec<Vec<[f64; 3]>> = targets
+        .iter()
+        .map(|target| glb.points(&target["POSITION"]))
+        .collect();
     let triangles = glb.triangles(0);
     let (control, _, control_triangles) = sides();
-    let control_added: Vec<Vec<[f64; 3]>> =
-        (0..TARGETS).map(|k| control.iter().map(|&p| moved(k, p).map(f64::from)).collect()).collect();
+    let control_added: Vec<Vec<[f64; 3]>> = (0..TARGETS)
+        .map(|k| {
+            control
+                .iter()
+                .map(|&p| moved(k, p).map(f64::from))
+                .collect()
+        })
+        .collect();
     let control: Vec<[f64; 3]> = control.iter().map(|p| p.map(f64::from)).collect();
-    for weights in [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 1.0, 1.0], [-0.5, 0.0, 0.75, 0.0]] {
+    for weights in [
+        [0.0; 4],
+        [1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 1.0, 1.0],
+        [-0.5, 0.0, 0.75, 0.0],
+    ] {
         let posed = blended(&base, &added, &weights);
-        let reference = limit(&blended(&control, &control_added, &weights), &control_triangles, 2e-5);
-        let surface = Triangles { positions: &posed, triangles: &triangles };
+        let reference = limit(
+            &blended(&control, &control_added, &weights),
+            &control_triangles,
+            2e-5,
+        );
+        let surface = Triangles {
+            positions: &posed,
+            triangles: &triangles,
+        };
         let [from, to] = distances(surface, reference.as_triangles());
         // Vertices are on the limit, and triangles come near all of it: the base's are within 0.002 of its size.
         let diagonal = reference.diagonal();
-        assert!(from < 2.1e-5 * diagonal, "{weights:?}: a vertex is {from} off the limit");
-        assert!(to < 0.004 * diagonal, "{weights:?}: {to} of the limit's {diagonal}");
+        assert!(
+            from < 2.1e-5 * diagonal,
+            "{weights:?}: a vertex is {from} off the limit"
+        );
+        assert!(
+            to < 0.004 * diagonal,
+            "{weights:?}: {to} of the limit's {diagonal}"
+        );
     }
     // Texture coordinates slide as said: linear in what is carried with positions, constant along u.
     let slide = glb.numbers(&targets[0]["TEXCOORD_0"]);
     assert!(slide.iter().step_by(2).all(|&u| (u - 0.25).abs() < 1e-6));
     let texture = glb.numbers(&primitive["attributes"]["TEXCOORD_0"]);
-    assert!(slide.chunks(2).zip(texture.chunks(2)).all(|(d, t)| (d[1] - 0.5 * t[1]).abs() < 1e-6));
+    assert!(
+        slide
+            .chunks(2)
+            .zip(texture.chunks(2))
+            .all(|(d, t)| (d[1] - 0.5 * t[1]).abs() < 1e-6)
+    );
 }
 
 /// Mean normals of the triangles around each place.
@@ -139,7 +207,8 @@ fn around(positions: &[[f64; 3]], places: &[[f64; 3]], triangles: &[[u32; 3]]) -
     for corners in triangles {
         let [a, b, c] = corners.map(|v| positions[v as usize]);
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
-        let normal = [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
+        let normal =
+            [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
         for &v in corners {
             let sum: &mut [f64; 3] = sums.entry(key(v)).or_insert([0.0; 3]);
             (0..3).for_each(|i| sum[i] += normal[i]);
@@ -160,7 +229,11 @@ fn normals_of_morphs_are_those_of_the_moved_surface() {
     // Also where the target says nothing of normals, or where the input has none at all.
     for has_normals in [true, false] {
         let input = asset(&folder, has_normals);
-        run("refine {} -o {} --tolerance 0.02% --crease-angle none", &[&input, &output]).expect(0);
+        run(
+            "refine {} -o {} --tolerance 0.02% --crease-angle none",
+            &[&input, &output],
+        )
+        .expect(0);
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);
@@ -171,9 +244,16 @@ fn normals_of_morphs_are_those_of_the_moved_surface() {
             let posed = blended(&base, &[glb.points(&target["POSITION"])], &[1.0]);
             let own = blended(&normals, &[glb.points(&target["NORMAL"])], &[1.0]);
             let found = around(&posed, &base, &triangles);
-            let worst = own.iter().zip(found).map(|(&a, b)| cosine(a, b)).fold(1.0, f64::min);
+            let worst = own
+                .iter()
+                .zip(found)
+                .map(|(&a, b)| cosine(a, b))
+                .fold(1.0, f64::min);
             assert!(worst > 0.99, "{} degrees", worst.acos().to_degrees());
-            assert!(own.iter().all(|n| (n.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-5));
+            assert!(
+                own.iter()
+                    .all(|n| (n.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-5)
+            );
         }
     }
 }
@@ -182,7 +262,11 @@ fn normals_of_morphs_are_those_of_the_moved_surface() {
 fn sharp_edges_have_normals_on_both_sides_of_morphs() {
     let folder = folder();
     let (input, output) = (asset(&folder, true), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 0.1% --crease-angle 30", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 0.1% --crease-angle 30",
+        &[&input, &output],
+    )
+    .expect(0);
     let glb = Glb::read(&output);
     let primitive = glb.primitive(0);
     let base = glb.points(&primitive["attributes"]["POSITION"]);
@@ -192,10 +276,16 @@ fn sharp_edges_have_normals_on_both_sides_of_morphs() {
     let own = blended(&normals, &[glb.points(&bend["NORMAL"])], &[1.0]);
     let mut sides = std::collections::HashMap::new();
     for corners in glb.triangles(0) {
-        let normal =
-            around(&corners.map(|v| posed[v as usize]), &corners.map(|v| base[v as usize]), &[[0, 1, 2]])[0];
+        let normal = around(
+            &corners.map(|v| posed[v as usize]),
+            &corners.map(|v| base[v as usize]),
+            &[[0, 1, 2]],
+        )[0];
         for v in corners {
-            assert!(cosine(own[v as usize], normal) > 0.9, "the normal of another side");
+            assert!(
+                cosine(own[v as usize], normal) > 0.9,
+                "the normal of another side"
+            );
             sides
                 .entry(base[v as usize].map(f64::to_bits))
                 .or_insert_with(std::collections::BTreeSet::new)
@@ -213,14 +303,25 @@ fn what_moves_apart_is_told_and_can_be_joined() {
     let mut builder = Builder::new();
     let (position, indices) = (builder.points(&points), builder.indices(&triangles));
     // The first side opens like a lid, and three of its corners have other weights.
-    let lid: Vec<[f32; 3]> = (0..24).map(|v| if v == 0 { [0.0, 0.0, 0.5] } else { [0.0; 3] }).collect();
+    let lid: Vec<[f32; 3]> = (0..24)
+        .map(|v| if v == 0 { [0.0, 0.0, 0.5] } else { [0.0; 3] })
+        .collect();
     let lid = builder.points(&lid);
     let joints = builder.joints(&[[0, 1, 0, 0]; 24]);
-    let weights: Vec<f32> =
-        (0..24).flat_map(|v| if v < 3 { [1.0, 0.0, 0.0, 0.0] } else { [0.5, 0.5, 0.0, 0.0] }).collect();
+    let weights: Vec<f32> = (0..24)
+        .flat_map(|v| {
+            if v < 3 {
+                [1.0, 0.0, 0.0, 0.0]
+            } else {
+                [0.5, 0.5, 0.0, 0.0]
+            }
+        })
+        .collect();
     let weights = builder.floats(&weights, 4);
-    builder.primitive(json!({"attributes": {"POSITION": position, "JOINTS_0": joints, "WEIGHTS_0": weights},
-        "indices": indices, "targets": [{"POSITION": lid}]}));
+    builder.primitive(
+        json!({"attributes": {"POSITION": position, "JOINTS_0": joints, "WEIGHTS_0": weights},
+        "indices": indices, "targets": [{"POSITION": lid}]}),
+    );
     builder.json["nodes"] = json!([{"mesh": 0, "skin": 0}, {}, {}]);
     builder.json["skins"] = json!([{"joints": [1, 2]}]);
     let (input, output) = (folder.path().join("in.glb"), folder.path().join("out.glb"));
@@ -228,18 +329,32 @@ fn what_moves_apart_is_told_and_can_be_joined() {
     let open_edges = |options: &str, words: &str| {
         let command = format!("refine {{}} -o {{}} --tolerance 2% --report - {options}");
         let run = run(&command, &[&input, &output]).expect(0);
-        let run = if words.is_empty() { run } else { run.saying(words) };
-        assert!(!words.is_empty() || !run.stderr.contains("apart"), "{}", run.stderr);
-        run.json()["meshes"][0]["output"]["boundary_edges"].as_u64().expect("a number")
+        let run = if words.is_empty() {
+            run
+        } else {
+            run.saying(words)
+        };
+        assert!(
+            !words.is_empty() || !run.stderr.contains("apart"),
+            "{}",
+            run.stderr
+        );
+        run.json()["meshes"][0]["output"]["boundary_edges"]
+            .as_u64()
+            .expect("a number")
     };
     // Vertex 0 has both another displacement and another weight; 1 and 2 another weight.
     let all = "3 vertices kept apart where others stand, because of their joints and weights";
     let apart = open_edges("", all);
     assert!(apart > 0);
     assert_eq!(open_edges("--weld-ignores morphs", all), apart);
-    let less =
-        open_edges("--weld-ignores skin", "1 vertex kept apart where others stand, because of morph targets");
+    let less = open_edges(
+        "--weld-ignores skin",
+        "1 vertex kept apart where others stand, because of morph targets",
+    );
     assert!(less < apart, "{less} and {apart}");
     assert_eq!(open_edges("--weld-ignores skin,morphs", ""), 0);
-    run("refine builtin:cube -o {} --weld-ignores skin", &[&output]).expect(2).saying("glTF assets");
+    run("refine builtin:cube -o {} --weld-ignores skin", &[&output])
+        .expect(2)
+        .saying("glTF assets");
 }

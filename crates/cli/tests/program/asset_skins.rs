@@ -41,22 +41,30 @@ fn asset(folder: &TempDir, weights: impl Fn(f64) -> Vec<(u8, f64)>) -> PathBuf {
     let numbers = |at: usize| {
         let joints: Vec<[u8; 4]> = lists
             .iter()
-            .map(|list| std::array::from_fn(|i| list.get(4 * at + i).map_or(0, |&(joint, _)| joint)))
+            .map(|list| {
+                std::array::from_fn(|i| list.get(4 * at + i).map_or(0, |&(joint, _)| joint))
+            })
             .collect();
         let weights = lists.iter().flat_map(|list| {
             std::array::from_fn::<f32, 4, _>(|i| {
-                list.get(4 * at + i).map_or(0.0, |&(_, weight)| weight as f32)
+                list.get(4 * at + i)
+                    .map_or(0.0, |&(_, weight)| weight as f32)
             })
         });
         (joints, weights.collect::<Vec<f32>>())
     };
     let dense = |joint: u8| {
         move |list: &Vec<(u8, f64)>| {
-            list.iter().filter(|own| own.0 == joint).map(|own| own.1 as f32).sum::<f32>()
+            list.iter()
+                .filter(|own| own.0 == joint)
+                .map(|own| own.1 as f32)
+                .sum::<f32>()
         }
     };
-    let linear: Vec<f32> =
-        lists.iter().flat_map(|list| [0, 1, 2, 3].map(|joint| dense(joint)(list))).collect();
+    let linear: Vec<f32> = lists
+        .iter()
+        .flat_map(|list| [0, 1, 2, 3].map(|joint| dense(joint)(list)))
+        .collect();
     let mut attributes = json!({"POSITION": position, "_LINEAR": builder.floats(&linear, 4)});
     for set in 0..2 {
         let (joints, weights) = numbers(set);
@@ -75,15 +83,25 @@ fn asset(folder: &TempDir, weights: impl Fn(f64) -> Vec<(u8, f64)>) -> PathBuf {
 fn influences(glb: &Glb) -> Vec<Vec<(u8, f64)>> {
     let attributes = &glb.primitive(0)["attributes"];
     assert!(attributes.get("JOINTS_1").is_none());
-    let (joints, weights) = (glb.numbers(&attributes["JOINTS_0"]), glb.numbers(&attributes["WEIGHTS_0"]));
-    let pairs = joints.iter().zip(weights).map(|(&joint, weight)| (joint as u8, weight));
+    let (joints, weights) = (
+        glb.numbers(&attributes["JOINTS_0"]),
+        glb.numbers(&attributes["WEIGHTS_0"]),
+    );
+    let pairs = joints
+        .iter()
+        .zip(weights)
+        .map(|(&joint, weight)| (joint as u8, weight));
     let all: Vec<(u8, f64)> = pairs.collect();
     all.chunks(4).map(<[_]>::to_vec).collect()
 }
 
 /// Where joints put a point: the first leaves it, the second turns it by 90° about the x-axis.
 fn posed([x, y, z]: [f64; 3], weights: [f64; 2]) -> [f64; 3] {
-    [weights[0] * x + weights[1] * x, weights[0] * y - weights[1] * z, weights[0] * z + weights[1] * y]
+    [
+        weights[0] * x + weights[1] * x,
+        weights[0] * y - weights[1] * z,
+        weights[0] * z + weights[1] * y,
+    ]
 }
 
 /// The greatest angle between the normals of triangles at an edge, in degrees.
@@ -93,7 +111,8 @@ fn worst_dihedral(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
     for corners in triangles {
         let [a, b, c] = corners.map(|v| positions[v as usize]);
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
-        let normal = [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
+        let normal =
+            [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
         let normal = normal.map(|x| x / length);
         for i in 0..3 {
@@ -113,15 +132,31 @@ fn weights_that_are_linear_in_space_stay_so() {
     let folder = folder();
     let input = asset(&folder, |z| vec![(0, 0.5 - 0.2 * z), (2, 0.5 + 0.2 * z)]);
     let output = folder.path().join("out.glb");
-    for options in
-        ["", "--scheme loop-warren", "--crease-angle 40", "--boundary corners", "--crease-angle 95"]
-    {
-        run(&format!("refine {{}} -o {{}} --tolerance 0.5% {options}"), &[&input, &output]).expect(0);
+    for options in [
+        "",
+        "--scheme loop-warren",
+        "--crease-angle 40",
+        "--boundary corners",
+        "--crease-angle 95",
+    ] {
+        run(
+            &format!("refine {{}} -o {{}} --tolerance 0.5% {options}"),
+            &[&input, &output],
+        )
+        .expect(0);
         let glb = Glb::read(&output);
         let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
         for (p, list) in points.iter().zip(influences(&glb)) {
-            let of = |joint: u8| list.iter().filter(|own| own.0 == joint).map(|own| own.1).sum::<f64>();
-            assert!((of(0) - (0.5 - 0.2 * p[2])).abs() < 1e-6 && (of(2) - (0.5 + 0.2 * p[2])).abs() < 1e-6);
+            let of = |joint: u8| {
+                list.iter()
+                    .filter(|own| own.0 == joint)
+                    .map(|own| own.1)
+                    .sum::<f64>()
+            };
+            assert!(
+                (of(0) - (0.5 - 0.2 * p[2])).abs() < 1e-6
+                    && (of(2) - (0.5 + 0.2 * p[2])).abs() < 1e-6
+            );
         }
     }
 }
@@ -140,7 +175,11 @@ fn a_bent_tube_is_smooth() {
     };
     let input = asset(&folder, |z| vec![(0, 1.0 - weight(z)), (1, weight(z))]);
     let output = folder.path().join("out.glb");
-    run("refine {} -o {} --tolerance 0.002% --crease-angle none", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 0.002% --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0);
     let glb = Glb::read(&output);
     let attributes = &glb.primitive(0)["attributes"];
     let (points, triangles) = (glb.points(&attributes["POSITION"]), glb.triangles(0));
@@ -148,17 +187,30 @@ fn a_bent_tube_is_smooth() {
         .iter()
         .zip(influences(&glb))
         .map(|(&p, list)| {
-            let of = |joint: u8| list.iter().filter(|own| own.0 == joint).map(|own| own.1).sum();
+            let of = |joint: u8| {
+                list.iter()
+                    .filter(|own| own.0 == joint)
+                    .map(|own| own.1)
+                    .sum()
+            };
             posed(p, [of(0), of(1)])
         })
         .collect();
     let linear = glb.numbers(&attributes["_LINEAR"]);
-    let linear: Vec<[f64; 3]> =
-        points.iter().zip(linear.chunks(4)).map(|(&p, w)| posed(p, [w[0], w[1]])).collect();
-    let (smooth_angle, linear_angle) =
-        (worst_dihedral(&smooth, &triangles), worst_dihedral(&linear, &triangles));
+    let linear: Vec<[f64; 3]> = points
+        .iter()
+        .zip(linear.chunks(4))
+        .map(|(&p, w)| posed(p, [w[0], w[1]]))
+        .collect();
+    let (smooth_angle, linear_angle) = (
+        worst_dihedral(&smooth, &triangles),
+        worst_dihedral(&linear, &triangles),
+    );
     println!("worst dihedral angles: {smooth_angle:.1}° smooth, {linear_angle:.1}° linear");
-    assert!(smooth_angle < 0.5 * linear_angle, "{smooth_angle}° and {linear_angle}°");
+    assert!(
+        smooth_angle < 0.5 * linear_angle,
+        "{smooth_angle}° and {linear_angle}°"
+    );
 
     // Beside the limit of the control mesh in that pose: the same where one joint alone moves it. Where two do, products of limits are
     // near the limit of products alone.
@@ -169,7 +221,10 @@ fn a_bent_tube_is_smooth() {
         .map(|p| posed(p, [1.0 - weight(p[2]), weight(p[2])]))
         .collect();
     let reference = limit(&control, &faces, 1e-4);
-    let surface = Triangles { positions: &smooth, triangles: &triangles };
+    let surface = Triangles {
+        positions: &smooth,
+        triangles: &triangles,
+    };
     let found = distances(surface, reference.as_triangles());
     println!("to the limit of the posed control mesh: {found:?}");
     let bounds = |points: &[[f64; 3]]| {
@@ -179,11 +234,23 @@ fn a_bent_tube_is_smooth() {
     };
     let (own, expected) = (bounds(&smooth), bounds(reference.positions()));
     for (own, expected) in own.as_flattened().iter().zip(expected.as_flattened()) {
-        assert!((own - expected).abs() < 0.01 * reference.diagonal(), "{own} and {expected}");
+        assert!(
+            (own - expected).abs() < 0.01 * reference.diagonal(),
+            "{own} and {expected}"
+        );
     }
-    assert!(found.iter().all(|&distance| distance < 0.05 * reference.diagonal()), "{found:?}");
-    let far: Vec<[f64; 3]> =
-        smooth.iter().zip(&points).filter(|(_, p)| p[2].abs() > 1.1).map(|(&p, _)| p).collect();
+    assert!(
+        found
+            .iter()
+            .all(|&distance| distance < 0.05 * reference.diagonal()),
+        "{found:?}"
+    );
+    let far: Vec<[f64; 3]> = smooth
+        .iter()
+        .zip(&points)
+        .filter(|(_, p)| p[2].abs() > 1.1)
+        .map(|(&p, _)| p)
+        .collect();
     let off = limitmesh::measure::distances_to(&far, reference.as_triangles()).expect("distances");
     assert!(off.into_iter().fold(0.0, f64::max) < 2e-4 * reference.diagonal());
 }
@@ -195,7 +262,10 @@ fn the_four_greatest_weights_are_kept() {
     let input = asset(&folder, |z| {
         let all = [1.0, 2.0 + z, 3.0, 4.0 - z, 5.0, 6.0 + z];
         let total: f64 = all.iter().sum();
-        all.iter().zip(0..).map(|(weight, joint)| (joint, weight / total)).collect()
+        all.iter()
+            .zip(0..)
+            .map(|(weight, joint)| (joint, weight / total))
+            .collect()
     });
     let output = folder.path().join("out.glb");
     run("refine {} -o {} --tolerance 1%", &[&input, &output])
@@ -207,8 +277,10 @@ fn the_four_greatest_weights_are_kept() {
         assert!((list.iter().map(|own| own.1).sum::<f64>() - 1.0).abs() < 1e-6);
         assert!(list.windows(2).all(|pair| pair[0].1 >= pair[1].1));
         // Well inside, the weights are those of the height there, as they are nearly linear: the two least are left out.
-        let mut all =
-            [1.0, 2.0 + p[2], 3.0, 4.0 - p[2], 5.0, 6.0 + p[2]].into_iter().zip(0u8..).collect::<Vec<_>>();
+        let mut all = [1.0, 2.0 + p[2], 3.0, 4.0 - p[2], 5.0, 6.0 + p[2]]
+            .into_iter()
+            .zip(0u8..)
+            .collect::<Vec<_>>();
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
         if all[3].0 - all[4].0 > 0.1 {
             let mut kept: Vec<u8> = all[..4].iter().map(|own| own.1).collect();
@@ -223,14 +295,27 @@ fn the_four_greatest_weights_are_kept() {
 #[test]
 fn weights_below_0_are_counted() {
     let folder = folder();
-    let input =
-        asset(&folder, |z| vec![(0, f64::from(u8::from(z < 0.0))), (1, f64::from(u8::from(z >= 0.0)))]);
+    let input = asset(&folder, |z| {
+        vec![
+            (0, f64::from(u8::from(z < 0.0))),
+            (1, f64::from(u8::from(z >= 0.0))),
+        ]
+    });
     let output = folder.path().join("out.glb");
-    let loops = run("refine {} -o {} --tolerance 0.05% --crease-angle none", &[&input, &output]).expect(0);
+    let loops = run(
+        "refine {} -o {} --tolerance 0.05% --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0);
     assert!(!loops.stderr.contains("below 0"), "{}", loops.stderr);
     let command = "refine {} -o {} --tolerance 0.05% --scheme butterfly --crease-angle none";
-    run(command, &[&input, &output]).expect(0).saying("weights below 0 count as 0 at");
+    run(command, &[&input, &output])
+        .expect(0)
+        .saying("weights below 0 count as 0 at");
     assert!(
-        influences(&Glb::read(&output)).iter().flatten().all(|&(_, weight)| (0.0..=1.0).contains(&weight))
+        influences(&Glb::read(&output))
+            .iter()
+            .flatten()
+            .all(|&(_, weight)| (0.0..=1.0).contains(&weight))
     );
 }

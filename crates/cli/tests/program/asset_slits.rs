@@ -10,9 +10,15 @@ use crate::glb::{Builder, Glb, distances, limit};
 
 /// The number before the words that say how near all morph targets are.
 fn told(run: &Run) -> f64 {
-    let line = run.stderr.lines().find(|line| line.contains("each morph target within"));
+    let line = run
+        .stderr
+        .lines()
+        .find(|line| line.contains("each morph target within"));
     let words = line.expect("morph targets are told").split_whitespace();
-    words.filter_map(|word| word.parse().ok()).next().expect("a number")
+    words
+        .filter_map(|word| word.parse().ok())
+        .next()
+        .expect("a number")
 }
 
 /// The only primitive of an asset.
@@ -28,12 +34,17 @@ fn morphs(path: &Path) -> Morphs {
     let primitive = glb.primitive(0);
     let base = glb.points(&primitive["attributes"]["POSITION"]);
     let targets = primitive["targets"].as_array().into_iter().flatten();
-    let added = targets.map(|target| glb.points(&target["POSITION"])).collect();
+    let added = targets
+        .map(|target| glb.points(&target["POSITION"]))
+        .collect();
     Morphs { glb, base, added }
 }
 
 fn plus(base: &[[f64; 3]], added: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    base.iter().zip(added).map(|(p, d)| [0, 1, 2].map(|i| p[i] + d[i])).collect()
+    base.iter()
+        .zip(added)
+        .map(|(p, d)| [0, 1, 2].map(|i| p[i] + d[i]))
+        .collect()
 }
 
 #[test]
@@ -44,14 +55,31 @@ fn lips_that_a_target_opens_stay_two() {
     assert!(!run.stderr.contains("without area"), "{}", run.stderr);
     let bound = told(&run);
     // At weight 1 the control mesh has area everywhere: its limit needs no repair.
-    let Morphs { glb: control, base, added } = morphs(&input);
+    let Morphs {
+        glb: control,
+        base,
+        added,
+    } = morphs(&input);
     let reference = limit(&plus(&base, &added[0]), &control.triangles(0), 1e-4);
-    let Morphs { glb: refined, base, added } = morphs(&output);
+    let Morphs {
+        glb: refined,
+        base,
+        added,
+    } = morphs(&output);
     let triangles = refined.triangles(0);
     let posed = plus(&base, &added[0]);
-    let both = distances(Triangles { positions: &posed, triangles: &triangles }, reference.as_triangles());
+    let both = distances(
+        Triangles {
+            positions: &posed,
+            triangles: &triangles,
+        },
+        reference.as_triangles(),
+    );
     for distance in both {
-        assert!(distance <= bound + 1e-4 * reference.diagonal(), "{distance} where {bound} is told");
+        assert!(
+            distance <= bound + 1e-4 * reference.diagonal(),
+            "{distance} where {bound} is told"
+        );
     }
     assert!(bound < 0.01 * 3.4642, "{bound}");
 }
@@ -66,22 +94,37 @@ fn limit_of_four(own: f64, neighbours: [f64; 4]) -> f64 {
 fn lids_between_two_lips_are_faces() {
     let folder = folder();
     let (input, output) = (data("mouth_morph.glb"), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 1% --boundary fixed", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 1% --boundary fixed",
+        &[&input, &output],
+    )
+    .expect(0);
     let Morphs { base, added, .. } = morphs(&output);
     // The lips' control points are moved by -0.2 and 0.4; each has the other as a neighbour, and three that stay.
     for (at, by, other, y) in [(0.0, -0.2, 0.4, -1.0), (0.0, 0.4, -0.2, 1.0)] {
         let rest = limit_of_four(at, [0.0, 0.0, 0.0, y]);
         let moved = limit_of_four(by, [0.0, 0.0, 0.0, other]);
         let near = |p: &[f64; 3]| (p[0] - 1.0).abs() < 1e-6 && (p[1] - rest).abs() < 1e-6;
-        let found = base.iter().position(near).expect("a lip where its limit is");
-        assert!((added[0][found][1] - moved).abs() < 1e-6, "{:?} and {moved}", added[0][found]);
+        let found = base
+            .iter()
+            .position(near)
+            .expect("a lip where its limit is");
+        assert!(
+            (added[0][found][1] - moved).abs() < 1e-6,
+            "{:?} and {moved}",
+            added[0][found]
+        );
     }
 }
 
 #[test]
 fn lips_that_joints_open_stay_two() {
     let folder = folder();
-    let Morphs { glb: source, base, added } = morphs(&data("slit_morph.glb"));
+    let Morphs {
+        glb: source,
+        base,
+        added,
+    } = morphs(&data("slit_morph.glb"));
     // Each lip has a joint of its own, all else a third: by moving the joints, the lips go where the target takes them.
     let joint = |v: usize| match added[0][v][1] {
         y if y > 0.0 => 1u8,
@@ -95,8 +138,10 @@ fn lips_that_joints_open_stay_two() {
     let joints: Vec<[u8; 4]> = (0..base.len()).map(|v| [joint(v), 0, 0, 0]).collect();
     let joints = builder.joints(&joints);
     let weights = builder.floats(&[1.0, 0.0, 0.0, 0.0].repeat(base.len()), 4);
-    builder.primitive(json!({"attributes": {"POSITION": position, "JOINTS_0": joints, "WEIGHTS_0": weights},
-        "indices": indices}));
+    builder.primitive(
+        json!({"attributes": {"POSITION": position, "JOINTS_0": joints, "WEIGHTS_0": weights},
+        "indices": indices}),
+    );
     builder.json["nodes"] = json!([{"mesh": 0, "skin": 0}, {}, {}, {}]);
     builder.json["skins"] = json!([{"joints": [1, 2, 3]}]);
     let (input, output) = (folder.path().join("in.glb"), folder.path().join("out.glb"));
@@ -105,19 +150,31 @@ fn lips_that_joints_open_stay_two() {
     let refined = Glb::read(&output);
     let attributes = &refined.primitive(0)["attributes"];
     let rest = refined.points(&attributes["POSITION"]);
-    let (joints, weights) =
-        (refined.numbers(&attributes["JOINTS_0"]), refined.numbers(&attributes["WEIGHTS_0"]));
+    let (joints, weights) = (
+        refined.numbers(&attributes["JOINTS_0"]),
+        refined.numbers(&attributes["WEIGHTS_0"]),
+    );
     let moves = [[0.0; 3], [0.0, 0.5, 0.2], [0.0, -0.5, 0.2]];
     let posed: Vec<[f64; 3]> = rest
         .iter()
         .zip(joints.chunks(4).zip(weights.chunks(4)))
         .map(|(p, (joints, weights))| {
-            [0, 1, 2].map(|i| p[i] + (0..4).map(|k| weights[k] * moves[joints[k] as usize][i]).sum::<f64>())
+            [0, 1, 2].map(|i| {
+                p[i] + (0..4)
+                    .map(|k| weights[k] * moves[joints[k] as usize][i])
+                    .sum::<f64>()
+            })
         })
         .collect();
     let reference = limit(&plus(&base, &added[0]), &source.triangles(0), 1e-4);
     let triangles = refined.triangles(0);
-    let both = distances(Triangles { positions: &posed, triangles: &triangles }, reference.as_triangles());
+    let both = distances(
+        Triangles {
+            positions: &posed,
+            triangles: &triangles,
+        },
+        reference.as_triangles(),
+    );
     // Weights are blended exactly at vertices; between them nothing is promised of poses.
     assert!(both[0] < 2e-3 && both[1] < 0.05, "{both:?}");
 }

@@ -20,15 +20,25 @@ fn bowl(folder: &TempDir, is_mirrored: bool, has_texture: bool) -> PathBuf {
         .map(|[x, y]| [x, y, 0.4 * (x * x + y * y)])
         .collect();
     let mut triangles = Vec::new();
-    for v in (0..SIDE * (SIDE - 1)).filter(|v| v % SIDE + 1 < SIDE).map(|v| v as u32) {
+    for v in (0..SIDE * (SIDE - 1))
+        .filter(|v| v % SIDE + 1 < SIDE)
+        .map(|v| v as u32)
+    {
         let above = v + SIDE as u32;
         triangles.extend([[v, v + 1, above + 1], [v, above + 1, above]]);
     }
-    let texture: Vec<f32> =
-        points.iter().flat_map(|&[x, y, _]| [if is_mirrored { x.abs() } else { 2.0 * x }, -y]).collect();
+    let texture: Vec<f32> = points
+        .iter()
+        .flat_map(|&[x, y, _]| [if is_mirrored { x.abs() } else { 2.0 * x }, -y])
+        .collect();
     let mut builder = Builder::new();
     let position = builder.points(&points);
-    let turned = builder.points(&points.iter().map(|&[x, y, _]| [-y - x, x - y, 0.0]).collect::<Vec<_>>());
+    let turned = builder.points(
+        &points
+            .iter()
+            .map(|&[x, y, _]| [-y - x, x - y, 0.0])
+            .collect::<Vec<_>>(),
+    );
     let (texture, indices) = (builder.floats(&texture, 2), builder.indices(&triangles));
     let along = builder.floats(&[1.0, 0.0, 0.0, 1.0].repeat(points.len()), 4);
     let none = builder.points(&vec![[0.0; 3]; points.len()]);
@@ -36,8 +46,10 @@ fn bowl(folder: &TempDir, is_mirrored: bool, has_texture: bool) -> PathBuf {
     if has_texture {
         attributes["TEXCOORD_1"] = texture.into();
     }
-    builder.primitive(json!({"attributes": attributes, "indices": indices, "material": 0,
-        "targets": [{"POSITION": turned, "NORMAL": none, "TANGENT": none}]}));
+    builder.primitive(
+        json!({"attributes": attributes, "indices": indices, "material": 0,
+        "targets": [{"POSITION": turned, "NORMAL": none, "TANGENT": none}]}),
+    );
     let map = json!({"index": 0, "texCoord": 7, "extensions": {"KHR_texture_transform": {"texCoord": 1}}});
     builder.json["materials"] = json!([{"normalTexture": map}]);
     let input = folder.path().join("in.glb");
@@ -50,7 +62,11 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {
@@ -75,21 +91,38 @@ fn worst(glb: &Glb, weight: f64) -> [f64; 2] {
         let width = if name == "TANGENT" { 4 } else { 3 };
         let added = glb.points(&primitive["targets"][0][name]);
         let rows = own.chunks(width).zip(added);
-        rows.map(|(x, d)| [0, 1, 2].map(|i| x[i] + weight * d[i])).collect()
+        rows.map(|(x, d)| [0, 1, 2].map(|i| x[i] + weight * d[i]))
+            .collect()
     };
     let (points, normals, tangents) = (blended("POSITION"), blended("NORMAL"), blended("TANGENT"));
-    let signs: Vec<f64> =
-        glb.numbers(&primitive["attributes"]["TANGENT"]).chunks(4).map(|tangent| tangent[3]).collect();
+    let signs: Vec<f64> = glb
+        .numbers(&primitive["attributes"]["TANGENT"])
+        .chunks(4)
+        .map(|tangent| tangent[3])
+        .collect();
     let places = glb.numbers(&primitive["attributes"]["TEXCOORD_1"]);
     let mut found = [1.0f64; 2];
     for corners in glb.triangles(0) {
         let corners = corners.map(|v| v as usize);
-        let ways = ways(corners.map(|v| points[v]), corners.map(|v| [places[2 * v], places[2 * v + 1]]));
+        let ways = ways(
+            corners.map(|v| points[v]),
+            corners.map(|v| [places[2 * v], places[2 * v + 1]]),
+        );
         for v in corners {
-            assert!((dot(tangents[v], tangents[v]) - 1.0).abs() < 1e-5, "{:?}", tangents[v]);
-            assert!(dot(tangents[v], normals[v]).abs() < 1e-5, "a tangent stands on the surface");
+            assert!(
+                (dot(tangents[v], tangents[v]) - 1.0).abs() < 1e-5,
+                "{:?}",
+                tangents[v]
+            );
+            assert!(
+                dot(tangents[v], normals[v]).abs() < 1e-5,
+                "a tangent stands on the surface"
+            );
             let bitangent = cross(normals[v], tangents[v]).map(|x| signs[v] * x);
-            found = [found[0].min(dot(tangents[v], ways[0])), found[1].min(dot(bitangent, ways[1]))];
+            found = [
+                found[0].min(dot(tangents[v], ways[0])),
+                found[1].min(dot(bitangent, ways[1])),
+            ];
         }
     }
     found
@@ -99,7 +132,11 @@ fn worst(glb: &Glb, weight: f64) -> [f64; 2] {
 fn tangents_run_along_the_texture_also_of_morphs() {
     let folder = folder();
     let (input, output) = (bowl(&folder, false, true), folder.path().join("out.glb"));
-    let run = run("refine {} -o {} --tolerance 0.05% --uv none", &[&input, &output]).expect(0);
+    let run = run(
+        "refine {} -o {} --tolerance 0.05% --uv none",
+        &[&input, &output],
+    )
+    .expect(0);
     assert!(!run.stderr.contains("TANGENT"), "{}", run.stderr);
     let glb = Glb::read(&output);
     for weight in [0.0, 1.0] {
@@ -114,7 +151,11 @@ fn tangents_run_along_the_texture_also_of_morphs() {
 fn mirrored_halves_have_their_own_tangents() {
     let folder = folder();
     let (input, output) = (bowl(&folder, true, true), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 0.05% --uv none", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 0.05% --uv none",
+        &[&input, &output],
+    )
+    .expect(0);
     let glb = Glb::read(&output);
     let worst = worst(&glb, 0.0).map(|cosine| cosine.acos().to_degrees());
     assert!(worst[0] < 12.0 && worst[1] < 25.0, "{worst:?} degrees");
@@ -123,11 +164,19 @@ fn mirrored_halves_have_their_own_tangents() {
     let points = glb.points(&primitive["attributes"]["POSITION"]);
     for (point, tangent) in points.iter().zip(tangents.chunks(4)) {
         let is_on_seam = point[0].abs() < 1e-6;
-        assert!(is_on_seam || tangent[3] == point[0].signum(), "{point:?}: {tangent:?}");
+        assert!(
+            is_on_seam || tangent[3] == point[0].signum(),
+            "{point:?}: {tangent:?}"
+        );
     }
     let on_seam = points.iter().filter(|point| point[0].abs() < 1e-6).count();
-    let places: std::collections::BTreeSet<[u64; 3]> = points.iter().map(|p| p.map(f64::to_bits)).collect();
-    assert_eq!(points.len() - places.len(), on_seam / 2, "no others are divided");
+    let places: std::collections::BTreeSet<[u64; 3]> =
+        points.iter().map(|p| p.map(f64::to_bits)).collect();
+    assert_eq!(
+        points.len() - places.len(),
+        on_seam / 2,
+        "no others are divided"
+    );
     assert!(on_seam > 8);
 }
 
@@ -154,14 +203,26 @@ fn another_program_s_tangents_are_found_again() {
     let folder = folder();
     let input = PathBuf::from(models).join("assets").join("cubevc.glb");
     let output = folder.path().join("out.glb");
-    run("refine {} -o {} --tolerance 0.5% --crease-angle 30", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 0.5% --crease-angle 30",
+        &[&input, &output],
+    )
+    .expect(0);
     let sides = |glb: &Glb| {
         let attributes = &glb.primitive(0)["attributes"];
         let rounded = |x: &f64| (100.0 * x).round() as i64;
-        let (normals, tangents) = (glb.numbers(&attributes["NORMAL"]), glb.numbers(&attributes["TANGENT"]));
+        let (normals, tangents) = (
+            glb.numbers(&attributes["NORMAL"]),
+            glb.numbers(&attributes["TANGENT"]),
+        );
         let pairs = normals.chunks(3).zip(tangents.chunks(4));
-        let pairs =
-            pairs.map(|(normal, tangent)| normal.iter().chain(tangent).map(rounded).collect::<Vec<i64>>());
+        let pairs = pairs.map(|(normal, tangent)| {
+            normal
+                .iter()
+                .chain(tangent)
+                .map(rounded)
+                .collect::<Vec<i64>>()
+        });
         pairs.collect::<std::collections::BTreeSet<_>>()
     };
     let [theirs, ours] = [&input, &output].map(|path| sides(&Glb::read(path)));

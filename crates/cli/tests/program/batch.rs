@@ -9,7 +9,8 @@ use tempfile::TempDir;
 
 use crate::common::{Running, command, file, folder, names, run};
 
-const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 /// Writes jobs, a line each.
 fn jobs(folder: &TempDir, jobs: &[Value]) -> std::path::PathBuf {
@@ -23,7 +24,10 @@ fn text(path: &Path) -> String {
 
 /// The results by their order.
 fn results(path: &Path) -> Vec<Value> {
-    text(path).lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
+    text(path)
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect()
 }
 
 /// A name below the folder, as text.
@@ -58,22 +62,32 @@ fn a_job_is_what_refine_does_with_its_options() {
         ],
     );
     let found = folder.path().join("results.jsonl");
-    run("batch {} -o {} --jobs 3", &[&list, &found]).expect(0).saying("4 of 4 jobs ended");
+    run("batch {} -o {} --jobs 3", &[&list, &found])
+        .expect(0)
+        .saying("4 of 4 jobs ended");
     let told = results(&found);
     let plain = [
-        format!("refine {input} -o {{}} --tolerance 1% --picture {}", below(&folder, "p.png")),
+        format!(
+            "refine {input} -o {{}} --tolerance 1% --picture {}",
+            below(&folder, "p.png")
+        ),
         "refine builtin:cube -o {} --crease-angle 30 --triangles 1k".to_owned(),
         "refine builtin:cup -o {} --method limit-normal --view 0,0,-1 --levels 2".to_owned(),
     ];
     for (i, (words, name)) in plain.iter().zip(["a.ply", "b.obj", "c.ply"]).enumerate() {
         let own = folder.path().join(name);
-        let mut report = run(&format!("{words} --report -"), &[&own]).expect(0).json();
+        let mut report = run(&format!("{words} --report -"), &[&own])
+            .expect(0)
+            .json();
         without_seconds(&mut report);
         let bytes = std::fs::read(out(name)).expect("a mesh");
         assert!(bytes == std::fs::read(&own).expect("a mesh"), "{name}");
         report["output"]["path"] = out(name).into();
         assert_eq!(told[i]["report"], report, "{name}");
-        assert_eq!((&told[i]["line"], &told[i]["status"]), (&(i + 1).into(), &"done".into()));
+        assert_eq!(
+            (&told[i]["line"], &told[i]["status"]),
+            (&(i + 1).into(), &"done".into())
+        );
         assert_eq!(told[i]["output_bytes"], bytes.len());
         assert_eq!(told[i]["key"].as_str().map(str::len), Some(64));
     }
@@ -83,7 +97,10 @@ fn a_job_is_what_refine_does_with_its_options() {
     );
     assert!(told[3]["report"]["estimate"]["triangles"].as_u64() > Some(100));
     assert_eq!(told[3]["output"], Value::Null);
-    assert_eq!(names(&folder.path().join("made/here")), ["a.ply", "a.png", "b.obj", "c.ply"]);
+    assert_eq!(
+        names(&folder.path().join("made/here")),
+        ["a.ply", "a.png", "b.obj", "c.ply"]
+    );
     // Times are told where they are asked for.
     let timed = folder.path().join("timed.jsonl");
     run("batch {} -o {} --seconds", &[&list, &timed]).expect(0);
@@ -94,10 +111,11 @@ fn a_job_is_what_refine_does_with_its_options() {
 fn what_is_wrong_is_told_by_line_and_the_rest_is_done() {
     let folder = folder();
     let out = |name: &str| below(&folder, name);
-    let bad = file(&folder, "bad.obj", "v 0 0 0\nf 1 2 3\n").display().to_string();
+    let bad = file(&folder, "bad.obj", "v 0 0 0\nf 1 2 3\n")
+        .display()
+        .to_string();
     let good = json!({"input": "builtin:cube", "output": out("good.ply"), "triangles": 100});
-    let short =
-        json!({"input": "builtin:cube", "output": out("short.ply"), "tolerance": 1e-9, "max-triangles": 500});
+    let short = json!({"input": "builtin:cube", "output": out("short.ply"), "tolerance": 1e-9, "max-triangles": 500});
     let lines = [
         (good.to_string(), "done", ""),
         (String::new(), "", ""),
@@ -117,22 +135,46 @@ fn what_is_wrong_is_told_by_line_and_the_rest_is_done() {
             "options",
             "--limit",
         ),
-        (json!({"input": "builtin:cube", "output": out("x.doc")}).to_string(), "options", "'doc'"),
-        (json!({"input": out("none.stl"), "output": out("x.ply")}).to_string(), "line", "what line 5 writes"),
-        (json!({"input": out("none.stl"), "output": out("y.ply")}).to_string(), "file", "none.stl"),
-        (json!({"input": bad, "output": out("z.ply")}).to_string(), "file", "bad.obj"),
+        (
+            json!({"input": "builtin:cube", "output": out("x.doc")}).to_string(),
+            "options",
+            "'doc'",
+        ),
+        (
+            json!({"input": out("none.stl"), "output": out("x.ply")}).to_string(),
+            "line",
+            "what line 5 writes",
+        ),
+        (
+            json!({"input": out("none.stl"), "output": out("y.ply")}).to_string(),
+            "file",
+            "none.stl",
+        ),
+        (
+            json!({"input": bad, "output": out("z.ply")}).to_string(),
+            "file",
+            "bad.obj",
+        ),
         (
             json!({"input": "builtin:cup", "output": out("good.ply")}).to_string(),
             "line",
             "what line 1 writes",
         ),
-        (json!({"input": "builtin:cup", "output": bad}).to_string(), "line", "the input of a job"),
+        (
+            json!({"input": "builtin:cup", "output": bad}).to_string(),
+            "line",
+            "the input of a job",
+        ),
         (
             json!({"input": "builtin:cup", "output": out("jobs.jsonl")}).to_string(),
             "line",
             "the jobs or the results",
         ),
-        (short.to_string(), "stopped-short", "--max-triangles 500 was reached"),
+        (
+            short.to_string(),
+            "stopped-short",
+            "--max-triangles 500 was reached",
+        ),
     ];
     let all: Vec<&str> = lines.iter().map(|(line, ..)| line.as_str()).collect();
     let list = file(&folder, "jobs.jsonl", &all.join("\n"));
@@ -141,7 +183,10 @@ fn what_is_wrong_is_told_by_line_and_the_rest_is_done() {
         .expect(1)
         .saying("line 10: error (file)")
         .saying("11 of 13 jobs failed");
-    let expected = lines.iter().enumerate().filter(|(_, (line, ..))| !line.is_empty());
+    let expected = lines
+        .iter()
+        .enumerate()
+        .filter(|(_, (line, ..))| !line.is_empty());
     let told = results(&found);
     assert_eq!(told.len(), expected.clone().count());
     for ((i, (line, how, words)), told) in expected.zip(&told) {
@@ -151,15 +196,31 @@ fn what_is_wrong_is_told_by_line_and_the_rest_is_done() {
             _ => (&told["status"], &told["why"]),
         };
         assert_eq!(status, how, "{line}: {told}");
-        assert!(why.as_str().unwrap_or_default().contains(words), "{line}: {told}");
+        assert!(
+            why.as_str().unwrap_or_default().contains(words),
+            "{line}: {told}"
+        );
     }
-    assert_eq!(names(folder.path()), ["bad.obj", "good.ply", "jobs.jsonl", "results.jsonl", "short.ply"]);
+    assert_eq!(
+        names(folder.path()),
+        [
+            "bad.obj",
+            "good.ply",
+            "jobs.jsonl",
+            "results.jsonl",
+            "short.ply"
+        ]
+    );
     // What failed is tried again, to the same end.
     let before = text(&found);
-    run("batch {} -o {} --resume", &[&list, &found]).expect(1).saying("2 kept from before");
+    run("batch {} -o {} --resume", &[&list, &found])
+        .expect(1)
+        .saying("2 kept from before");
     assert_eq!(text(&found), before);
     std::fs::write(&bad, TETRAHEDRON).expect("mended");
-    run("batch {} -o {} --resume --quiet", &[&list, &found]).expect(1).saying("10 of 13 jobs failed");
+    run("batch {} -o {} --resume --quiet", &[&list, &found])
+        .expect(1)
+        .saying("10 of 13 jobs failed");
     assert_eq!(results(&found)[8]["status"], "done");
 }
 
@@ -175,29 +236,45 @@ fn jobs_that_take_too_much_do_not_take_the_others_along() {
     let found = folder.path().join("results.jsonl");
     run("batch {} -o {} --time-limit 0.7 --jobs 2", &[&list, &found]).expect(1);
     let told = results(&found);
-    assert_eq!((&told[0]["error"]["kind"], &told[0]["error"]["limit"]), (&"time".into(), &0.7.into()));
+    assert_eq!(
+        (&told[0]["error"]["kind"], &told[0]["error"]["limit"]),
+        (&"time".into(), &0.7.into())
+    );
     assert_eq!(told[1]["status"], "done");
     let before = text(&found);
     // A limit that is not higher is not tried again, one that is higher is.
-    run("batch {} -o {} --time-limit 0.5 --resume", &[&list, &found]).expect(1).saying("2 kept from before");
+    run("batch {} -o {} --time-limit 0.5 --resume", &[&list, &found])
+        .expect(1)
+        .saying("2 kept from before");
     assert_eq!(text(&found), before);
     if cfg!(target_os = "linux") {
         let words = "batch {} -o {} --memory-limit 64M --resume";
-        run(words, &[&list, &found]).expect(1).saying("1 kept from before").saying("error (memory)");
+        run(words, &[&list, &found])
+            .expect(1)
+            .saying("1 kept from before")
+            .saying("error (memory)");
         let told = results(&found);
         assert_eq!(
             (&told[0]["error"]["kind"], &told[0]["error"]["limit"]),
             (&"memory".into(), &(64 << 20).into())
         );
-        run(words, &[&list, &found]).expect(1).saying("2 kept from before");
+        run(words, &[&list, &found])
+            .expect(1)
+            .saying("2 kept from before");
     }
-    assert_eq!(names(folder.path()), ["good.ply", "jobs.jsonl", "results.jsonl"]);
+    assert_eq!(
+        names(folder.path()),
+        ["good.ply", "jobs.jsonl", "results.jsonl"]
+    );
 }
 
 #[test]
 fn results_are_kept_where_nothing_changed() {
     let folder = folder();
-    let (one, two) = (file(&folder, "one.obj", TETRAHEDRON), file(&folder, "two.obj", TETRAHEDRON));
+    let (one, two) = (
+        file(&folder, "one.obj", TETRAHEDRON),
+        file(&folder, "two.obj", TETRAHEDRON),
+    );
     let out = |name: &str| below(&folder, name);
     let of = |input: &Path, output: &str, tolerance: &str| json!({"input": input.display().to_string(), "output": out(output), "tolerance": tolerance});
     let (a, b) = (of(&one, "a.ply", "1%"), of(&two, "b.ply", "1%"));
@@ -207,10 +284,18 @@ fn results_are_kept_where_nothing_changed() {
     let told = results(&found);
     // The key tells what decides on a result, wherever it is.
     assert_eq!(told[0]["key"], told[1]["key"]);
-    run("batch {} -o {}", &[&list, &found]).expect(1).saying("--resume goes on with it");
+    run("batch {} -o {}", &[&list, &found])
+        .expect(1)
+        .saying("--resume goes on with it");
     let kept = |count: usize| {
-        let told = run("batch {} -o {} --resume", &[&list, &found]).expect(0).stderr;
-        let words = if count == 0 { "jobs ended;".to_owned() } else { format!(" {count} kept from before") };
+        let told = run("batch {} -o {} --resume", &[&list, &found])
+            .expect(0)
+            .stderr;
+        let words = if count == 0 {
+            "jobs ended;".to_owned()
+        } else {
+            format!(" {count} kept from before")
+        };
         assert!(told.contains(&words), "{told}");
     };
     kept(2);
@@ -231,16 +316,30 @@ fn results_are_kept_where_nothing_changed() {
 
 /// Waits until the results have so many lines.
 fn until_results(running: &mut Running, lines: usize, path: &Path) {
-    running.until("results", || std::fs::read_to_string(path).unwrap_or_default().lines().count() >= lines);
+    running.until("results", || {
+        std::fs::read_to_string(path)
+            .unwrap_or_default()
+            .lines()
+            .count()
+            >= lines
+    });
 }
 
 /// Jobs of some tenths of a second into a folder, and the results of an undisturbed batch.
 fn disturbed(folder: &TempDir, to: &str) -> (std::path::PathBuf, Vec<String>) {
-    let models = ["head", "cup", "shoe", "bunny", "teddy", "sphere", "cube", "radish"];
-    let mut outputs: Vec<String> =
-        models.iter().map(|model| below(folder, &format!("{to}/{model}.ply"))).collect();
+    let models = [
+        "head", "cup", "shoe", "bunny", "teddy", "sphere", "cube", "radish",
+    ];
+    let mut outputs: Vec<String> = models
+        .iter()
+        .map(|model| below(folder, &format!("{to}/{model}.ply")))
+        .collect();
     outputs.sort();
-    let all = models.iter().zip(models.iter().map(|model| below(folder, &format!("{to}/{model}.ply"))));
+    let all = models.iter().zip(
+        models
+            .iter()
+            .map(|model| below(folder, &format!("{to}/{model}.ply"))),
+    );
     let all = all.map(|(model, output)| {
         json!({"input": format!("builtin:{model}"), "output": output, "tolerance": "0.02%"})
     });
@@ -251,10 +350,16 @@ fn disturbed(folder: &TempDir, to: &str) -> (std::path::PathBuf, Vec<String>) {
 fn killed_twice_and_resumed_it_gives_the_same_bytes() {
     let folder = folder();
     let (list, outputs) = disturbed(&folder, "out");
-    let (found, again) = (folder.path().join("found.jsonl"), folder.path().join("again.jsonl"));
+    let (found, again) = (
+        folder.path().join("found.jsonl"),
+        folder.path().join("again.jsonl"),
+    );
     run("batch {} -o {} --jobs 1", &[&list, &found]).expect(0);
     let meshes = |outputs: &[String]| -> Vec<Vec<u8>> {
-        outputs.iter().map(|path| std::fs::read(path).expect("a mesh")).collect()
+        outputs
+            .iter()
+            .map(|path| std::fs::read(path).expect("a mesh"))
+            .collect()
     };
     let whole = meshes(&outputs);
     std::fs::remove_dir_all(below(&folder, "out")).expect("meshes");
@@ -279,12 +384,17 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
 #[test]
 fn a_file_that_another_batch_holds_is_waited_for_a_little() {
     let folder = folder();
-    let job = json!({"input": "builtin:cube", "output": below(&folder, "out.ply"), "tolerance": "1%"});
+    let job =
+        json!({"input": "builtin:cube", "output": below(&folder, "out.ply"), "tolerance": "1%"});
     let (list, found) = (jobs(&folder, &[job]), folder.path().join("found.jsonl"));
     let held = std::fs::File::create(&found).expect("a file");
     held.lock().expect("a lock");
     let refused = run("batch {} -o {} --resume", &[&list, &found]).expect(1);
-    assert!(refused.stderr.contains("is in use by another batch"), "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("is in use by another batch"),
+        "{}",
+        refused.stderr
+    );
     let holder = std::thread::spawn(move || {
         std::thread::sleep(Duration::from_millis(300));
         drop(held);
@@ -297,7 +407,9 @@ fn a_file_that_another_batch_holds_is_waited_for_a_little() {
 /// Whether a process has this word on its command line.
 #[cfg(target_os = "linux")]
 fn is_running(word: &str) -> bool {
-    let processes = std::fs::read_dir("/proc").expect("a folder").filter_map(Result::ok);
+    let processes = std::fs::read_dir("/proc")
+        .expect("a folder")
+        .filter_map(Result::ok);
     let mut lines = processes.filter_map(|own| std::fs::read(own.path().join("cmdline")).ok());
     lines.any(|line| String::from_utf8_lossy(&line).contains(word))
 }
@@ -307,12 +419,21 @@ fn is_running(word: &str) -> bool {
 fn jobs_do_not_outlive_a_batch_that_is_killed() {
     let folder = folder();
     let output = below(&folder, "long.ply");
-    let list = jobs(&folder, &[json!({"input": "builtin:bunny", "output": output, "tolerance": 1e-12})]);
-    let running = Running::start("batch {} -o {}", &[&list, &folder.path().join("found.jsonl")]);
+    let list = jobs(
+        &folder,
+        &[json!({"input": "builtin:bunny", "output": output, "tolerance": 1e-12})],
+    );
+    let running = Running::start(
+        "batch {} -o {}",
+        &[&list, &folder.path().join("found.jsonl")],
+    );
     let wait_until = |expected: bool| {
         let start = Instant::now();
         while is_running(&output) != expected {
-            assert!(start.elapsed() < Duration::from_secs(60), "running is not {expected}");
+            assert!(
+                start.elapsed() < Duration::from_secs(60),
+                "running is not {expected}"
+            );
             std::thread::sleep(Duration::from_millis(5));
         }
     };
@@ -327,7 +448,9 @@ fn jobs_do_not_outlive_a_batch_that_is_killed() {
 fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = line.and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok()).unwrap_or(0);
+    let ignored = line
+        .and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
+        .unwrap_or(0);
     ignored >> (signal - 1) & 1 == 1
 }
 
@@ -351,14 +474,24 @@ fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
         let mut running = Running::start("batch {} -o {} --jobs 2", &[&list, &found]);
         until_results(&mut running, 2, &found);
         running.signal(signal);
-        running.end().expect(code).saying("cancelled by").saying("found.jsonl written by then");
+        running
+            .end()
+            .expect(code)
+            .saying("cancelled by")
+            .saying("found.jsonl written by then");
         let there = names(&folder.path().join("out"));
         assert!(there.iter().all(|name| name.ends_with(".ply")), "{there:?}");
         let lines = results(&found);
-        assert!((2..=outputs.len()).contains(&lines.len()), "{}", lines.len());
+        assert!(
+            (2..=outputs.len()).contains(&lines.len()),
+            "{}",
+            lines.len()
+        );
         assert!(lines.iter().all(|line| line["status"] == "done"));
         std::fs::write(&list, all).expect("jobs");
-        run("batch {} -o {} --resume", &[&list, &found]).expect(0).saying("kept from before");
+        run("batch {} -o {} --resume", &[&list, &found])
+            .expect(0)
+            .saying("kept from before");
         assert_eq!(results(&found).len(), outputs.len());
     }
 }
@@ -379,19 +512,30 @@ fn jobs_come_from_standard_input_and_results_go_to_standard_output_in_order() {
     run("batch {} -o {} --resume", &[&list, &found]).expect(0);
     assert_eq!(told, text(&found));
     assert_eq!(told.lines().count(), outputs.len());
-    run("batch {} -o - --resume", &[&list]).expect(2).saying("--resume");
+    run("batch {} -o - --resume", &[&list])
+        .expect(2)
+        .saying("--resume");
 }
 
 #[test]
 fn files_that_are_no_results_and_jobs_that_are_not_there_are_refused() {
     let folder = folder();
-    let list = jobs(&folder, &[json!({"input": "builtin:cube", "output": below(&folder, "x.ply")})]);
+    let list = jobs(
+        &folder,
+        &[json!({"input": "builtin:cube", "output": below(&folder, "x.ply")})],
+    );
     let notes = file(&folder, "notes.txt", "dear diary\n");
-    run("batch {} -o {} --resume", &[&list, &notes]).expect(1).saying("line 1 is no result");
+    run("batch {} -o {} --resume", &[&list, &notes])
+        .expect(1)
+        .saying("line 1 is no result");
     assert_eq!(text(&notes), "dear diary\n");
     let none = folder.path().join("none.jsonl");
-    run("batch {} -o {}", &[&none, &folder.path().join("r.jsonl")]).expect(1).saying("none.jsonl");
-    run("batch {} -o {} --time-limit 0", &[&list, &none]).expect(2).saying("above 0");
+    run("batch {} -o {}", &[&none, &folder.path().join("r.jsonl")])
+        .expect(1)
+        .saying("none.jsonl");
+    run("batch {} -o {} --time-limit 0", &[&list, &none])
+        .expect(2)
+        .saying("above 0");
     assert_eq!(names(folder.path()), ["jobs.jsonl", "notes.txt"]);
     // No jobs at all.
     let empty = file(&folder, "empty.jsonl", "\n\n");

@@ -16,7 +16,10 @@ fn wrinkled(folder: &TempDir) -> PathBuf {
         property list uchar int vertex_indices\nend_header\n"
             .to_owned();
     for (i, j) in (0..5).flat_map(|j| (0..5).map(move |i| (i, j))) {
-        let (s, t) = (f64::from((7 * i + 3 * j) % 5) / 5.0, f64::from((2 * i + 5 * j) % 7) / 7.0);
+        let (s, t) = (
+            f64::from((7 * i + 3 * j) % 5) / 5.0,
+            f64::from((2 * i + 5 * j) % 7) / 7.0,
+        );
         text += &format!("{i} {j} 0 {s} {t} {} 3\n", (i * j) % 3);
     }
     for (i, j) in (0..4).flat_map(|j| (0..4).map(move |i| (i, j))) {
@@ -45,29 +48,63 @@ fn texture_coordinates_are_within_their_tolerance() {
         .expect(0)
         .saying("s,t: within ");
         let report = report(&folder);
-        let [goal] = &report["attributes"].as_array().expect("goals")[..] else { panic!("{report:#}") };
+        let [goal] = &report["attributes"].as_array().expect("goals")[..] else {
+            panic!("{report:#}")
+        };
         assert_eq!(goal["name"], "s,t");
-        let (asked, upper) = (goal["tolerance"].as_f64().expect("a number"), goal["upper"].as_f64());
-        assert!(upper.is_some_and(|upper| upper > 0.1 * asked && upper <= asked), "{goal}");
+        let (asked, upper) = (
+            goal["tolerance"].as_f64().expect("a number"),
+            goal["upper"].as_f64(),
+        );
+        assert!(
+            upper.is_some_and(|upper| upper > 0.1 * asked && upper <= asked),
+            "{goal}"
+        );
         triangles.push(report["output"]["triangles"].as_u64().expect("a number"));
     }
     // The square is flat: all of this is for the texture's sake.
-    assert!(triangles[0] > 4 * 32 && 2 * triangles[2] > 3 * triangles[1], "{triangles:?}");
+    assert!(
+        triangles[0] > 4 * 32 && 2 * triangles[2] > 3 * triangles[1],
+        "{triangles:?}"
+    );
     assert!(triangles[1] >= triangles[0]);
-    run("refine {} -o {} --uv linear --uv-tolerance 1e-6", &[&input, &output])
-        .expect(0)
-        .saying("s,t: exact, being linear on each face");
-    run("refine {} -o {} --channel heat=smooth --attribute-tolerance heat=0.01", &[&input, &output])
-        .expect(0)
-        .saying("heat: within ");
+    run(
+        "refine {} -o {} --uv linear --uv-tolerance 1e-6",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("s,t: exact, being linear on each face");
+    run(
+        "refine {} -o {} --channel heat=smooth --attribute-tolerance heat=0.01",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("heat: within ");
     // Too much is told, and what was reached.
-    run("refine {} -o {} --uv-tolerance 1e-4 --max-triangles 2000 --report {}", &[&input, &output, &json])
-        .expect(3)
-        .saying("was reached before the channels' tolerances");
-    assert!(report(&folder)["attributes"][0]["upper"].as_f64().expect("a bound") > 1e-4);
+    run(
+        "refine {} -o {} --uv-tolerance 1e-4 --max-triangles 2000 --report {}",
+        &[&input, &output, &json],
+    )
+    .expect(3)
+    .saying("was reached before the channels' tolerances");
+    assert!(
+        report(&folder)["attributes"][0]["upper"]
+            .as_f64()
+            .expect("a bound")
+            > 1e-4
+    );
     // As far as there is room: not a coarse mesh because a fine one is too much.
-    assert!(report(&folder)["output"]["triangles"].as_u64().expect("a number") > 500);
-    run("refine {} --dry-run -o {} --uv-tolerance 0.005", &[&input, &output]).expect(0);
+    assert!(
+        report(&folder)["output"]["triangles"]
+            .as_u64()
+            .expect("a number")
+            > 500
+    );
+    run(
+        "refine {} --dry-run -o {} --uv-tolerance 0.005",
+        &[&input, &output],
+    )
+    .expect(0);
 }
 
 #[test]
@@ -76,36 +113,74 @@ fn tolerances_that_nothing_can_meet_are_refused() {
     let (input, output) = (wrinkled(&folder), folder.path().join("out.ply"));
     let stl = folder.path().join("out.stl");
     for (options, words) in [
-        ("--uv-tolerance 0.01 --optimize", "--uv-tolerance divides until it is met"),
-        ("--uv-tolerance 0.01 --triangles 500", "that does not go with --triangles"),
-        ("--attribute-tolerance s,t=0.01 --balance", "--attribute-tolerance divides until it is met"),
+        (
+            "--uv-tolerance 0.01 --optimize",
+            "--uv-tolerance divides until it is met",
+        ),
+        (
+            "--uv-tolerance 0.01 --triangles 500",
+            "that does not go with --triangles",
+        ),
+        (
+            "--attribute-tolerance s,t=0.01 --balance",
+            "--attribute-tolerance divides until it is met",
+        ),
         ("--uv-tolerance 0.01 --method uniform", "--uv-tolerance"),
-        ("--attribute-tolerance cold=1", "has no channel 'cold'; those that come out are: s,t; heat; part"),
+        (
+            "--attribute-tolerance cold=1",
+            "has no channel 'cold'; those that come out are: s,t; heat; part",
+        ),
         ("--attribute-tolerance part=1", "'part' is inherited"),
-        ("--uv-tolerance 0.01 --channel s,t=drop", "no texture coordinates that come out"),
-        ("--morph-tolerance 1%", "--morph-tolerance is for glTF assets"),
+        (
+            "--uv-tolerance 0.01 --channel s,t=drop",
+            "no texture coordinates that come out",
+        ),
+        (
+            "--morph-tolerance 1%",
+            "--morph-tolerance is for glTF assets",
+        ),
     ] {
-        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(2).saying(words);
+        run(
+            &format!("refine {{}} -o {{}} {options}"),
+            &[&input, &output],
+        )
+        .expect(2)
+        .saying(words);
     }
-    run("refine {} -o {} --uv-tolerance 0.01", &[&input, &stl]).expect(2).saying("that come out");
+    run("refine {} -o {} --uv-tolerance 0.01", &[&input, &stl])
+        .expect(2)
+        .saying("that come out");
     run("refine {} -o {} --uv-tolerance 1@0", &[&input, &output]).expect(2);
 }
 
 /// A flat square, and a target that makes a wave of it.
 fn wave(folder: &TempDir) -> PathBuf {
-    let points: Vec<[f32; 3]> = (0..25).map(|v| [(v % 5) as f32, (v / 5) as f32, 0.0]).collect();
+    let points: Vec<[f32; 3]> = (0..25)
+        .map(|v| [(v % 5) as f32, (v / 5) as f32, 0.0])
+        .collect();
     let mut triangles = Vec::new();
     for v in (0..20u32).filter(|v| v % 5 < 4) {
         triangles.extend([[v, v + 1, v + 6], [v, v + 6, v + 5]]);
     }
     let mut builder = Builder::new();
     let (position, indices) = (builder.points(&points), builder.indices(&triangles));
-    let up = builder.points(&points.iter().map(|p| [0.0, 0.0, added(*p)]).collect::<Vec<_>>());
-    let texture =
-        builder.floats(&points.iter().flat_map(|p| [p[0] / 4.0, p[1] / 4.0]).collect::<Vec<_>>(), 2);
-    builder
-        .primitive(json!({"attributes": {"POSITION": position, "TEXCOORD_0": texture}, "indices": indices,
-        "targets": [{"POSITION": up}]}));
+    let up = builder.points(
+        &points
+            .iter()
+            .map(|p| [0.0, 0.0, added(*p)])
+            .collect::<Vec<_>>(),
+    );
+    let texture = builder.floats(
+        &points
+            .iter()
+            .flat_map(|p| [p[0] / 4.0, p[1] / 4.0])
+            .collect::<Vec<_>>(),
+        2,
+    );
+    builder.primitive(
+        json!({"attributes": {"POSITION": position, "TEXCOORD_0": texture}, "indices": indices,
+        "targets": [{"POSITION": up}]}),
+    );
     let input = folder.path().join("wave.glb");
     builder.write(&input);
     input
@@ -121,19 +196,31 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
     let (input, output) = (wave(&folder), folder.path().join("out.glb"));
     let before = Glb::read(&input);
     let control = before.points(&before.primitive(0)["attributes"]["POSITION"]);
-    let moved: Vec<[f64; 3]> =
-        control.iter().map(|p| [p[0], p[1], f64::from(added(p.map(|x| x as f32)))]).collect();
+    let moved: Vec<[f64; 3]> = control
+        .iter()
+        .map(|p| [p[0], p[1], f64::from(added(p.map(|x| x as f32)))])
+        .collect();
     let reference = limit(&moved, &before.triangles(0), 2e-5);
     let apart = |options: &str| {
-        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
+        run(
+            &format!("refine {{}} -o {{}} {options}"),
+            &[&input, &output],
+        )
+        .expect(0);
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);
         let added = glb.points(&primitive["targets"][0]["POSITION"]);
-        let posed: Vec<[f64; 3]> =
-            base.iter().zip(added).map(|(p, d)| [0, 1, 2].map(|i| p[i] + d[i])).collect();
+        let posed: Vec<[f64; 3]> = base
+            .iter()
+            .zip(added)
+            .map(|(p, d)| [0, 1, 2].map(|i| p[i] + d[i]))
+            .collect();
         let triangles = glb.triangles(0);
-        let surface = limitmesh::Triangles { positions: &posed, triangles: &triangles };
+        let surface = limitmesh::Triangles {
+            positions: &posed,
+            triangles: &triangles,
+        };
         let [from, to] = distances(surface, reference.as_triangles());
         (from.max(to), triangles.len())
     };
@@ -142,7 +229,13 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
     let (usual, _) = apart("--tolerance 0.5%");
     assert!(usual < (0.005 + 3e-5) * diagonal, "{usual}");
     let (finer, more) = apart("--tolerance 0.5% --morph-tolerance 0.1%");
-    assert!(finer < (0.001 + 3e-5) * diagonal && finer < usual, "{finer}");
+    assert!(
+        finer < (0.001 + 3e-5) * diagonal && finer < usual,
+        "{finer}"
+    );
     let (flat, least) = apart("--tolerance 0.5% --morph-tolerance none");
-    assert!(flat > 0.006 * diagonal && 4 * least < more, "{flat}, {least}");
+    assert!(
+        flat > 0.006 * diagonal && 4 * least < more,
+        "{flat}, {least}"
+    );
 }

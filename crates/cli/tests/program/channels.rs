@@ -13,12 +13,24 @@ use crate::common::{file, folder, run, soup};
 /// An octahedron in PLY, whose vertices have their x as `heat` and twice that as the whole number `id`.
 fn octahedron(folder: &TempDir) -> PathBuf {
     let mut text = "ply\nformat ascii 1.0\nelement vertex 6\n".to_owned();
-    for (kind, name) in [("double", "x"), ("double", "y"), ("double", "z"), ("double", "heat"), ("int", "id")]
-    {
+    for (kind, name) in [
+        ("double", "x"),
+        ("double", "y"),
+        ("double", "z"),
+        ("double", "heat"),
+        ("int", "id"),
+    ] {
         writeln!(text, "property {kind} {name}").expect("text");
     }
     text += "element face 8\nproperty list uchar int vertex_indices\nend_header\n";
-    for [x, y, z] in [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]] {
+    for [x, y, z] in [
+        [1, 0, 0],
+        [-1, 0, 0],
+        [0, 1, 0],
+        [0, -1, 0],
+        [0, 0, 1],
+        [0, 0, -1],
+    ] {
         writeln!(text, "{x} {y} {z} {x} {}", 2 * x).expect("text");
     }
     for [a, b] in [[0, 2], [2, 1], [1, 3], [3, 0]] {
@@ -30,8 +42,14 @@ fn octahedron(folder: &TempDir) -> PathBuf {
 /// The numbers of a channel at the corners of a file, with x there.
 fn beside_x(path: &Path, name: &str) -> Vec<(f64, f64)> {
     let soup = soup(path);
-    let own: &Channel = soup.channels.iter().find(|channel| channel.name == name).expect("the channel");
-    (0..soup.positions.len()).map(|v| (own.value(v)[0], soup.positions[v][0])).collect()
+    let own: &Channel = soup
+        .channels
+        .iter()
+        .find(|channel| channel.name == name)
+        .expect("the channel");
+    (0..soup.positions.len())
+        .map(|v| (own.value(v)[0], soup.positions[v][0]))
+        .collect()
 }
 
 #[test]
@@ -46,26 +64,57 @@ fn channels_are_carried_as_asked() {
     // What is smooth follows the surface as x does, whole numbers too.
     let report = refine("--channel heat=smooth --channel id=smooth");
     assert_eq!(report["input"]["channels"][0]["interpolation"], "smooth");
-    assert!(beside_x(&output, "heat").iter().all(|&(heat, x)| (heat - x).abs() < 1e-12));
-    assert!(beside_x(&output, "id").iter().all(|&(id, x)| (id - 2.0 * x).abs() < 1e-12));
+    assert!(
+        beside_x(&output, "heat")
+            .iter()
+            .all(|&(heat, x)| (heat - x).abs() < 1e-12)
+    );
+    assert!(
+        beside_x(&output, "id")
+            .iter()
+            .all(|&(id, x)| (id - 2.0 * x).abs() < 1e-12)
+    );
     // Linear, as usual for such numbers: the octahedron's vertices keep theirs, though they move inwards.
-    for options in
-        ["", "--channel id=linear", "--channel heat=smooth --channel heat=linear --channel id=linear"]
-    {
+    for options in [
+        "",
+        "--channel id=linear",
+        "--channel heat=smooth --channel heat=linear --channel id=linear",
+    ] {
         let report = refine(options);
-        assert_eq!(report["input"]["channels"][0]["interpolation"], "linear", "{options}");
+        assert_eq!(
+            report["input"]["channels"][0]["interpolation"], "linear",
+            "{options}"
+        );
         let heat = beside_x(&output, "heat");
-        assert!(heat.iter().any(|&(heat, x)| heat == 1.0 && x < 0.9), "{options}");
-        assert!(heat.iter().any(|&(heat, _)| heat.fract() != 0.0), "{options}");
+        assert!(
+            heat.iter().any(|&(heat, x)| heat == 1.0 && x < 0.9),
+            "{options}"
+        );
+        assert!(
+            heat.iter().any(|&(heat, _)| heat.fract() != 0.0),
+            "{options}"
+        );
         if !options.is_empty() {
             let id = beside_x(&output, "id");
-            assert!(heat.iter().zip(&id).all(|((heat, _), (id, _))| (2.0 * heat - id).abs() < 1e-12));
+            assert!(
+                heat.iter()
+                    .zip(&id)
+                    .all(|((heat, _), (id, _))| (2.0 * heat - id).abs() < 1e-12)
+            );
         }
     }
     // Never blended.
     refine("--channel heat=nearest");
-    assert!(beside_x(&output, "heat").iter().all(|&(heat, _)| [-1.0, 0.0, 1.0].contains(&heat)));
-    assert!(beside_x(&output, "id").iter().all(|&(id, _)| [-2.0, 0.0, 2.0].contains(&id)));
+    assert!(
+        beside_x(&output, "heat")
+            .iter()
+            .all(|&(heat, _)| [-1.0, 0.0, 1.0].contains(&heat))
+    );
+    assert!(
+        beside_x(&output, "id")
+            .iter()
+            .all(|&(id, _)| [-2.0, 0.0, 2.0].contains(&id))
+    );
 }
 
 #[test]
@@ -73,11 +122,22 @@ fn channels_are_left_out_on_demand() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    let found = run("refine {} -o {} --channel heat=drop --report -", &[&input, &output]).expect(0);
-    assert_eq!(found.json()["input"]["channels"][0]["interpolation"], "drop");
+    let found = run(
+        "refine {} -o {} --channel heat=drop --report -",
+        &[&input, &output],
+    )
+    .expect(0);
+    assert_eq!(
+        found.json()["input"]["channels"][0]["interpolation"],
+        "drop"
+    );
     found.saying("left out: heat (by --channel)");
     // Normals are in every PLY file.
-    let names = soup(&output).channels.into_iter().map(|own| own.name).filter(|name| name != "normals");
+    let names = soup(&output)
+        .channels
+        .into_iter()
+        .map(|own| own.name)
+        .filter(|name| name != "normals");
     let names: Vec<String> = names.collect();
     assert_eq!(names, ["id"]);
     // Where no channel is left, nothing tells faces apart: flat regions are triangulated from their rims.
@@ -85,7 +145,11 @@ fn channels_are_left_out_on_demand() {
                 usemtl b\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let cube = file(&folder, "cube.obj", cube);
     let output = folder.path().join("out.obj");
-    run("refine {} -o {} --crease-angle 30 --channel materials=drop", &[&cube, &output]).expect(0);
+    run(
+        "refine {} -o {} --crease-angle 30 --channel materials=drop",
+        &[&cube, &output],
+    )
+    .expect(0);
     let written = std::fs::read_to_string(&output).expect("a file");
     assert!(!written.contains("usemtl"), "{written}");
 }
@@ -98,14 +162,29 @@ fn what_cannot_be_done_is_refused() {
     run("refine {} -o {} --channel hat=drop", &[&input, &output])
         .expect(2)
         .saying("octahedron.ply has no channel 'hat'; there are: heat; id");
-    run("refine {} --dry-run --channel hat=drop", &[&input]).expect(2).saying("no channel 'hat'");
-    run("refine builtin:cup -o {} --channel heat=drop", &[&output]).expect(2).saying("there is none");
-    run("refine {} -o {} --channel heat", &[&input, &output]).expect(2).saying("has no =");
-    run("refine {} -o {} --channel heat=blend", &[&input, &output]).expect(2).saying("'blend' is none of");
-    let labelled = file(&folder, "in.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
-    run("refine {} -o {} --channel materials=linear", &[&labelled, &output])
+    run("refine {} --dry-run --channel hat=drop", &[&input])
         .expect(2)
-        .saying("'materials' has one value a face; it can be nearest or drop");
+        .saying("no channel 'hat'");
+    run("refine builtin:cup -o {} --channel heat=drop", &[&output])
+        .expect(2)
+        .saying("there is none");
+    run("refine {} -o {} --channel heat", &[&input, &output])
+        .expect(2)
+        .saying("has no =");
+    run("refine {} -o {} --channel heat=blend", &[&input, &output])
+        .expect(2)
+        .saying("'blend' is none of");
+    let labelled = file(
+        &folder,
+        "in.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n",
+    );
+    run(
+        "refine {} -o {} --channel materials=linear",
+        &[&labelled, &output],
+    )
+    .expect(2)
+    .saying("'materials' has one value a face; it can be nearest or drop");
     // Names may have blanks.
     let blank = Path::new("texture coordinates=linear");
     run("refine {} -o {} --channel {}", &[&labelled, &output, blank]).expect(0);
@@ -115,18 +194,41 @@ fn what_cannot_be_done_is_refused() {
 fn attributes_of_assets_are_carried_as_asked() {
     let folder = folder();
     let output = folder.path().join("out.glb");
-    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, r#","_HEAT":0,"_SIDE":4"#);
-    let command = "refine {} -o {} --tolerance 1% --channel _HEAT=smooth --channel _SIDE=drop --report -";
-    let report = run(command, &[&input, &output]).expect(0).saying("left out: _SIDE").json();
-    assert_eq!(report["meshes"][0]["input"]["channels"][0]["interpolation"], "smooth");
-    assert_eq!(report["meshes"][0]["input"]["channels"][1]["interpolation"], "drop");
+    let input = cube(
+        &folder,
+        "in.gltf",
+        r#"{"mesh":0}"#,
+        r#","_HEAT":0,"_SIDE":4"#,
+    );
+    let command =
+        "refine {} -o {} --tolerance 1% --channel _HEAT=smooth --channel _SIDE=drop --report -";
+    let report = run(command, &[&input, &output])
+        .expect(0)
+        .saying("left out: _SIDE")
+        .json();
+    assert_eq!(
+        report["meshes"][0]["input"]["channels"][0]["interpolation"],
+        "smooth"
+    );
+    assert_eq!(
+        report["meshes"][0]["input"]["channels"][1]["interpolation"],
+        "drop"
+    );
     // Positions as values go where positions go.
     let mesh = first_mesh(&output);
-    let [heat] = &mesh.attributes[..] else { panic!("{:?}", mesh.attributes.len()) };
+    let [heat] = &mesh.attributes[..] else {
+        panic!("{:?}", mesh.attributes.len())
+    };
     for (face, corners) in mesh.soup.faces.iter().zip(&heat.corners) {
         for (&v, &value) in face.iter().zip(corners) {
-            let (p, q) = (mesh.soup.positions[v as usize], &heat.values[3 * value as usize..][..3]);
-            assert!(p.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-6), "{p:?} {q:?}");
+            let (p, q) = (
+                mesh.soup.positions[v as usize],
+                &heat.values[3 * value as usize..][..3],
+            );
+            assert!(
+                p.iter().zip(q).all(|(a, b)| (a - b).abs() < 1e-6),
+                "{p:?} {q:?}"
+            );
         }
     }
     run("refine {} -o {} --channel HEAT=drop", &[&input, &output])
@@ -141,11 +243,21 @@ fn no_steps_leave_texture_coordinates_where_they_are() {
     let text = "v 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nv 2 1 2\nvt 0 0\nvt 0.9 0.1\nvt 1 1\nvt 0 0.7\nvt 0.3 0.45\n\
         f 1/1 2/2 5/5\nf 2/2 3/3 5/5\nf 3/3 4/4 5/5\nf 4/4 1/1 5/5\n";
     let (input, output) = (file(&folder, "in.obj", text), folder.path().join("out.obj"));
-    run("refine {} -o {} --method uniform --levels 0", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --method uniform --levels 0",
+        &[&input, &output],
+    )
+    .expect(0);
     let corners = |path: &std::path::Path| {
         let soup = soup(path);
-        let texture = soup.channels.iter().find(|own| own.name == limitmesh_io::TEXTURE).expect("a texture");
-        (0..12).map(|corner| texture.value(corner).to_vec()).collect::<Vec<_>>()
+        let texture = soup
+            .channels
+            .iter()
+            .find(|own| own.name == limitmesh_io::TEXTURE)
+            .expect("a texture");
+        (0..12)
+            .map(|corner| texture.value(corner).to_vec())
+            .collect::<Vec<_>>()
     };
     assert_eq!(corners(&input), corners(&output));
 }
@@ -174,36 +286,68 @@ fn materials_that_stay_behind_are_told() {
         let output = other.join("out.obj");
         let said = run("refine {} -o {}", &[input, &output]).expect(0).stderr;
         let text = std::fs::read_to_string(&output).expect("written");
-        (said, text.lines().find_map(|line| line.strip_prefix("mtllib ")).expect("a library").to_owned())
+        (
+            said,
+            text.lines()
+                .find_map(|line| line.strip_prefix("mtllib "))
+                .expect("a library")
+                .to_owned(),
+        )
     };
     let (said, name) = library(&input);
     assert_eq!(name, "paint.mtl");
-    assert!(said.contains("paint.mtl: named as in the input, and not copied: No such file"), "{said}");
+    assert!(
+        said.contains("paint.mtl: named as in the input, and not copied: No such file"),
+        "{said}"
+    );
     // A file that is there comes along; so do several in one line.
     file(&folder, "paint.mtl", "newmtl red\n");
     let (said, name) = library(&input);
     assert!(!said.contains("paint.mtl"), "{said}");
     assert_eq!(name, "paint.mtl");
-    assert_eq!(std::fs::read(other.join(name)).expect("a copy"), b"newmtl red\n");
-    let several = file(&folder, "several.obj", &text.replace("paint.mtl", "paint.mtl other.mtl"));
+    assert_eq!(
+        std::fs::read(other.join(name)).expect("a copy"),
+        b"newmtl red\n"
+    );
+    let several = file(
+        &folder,
+        "several.obj",
+        &text.replace("paint.mtl", "paint.mtl other.mtl"),
+    );
     file(&folder, "other.mtl", "# other");
     assert_eq!(library(&several).1, "paint.mtl other.mtl");
-    assert_eq!(std::fs::read(other.join("other.mtl")).expect("a copy"), b"# other");
-    let blank = file(&folder, "blank.obj", &text.replace("paint.mtl", "my paint.mtl"));
+    assert_eq!(
+        std::fs::read(other.join("other.mtl")).expect("a copy"),
+        b"# other"
+    );
+    let blank = file(
+        &folder,
+        "blank.obj",
+        &text.replace("paint.mtl", "my paint.mtl"),
+    );
     file(&folder, "my paint.mtl", "# mine");
     assert_eq!(library(&blank).1, "my paint.mtl");
-    assert_eq!(std::fs::read(other.join("my paint.mtl")).expect("a copy"), b"# mine");
+    assert_eq!(
+        std::fs::read(other.join("my paint.mtl")).expect("a copy"),
+        b"# mine"
+    );
     // Other files are not reached, and none that is there is replaced.
     let whole = folder.path().join("paint.mtl").display().to_string();
     let absolute = file(&folder, "absolute.obj", &text.replace("paint.mtl", &whole));
     let (said, name) = library(&absolute);
     assert_eq!(name, whole);
-    assert!(said.contains("not below the folder of the file that names it"), "{said}");
+    assert!(
+        said.contains("not below the folder of the file that names it"),
+        "{said}"
+    );
     file(&folder, "paint.mtl", "newmtl blue\n");
     run("refine {} -o {}", &[&input, &other.join("out.obj")])
         .expect(1)
         .saying("it is there already, and not the same");
-    assert_eq!(std::fs::read(other.join("paint.mtl")).expect("a copy"), b"newmtl red\n");
+    assert_eq!(
+        std::fs::read(other.join("paint.mtl")).expect("a copy"),
+        b"newmtl red\n"
+    );
     let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
     assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
 }
@@ -213,7 +357,11 @@ fn drum(folder: &TempDir, name: &str, stl: Option<&dyn Fn(u32) -> u32>) -> PathB
     let mut text = "ply\nformat ascii 1.0\nelement vertex 50\n".to_owned();
     text += "property double x\nproperty double y\nproperty double z\nelement face 96\n";
     text += "property list uchar int vertex_indices\n";
-    text += if stl.is_some() { "property ushort stl\nend_header\n" } else { "end_header\n" };
+    text += if stl.is_some() {
+        "property ushort stl\nend_header\n"
+    } else {
+        "end_header\n"
+    };
     for z in 0..2 {
         for i in 0..24 {
             let (s, c) = (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
@@ -223,7 +371,12 @@ fn drum(folder: &TempDir, name: &str, stl: Option<&dyn Fn(u32) -> u32>) -> PathB
     text += "0 0 0\n0 0 1\n";
     for i in 0..24u32 {
         let j = (i + 1) % 24;
-        for [a, b, c] in [[i, j, j + 24], [i, j + 24, i + 24], [j, i, 48], [i + 24, j + 24, 49]] {
+        for [a, b, c] in [
+            [i, j, j + 24],
+            [i, j + 24, i + 24],
+            [j, i, 48],
+            [i + 24, j + 24, 49],
+        ] {
             let value = stl.map_or_else(String::new, |stl| format!(" {}", stl(i)));
             writeln!(text, "3 {a} {b} {c}{value}").expect("text");
         }
@@ -248,9 +401,16 @@ fn values_of_faces_bound_flat_regions() {
     let divided = refined("plain.ply", None, "--divide-flat").faces.len();
     assert!(plain <= halves.faces.len() && 2 * halves.faces.len() < divided);
     // By symmetry the halves end where y is 0.
-    let stl = halves.channels.iter().find(|channel| channel.name == "stl").expect("the channel");
+    let stl = halves
+        .channels
+        .iter()
+        .find(|channel| channel.name == "stl")
+        .expect("the channel");
     for (face, corners) in halves.faces.iter().enumerate() {
-        let y: f64 = corners.iter().map(|&v| halves.positions[v as usize][1]).sum();
+        let y: f64 = corners
+            .iter()
+            .map(|&v| halves.positions[v as usize][1])
+            .sum();
         assert_eq!(stl.value(face), [f64::from(y < 0.0)]);
     }
 }

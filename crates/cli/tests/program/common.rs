@@ -27,7 +27,13 @@ impl Run {
     /// The same run, if it ended with this code.
     #[track_caller]
     pub(crate) fn expect(self, code: i32) -> Self {
-        assert_eq!(self.code, Some(code), "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        assert_eq!(
+            self.code,
+            Some(code),
+            "stdout:\n{}\nstderr:\n{}",
+            self.stdout,
+            self.stderr
+        );
         self
     }
 
@@ -40,7 +46,11 @@ impl Run {
     /// The same run, if its messages contain `words`.
     #[track_caller]
     pub(crate) fn saying(self, words: &str) -> Self {
-        assert!(self.stderr.contains(words), "expected '{words}' in:\n{}", self.stderr);
+        assert!(
+            self.stderr.contains(words),
+            "expected '{words}' in:\n{}",
+            self.stderr
+        );
         self
     }
 }
@@ -73,7 +83,11 @@ pub(crate) fn run(arguments: &str, paths: &[&Path]) -> Run {
     let text = |reader: thread::JoinHandle<Vec<u8>>| {
         String::from_utf8(reader.join().expect("read")).expect("output is UTF-8")
     };
-    Run { code, stdout: text(stdout), stderr: text(stderr) }
+    Run {
+        code,
+        stdout: text(stdout),
+        stderr: text(stderr),
+    }
 }
 
 /// The program at work; it is killed when this goes.
@@ -82,7 +96,13 @@ pub(crate) struct Running(Child);
 impl Running {
     pub(crate) fn start(arguments: &str, paths: &[&Path]) -> Self {
         let mut command = command(arguments, paths);
-        Self(command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts"))
+        Self(
+            command
+                .stdout(Stdio::null())
+                .stderr(Stdio::piped())
+                .spawn()
+                .expect("the program starts"),
+        )
     }
 
     /// Waits until something holds; before that the program must not end.
@@ -92,7 +112,10 @@ impl Running {
         while !holds() {
             let ended = self.0.try_wait().expect("a child can be waited for");
             assert!(ended.is_none() || holds(), "{what}: it has ended before");
-            assert!(start.elapsed() < TIME_LIMIT, "{what}: nothing for {TIME_LIMIT:?}");
+            assert!(
+                start.elapsed() < TIME_LIMIT,
+                "{what}: nothing for {TIME_LIMIT:?}"
+            );
             thread::sleep(Duration::from_millis(1));
         }
     }
@@ -101,7 +124,9 @@ impl Running {
     #[cfg(unix)]
     #[track_caller]
     pub(crate) fn signal(&self, name: &str) {
-        let kill = Command::new("kill").args([&format!("-{name}"), &self.0.id().to_string()]).status();
+        let kill = Command::new("kill")
+            .args([&format!("-{name}"), &self.0.id().to_string()])
+            .status();
         assert!(kill.expect("kill").success());
     }
 
@@ -111,7 +136,11 @@ impl Running {
         let stderr = read_all(self.0.stderr.take());
         let code = wait(&mut self.0, "to its end");
         let stderr = String::from_utf8(stderr.join().expect("read")).expect("output is UTF-8");
-        Run { code, stdout: String::new(), stderr }
+        Run {
+            code,
+            stdout: String::new(),
+            stderr,
+        }
     }
 }
 
@@ -126,7 +155,10 @@ impl Drop for Running {
 fn read_all(stream: Option<impl Read + Send + 'static>) -> thread::JoinHandle<Vec<u8>> {
     thread::spawn(move || {
         let mut bytes = Vec::new();
-        stream.expect("piped").read_to_end(&mut bytes).expect("readable");
+        stream
+            .expect("piped")
+            .read_to_end(&mut bytes)
+            .expect("readable");
         bytes
     })
 }
@@ -153,8 +185,14 @@ pub(crate) fn folder() -> TempDir {
 /// Names of the files in a folder, sorted.
 pub(crate) fn names(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");
-    let mut names: Vec<String> =
-        entries.map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> = entries
+        .map(|e| {
+            e.expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
     names.sort();
     names
 }
@@ -178,7 +216,9 @@ pub(crate) struct Counts {
 
 /// A small file that is kept beside the tests.
 pub(crate) fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name)
 }
 
 /// Reads a mesh back.
@@ -197,7 +237,8 @@ pub(crate) fn counts(soup: &PolygonSoup) -> Counts {
             *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
         }
     }
-    let having = |test: fn(u64) -> bool| edges.values().filter(|&&faces| test(faces)).count() as u64;
+    let having =
+        |test: fn(u64) -> bool| edges.values().filter(|&&faces| test(faces)).count() as u64;
     let vertices = soup.positions.len() as u64;
     let triangles = soup.faces.len() as u64;
     Counts {
@@ -211,7 +252,11 @@ pub(crate) fn counts(soup: &PolygonSoup) -> Counts {
 
 /// The counts that a report claims of its output.
 pub(crate) fn claimed(output: &Value) -> Counts {
-    let count = |key: &str| output[key].as_u64().unwrap_or_else(|| panic!("{key} in {output}"));
+    let count = |key: &str| {
+        output[key]
+            .as_u64()
+            .unwrap_or_else(|| panic!("{key} in {output}"))
+    };
     Counts {
         vertices: count("vertices"),
         triangles: count("triangles"),

@@ -6,9 +6,14 @@ use crate::common::{has_keys, run};
 
 #[test]
 fn methods_stand_side_by_side_at_nearly_equal_counts() {
-    let list = run("compare builtin:head --json --samples 20000", &[]).expect(0).json();
+    let list = run("compare builtin:head --json --samples 20000", &[])
+        .expect(0)
+        .json();
     let list = list.as_array().expect("a list");
-    let names: Vec<_> = list.iter().map(|m| m["method"].as_str().expect("a name")).collect();
+    let names: Vec<_> = list
+        .iter()
+        .map(|m| m["method"].as_str().expect("a name"))
+        .collect();
     assert_eq!(
         names,
         [
@@ -35,10 +40,16 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
         assert!(method["mean_percent"].as_f64().expect("a number") <= percent);
     }
     let triangles = |i: usize| list[i]["triangles"].as_f64().expect("a count");
-    assert!((triangles(0) - triangles(1)).abs() <= 0.02 * triangles(0), "{list:?}");
+    assert!(
+        (triangles(0) - triangles(1)).abs() <= 0.02 * triangles(0),
+        "{list:?}"
+    );
     let levels = list[2]["levels"].as_u64().expect("a count");
     for uniform in &list[2..4] {
-        assert_eq!(uniform["triangles"].as_u64(), Some(142 * 4u64.pow(levels as u32)));
+        assert_eq!(
+            uniform["triangles"].as_u64(),
+            Some(142 * 4u64.pow(levels as u32))
+        );
         assert!(uniform["angle_degrees"].is_null());
     }
     // At no more triangles, the exact method is nearer to the limit surface than all others, and its bound holds.
@@ -46,18 +57,38 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     assert!(triangles(4) <= triangles(0) && triangles(4) > 0.9 * triangles(0));
     let percent = |method: &Value| method["symmetric_percent"].as_f64().expect("a number");
     assert!(percent(exact) < percent(&list[0]) && percent(exact) < percent(&list[1]));
-    has_keys(exact, "certified.lower certified.upper certified.lower_percent certified.upper_percent");
-    assert!(percent(exact) <= 1.02 * exact["certified"]["upper_percent"].as_f64().expect("a number"));
+    has_keys(
+        exact,
+        "certified.lower certified.upper certified.lower_percent certified.upper_percent",
+    );
+    assert!(
+        percent(exact)
+            <= 1.02
+                * exact["certified"]["upper_percent"]
+                    .as_f64()
+                    .expect("a number")
+    );
     let proven = |method: &Value| method["certified"]["upper"].as_f64().expect("a number");
     for better in &list[5..7] {
         assert!(better["triangles"].as_f64() <= Some(triangles(0)));
-        assert!(percent(better) < percent(&list[0]) && proven(better) < proven(exact), "{better}");
+        assert!(
+            percent(better) < percent(&list[0]) && proven(better) < proven(exact),
+            "{better}"
+        );
     }
-    assert!(list[..4].iter().chain(&list[7..]).all(|method| method["certified"].is_null()));
+    assert!(
+        list[..4]
+            .iter()
+            .chain(&list[7..])
+            .all(|method| method["certified"].is_null())
+    );
     for other in &list[7..] {
         let own = other["triangles"].as_f64().expect("a count");
         assert!(own <= triangles(0) && own > 0.9 * triangles(0), "{other}");
-        assert_eq!(other["reference"]["scheme"] == "sqrt3", other["method"] == "sqrt3");
+        assert_eq!(
+            other["reference"]["scheme"] == "sqrt3",
+            other["method"] == "sqrt3"
+        );
     }
     for other in [levels.saturating_sub(1), levels + 1] {
         let miss = |level: u64| (142.0 * 4f64.powi(level as i32) - triangles(0)).abs();
@@ -69,14 +100,22 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
 fn the_counts_are_those_of_refine() {
     let folder = crate::common::folder();
     let output = folder.path().join("out.ply");
-    let report =
-        run("refine builtin:cup -o {} --method limit-normal --angle 6 --levels 2 --report -", &[&output])
-            .expect(0)
-            .json();
-    let list = run("compare builtin:cup --angle 6 --levels 2 --json --samples 20000", &[]).expect(0).json();
+    let report = run(
+        "refine builtin:cup -o {} --method limit-normal --angle 6 --levels 2 --report -",
+        &[&output],
+    )
+    .expect(0)
+    .json();
+    let list = run(
+        "compare builtin:cup --angle 6 --levels 2 --json --samples 20000",
+        &[],
+    )
+    .expect(0)
+    .json();
     assert_eq!(list[0]["triangles"], report["output"]["triangles"]);
     let angle = list[1]["angle_degrees"].as_f64().expect("an angle");
-    let amresh = format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
+    let amresh =
+        format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
     let report = run(&amresh, &[&output]).expect(0).json();
     assert_eq!(list[1]["triangles"], report["output"]["triangles"]);
     let count = &list[0]["triangles"];
@@ -87,7 +126,10 @@ fn the_counts_are_those_of_refine() {
     ] {
         let words = format!("refine builtin:cup -o {{}} {method} --triangles {count} --report -");
         let report = run(&words, &[&output]).expect(0).json();
-        assert_eq!(list[row]["triangles"], report["output"]["triangles"], "{method}");
+        assert_eq!(
+            list[row]["triangles"], report["output"]["triangles"],
+            "{method}"
+        );
     }
 }
 
@@ -95,7 +137,14 @@ fn the_counts_are_those_of_refine() {
 #[test]
 fn methods_without_an_answer_are_left_out() {
     let folder = crate::common::folder();
-    let corners = ["1e75 0 0", "0 1e75 0", "0 0 1e75", "-1e75 0 0", "0 -1e75 0", "0 0 -1e75"];
+    let corners = [
+        "1e75 0 0",
+        "0 1e75 0",
+        "0 0 1e75",
+        "-1e75 0 0",
+        "0 -1e75 0",
+        "0 0 -1e75",
+    ];
     let vertices: String = corners.iter().map(|at| format!("v {at}\n")).collect();
     let faces = "f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
     let far = crate::common::file(&folder, "far.obj", &(vertices + faces));
@@ -105,23 +154,41 @@ fn methods_without_an_answer_are_left_out() {
         let name = |own: &serde_json::Value| own["method"].as_str().expect("a name").to_owned();
         list.as_array().expect("a list").iter().map(name).collect()
     };
-    let left =
-        ["limit-normal", "amresh", "uniform", "uniform-limit", "exact", "exact-balance", "exact-optimize"];
+    let left = [
+        "limit-normal",
+        "amresh",
+        "uniform",
+        "uniform-limit",
+        "exact",
+        "exact-balance",
+        "exact-optimize",
+    ];
     assert_eq!(names(&said), left);
     let said = ["planarity", "planarity-distance", "vertex-error", "sqrt3"]
         .into_iter()
-        .fold(said, |said, name| said.saying(&format!("{name} left out: ")));
+        .fold(said, |said, name| {
+            said.saying(&format!("{name} left out: "))
+        });
     assert!(said.stderr.contains("1e-70 to 1e70"), "{}", said.stderr);
-    let said = run("compare builtin:head --levels 1 --samples 2000 --json --interpolate", &[]).expect(0);
+    let said = run(
+        "compare builtin:head --levels 1 --samples 2000 --json --interpolate",
+        &[],
+    )
+    .expect(0);
     assert!(!names(&said).contains(&"sqrt3".to_owned()));
     said.saying("sqrt3 left out: --interpolate");
 }
 
 #[test]
 fn the_table_is_aligned() {
-    let text = run("compare builtin:torus --samples 20000", &[]).expect(0).stdout;
-    let rows: Vec<&str> =
-        text.lines().skip_while(|line| !line.starts_with("method")).take_while(|l| !l.is_empty()).collect();
+    let text = run("compare builtin:torus --samples 20000", &[])
+        .expect(0)
+        .stdout;
+    let rows: Vec<&str> = text
+        .lines()
+        .skip_while(|line| !line.starts_with("method"))
+        .take_while(|l| !l.is_empty())
+        .collect();
     assert_eq!(rows.len(), 12, "{text}");
     let widths: Vec<usize> = rows.iter().map(|row| row.chars().count()).collect();
     assert!(widths.iter().all(|&width| width == widths[0]), "{text}");

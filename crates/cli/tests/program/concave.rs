@@ -27,22 +27,39 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
         run.json()["hausdorff"]["upper"].as_f64().expect("a number")
     };
     let (report, told) = refine("");
-    assert_eq!(report["diagnosis"]["concave_corners"], json!({ "count": 2, "first": [3, 9] }));
+    assert_eq!(
+        report["diagnosis"]["concave_corners"],
+        json!({ "count": 2, "first": [3, 9] })
+    );
     assert_eq!(report["diagnosis"]["clean"], true);
     assert_eq!(report["parameters"]["concave_corners"], "divided");
     assert_eq!(
-        (&report["output"]["inverted_triangles"], &report["output"]["triangles"]),
+        (
+            &report["output"]["inverted_triangles"],
+            &report["output"]["triangles"]
+        ),
         (&json!(0), &json!(20))
     );
-    assert!(told.contains("2 sharp edges divide 2 corners of 180° or more"), "{told}");
+    assert!(
+        told.contains("2 sharp edges divide 2 corners of 180° or more"),
+        "{told}"
+    );
     assert!(!told.contains("turned over"), "{told}");
     assert!(off() < 1e-9);
 
     let (report, told) = refine("--concave-corners as-tagged");
     assert_eq!(report["diagnosis"]["concave_corners"]["count"], 0);
     assert_eq!(report["parameters"]["concave_corners"], "as-tagged");
-    assert!(report["output"]["inverted_triangles"].as_u64().expect("a count") > 0);
-    assert!(told.contains("triangles are turned over against the limit surface"), "{told}");
+    assert!(
+        report["output"]["inverted_triangles"]
+            .as_u64()
+            .expect("a count")
+            > 0
+    );
+    assert!(
+        told.contains("triangles are turned over against the limit surface"),
+        "{told}"
+    );
     assert!(off() > 0.02);
     let (report, _) = refine("--method uniform --levels 2");
     assert_eq!(report["output"]["inverted_triangles"], Value::Null);
@@ -51,7 +68,8 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
         let words = format!("refine {{}} -o {{}} --crease-angle 30 --max-triangles {most}");
         let run = run(&words, &[&input, &output]).expect(code);
         assert_eq!(
-            run.stderr.contains("the control mesh has more than --max-triangles 19 already"),
+            run.stderr
+                .contains("the control mesh has more than --max-triangles 19 already"),
             code == 3
         );
     }
@@ -69,7 +87,12 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
     let report = |options: &str| {
-        run(&format!("refine {{}} -o {{}} --report - {options}"), &[&input, &output]).expect(0).json()
+        run(
+            &format!("refine {{}} -o {{}} --report - {options}"),
+            &[&input, &output],
+        )
+        .expect(0)
+        .json()
     };
     let tagged = report("");
     assert_eq!(tagged["parameters"]["concave_corners"], "as-tagged");
@@ -77,7 +100,10 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let divided = report("--concave-corners divided");
     assert_eq!(divided["diagnosis"]["concave_corners"]["count"], 1);
     assert_eq!(divided["output"]["inverted_triangles"], 0);
-    assert_eq!(report("--boundary corners")["parameters"]["concave_corners"], "divided");
+    assert_eq!(
+        report("--boundary corners")["parameters"]["concave_corners"],
+        "divided"
+    );
 }
 
 #[test]
@@ -85,26 +111,42 @@ fn origins_name_the_faces_of_the_control_mesh_before_they_were_divided() {
     let folder = folder();
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
-    run("refine {} -o {} --concave-corners divided --provenance --ascii", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --concave-corners divided --provenance --ascii",
+        &[&input, &output],
+    )
+    .expect(0);
     let text = std::fs::read_to_string(&output).expect("readable");
     let mesh = soup(&output);
     let rows: Vec<Vec<f64>> = text
         .lines()
         .skip_while(|line| *line != "end_header")
         .skip(1)
-        .map(|line| line.split_whitespace().map(|word| word.parse().expect("a number")).collect())
+        .map(|line| {
+            line.split_whitespace()
+                .map(|word| word.parse().expect("a number"))
+                .collect()
+        })
         .collect();
     let (vertices, faces) = rows.split_at(mesh.positions.len());
     let input = soup(&input);
     let flat = |v: u32| [0, 1].map(|axis| input.positions[v as usize][axis]);
-    let corners: Vec<Vec<[f64; 2]>> =
-        input.faces.iter().map(|face| face.iter().map(|&v| flat(v)).collect()).collect();
-    let is_parent = |row: &Vec<f64>| row.last().is_some_and(|&parent| (parent as usize) < corners.len());
+    let corners: Vec<Vec<[f64; 2]>> = input
+        .faces
+        .iter()
+        .map(|face| face.iter().map(|&v| flat(v)).collect())
+        .collect();
+    let is_parent = |row: &Vec<f64>| {
+        row.last()
+            .is_some_and(|&parent| (parent as usize) < corners.len())
+    };
     assert!(!faces.is_empty() && faces.iter().all(is_parent));
     let mut origins = Vec::new();
     for row in vertices {
         // The last column is the face of the file.
-        let [face, weights @ ..] = &row[row.len() - 5..row.len() - 1] else { continue };
+        let [face, weights @ ..] = &row[row.len() - 5..row.len() - 1] else {
+            continue;
+        };
         assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{row:?}");
         let face = &corners[*face as usize];
         origins.push([0, 1].map(|axis| (0..3).map(|i| weights[i] * face[i][axis]).sum::<f64>()));
@@ -116,7 +158,10 @@ fn origins_name_the_faces_of_the_control_mesh_before_they_were_divided() {
     }
     for (i, a) in origins.iter().enumerate() {
         for b in &origins[..i] {
-            assert!((a[0] - b[0]).abs() + (a[1] - b[1]).abs() > 1e-9, "{a:?} twice");
+            assert!(
+                (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > 1e-9,
+                "{a:?} twice"
+            );
         }
     }
 }

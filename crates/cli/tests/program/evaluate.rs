@@ -24,8 +24,13 @@ fn places_of_an_octahedron() {
     );
     let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
     let found = run(command, &[&control, &places]).expect(0).json();
-    let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else { panic!("{found}") };
-    assert_eq!((&place["face"], &place["barycentric"][1]), (&0.into(), &0.3.into()));
+    let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else {
+        panic!("{found}")
+    };
+    assert_eq!(
+        (&place["face"], &place["barycentric"][1]),
+        (&0.into(), &0.3.into())
+    );
     for (axis, expected) in [0.32634375, 0.20559375, 0.144].into_iter().enumerate() {
         near(&place["point"][axis], expected);
     }
@@ -39,20 +44,32 @@ fn places_of_an_octahedron() {
     }
     // Elsewhere they are the directions of the derivatives.
     for (tangent, name) in ["u", "v"].into_iter().enumerate() {
-        let by: Vec<f64> = (0..3).filter_map(|axis| place["derivatives"][name][axis].as_f64()).collect();
+        let by: Vec<f64> = (0..3)
+            .filter_map(|axis| place["derivatives"][name][axis].as_f64())
+            .collect();
         let length = by.iter().map(|x| x * x).sum::<f64>().sqrt();
         (0..3).for_each(|axis| near(&place["tangents"][tangent][axis], by[axis] / length));
     }
-    for (found, [gaussian, mean]) in
-        [(edge, [5.983379501385, -2.531187639857]), (centre, [3.848001180091, -1.961632274431])]
-    {
+    for (found, [gaussian, mean]) in [
+        (edge, [5.983379501385, -2.531187639857]),
+        (centre, [3.848001180091, -1.961632274431]),
+    ] {
         near(&found["curvature"]["gaussian"], gaussian);
         near(&found["curvature"]["mean"], mean);
-        let [most, least] = [0, 1].map(|i| found["curvature"]["principal"][i].as_f64().expect("a number"));
+        let [most, least] = [0, 1].map(|i| {
+            found["curvature"]["principal"][i]
+                .as_f64()
+                .expect("a number")
+        });
         assert!(most >= least && (most * least - gaussian).abs() < 1e-9);
     }
-    let text = run("evaluate {} --at 0,0.5,0.3,0.2", &[&control]).expect(0).stdout;
-    assert!(text.contains("0.326") && text.contains("Gaussian"), "{text}");
+    let text = run("evaluate {} --at 0,0.5,0.3,0.2", &[&control])
+        .expect(0)
+        .stdout;
+    assert!(
+        text.contains("0.326") && text.contains("Gaussian"),
+        "{text}"
+    );
 }
 
 /// People write thirds with as many digits as they like.
@@ -64,7 +81,10 @@ fn weights_with_few_digits_are_the_place_that_was_meant() {
     let command = "evaluate {} --at 7,0.333333,0.333333,0.333333 --at {} --json";
     let found = run(command, &[&control, &places]).expect(0).json();
     for place in found.as_array().expect("a list") {
-        assert_eq!(place["barycentric"], serde_json::json!([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]));
+        assert_eq!(
+            place["barycentric"],
+            serde_json::json!([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0])
+        );
         near(&place["curvature"]["gaussian"], 3.848001180091);
     }
 }
@@ -75,10 +95,20 @@ fn sharp_edges_have_a_normal_on_each_side() {
     let cube = "evaluate builtin:cube --crease-angle 30 --json --at";
     let mut normals = Vec::new();
     for face in 0..12 {
-        let found = run(&format!("{cube} {face},0.25,0.25,0.5"), &[]).expect(0).json();
-        let normal: Vec<f64> =
-            found[0]["normal"].as_array().expect("three").iter().filter_map(|x| x.as_f64()).collect();
-        assert_eq!(normal.iter().filter(|x| x.abs() > 1.0 - 1e-12).count(), 1, "{normal:?}");
+        let found = run(&format!("{cube} {face},0.25,0.25,0.5"), &[])
+            .expect(0)
+            .json();
+        let normal: Vec<f64> = found[0]["normal"]
+            .as_array()
+            .expect("three")
+            .iter()
+            .filter_map(|x| x.as_f64())
+            .collect();
+        assert_eq!(
+            normal.iter().filter(|x| x.abs() > 1.0 - 1e-12).count(),
+            1,
+            "{normal:?}"
+        );
         near(&found[0]["curvature"]["gaussian"], 0.0);
         normals.push(normal);
     }
@@ -99,23 +129,48 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at 0,0.5,0.5,0.5", &[&control])
         .expect(2)
         .saying("'0,0.5,0.5,0.5': the weights add up to 1.5 ");
-    run("evaluate {} --at 0,0.333,0.333,0.333", &[&control]).expect(2).saying("add up to 0.999");
-    run("evaluate {} --at 0,1.5,-0.5,0", &[&control]).expect(2).saying("the weight -0.5 ");
-    run("evaluate {} --at 0,1,0", &[&control]).expect(2).saying("2 weights");
-    run("evaluate {} --at {}", &[&control, &bad]).expect(1).saying("line 2: '1 0.5 0.5' has 2 weights");
-    run("evaluate {} --at {}", &[&control, &empty]).expect(1).saying("no places");
-    run("evaluate {} --at 0,1,0,x", &[&control]).expect(1).saying("'0,1,0,x' is no place");
-    run("evaluate {} --at nowhere.txt", &[&control]).expect(1).saying("nowhere.txt");
+    run("evaluate {} --at 0,0.333,0.333,0.333", &[&control])
+        .expect(2)
+        .saying("add up to 0.999");
+    run("evaluate {} --at 0,1.5,-0.5,0", &[&control])
+        .expect(2)
+        .saying("the weight -0.5 ");
+    run("evaluate {} --at 0,1,0", &[&control])
+        .expect(2)
+        .saying("2 weights");
+    run("evaluate {} --at {}", &[&control, &bad])
+        .expect(1)
+        .saying("line 2: '1 0.5 0.5' has 2 weights");
+    run("evaluate {} --at {}", &[&control, &empty])
+        .expect(1)
+        .saying("no places");
+    run("evaluate {} --at 0,1,0,x", &[&control])
+        .expect(1)
+        .saying("'0,1,0,x' is no place");
+    run("evaluate {} --at nowhere.txt", &[&control])
+        .expect(1)
+        .saying("nowhere.txt");
     run("evaluate {}", &[&control]).expect(2).saying("--at");
 }
 
 #[test]
 fn polygons_are_told_to_be_triangles() {
     let folder = folder();
-    let quad = file(&folder, "quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-    run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad]).expect(0).saying("2 triangles of the control mesh");
-    let found = run("evaluate {} --at 1,0.2,0.3,0.5 --json", &[&quad]).expect(0).json();
-    assert_eq!((&found[0]["face"], &found[0]["input_face"]), (&1.into(), &0.into()));
+    let quad = file(
+        &folder,
+        "quad.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad])
+        .expect(0)
+        .saying("2 triangles of the control mesh");
+    let found = run("evaluate {} --at 1,0.2,0.3,0.5 --json", &[&quad])
+        .expect(0)
+        .json();
+    assert_eq!(
+        (&found[0]["face"], &found[0]["input_face"]),
+        (&1.into(), &0.into())
+    );
 }
 
 #[test]
@@ -124,13 +179,24 @@ fn limits_have_area_and_volume() {
     let control = file(&folder, "octahedron.obj", OCTAHEDRON);
     let found = run("info {} --limit --json", &[&control]).expect(0).json();
     near(&found["limit"]["volume"], 0.303854909279);
-    assert!(run("info {} --limit", &[&control]).expect(0).stdout.contains("volume 0.30385"));
+    assert!(
+        run("info {} --limit", &[&control])
+            .expect(0)
+            .stdout
+            .contains("volume 0.30385")
+    );
     assert!(run("info {} --json", &[&control]).expect(0).json()["limit"].is_null());
     // With all edges sharp it is the octahedron.
-    let found = run("info {} --limit --crease-angle 30 --json", &[&control]).expect(0).json();
+    let found = run("info {} --limit --crease-angle 30 --json", &[&control])
+        .expect(0)
+        .json();
     near(&found["limit"]["volume"], 4.0 / 3.0);
     near(&found["limit"]["area"], 4.0 * 3f64.sqrt());
-    run("info {} --crease-angle 30", &[&control]).expect(2).saying("--limit");
-    let sheet = run("info builtin:sheet --limit --json", &[]).expect(0).json();
+    run("info {} --crease-angle 30", &[&control])
+        .expect(2)
+        .saying("--limit");
+    let sheet = run("info builtin:sheet --limit --json", &[])
+        .expect(0)
+        .json();
     assert!(sheet["limit"]["volume"].is_null() && sheet["limit"]["area"].as_f64() > Some(0.0));
 }

@@ -11,7 +11,9 @@ fn every_listed_model_can_be_examined() {
     for model in list {
         let name = model["name"].as_str().expect("a name");
         assert!(text.contains(&format!("builtin:{name}")), "{text}");
-        let report = run(&format!("info builtin:{name} --json"), &[]).expect(0).json();
+        let report = run(&format!("info builtin:{name} --json"), &[])
+            .expect(0)
+            .json();
         has_keys(
             &report,
             "version input.path input.format input.vertices input.faces polygons tags.creases
@@ -29,18 +31,32 @@ fn every_listed_model_can_be_examined() {
 #[test]
 fn known_shapes_have_their_topology() {
     // Components, genus, Euler characteristic, boundary loops.
-    for (name, expected) in
-        [("torus", [1, 1, 0, 0]), ("cup", [1, 1, 0, 0]), ("sphere", [1, 0, 2, 0]), ("sheet", [1, 0, 1, 1])]
-    {
-        let mesh = run(&format!("info builtin:{name} --json"), &[]).expect(0).json()["mesh"].clone();
-        let found = ["components", "genus", "euler_characteristic", "boundary_loops"]
-            .map(|key| mesh[key].as_i64().expect("a number"));
+    for (name, expected) in [
+        ("torus", [1, 1, 0, 0]),
+        ("cup", [1, 1, 0, 0]),
+        ("sphere", [1, 0, 2, 0]),
+        ("sheet", [1, 0, 1, 1]),
+    ] {
+        let mesh = run(&format!("info builtin:{name} --json"), &[])
+            .expect(0)
+            .json()["mesh"]
+            .clone();
+        let found = [
+            "components",
+            "genus",
+            "euler_characteristic",
+            "boundary_loops",
+        ]
+        .map(|key| mesh[key].as_i64().expect("a number"));
         assert_eq!(found, expected, "{name}");
     }
     let text = run("info builtin:cube", &[]).expect(0).stdout;
-    for words in
-        ["6 with 4 corners", "cut into triangles", "8 vertices, 18 edges, 12 triangles", "watertight"]
-    {
+    for words in [
+        "6 with 4 corners",
+        "cut into triangles",
+        "8 vertices, 18 edges, 12 triangles",
+        "watertight",
+    ] {
         assert!(text.contains(words), "{words} in:\n{text}");
     }
 }

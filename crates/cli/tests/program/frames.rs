@@ -11,8 +11,18 @@ use crate::common::{file, folder, has_keys, run};
 
 /// A box of four sharp edges and texture coordinates, sheared by so much.
 fn frame(shear: f64, faces: &str, tags: &str) -> String {
-    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
-    let vertex = |&[x, y, z]: &[i32; 3]| format!("v {} {y} {z}\n", f64::from(x) + shear * f64::from(z));
+    let corners = [
+        [0, 0, 0],
+        [1, 0, 0],
+        [1, 1, 0],
+        [0, 1, 0],
+        [0, 0, 1],
+        [1, 0, 1],
+        [1, 1, 1],
+        [0, 1, 1],
+    ];
+    let vertex =
+        |&[x, y, z]: &[i32; 3]| format!("v {} {y} {z}\n", f64::from(x) + shear * f64::from(z));
     let vertices: String = corners.iter().map(vertex).collect();
     format!("{vertices}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n{faces}{tags}")
 }
@@ -22,24 +32,46 @@ const TAGS: &str =
     "t crease 2/1/0 0 1 10\nt crease 2/1/0 1 2 10\nt crease 2/1/0 2 3 10\nt crease 2/1/0 3 0 2.5\n";
 
 fn frames(folder: &TempDir) -> Vec<PathBuf> {
-    let frame = |i: usize| file(folder, &format!("box_{i}.obj"), &frame(0.4 * i as f64, FACES, TAGS));
+    let frame = |i: usize| {
+        file(
+            folder,
+            &format!("box_{i}.obj"),
+            &frame(0.4 * i as f64, FACES, TAGS),
+        )
+    };
     (0..3).map(frame).collect()
 }
 
 /// The lines of a file that begin with a word; of faces without the numbers of normals, which are those of the frame.
 fn lines(path: &Path, word: &str) -> Vec<String> {
     let text = std::fs::read_to_string(path).expect("a file");
-    let own = text.lines().filter(|line| line.split_whitespace().next() == Some(word));
-    let corner = |corner: &str| corner.rsplit_once('/').map_or(corner, |(rest, _)| rest).to_owned();
+    let own = text
+        .lines()
+        .filter(|line| line.split_whitespace().next() == Some(word));
+    let corner = |corner: &str| {
+        corner
+            .rsplit_once('/')
+            .map_or(corner, |(rest, _)| rest)
+            .to_owned()
+    };
     let plain = |line: &str| match word {
-        "f" => line.split_whitespace().map(corner).collect::<Vec<_>>().join(" "),
+        "f" => line
+            .split_whitespace()
+            .map(corner)
+            .collect::<Vec<_>>()
+            .join(" "),
         _ => line.to_owned(),
     };
     own.map(plain).collect()
 }
 
 fn mesh(path: &Path) -> Mesh {
-    Mesh::from_soup(&limitmesh_io::read(path).expect("a mesh"), &Default::default()).expect("a mesh").0
+    Mesh::from_soup(
+        &limitmesh_io::read(path).expect("a mesh"),
+        &Default::default(),
+    )
+    .expect("a mesh")
+    .0
 }
 
 #[test]
@@ -48,32 +80,51 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     let inputs = frames(&folder);
     let report = folder.path().join("report.json");
     let command = "refine {} {} {} -o {} --shared-topology --tolerance 0.02 --report {}";
-    let [a, b, c] = &inputs[..] else { panic!("three") };
+    let [a, b, c] = &inputs[..] else {
+        panic!("three")
+    };
     let done = run(command, &[a, b, c, out.path(), &report]).expect(0);
-    assert!(done.stderr.contains("3 frames") && done.stderr.contains("every frame"), "{}", done.stderr);
+    assert!(
+        done.stderr.contains("3 frames") && done.stderr.contains("every frame"),
+        "{}",
+        done.stderr
+    );
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
-    has_keys(&report, "version frames parameters triangles vertices levels stop table_bytes seconds");
+    has_keys(
+        &report,
+        "version frames parameters triangles vertices levels stop table_bytes seconds",
+    );
     assert_eq!(report["stop"], "met");
     let proven = report["frames"].as_array().expect("a list");
     assert_eq!(proven.len(), 3);
-    let outputs: Vec<PathBuf> = (0..3).map(|i| out.path().join(format!("box_{i}.obj"))).collect();
+    let outputs: Vec<PathBuf> = (0..3)
+        .map(|i| out.path().join(format!("box_{i}.obj")))
+        .collect();
     for ((input, output), proven) in inputs.iter().zip(&outputs).zip(proven) {
         assert_eq!(proven["output"], output.display().to_string());
         let upper = proven["error"]["upper"].as_f64().expect("a number");
-        assert!(proven["error"]["certified"] == true && upper <= 0.02, "{proven}");
+        assert!(
+            proven["error"]["certified"] == true && upper <= 0.02,
+            "{proven}"
+        );
         for word in ["f", "t", "vt"] {
             let own = lines(output, word);
             assert!(!own.is_empty() && own == lines(&outputs[0], word), "{word}");
         }
-        assert_eq!(lines(output, "f").len() as u64, report["triangles"].as_u64().expect("a number"));
+        assert_eq!(
+            lines(output, "f").len() as u64,
+            report["triangles"].as_u64().expect("a number")
+        );
         // Another search finds no more than is proven, between the file that was written and the limit surface of its input.
         let options = LimitDistanceOptions::default().gap(Some(2e-3));
         let written = mesh(output);
         // Its quads are cut into triangles as those of the first frame are.
-        let control =
-            mesh(&inputs[0]).with_positions(mesh(input).positions().to_vec()).expect("the same vertices");
-        let found = limit_distance(written.as_triangles(), &control, &Loop, &options).expect("a distance");
+        let control = mesh(&inputs[0])
+            .with_positions(mesh(input).positions().to_vec())
+            .expect("the same vertices");
+        let found =
+            limit_distance(written.as_triangles(), &control, &Loop, &options).expect("a distance");
         assert!(found.distance.lower() <= upper && found.distance.upper() <= 0.02 + 2e-3);
         assert!(found.distance.lower() > 1e-3, "refined far too much");
     }
@@ -87,7 +138,11 @@ fn angles_that_no_division_closes_are_told() {
     let (folder, out) = (folder(), crate::common::folder());
     let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path().join(name));
     for frame in [&first, &second] {
-        run("refine builtin:head -o {} --method uniform --levels 0", &[frame]).expect(0);
+        run(
+            "refine builtin:head -o {} --method uniform --levels 0",
+            &[frame],
+        )
+        .expect(0);
     }
     let report = folder.path().join("report.json");
     let told = || -> serde_json::Value {
@@ -97,15 +152,24 @@ fn angles_that_no_division_closes_are_told() {
     let said = run(command, &[&first, &second, out.path(), &report]).expect(0);
     let count = told()["open_cones"].as_u64().expect("a number");
     said.saying(&format!("{count} triangles stay outside the angle"));
-    assert!(count > 0 && told()["stop"] == "cones" && told()["pixels"].is_null(), "{}", told());
+    assert!(
+        count > 0 && told()["stop"] == "cones" && told()["pixels"].is_null(),
+        "{}",
+        told()
+    );
     // As of one mesh.
-    run("refine {} -o {} --angle 40 --report {}", &[&first, &out.path().join("one.ply"), &report])
-        .expect(0)
-        .saying("stay outside the angle");
+    run(
+        "refine {} -o {} --angle 40 --report {}",
+        &[&first, &out.path().join("one.ply"), &report],
+    )
+    .expect(0)
+    .saying("stay outside the angle");
     assert_eq!(told()["stop"], "cones");
     // Caps are those that were reached.
     let capped = "refine {} {} -o {} --shared-topology --tolerance 0.01% --max-levels 2";
-    run(capped, &[&first, &second, out.path()]).expect(3).saying("--max-levels 2 was reached");
+    run(capped, &[&first, &second, out.path()])
+        .expect(3)
+        .saying("--max-levels 2 was reached");
 }
 
 #[test]
@@ -114,17 +178,33 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     let inputs = frames(&folder);
     let first = &inputs[0];
     let other_faces = FACES.replace("f 4/4 3/3 2/2 1/1", "f 3/3 2/2 1/1 4/4");
-    let fewer = FACES.lines().skip(1).map(|line| format!("{line}\n")).collect::<String>();
+    let fewer = FACES
+        .lines()
+        .skip(1)
+        .map(|line| format!("{line}\n"))
+        .collect::<String>();
     let cases = [
         ("turned.obj", frame(0.1, &other_faces, TAGS), "face 0 is"),
         ("open.obj", frame(0.1, &fewer, TAGS), "5 faces, where"),
-        ("soft.obj", frame(0.1, FACES, &TAGS.replace("2.5", "3.5")), "a crease of sharpness 3.5"),
+        (
+            "soft.obj",
+            frame(0.1, FACES, &TAGS.replace("2.5", "3.5")),
+            "a crease of sharpness 3.5",
+        ),
         ("plain.obj", frame(0.1, FACES, ""), "0 crease tags, where"),
     ];
     for (name, content, what) in cases {
         let other = file(&folder, name, &content);
-        let refused = run("refine {} {} -o {} --shared-topology", &[first, &other, out.path()]).expect(1);
-        assert!(refused.stderr.contains(name) && refused.stderr.contains(what), "{}", refused.stderr);
+        let refused = run(
+            "refine {} {} -o {} --shared-topology",
+            &[first, &other, out.path()],
+        )
+        .expect(1);
+        assert!(
+            refused.stderr.contains(name) && refused.stderr.contains(what),
+            "{}",
+            refused.stderr
+        );
     }
     assert!(crate::common::names(out.path()).is_empty());
     for option in [
@@ -147,12 +227,18 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     // Before anything is read: there is no such file.
     let none = folder.path().join("none.obj");
     let command = "refine {} {} -o {} --shared-topology --scheme sqrt3";
-    run(command, &[first, &none, out.path()]).expect(2).saying("sqrt3");
+    run(command, &[first, &none, out.path()])
+        .expect(2)
+        .saying("sqrt3");
     let command = "refine {} {} -o {} --shared-topology --report {}";
     let before = std::fs::read(first).expect("a frame");
-    run(command, &[first, &inputs[1], out.path(), first]).expect(2).saying("box_0.obj is an input");
+    run(command, &[first, &inputs[1], out.path(), first])
+        .expect(2)
+        .saying("box_0.obj is an input");
     assert_eq!(std::fs::read(first).expect("a frame"), before);
     let own = out.path().join("box_1.obj");
-    run(command, &[first, &inputs[1], out.path(), &own]).expect(2).saying("would be written twice");
+    run(command, &[first, &inputs[1], out.path(), &own])
+        .expect(2)
+        .saying("would be written twice");
     assert!(crate::common::names(out.path()).is_empty());
 }

@@ -17,7 +17,10 @@ impl Builder {
     pub(crate) fn new() -> Self {
         let json = json!({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
             "meshes": [{"primitives": []}], "bufferViews": [], "accessors": []});
-        Self { bytes: Vec::new(), json }
+        Self {
+            bytes: Vec::new(),
+            json,
+        }
     }
 
     fn push(&mut self, key: &str, value: Value) -> usize {
@@ -30,7 +33,8 @@ impl Builder {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
         let start = self.bytes.len();
         self.bytes.extend(bytes);
-        let view = json!({"buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start});
+        let view =
+            json!({"buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start});
         self.push("bufferViews", view)
     }
 
@@ -38,12 +42,15 @@ impl Builder {
     pub(crate) fn floats(&mut self, values: &[f32], width: usize) -> usize {
         let view = self.view(values.iter().flat_map(|x| x.to_le_bytes()));
         let kind = ["SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"][(width - 1).min(4)];
-        let mut accessor =
-            json!({"bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind});
+        let mut accessor = json!({"bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind});
         if width == 3 {
             let of = |i: usize| values.iter().skip(i).step_by(3).copied();
-            accessor["min"] = (0..3).map(|i| of(i).fold(f32::INFINITY, f32::min)).collect();
-            accessor["max"] = (0..3).map(|i| of(i).fold(f32::NEG_INFINITY, f32::max)).collect();
+            accessor["min"] = (0..3)
+                .map(|i| of(i).fold(f32::INFINITY, f32::min))
+                .collect();
+            accessor["max"] = (0..3)
+                .map(|i| of(i).fold(f32::NEG_INFINITY, f32::max))
+                .collect();
         }
         self.push("accessors", accessor)
     }
@@ -74,7 +81,9 @@ impl Builder {
     }
 
     pub(crate) fn primitive(&mut self, primitive: Value) {
-        let list = self.json["meshes"][0]["primitives"].as_array_mut().expect("a list");
+        let list = self.json["meshes"][0]["primitives"]
+            .as_array_mut()
+            .expect("a list");
         list.push(primitive);
     }
 
@@ -106,17 +115,24 @@ pub(crate) struct Glb {
 impl Glb {
     pub(crate) fn read(path: &Path) -> Self {
         let glb = std::fs::read(path).expect("a file");
-        let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four")) as usize;
+        let word =
+            |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four")) as usize;
         assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
         let json = serde_json::from_slice(&glb[20..20 + word(12)]).expect("JSON");
         let bin = 20 + word(12);
-        Self { json, bytes: glb[bin + 8..bin + 8 + word(bin)].to_vec() }
+        Self {
+            json,
+            bytes: glb[bin + 8..bin + 8 + word(bin)].to_vec(),
+        }
     }
 
     /// A text document, without the bytes of its buffers.
     pub(crate) fn text(path: &Path) -> Self {
         let json = serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
-        Self { json, bytes: Vec::new() }
+        Self {
+            json,
+            bytes: Vec::new(),
+        }
     }
 
     /// The binary chunk.
@@ -127,7 +143,8 @@ impl Glb {
     /// The numbers of an accessor, one element after the other. Bounds that it has are checked.
     pub(crate) fn numbers(&self, accessor: &Value) -> Vec<f64> {
         let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
-        let view = &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
+        let view =
+            &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
         let whole = |value: &Value| value.as_u64().unwrap_or(0) as usize;
         let width = match accessor["type"].as_str().expect("a type") {
             "SCALAR" => 1,
@@ -141,7 +158,9 @@ impl Glb {
             _ => 4,
         };
         let start = whole(&view["byteOffset"]) + whole(&accessor["byteOffset"]);
-        let stride = view["byteStride"].as_u64().map_or(width * size, |stride| stride as usize);
+        let stride = view["byteStride"]
+            .as_u64()
+            .map_or(width * size, |stride| stride as usize);
         let mut values = Vec::new();
         for element in 0..whole(&accessor["count"]) {
             for i in 0..width {
@@ -159,7 +178,11 @@ impl Glb {
             for (i, bound) in accessor[key].as_array().into_iter().flatten().enumerate() {
                 let found = values.iter().skip(i).step_by(width).copied().reduce(of);
                 // The last place of a double is the JSON reader's.
-                assert_eq!(bound.as_f64().map(|x| x as f32), found.map(|x| x as f32), "exact bounds");
+                assert_eq!(
+                    bound.as_f64().map(|x| x as f32),
+                    found.map(|x| x as f32),
+                    "exact bounds"
+                );
             }
         }
         values
@@ -175,17 +198,28 @@ impl Glb {
 
     pub(crate) fn triangles(&self, primitive: usize) -> Vec<[u32; 3]> {
         let corners = self.numbers(&self.primitive(primitive)["indices"]);
-        corners.as_chunks::<3>().0.iter().map(|corners| corners.map(|v| v as u32)).collect()
+        corners
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|corners| corners.map(|v| v as u32))
+            .collect()
     }
 }
 
 /// A surface of many triangles, within a small part of its size of the limit of a mesh whose vertices at one place are one.
 pub(crate) fn limit(positions: &[[f64; 3]], triangles: &[[u32; 3]], tolerance: f64) -> Mesh {
     let faces: PolygonFaces = triangles.iter().map(|corners| &corners[..]).collect();
-    let soup = PolygonSoup { positions: positions.to_vec(), faces, ..Default::default() };
+    let soup = PolygonSoup {
+        positions: positions.to_vec(),
+        faces,
+        ..Default::default()
+    };
     let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).expect("a mesh");
     let options = limitmesh::refine::ExactOptions::default().tolerance(tolerance * mesh.diagonal());
-    limitmesh::refine::exact(&mesh, &limitmesh::scheme::Loop, &options).expect("refined").mesh
+    limitmesh::refine::exact(&mesh, &limitmesh::scheme::Loop, &options)
+        .expect("refined")
+        .mesh
 }
 
 /// The greatest distances of the first surface's vertices from the second, and of the second's from the first.

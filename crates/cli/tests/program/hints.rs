@@ -7,8 +7,16 @@ use tempfile::TempDir;
 
 use crate::common::{file, folder, run};
 
-pub(crate) const CORNERS: [[i32; 3]; 8] =
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
+pub(crate) const CORNERS: [[i32; 3]; 8] = [
+    [-1, -1, -1],
+    [1, -1, -1],
+    [1, 1, -1],
+    [-1, 1, -1],
+    [-1, -1, 1],
+    [1, -1, 1],
+    [1, 1, 1],
+    [-1, 1, 1],
+];
 
 /// Sides by their corners, with their normals.
 pub(crate) const SIDES: [([usize; 4], [i32; 3]); 6] = [
@@ -23,12 +31,23 @@ pub(crate) const SIDES: [([usize; 4], [i32; 3]); 6] = [
 /// A cube, whose corners have normal 1 to 6 of their side where `normals`, and `before` what stands before each side.
 fn cube(folder: &TempDir, normals: bool, before: &dyn Fn(usize) -> String) -> PathBuf {
     let mut text = String::new();
-    CORNERS.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
-    SIDES.iter().for_each(|(_, [x, y, z])| text += &format!("vn {x} {y} {z}\n"));
+    CORNERS
+        .iter()
+        .for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+    SIDES
+        .iter()
+        .for_each(|(_, [x, y, z])| text += &format!("vn {x} {y} {z}\n"));
     for (side, (corners, _)) in SIDES.iter().enumerate() {
         text += &before(side);
-        let normal = if normals { format!("//{}", side + 1) } else { String::new() };
-        let corners: Vec<String> = corners.iter().map(|corner| format!("{}{normal}", corner + 1)).collect();
+        let normal = if normals {
+            format!("//{}", side + 1)
+        } else {
+            String::new()
+        };
+        let corners: Vec<String> = corners
+            .iter()
+            .map(|corner| format!("{}{normal}", corner + 1))
+            .collect();
         text += &format!("f {}\n", corners.join(" "));
     }
     file(folder, "cube.obj", &text)
@@ -39,7 +58,9 @@ fn volume(input: &Path, options: &str) -> f64 {
     let output = input.with_extension("ply");
     let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
     let report = run(&command, &[input, &output]).expect(0).json();
-    report["size"]["after"]["volume"].as_f64().expect("a number")
+    report["size"]["after"]["volume"]
+        .as_f64()
+        .expect("a number")
 }
 
 #[test]
@@ -59,7 +80,9 @@ fn normals_say_where_edges_are_sharp() {
     assert_eq!(measured["reference"]["limit"]["creases_from"], "normals");
     // A vertex for each side, as PLY and STL have them: welded, and the normals kept apart.
     let mut text = "ply\nformat ascii 1.0\nelement vertex 24\n".to_owned();
-    ["x", "y", "z", "nx", "ny", "nz"].iter().for_each(|name| text += &format!("property float {name}\n"));
+    ["x", "y", "z", "nx", "ny", "nz"]
+        .iter()
+        .for_each(|name| text += &format!("property float {name}\n"));
     text += "element face 6\nproperty list uchar int vertex_indices\nend_header\n";
     for (corners, [u, v, w]) in SIDES {
         corners.iter().for_each(|&corner| {
@@ -69,26 +92,56 @@ fn normals_say_where_edges_are_sharp() {
         });
     }
     (0..6).for_each(|side| {
-        text += &format!("4 {} {} {} {}\n", 4 * side, 4 * side + 1, 4 * side + 2, 4 * side + 3)
+        text += &format!(
+            "4 {} {} {} {}\n",
+            4 * side,
+            4 * side + 1,
+            4 * side + 2,
+            4 * side + 3
+        )
     });
     let input = file(&folder, "split.ply", &text);
     let output = folder.path().join("out.obj");
-    let report =
-        run("refine {} -o {} --creases-from normals --report -", &[&input, &output]).expect(0).json();
-    assert!((report["size"]["after"]["volume"].as_f64().expect("a number") - 8.0).abs() < 1e-9);
+    let report = run(
+        "refine {} -o {} --creases-from normals --report -",
+        &[&input, &output],
+    )
+    .expect(0)
+    .json();
+    assert!(
+        (report["size"]["after"]["volume"]
+            .as_f64()
+            .expect("a number")
+            - 8.0)
+            .abs()
+            < 1e-9
+    );
 }
 
 #[test]
 fn groups_and_materials_say_so_too() {
     let folder = folder();
     for off in ["off", "0"] {
-        let input =
-            cube(&folder, false, &|side| if side == 0 { format!("s {off}\n") } else { String::new() });
+        let input = cube(&folder, false, &|side| {
+            if side == 0 {
+                format!("s {off}\n")
+            } else {
+                String::new()
+            }
+        });
         assert!((volume(&input, "--creases-from smoothing-groups") - 8.0).abs() < 1e-9);
     }
-    let one = cube(&folder, false, &|side| if side == 0 { "s 1\n".to_owned() } else { String::new() });
+    let one = cube(&folder, false, &|side| {
+        if side == 0 {
+            "s 1\n".to_owned()
+        } else {
+            String::new()
+        }
+    });
     assert!(volume(&one, "--creases-from smoothing-groups") < 5.0);
-    let each = cube(&folder, false, &|side| format!("s {}\nusemtl m{}\n", side + 1, side.min(1)));
+    let each = cube(&folder, false, &|side| {
+        format!("s {}\nusemtl m{}\n", side + 1, side.min(1))
+    });
     assert!((volume(&each, "--creases-from smoothing-groups") - 8.0).abs() < 1e-9);
     // The bottom's four edges: its rim stays in its plane.
     let (bottom, none) = (volume(&each, "--creases-from materials"), volume(&each, ""));
@@ -106,7 +159,12 @@ fn groups_and_materials_say_so_too() {
     let package = folder.path().join("a.3mf");
     run("refine builtin:cube -o {}", &[&package]).expect(0);
     let again = folder.path().join("b.3mf");
-    run("refine {} -o {} --creases-from normals", &[&package, &again]).expect(2).saying("is for OBJ, PLY");
+    run(
+        "refine {} -o {} --creases-from normals",
+        &[&package, &again],
+    )
+    .expect(2)
+    .saying("is for OBJ, PLY");
 }
 
 /// Normals of glTF assets say so, too: in the mesh's own coordinates where it is edited, and in the scene's elsewhere.
@@ -114,9 +172,17 @@ fn groups_and_materials_say_so_too() {
 fn normals_of_assets_say_so() {
     let folder = folder();
     let mut bytes = Vec::new();
-    let mut put = |numbers: &[i32; 3]| numbers.iter().for_each(|&x| bytes.extend((x as f32).to_le_bytes()));
-    SIDES.iter().for_each(|(corners, _)| corners.iter().for_each(|&corner| put(&CORNERS[corner])));
-    SIDES.iter().for_each(|(_, normal)| (0..4).for_each(|_| put(normal)));
+    let mut put = |numbers: &[i32; 3]| {
+        numbers
+            .iter()
+            .for_each(|&x| bytes.extend((x as f32).to_le_bytes()))
+    };
+    SIDES
+        .iter()
+        .for_each(|(corners, _)| corners.iter().for_each(|&corner| put(&CORNERS[corner])));
+    SIDES
+        .iter()
+        .for_each(|(_, normal)| (0..4).for_each(|_| put(normal)));
     bytes.extend((0..6u8).flat_map(|side| [0, 1, 2, 0, 2, 3].map(|corner| 4 * side + corner)));
     std::fs::write(folder.path().join("cube.bin"), &bytes).expect("written");
     let document = |attributes: &str| {
@@ -135,7 +201,9 @@ fn normals_of_assets_say_so() {
     let refine = |options: &str| {
         let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
         let report = run(&command, &[&input, &output]).expect(0).json();
-        report["meshes"][0]["size"]["after"]["volume"].as_f64().expect("a number")
+        report["meshes"][0]["size"]["after"]["volume"]
+            .as_f64()
+            .expect("a number")
     };
     // As the scene shows it.
     let whole = 8.0 * 1.5;
@@ -147,7 +215,14 @@ fn normals_of_assets_say_so() {
         .expect(0)
         .saying("12 edges have different normals on both sides");
     assert!((volume(&input, "--creases-from normals") - 8.0 * 1.5).abs() < 1e-9);
-    run("refine {} -o {} --creases-from materials", &[&input, &output]).expect(2).saying("normals alone");
+    run(
+        "refine {} -o {} --creases-from materials",
+        &[&input, &output],
+    )
+    .expect(2)
+    .saying("normals alone");
     let bare = file(&folder, "bare.gltf", &document(""));
-    run("refine {} -o {} --creases-from normals", &[&bare, &output]).expect(2).saying("has no normals");
+    run("refine {} -o {} --creases-from normals", &[&bare, &output])
+        .expect(2)
+        .saying("has no normals");
 }

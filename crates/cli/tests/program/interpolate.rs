@@ -21,15 +21,27 @@ fn peg() -> String {
         let (a, b, c, d) = (i + 1, j + 1, j + 17, i + 17);
         writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").expect("text");
     }
-    let ring =
-        |places: &mut dyn Iterator<Item = i32>| places.map(|i| i.to_string()).collect::<Vec<_>>().join(" ");
-    writeln!(text, "f {}\nf {}", ring(&mut (1..=16).rev()), ring(&mut (17..=32))).expect("text");
+    let ring = |places: &mut dyn Iterator<Item = i32>| {
+        places.map(|i| i.to_string()).collect::<Vec<_>>().join(" ")
+    };
+    writeln!(
+        text,
+        "f {}\nf {}",
+        ring(&mut (1..=16).rev()),
+        ring(&mut (17..=32))
+    )
+    .expect("text");
     text
 }
 
 fn radii(positions: &[[f64; 3]]) -> (f64, f64) {
-    let radii = positions.iter().map(|p| p[0].hypot(p[1])).filter(|&r| r > 4.5);
-    radii.fold((f64::INFINITY, 0.0), |(least, most), r| (least.min(r), most.max(r)))
+    let radii = positions
+        .iter()
+        .map(|p| p[0].hypot(p[1]))
+        .filter(|&r| r > 4.5);
+    radii.fold((f64::INFINITY, 0.0), |(least, most), r| {
+        (least.min(r), most.max(r))
+    })
 }
 
 #[track_caller]
@@ -43,20 +55,27 @@ fn a_peg_keeps_its_radius() {
     let input = file(&folder, "peg.obj", &peg());
     let output = folder.path().join("out.ply");
     let refine = |options: &str| {
-        let line = format!("refine {{}} -o {{}} --crease-angle 30 --tolerance 0.01 --report - {options}");
+        let line =
+            format!("refine {{}} -o {{}} --crease-angle 30 --tolerance 0.01 --report - {options}");
         let run = run(&line, &[&input, &output]).expect(0);
         (run.json(), radii(&soup(&output).positions), run.stderr)
     };
     let (report, (_, most), _) = refine("");
     assert_eq!(
-        (&report["interpolation"], &report["parameters"]["interpolate_within"]),
+        (
+            &report["interpolation"],
+            &report["parameters"]["interpolate_within"]
+        ),
         (&json!(null), &json!(null))
     );
     assert!(most < 4.9, "{most}");
 
     let (report, (_, most), said) = refine("--interpolate");
     assert!(most <= 5.0 + 1e-9 && most > 4.9997, "{most}");
-    assert!(said.contains("passes through 32 vertices: control points moved by up to 0.13"), "{said}");
+    assert!(
+        said.contains("passes through 32 vertices: control points moved by up to 0.13"),
+        "{said}"
+    );
     assert_eq!(report["parameters"]["interpolate_within"], 0.0);
     assert_eq!(report["error"]["certified"], true);
     // Lengths are in per cent of what was read.
@@ -64,7 +83,10 @@ fn a_peg_keeps_its_radius() {
     let keys = "within method iterations residual displacement displacement_percent most_displaced energy least_energy";
     let found = &report["interpolation"];
     has_keys(found, keys);
-    assert_eq!((&found["within"], &found["method"]), (&json!(0.0), &json!("conjugate-gradients")));
+    assert_eq!(
+        (&found["within"], &found["method"]),
+        (&json!(0.0), &json!("conjugate-gradients"))
+    );
     assert!(number(&found["residual"]) < 1e-12 && number(&found["displacement"]) > 0.1);
     let percent = 100.0 * number(&found["displacement"]) / 264f64.sqrt();
     assert!((number(&found["displacement_percent"]) - percent).abs() < 1e-9);
@@ -74,7 +96,10 @@ fn a_peg_keeps_its_radius() {
     assert!((4.97..4.985).contains(&most), "{most}");
     assert!(said.contains("passes within 0.02 of 32 vertices"), "{said}");
     assert!(number(&found["residual"]) <= 0.02 + 1e-11);
-    assert!(number(&found["least_energy"]) <= number(&found["energy"]) && number(&found["energy"]) < 1.0);
+    assert!(
+        number(&found["least_energy"]) <= number(&found["energy"])
+            && number(&found["energy"]) < 1.0
+    );
     let (report, ..) = refine("--interpolate-within 0%");
     assert_eq!(report["interpolation"]["within"], 0.0);
 }
@@ -83,39 +108,69 @@ fn a_peg_keeps_its_radius() {
 fn every_command_with_a_limit_surface_has_it() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:cup -o {} --interpolate --tolerance 0.2%", &[&output]).expect(0);
+    run(
+        "refine builtin:cup -o {} --interpolate --tolerance 0.2%",
+        &[&output],
+    )
+    .expect(0);
     let measured = |options: &str| {
         let line = format!("measure {{}} --limit-of builtin:cup --json {options}");
         run(&line, &[&output]).expect(0).json()
     };
     let (plain, through) = (measured(""), measured("--interpolate"));
-    assert_eq!(plain["reference"]["limit"]["interpolate_within"], json!(null));
+    assert_eq!(
+        plain["reference"]["limit"]["interpolate_within"],
+        json!(null)
+    );
     assert_eq!(through["reference"]["limit"]["interpolate_within"], 0.0);
     assert!(number(&through["hausdorff"]["symmetric_percent"]) <= 0.21);
     assert!(number(&plain["hausdorff"]["symmetric_percent"]) > 0.5);
-    let compared = run("compare builtin:tetrahedron --interpolate --json --samples 2000 --levels 1", &[])
-        .expect(0)
-        .json();
+    let compared = run(
+        "compare builtin:tetrahedron --interpolate --json --samples 2000 --levels 1",
+        &[],
+    )
+    .expect(0)
+    .json();
     assert_eq!(compared[0]["reference"]["interpolate_within"], 0.0);
 
     // Without refinement it is the control mesh.
-    run("refine builtin:cup -o {} --interpolate --method uniform --levels 0", &[&output]).expect(0);
+    run(
+        "refine builtin:cup -o {} --interpolate --method uniform --levels 0",
+        &[&output],
+    )
+    .expect(0);
     let control = soup(&output);
     let plain = limitmesh_models::find("cup").expect("a model").soup();
     assert_eq!(control.positions.len(), plain.positions.len());
     assert!(control.positions != plain.positions);
     // A dry run knows of it.
-    run("refine builtin:cup --dry-run --interpolate", &[]).expect(0).saying("passes through");
+    run("refine builtin:cup --dry-run --interpolate", &[])
+        .expect(0)
+        .saying("passes through");
 }
 
 #[test]
 fn what_changes_nothing_is_said() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:spike -o {} --scheme butterfly --interpolate --tolerance 2%", &[&output])
-        .expect(0)
-        .saying("as it is");
-    run("refine builtin:spike -o {} --interpolate --interpolate-within 1", &[&output]).expect(2);
-    run("refine builtin:spike -o {} --interpolate-within -1", &[&output]).expect(2).saying("at least 0");
-    run("measure builtin:spike builtin:cup --interpolate", &[]).expect(2).saying("--limit-of");
+    run(
+        "refine builtin:spike -o {} --scheme butterfly --interpolate --tolerance 2%",
+        &[&output],
+    )
+    .expect(0)
+    .saying("as it is");
+    run(
+        "refine builtin:spike -o {} --interpolate --interpolate-within 1",
+        &[&output],
+    )
+    .expect(2);
+    run(
+        "refine builtin:spike -o {} --interpolate-within -1",
+        &[&output],
+    )
+    .expect(2)
+    .saying("at least 0");
+    run("measure builtin:spike builtin:cup --interpolate", &[])
+        .expect(2)
+        .saying("--limit-of");
 }

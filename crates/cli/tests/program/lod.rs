@@ -13,17 +13,25 @@ use crate::glb::Glb;
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
-    Mesh::from_soup(&soup, &Default::default()).expect("a mesh").0
+    Mesh::from_soup(&soup, &Default::default())
+        .expect("a mesh")
+        .0
 }
 
 /// Distances by another search, and each level's first vertices are the coarser level's.
 #[test]
 fn files_are_within_their_tolerances_and_nested() {
     let folder = folder();
-    let (out, report) = (folder.path().join("torus.ply"), folder.path().join("torus.json"));
-    run("lod builtin:torus -o {} --tolerances 2%,0.5% --report {}", &[&out, &report])
-        .expect(0)
-        .saying("LOD1");
+    let (out, report) = (
+        folder.path().join("torus.ply"),
+        folder.path().join("torus.json"),
+    );
+    run(
+        "lod builtin:torus -o {} --tolerances 2%,0.5% --report {}",
+        &[&out, &report],
+    )
+    .expect(0)
+    .saying("LOD1");
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
     let levels = report["levels"].as_array().expect("a list");
@@ -31,18 +39,35 @@ fn files_are_within_their_tolerances_and_nested() {
     let control = control("torus");
     let (mut distances, mut vertices) = (Vec::new(), Vec::new());
     for (lod, (level, percent)) in levels.iter().zip([0.5, 2.0]).enumerate() {
-        has_keys(level, "lod path vertices triangles tolerance lower upper parametric switching_distance");
+        has_keys(
+            level,
+            "lod path vertices triangles tolerance lower upper parametric switching_distance",
+        );
         let soup = read(folder.path().join(format!("torus_LOD{lod}.ply"))).expect("a mesh");
-        let mesh = Mesh::from_soup(&soup, &Default::default()).expect("a mesh").0;
-        assert_eq!(mesh.face_count() as u64, level["triangles"].as_u64().expect("a number"));
+        let mesh = Mesh::from_soup(&soup, &Default::default())
+            .expect("a mesh")
+            .0;
+        assert_eq!(
+            mesh.face_count() as u64,
+            level["triangles"].as_u64().expect("a number")
+        );
         assert_eq!(mesh.topology().boundary_edge_count(), 0);
         let options = LimitDistanceOptions::default().gap(Some(1e-4 * control.diagonal()));
-        let found = limit_distance(mesh.as_triangles(), &control, &Loop, &options).expect("a distance");
+        let found =
+            limit_distance(mesh.as_triangles(), &control, &Loop, &options).expect("a distance");
         assert!(found.distance.upper() <= (0.01 * percent + 2e-4) * control.diagonal());
         distances.push(level["switching_distance"].as_f64().expect("a number"));
-        vertices.push(soup.positions.iter().map(|p| p.map(f64::to_bits)).collect::<BTreeSet<_>>());
+        vertices.push(
+            soup.positions
+                .iter()
+                .map(|p| p.map(f64::to_bits))
+                .collect::<BTreeSet<_>>(),
+        );
     }
-    assert!(vertices[0].is_superset(&vertices[1]), "vertices of the coarser level are the finer one's");
+    assert!(
+        vertices[0].is_superset(&vertices[1]),
+        "vertices of the coarser level are the finer one's"
+    );
     assert!(distances[0] < distances[1], "{distances:?}");
     let count = |lod: usize| levels[lod]["triangles"].as_u64().expect("a number");
     assert!(count(0) > count(1));
@@ -53,17 +78,37 @@ fn files_are_within_their_tolerances_and_nested() {
 fn morphs_begin_on_the_coarser_level() {
     let folder = folder();
     let out = folder.path().join("cup.ply");
-    run("lod builtin:cup -o {} --levels 2 --tolerance 0.5% --morph", &[&out]).expect(0);
+    run(
+        "lod builtin:cup -o {} --levels 2 --tolerance 0.5% --morph",
+        &[&out],
+    )
+    .expect(0);
     let [fine, coarse] =
         [0, 1].map(|lod| read(folder.path().join(format!("cup_LOD{lod}.ply"))).expect("a mesh"));
-    let axis = |name: &str| fine.channels.iter().find(|channel| channel.name == name).expect("a property");
+    let axis = |name: &str| {
+        fine.channels
+            .iter()
+            .find(|channel| channel.name == name)
+            .expect("a property")
+    };
     let axes = ["coarse_x", "coarse_y", "coarse_z"].map(axis);
-    let places: Vec<[f64; 3]> =
-        (0..fine.positions.len()).map(|vertex| axes.map(|axis| axis.value(vertex)[0])).collect();
-    let triangles: Vec<[u32; 3]> = coarse.faces.iter().map(|face| [face[0], face[1], face[2]]).collect();
-    let surface = Triangles { positions: &coarse.positions, triangles: &triangles };
+    let places: Vec<[f64; 3]> = (0..fine.positions.len())
+        .map(|vertex| axes.map(|axis| axis.value(vertex)[0]))
+        .collect();
+    let triangles: Vec<[u32; 3]> = coarse
+        .faces
+        .iter()
+        .map(|face| [face[0], face[1], face[2]])
+        .collect();
+    let surface = Triangles {
+        positions: &coarse.positions,
+        triangles: &triangles,
+    };
     let tree = limitmesh::measure::Bvh::new(surface).expect("triangles");
-    let farthest = places.iter().map(|&place| tree.closest(place).distance).fold(0.0, f64::max);
+    let farthest = places
+        .iter()
+        .map(|&place| tree.closest(place).distance)
+        .fold(0.0, f64::max);
     assert!(farthest < 1e-6, "{farthest}");
     assert!(places.iter().zip(&fine.positions).any(|(a, b)| a != b));
 }
@@ -72,19 +117,41 @@ fn morphs_begin_on_the_coarser_level() {
 fn one_document_has_all_levels() {
     let folder = folder();
     let out = folder.path().join("cup.gltf");
-    run("lod builtin:cup -o {} --levels 3 --tolerance 0.1% --morph", &[&out]).expect(0);
+    run(
+        "lod builtin:cup -o {} --levels 3 --tolerance 0.1% --morph",
+        &[&out],
+    )
+    .expect(0);
     let text = std::fs::read_to_string(&out).expect("a document");
     let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(document["meshes"].as_array().expect("meshes").len(), 3);
-    assert!(document["extensionsUsed"].as_array().is_some_and(|used| used.contains(&"MSFT_lod".into())));
+    assert!(
+        document["extensionsUsed"]
+            .as_array()
+            .is_some_and(|used| used.contains(&"MSFT_lod".into()))
+    );
     let nodes = document["nodes"].as_array().expect("nodes");
     let shown = document["scenes"][0]["nodes"].as_array().expect("a scene");
     assert_eq!(shown.len(), 1);
     let finest = &nodes[shown[0].as_u64().expect("a number") as usize];
-    assert_eq!(finest["extensions"]["MSFT_lod"]["ids"].as_array().expect("ids").len(), 2);
-    let coverage = finest["extras"]["MSFT_screencoverage"].as_array().expect("coverage");
-    let coverage: Vec<f64> = coverage.iter().map(|x| x.as_f64().expect("a number")).collect();
-    assert!(coverage.len() == 3 && coverage.windows(2).all(|pair| pair[0] > pair[1]), "{coverage:?}");
+    assert_eq!(
+        finest["extensions"]["MSFT_lod"]["ids"]
+            .as_array()
+            .expect("ids")
+            .len(),
+        2
+    );
+    let coverage = finest["extras"]["MSFT_screencoverage"]
+        .as_array()
+        .expect("coverage");
+    let coverage: Vec<f64> = coverage
+        .iter()
+        .map(|x| x.as_f64().expect("a number"))
+        .collect();
+    assert!(
+        coverage.len() == 3 && coverage.windows(2).all(|pair| pair[0] > pair[1]),
+        "{coverage:?}"
+    );
     let targets = |mesh: usize| &document["meshes"][mesh]["primitives"][0]["targets"];
     assert_eq!((0..3).filter(|&mesh| targets(mesh).is_array()).count(), 2);
 }
@@ -96,9 +163,13 @@ fn what_cannot_be_is_told() {
     run("lod builtin:sphere -o {} --tolerances 3,1,2", &[&out])
         .expect(2)
         .saying("number 3 comes to 2 in the mesh's unit, after 1");
-    run("lod builtin:cup -o -", &[]).expect(2).saying("not to standard output");
+    run("lod builtin:cup -o -", &[])
+        .expect(2)
+        .saying("not to standard output");
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
-    run("lod builtin:none -o {}", &[&out]).expect(1).saying("none");
+    run("lod builtin:none -o {}", &[&out])
+        .expect(1)
+        .saying("none");
     let stl = folder.path().join("cup.stl");
     run("lod builtin:cup -o {} --morph", &[&stl])
         .expect(2)
@@ -110,9 +181,12 @@ fn what_cannot_be_is_told() {
 fn a_cap_that_ends_the_levels_is_named() {
     let folder = folder();
     let out = folder.path().join("out.glb");
-    run("lod builtin:sphere -o {} --tolerances 5%,1%,0.1% --max-triangles 1000", &[&out])
-        .expect(3)
-        .saying("--max-triangles 1,000 was reached before level 3 of 3");
+    run(
+        "lod builtin:sphere -o {} --tolerances 5%,1%,0.1% --max-triangles 1000",
+        &[&out],
+    )
+    .expect(3)
+    .saying("--max-triangles 1,000 was reached before level 3 of 3");
 }
 
 /// A square with a texture and two materials that a library describes.
@@ -124,25 +198,40 @@ const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 
 fn what_channels_need_comes_along() {
     let folder = folder();
     let input = file(&folder, "in.obj", PAINTED);
-    file(&folder, "paint.mtl", "newmtl red\nnewmtl blue\nKd 0 0.25 1\n");
+    file(
+        &folder,
+        "paint.mtl",
+        "newmtl red\nnewmtl blue\nKd 0 0.25 1\n",
+    );
     std::fs::create_dir(folder.path().join("deep")).expect("a folder");
     let output = folder.path().join("deep/out.obj");
     let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
     assert!(folder.path().join("deep/paint.mtl").is_file());
-    assert!(!said.stderr.contains("left out: normals"), "{}", said.stderr);
+    assert!(
+        !said.stderr.contains("left out: normals"),
+        "{}",
+        said.stderr
+    );
     let mut levels = names(&folder.path().join("deep"));
     levels.retain(|name| name.ends_with(".obj"));
-    assert!(!levels.is_empty() && levels[0] == "out_LOD0.obj", "{levels:?}");
+    assert!(
+        !levels.is_empty() && levels[0] == "out_LOD0.obj",
+        "{levels:?}"
+    );
     for name in levels {
-        let text = std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
+        let text =
+            std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
         for line in ["mtllib paint.mtl", "usemtl red", "usemtl blue"] {
             assert!(text.lines().any(|own| own == line), "{line} in {name}");
         }
         assert!(text.contains("\nvt ") && text.contains("\nvn "), "{name}");
     }
-    run("lod {} -o {} --levels 2 --channel materials=drop", &[&input, &output])
-        .expect(0)
-        .saying("left out: materials (by --channel)");
+    run(
+        "lod {} -o {} --levels 2 --channel materials=drop",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("left out: materials (by --channel)");
     let output = folder.path().join("out.glb");
     run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
     let materials = Glb::read(&output).json["materials"].clone();
@@ -155,8 +244,10 @@ fn what_channels_need_comes_along() {
 #[test]
 fn textures_of_ply_files_come_along() {
     let folder = folder();
-    let seamed =
-        crate::seams::cube().replace("element vertex", "comment TextureFile wood.png\nelement vertex");
+    let seamed = crate::seams::cube().replace(
+        "element vertex",
+        "comment TextureFile wood.png\nelement vertex",
+    );
     let input = file(&folder, "in.ply", &seamed);
     file(&folder, "wood.png", "");
     std::fs::create_dir(folder.path().join("deep")).expect("a folder");
@@ -165,9 +256,17 @@ fn textures_of_ply_files_come_along() {
         .expect(0)
         .saying("vertices on seams of texture coordinates are written once for each side");
     let text = std::fs::read_to_string(folder.path().join("deep/out_LOD0.ply")).expect("a level");
-    assert!(text.contains("comment TextureFile wood.png\n"), "{}", &text[..400]);
+    assert!(
+        text.contains("comment TextureFile wood.png\n"),
+        "{}",
+        &text[..400]
+    );
     assert!(folder.path().join("deep/wood.png").is_file());
-    let other = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.obj")]).expect(0);
+    let other = run(
+        "lod {} -o {} --levels 2",
+        &[&input, &folder.path().join("out.obj")],
+    )
+    .expect(0);
     other.saying("left out: wood.png (only PLY files name pictures themselves)");
 }
 
@@ -184,7 +283,11 @@ fn an_assets_materials_come_along() {
     );
     std::fs::write(&input, text).expect("written");
     let output = folder.path().join("out.gltf");
-    let said = run("lod {} -o {} --levels 2 --crease-angle none", &[&input, &output]).expect(0);
+    let said = run(
+        "lod {} -o {} --levels 2 --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0);
     let said = said.saying("left out: joints and weights\n");
     assert!(!said.stderr.contains("place for them"), "{}", said.stderr);
     let document: serde_json::Value =
@@ -193,14 +296,29 @@ fn an_assets_materials_come_along() {
         document["materials"],
         serde_json::json!([{"name": "body"}, {"name": "lid", "extras": {"k": 1.5}}])
     );
-    assert!(document["skins"].is_null() && document["extensions"].is_null(), "{document:#}");
+    assert!(
+        document["skins"].is_null() && document["extensions"].is_null(),
+        "{document:#}"
+    );
     assert_eq!(document["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
-    let parts: Vec<Option<usize>> =
-        first_mesh(&output).parts.iter().map(|part| Some(part.primitive)).collect();
+    let parts: Vec<Option<usize>> = first_mesh(&output)
+        .parts
+        .iter()
+        .map(|part| Some(part.primitive))
+        .collect();
     assert_eq!(parts, [Some(0), Some(1)], "a primitive for each material");
-    let materials = document["meshes"][0]["primitives"].as_array().expect("primitives");
-    assert_eq!([&materials[0]["material"], &materials[1]["material"]], [0, 1]);
-    let all = run("lod {} -o {} --levels 2", &[&input, &folder.path().join("out.ply")]).expect(0);
+    let materials = document["meshes"][0]["primitives"]
+        .as_array()
+        .expect("primitives");
+    assert_eq!(
+        [&materials[0]["material"], &materials[1]["material"]],
+        [0, 1]
+    );
+    let all = run(
+        "lod {} -o {} --levels 2",
+        &[&input, &folder.path().join("out.ply")],
+    )
+    .expect(0);
     all.saying("colours and textures of materials");
 }
 
@@ -210,27 +328,50 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     let folder = folder();
     let input = file(&folder, "rock_LOD0.obj", PAINTED);
     let rock = folder.path().join("rock.obj");
-    run("lod {} -o {}", &[&input, &rock]).expect(2).saying("rock_LOD0.obj is an input");
-    assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
-    run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.glb"), &input])
+    run("lod {} -o {}", &[&input, &rock])
         .expect(2)
         .saying("rock_LOD0.obj is an input");
+    assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
+    run(
+        "lod {} -o {} --report {}",
+        &[&input, &folder.path().join("a.glb"), &input],
+    )
+    .expect(2)
+    .saying("rock_LOD0.obj is an input");
     let own = folder.path().join("a_LOD1.obj");
-    run("lod {} -o {} --report {}", &[&input, &folder.path().join("a.obj"), &own])
-        .expect(2)
-        .saying("a_LOD1.obj would be written twice");
+    run(
+        "lod {} -o {} --report {}",
+        &[&input, &folder.path().join("a.obj"), &own],
+    )
+    .expect(2)
+    .saying("a_LOD1.obj would be written twice");
     std::fs::create_dir(folder.path().join("b_LOD3.obj")).expect("a folder");
-    run("lod {} -o {}", &[&input, &folder.path().join("b.obj")]).expect(1).saying("it is a folder");
-    let nowhere = folder.path().join("none/report.json");
-    run("lod {} -o {} --report {}", &[&input, &folder.path().join("c.obj"), &nowhere])
+    run("lod {} -o {}", &[&input, &folder.path().join("b.obj")])
         .expect(1)
-        .saying("no folder");
-    for (option, value) in [("--uv-tolerance", "0.1"), ("--attribute-tolerance", "heat=1")] {
-        run(&format!("lod {{}} -o {{}} {option} {value}"), &[&input, &folder.path().join("d.obj")])
-            .expect(2)
-            .saying(&format!("{option} is for `refine`"));
+        .saying("it is a folder");
+    let nowhere = folder.path().join("none/report.json");
+    run(
+        "lod {} -o {} --report {}",
+        &[&input, &folder.path().join("c.obj"), &nowhere],
+    )
+    .expect(1)
+    .saying("no folder");
+    for (option, value) in [
+        ("--uv-tolerance", "0.1"),
+        ("--attribute-tolerance", "heat=1"),
+    ] {
+        run(
+            &format!("lod {{}} -o {{}} {option} {value}"),
+            &[&input, &folder.path().join("d.obj")],
+        )
+        .expect(2)
+        .saying(&format!("{option} is for `refine`"));
     }
-    assert_eq!(names(folder.path()), ["b_LOD3.obj", "rock_LOD0.obj"], "nothing is written");
+    assert_eq!(
+        names(folder.path()),
+        ["b_LOD3.obj", "rock_LOD0.obj"],
+        "nothing is written"
+    );
 }
 
 /// Levels that would be as coarse as the control mesh allows are told and left out, and whoever goes away meets levels in order.
@@ -247,13 +388,28 @@ fn distances_grow_from_level_to_level() {
         let report = found.json();
         let levels = report["levels"].as_array().expect("a list");
         let numbers = |key: &str| -> Vec<f64> {
-            levels.iter().map(|level| level[key].as_f64().expect("a number")).collect()
+            levels
+                .iter()
+                .map(|level| level[key].as_f64().expect("a number"))
+                .collect()
         };
-        let (triangles, distances, coverage) =
-            (numbers("triangles"), numbers("switching_distance"), numbers("least_coverage"));
-        assert!(triangles.windows(2).all(|pair| pair[0] > pair[1]), "{words}: {triangles:?}");
-        assert!(distances.windows(2).all(|pair| pair[0] < pair[1]), "{words}: {distances:?}");
-        assert!(coverage.windows(2).all(|pair| pair[0] > pair[1]), "{words}: {coverage:?}");
+        let (triangles, distances, coverage) = (
+            numbers("triangles"),
+            numbers("switching_distance"),
+            numbers("least_coverage"),
+        );
+        assert!(
+            triangles.windows(2).all(|pair| pair[0] > pair[1]),
+            "{words}: {triangles:?}"
+        );
+        assert!(
+            distances.windows(2).all(|pair| pair[0] < pair[1]),
+            "{words}: {distances:?}"
+        );
+        assert!(
+            coverage.windows(2).all(|pair| pair[0] > pair[1]),
+            "{words}: {coverage:?}"
+        );
         for level in levels.iter().filter(|level| !level["morph"].is_null()) {
             assert!(
                 level["morph"]["from_distance"].as_f64() < level["morph"]["to_distance"].as_f64(),
@@ -262,7 +418,10 @@ fn distances_grow_from_level_to_level() {
         }
     }
     let folder = folder();
-    run("lod builtin:cup -o {} --tolerances 20%,10%,1%", &[&folder.path().join("out.glb")])
-        .expect(0)
-        .saying("left out: the next finer one");
+    run(
+        "lod builtin:cup -o {} --tolerances 20%,10%,1%",
+        &[&folder.path().join("out.glb")],
+    )
+    .expect(0)
+    .saying("left out: the next finer one");
 }

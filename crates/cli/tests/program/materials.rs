@@ -43,18 +43,28 @@ fn has_materials(json: &Value) {
     assert_eq!(json["materials"], expected);
     assert_eq!(json["textures"], json!([{"source": 0}]));
     assert_eq!(json["images"].as_array().map(Vec::len), Some(1));
-    let primitives = json["meshes"][0]["primitives"].as_array().expect("primitives");
+    let primitives = json["meshes"][0]["primitives"]
+        .as_array()
+        .expect("primitives");
     let materials: Vec<&Value> = primitives.iter().map(|own| &own["material"]).collect();
     assert_eq!(materials, [0, 1, 2]);
-    assert!(primitives.iter().all(|own| own["attributes"]["TEXCOORD_0"].is_u64()));
+    assert!(
+        primitives
+            .iter()
+            .all(|own| own["attributes"]["TEXCOORD_0"].is_u64())
+    );
 }
 
 /// The kind and the bytes of the first image.
 fn image(glb: &Glb) -> (&str, &[u8]) {
     let image = &glb.json["images"][0];
     let view = &glb.json["bufferViews"][image["bufferView"].as_u64().expect("a view") as usize];
-    let [start, length] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap_or(0) as usize);
-    (image["mimeType"].as_str().expect("a kind"), &glb.bytes()[start..start + length])
+    let [start, length] =
+        ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap_or(0) as usize);
+    (
+        image["mimeType"].as_str().expect("a kind"),
+        &glb.bytes()[start..start + length],
+    )
 }
 
 #[test]
@@ -64,17 +74,25 @@ fn colours_and_pictures_come_to_documents() {
     let output = folder.path().join("out.glb");
     // Once refined, once in levels of detail.
     for command in ["refine {} -o {}", "lod {} -o {} --levels 1"] {
-        run(command, &[&input, &output]).expect(0).saying("odd.tga: left out: neither PNG nor JPEG");
+        run(command, &[&input, &output])
+            .expect(0)
+            .saying("odd.tga: left out: neither PNG nor JPEG");
         let glb = Glb::read(&output);
         has_materials(&glb.json);
         assert_eq!(image(&glb), ("image/png", picture(b"wood").as_slice()));
         // The geometry is still where its accessors say.
-        assert_eq!(glb.triangles(0).len(), glb.numbers(&glb.primitive(0)["indices"]).len() / 3);
+        assert_eq!(
+            glb.triangles(0).len(),
+            glb.numbers(&glb.primitive(0)["indices"]).len() / 3
+        );
     }
     let piped = run("refine {} -o - --to gltf", &[&input]).expect(0);
     let json: Value = serde_json::from_str(&piped.stdout).expect("JSON");
     has_materials(&json);
-    assert_eq!(json["images"][0]["uri"], "data:image/png;base64,iVBORw0KGgp3b29k");
+    assert_eq!(
+        json["images"][0]["uri"],
+        "data:image/png;base64,iVBORw0KGgp3b29k"
+    );
     // As text, the picture is a file of its own.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
@@ -83,7 +101,10 @@ fn colours_and_pictures_come_to_documents() {
     let text = Glb::text(&output);
     has_materials(&text.json);
     assert_eq!(text.json["images"][0], json!({"uri": "skin/my%20wood.png"}));
-    assert_eq!(std::fs::read(other.join("skin/my wood.png")).expect("a copy"), picture(b"wood"));
+    assert_eq!(
+        std::fs::read(other.join("skin/my wood.png")).expect("a copy"),
+        picture(b"wood")
+    );
 }
 
 #[test]
@@ -94,7 +115,8 @@ fn libraries_and_pictures_come_to_other_folders() {
     std::fs::create_dir(&other).expect("a folder");
     run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
     for name in ["paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"] {
-        let [was, is] = [folder.path(), &other].map(|folder| std::fs::read(folder.join(name)).expect(name));
+        let [was, is] =
+            [folder.path(), &other].map(|folder| std::fs::read(folder.join(name)).expect(name));
         assert_eq!(was, is, "{name}");
     }
     let text = std::fs::read_to_string(other.join("out.obj")).expect("written");
@@ -110,7 +132,10 @@ fn wood(folder: &Path, library: &str) -> (Value, String) {
     std::fs::write(folder.join("paint.mtl"), library).expect("written");
     let output = folder.join("out.glb");
     let said = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
-    (Glb::read(&output).json["materials"][0]["pbrMetallicRoughness"].take(), said)
+    (
+        Glb::read(&output).json["materials"][0]["pbrMetallicRoughness"].take(),
+        said,
+    )
 }
 
 #[test]
@@ -127,14 +152,26 @@ fn statements_of_libraries() {
         // Programs that write this mean opaque.
         ("Tr 1", json!([1.0, 1.0, 1.0, 1.0])),
         ("newmtl other\nKd 0.5", json!([1.0, 1.0, 1.0, 1.0])),
-        ("newmtl other\nKd 0.5\nnewmtl\t wood  \nKd 0.25", json!([0.25, 0.25, 0.25, 1.0])),
+        (
+            "newmtl other\nKd 0.5\nnewmtl\t wood  \nKd 0.25",
+            json!([0.25, 0.25, 0.25, 1.0]),
+        ),
     ];
     for (statements, factor) in cases {
-        let (material, _) = wood(folder.path(), &format!("Kd 0.125\nnewmtl wood\n{statements}\n"));
+        let (material, _) = wood(
+            folder.path(),
+            &format!("Kd 0.125\nnewmtl wood\n{statements}\n"),
+        );
         assert_eq!(material["baseColorFactor"], factor, "{statements}");
     }
-    let (_, said) = wood(folder.path(), "newmtl wood\nKs 1 1 1\nillum 2\nmap_Kd -s 2 2 a.png\n");
-    assert!(said.contains("left out of the materials: Ks, illum, map_Kd -s\n"), "{said}");
+    let (_, said) = wood(
+        folder.path(),
+        "newmtl wood\nKs 1 1 1\nillum 2\nmap_Kd -s 2 2 a.png\n",
+    );
+    assert!(
+        said.contains("left out of the materials: Ks, illum, map_Kd -s\n"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -143,30 +180,47 @@ fn pictures_are_found_from_the_library() {
     for name in ["mats", "tex"] {
         std::fs::create_dir(folder.path().join(name)).expect("a folder");
     }
-    std::fs::write(folder.path().join("mats/paint.mtl"), "newmtl wood\nmap_Kd ..\\tex\\wood.png\n")
-        .expect("written");
+    std::fs::write(
+        folder.path().join("mats/paint.mtl"),
+        "newmtl wood\nmap_Kd ..\\tex\\wood.png\n",
+    )
+    .expect("written");
     std::fs::write(folder.path().join("tex/wood.png"), picture(b"wood")).expect("written");
-    let input = file(&folder, "in.obj", &OBJ.replace("paint.mtl", "mats/paint.mtl"));
+    let input = file(
+        &folder,
+        "in.obj",
+        &OBJ.replace("paint.mtl", "mats/paint.mtl"),
+    );
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
     run("refine {} -o {}", &[&input, &other.join("out.gltf")]).expect(0);
-    assert_eq!(Glb::text(&other.join("out.gltf")).json["images"], json!([{"uri": "tex/wood.png"}]));
+    assert_eq!(
+        Glb::text(&other.join("out.gltf")).json["images"],
+        json!([{"uri": "tex/wood.png"}])
+    );
     run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
     assert!(other.join("mats/paint.mtl").is_file());
-    assert_eq!(std::fs::read(other.join("tex/wood.png")).expect("a copy"), picture(b"wood"));
+    assert_eq!(
+        std::fs::read(other.join("tex/wood.png")).expect("a copy"),
+        picture(b"wood")
+    );
 }
 
 #[test]
 fn documents_without_coordinates_have_no_pictures() {
     let folder = folder();
     painted(&folder);
-    let bare = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nusemtl wood\nf 1 2 3\nf 1 3 4\n";
+    let bare =
+        "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nusemtl wood\nf 1 2 3\nf 1 3 4\n";
     let input = file(&folder, "bare.obj", bare);
     let output = folder.path().join("out.glb");
     let said = run("refine {} -o {}", &[&input, &output]).expect(0);
     said.saying("skin/my wood.png: left out: there are no texture coordinates");
     let json = Glb::read(&output).json;
-    assert!(json.get("images").is_none() && json.get("textures").is_none(), "{json}");
+    assert!(
+        json.get("images").is_none() && json.get("textures").is_none(),
+        "{json}"
+    );
     let model = json!({"baseColorFactor": [0.5, 0.25, 1.0, 1.0], "metallicFactor": 0});
     assert_eq!(json["materials"][0]["pbrMetallicRoughness"], model);
 }
@@ -176,8 +230,20 @@ fn nothing_is_replaced() {
     let folder = folder();
     let input = painted(&folder);
     let state = || {
-        let of = |name: &str| (name.to_owned(), std::fs::read(folder.path().join(name)).expect(name));
-        ["in.obj", "paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"].map(of)
+        let of = |name: &str| {
+            (
+                name.to_owned(),
+                std::fs::read(folder.path().join(name)).expect(name),
+            )
+        };
+        [
+            "in.obj",
+            "paint.mtl",
+            "skin/my wood.png",
+            "skin/bumps.png",
+            "odd.tga",
+        ]
+        .map(of)
     };
     let before = state();
     for name in ["out.obj", "out.gltf"] {
@@ -218,8 +284,20 @@ fn materials_of_real_files() {
     };
     let assets = PathBuf::from(models).join("assets");
     let cases = [
-        ("fuze", "fuze.obj.mtl", "a-super-duper-material", 1.0, Some("fuze uv.jpg")),
-        ("capsule", "capsule.mtl", "material0", 1.0, Some("capsule0.jpg")),
+        (
+            "fuze",
+            "fuze.obj.mtl",
+            "a-super-duper-material",
+            1.0,
+            Some("fuze uv.jpg"),
+        ),
+        (
+            "capsule",
+            "capsule.mtl",
+            "material0",
+            1.0,
+            Some("capsule0.jpg"),
+        ),
         ("ico4uv", "ico4uv.mtl", "None", 0.8, None),
     ];
     for (name, library, material, grey, picture) in cases {
@@ -230,14 +308,27 @@ fn materials_of_real_files() {
         let glb = Glb::read(&output);
         let own = &glb.json["materials"][0];
         assert_eq!(own["name"], material);
-        assert_eq!(own["pbrMetallicRoughness"]["baseColorFactor"], json!([grey, grey, grey, 1.0]));
+        assert_eq!(
+            own["pbrMetallicRoughness"]["baseColorFactor"],
+            json!([grey, grey, grey, 1.0])
+        );
         assert_eq!(own.get("alphaMode"), None);
         let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).expect("a file");
         if let Some(picture) = picture {
-            assert_eq!(own["pbrMetallicRoughness"]["baseColorTexture"], json!({"index": 0}));
-            assert_eq!(image(&glb), ("image/jpeg", read(&assets, picture).as_slice()));
+            assert_eq!(
+                own["pbrMetallicRoughness"]["baseColorTexture"],
+                json!({"index": 0})
+            );
+            assert_eq!(
+                image(&glb),
+                ("image/jpeg", read(&assets, picture).as_slice())
+            );
         }
-        run("refine {} -o {} --tolerance 1%", &[&input, &folder.path().join("out.obj")]).expect(0);
+        run(
+            "refine {} -o {} --tolerance 1%",
+            &[&input, &folder.path().join("out.obj")],
+        )
+        .expect(0);
         let mut expected = vec!["out.glb", "out.obj", library];
         expected.extend(picture);
         expected.sort_unstable();
@@ -257,16 +348,32 @@ fn what_is_missing_or_elsewhere_is_named() {
     let input = inside.join("in.obj");
     let output = inside.join("out.glb");
     std::fs::write(&input, OBJ).expect("written");
-    run("refine {} -o {}", &[&input, &output]).expect(0).saying("paint.mtl: left out: No such file");
-    let bare: Vec<Value> = ["wood", "glass", "odd"].map(|name| json!({ "name": name })).into();
+    run("refine {} -o {}", &[&input, &output])
+        .expect(0)
+        .saying("paint.mtl: left out: No such file");
+    let bare: Vec<Value> = ["wood", "glass", "odd"]
+        .map(|name| json!({ "name": name }))
+        .into();
     assert_eq!(Glb::read(&output).json["materials"], Value::from(bare));
     let secret = outside.path().join("secret.png");
     std::fs::create_dir(inside.join("folder.png")).expect("a folder");
-    let away = ["../secret.png", "C:\\secret.png", "none.png", "http://a/b.png", "folder.png"];
+    let away = [
+        "../secret.png",
+        "C:\\secret.png",
+        "none.png",
+        "http://a/b.png",
+        "folder.png",
+    ];
     for name in away.map(Path::new).into_iter().chain([secret.as_path()]) {
         let name = name.display();
-        let (material, said) = wood(&inside, &format!("newmtl wood\nmap_Kd\nmap_Kd {name}\nKd 0 0 0.5\n"));
+        let (material, said) = wood(
+            &inside,
+            &format!("newmtl wood\nmap_Kd\nmap_Kd {name}\nKd 0 0 0.5\n"),
+        );
         assert!(said.contains(&format!("{name}: left out:")), "{said}");
-        assert_eq!(material, json!({"baseColorFactor": [0.0, 0.0, 0.5, 1.0], "metallicFactor": 0}));
+        assert_eq!(
+            material,
+            json!({"baseColorFactor": [0.0, 0.0, 0.5, 1.0], "metallicFactor": 0})
+        );
     }
 }

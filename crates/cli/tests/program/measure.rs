@@ -16,7 +16,9 @@ const CONTRACT: &str = "version surface.path surface.triangles reference.path re
     seconds.prepare seconds.measure";
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
-    let report = run(&format!("measure {arguments} --json"), paths).expect(0).json();
+    let report = run(&format!("measure {arguments} --json"), paths)
+        .expect(0)
+        .json();
     has_keys(&report, CONTRACT);
     report
 }
@@ -26,14 +28,25 @@ fn number(value: &Value) -> f64 {
 }
 
 fn near(value: &Value, expected: f64) {
-    assert!((number(value) - expected).abs() <= 1e-12, "{value} {expected}");
+    assert!(
+        (number(value) - expected).abs() <= 1e-12,
+        "{value} {expected}"
+    );
 }
 
 #[test]
 fn parallel_squares_are_as_far_apart_as_they_stand() {
     let folder = folder();
-    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-    let high = file(&folder, "high.obj", "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n");
+    let low = file(
+        &folder,
+        "low.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let high = file(
+        &folder,
+        "high.obj",
+        "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n",
+    );
     let report = measure("{} {} --samples 5000", &[&low, &high]);
     let h = &report["hausdorff"];
     near(&h["forward"], 0.25);
@@ -48,7 +61,8 @@ fn parallel_squares_are_as_far_apart_as_they_stand() {
     near(&h["backward_detail"]["at"][0], 2.0);
     near(&h["backward_detail"]["to"][0], 1.0);
     assert_eq!(h["kind"], "sampled lower bound");
-    let samples = number(&h["forward_detail"]["samples"]) + number(&h["backward_detail"]["samples"]);
+    let samples =
+        number(&h["forward_detail"]["samples"]) + number(&h["backward_detail"]["samples"]);
     assert_eq!(number(&h["samples"]), samples);
     assert!(samples >= 8000.0, "{samples}");
 }
@@ -56,7 +70,10 @@ fn parallel_squares_are_as_far_apart_as_they_stand() {
 #[test]
 fn a_surface_has_no_distance_to_itself() {
     let report = measure("builtin:cup builtin:cup", &[]);
-    assert!(number(&report["hausdorff"]["symmetric_percent"]) < 1e-10, "{report}");
+    assert!(
+        number(&report["hausdorff"]["symmetric_percent"]) < 1e-10,
+        "{report}"
+    );
 }
 
 #[test]
@@ -66,17 +83,27 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let mut last = f64::INFINITY;
     for levels in 0..4 {
         let options = format!("--method uniform --limit --levels {levels}");
-        run(&format!("refine builtin:torus -o {{}} {options}"), &[&refined]).expect(0);
+        run(
+            &format!("refine builtin:torus -o {{}} {options}"),
+            &[&refined],
+        )
+        .expect(0);
         let report = measure("{} --limit-of builtin:torus", &[&refined]);
         let percent = number(&report["hausdorff"]["symmetric_percent"]);
         // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.
-        assert!(percent < 0.3 * last, "level {levels}: {percent} after {last}");
+        assert!(
+            percent < 0.3 * last,
+            "level {levels}: {percent} after {last}"
+        );
         assert_eq!(report["reference"]["limit"]["levels"], 5);
         assert_eq!(report["reference"]["limit"]["chosen"], true);
         assert_eq!(report["reference"]["triangles"], 256 * 1024);
         last = percent;
     }
-    let same = measure("{} --limit-of builtin:torus --reference-levels 3", &[&refined]);
+    let same = measure(
+        "{} --limit-of builtin:torus --reference-levels 3",
+        &[&refined],
+    );
     assert!(number(&same["hausdorff"]["symmetric_percent"]) < 1e-10);
     assert_eq!(same["reference"]["limit"]["chosen"], false);
 }
@@ -87,15 +114,26 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
 fn a_mesh_of_many_levels_is_not_its_own_reference() {
     let folder = folder();
     let refined = folder.path().join("refined.ply");
-    run("refine builtin:tetrahedron -o {} --method uniform --limit --levels 5", &[&refined]).expect(0);
+    run(
+        "refine builtin:tetrahedron -o {} --method uniform --limit --levels 5",
+        &[&refined],
+    )
+    .expect(0);
     let report = measure("{} --limit-of builtin:tetrahedron", &[&refined]);
     assert_eq!(report["reference"]["limit"]["levels"], 7);
-    let certified =
-        run("measure {} --limit-of builtin:tetrahedron --certified --json", &[&refined]).expect(0).json();
+    let certified = run(
+        "measure {} --limit-of builtin:tetrahedron --certified --json",
+        &[&refined],
+    )
+    .expect(0)
+    .json();
     let [lower, upper] = ["lower", "upper"].map(|end| number(&certified["hausdorff"][end]));
     let found = number(&report["hausdorff"]["symmetric"]);
     // Two levels finer it is a sixteenth of that off itself.
-    assert!(0.9 * lower < found && found < upper, "{found}, certainly from {lower} to {upper}");
+    assert!(
+        0.9 * lower < found && found < upper,
+        "{found}, certainly from {lower} to {upper}"
+    );
 }
 
 /// Area and volume are beside what is asked for: where they are beyond what numbers hold, distances are not.
@@ -105,23 +143,45 @@ fn distances_are_measured_where_areas_are_not_known() {
     let octahedron = |r: &str| {
         let corners = [[r, "0", "0"], ["0", r, "0"], ["0", "0", r]].map(|at| at.join(" "));
         let opposite = corners.clone().map(|at| at.replace(r, &format!("-{r}")));
-        let vertices: String = corners.iter().chain(&opposite).map(|at| format!("v {at}\n")).collect();
-        format!("{vertices}f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n")
+        let vertices: String = corners
+            .iter()
+            .chain(&opposite)
+            .map(|at| format!("v {at}\n"))
+            .collect();
+        format!(
+            "{vertices}f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n"
+        )
     };
     let [near, far] = ["1", "1e110"].map(|r| file(&folder, &format!("{r}.obj"), &octahedron(r)));
     let of = |path: &Path| measure("{} --limit-of {}", &[path, path]);
     let (near, far) = (of(&near), of(&far));
     let percent = |report: &Value| number(&report["hausdorff"]["symmetric_percent"]);
-    assert!((percent(&near) - percent(&far)).abs() < 1e-6, "{near:#} {far:#}");
-    assert!(near["reference"]["volume"].is_f64() && far["reference"]["volume"].is_null(), "{far:#}");
+    assert!(
+        (percent(&near) - percent(&far)).abs() < 1e-6,
+        "{near:#} {far:#}"
+    );
+    assert!(
+        near["reference"]["volume"].is_f64() && far["reference"]["volume"].is_null(),
+        "{far:#}"
+    );
 }
 
 #[test]
 fn the_text_says_that_samples_give_a_lower_bound() {
-    let text = run("measure builtin:icosphere --limit-of builtin:icosphere", &[]).expect(0).stdout;
-    for words in
-        ["lower bound", "samples", "% of the control mesh's diagonal", "RMS", "closest point", "5 levels"]
-    {
+    let text = run(
+        "measure builtin:icosphere --limit-of builtin:icosphere",
+        &[],
+    )
+    .expect(0)
+    .stdout;
+    for words in [
+        "lower bound",
+        "samples",
+        "% of the control mesh's diagonal",
+        "RMS",
+        "closest point",
+        "5 levels",
+    ] {
         assert!(text.contains(words), "{words} in:\n{text}");
     }
 }
@@ -134,24 +194,49 @@ fn non_manifold_surfaces_can_be_measured() {
     let report = measure("{} {}", &[&input, &input]);
     assert!(number(&report["hausdorff"]["symmetric"]) < 1e-12);
     assert_eq!(report["surface"]["diagnosis"]["clean"], false);
-    assert!(run("measure {} {}", &[&input, &input]).expect(0).stdout.contains("repaired first"));
+    assert!(
+        run("measure {} {}", &[&input, &input])
+            .expect(0)
+            .stdout
+            .contains("repaired first")
+    );
 }
 
 #[test]
 fn heat_maps_are_meshes_or_pictures() {
     let folder = folder();
-    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-    let tilted = file(&folder, "tilted.obj", "v 0 0 0\nv 1 0 1\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
-    let (mesh, picture) = (folder.path().join("heat.ply"), folder.path().join("heat.png"));
+    let low = file(
+        &folder,
+        "low.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let tilted = file(
+        &folder,
+        "tilted.obj",
+        "v 0 0 0\nv 1 0 1\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let (mesh, picture) = (
+        folder.path().join("heat.ply"),
+        folder.path().join("heat.png"),
+    );
     run("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]).expect(0);
     let written = crate::common::soup(&mesh);
     assert_eq!(written.positions.len(), 4);
     let bytes = std::fs::read(&mesh).expect("a file");
     let header = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]);
-    assert!(header.contains("quality") && header.contains("uchar red"), "{header}");
+    assert!(
+        header.contains("quality") && header.contains("uchar red"),
+        "{header}"
+    );
     run("measure {} {} --heatmap {}", &[&tilted, &low, &picture]).expect(0);
-    assert!(std::fs::read(&picture).expect("a file").starts_with(b"\x89PNG"));
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &low]).expect(2).saying(".png");
+    assert!(
+        std::fs::read(&picture)
+            .expect("a file")
+            .starts_with(b"\x89PNG")
+    );
+    run("measure {} {} --heatmap {}", &[&tilted, &low, &low])
+        .expect(2)
+        .saying(".png");
 }
 
 const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind hausdorff.lower hausdorff.upper
@@ -161,7 +246,9 @@ const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind haus
     hausdorff.backward.at hausdorff.backward.to seconds.prepare seconds.measure";
 
 fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
-    let report = run(&format!("measure {arguments} --certified --json"), paths).expect(code).json();
+    let report = run(&format!("measure {arguments} --certified --json"), paths)
+        .expect(code)
+        .json();
     has_keys(&report, CERTIFIED);
     report["hausdorff"].clone()
 }
@@ -169,24 +256,50 @@ fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
 #[test]
 fn certified_intervals_hold_the_distance() {
     let folder = folder();
-    let low = file(&folder, "low.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-    let high = file(&folder, "high.obj", "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n");
+    let low = file(
+        &folder,
+        "low.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
+    );
+    let high = file(
+        &folder,
+        "high.obj",
+        "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n",
+    );
     let far = (1.0f64 + 0.0625).sqrt();
-    for (gap, widest) in
-        [("", 0.01 * far), ("--gap 1e-6", 1e-6), ("--gap 0.1%", 0.001 * 5f64.sqrt()), ("--gap 0", 1e-9)]
-    {
+    for (gap, widest) in [
+        ("", 0.01 * far),
+        ("--gap 1e-6", 1e-6),
+        ("--gap 0.1%", 0.001 * 5f64.sqrt()),
+        ("--gap 0", 1e-9),
+    ] {
         let h = certified(&format!("{{}} {{}} {gap}"), &[&low, &high], 0);
-        assert_eq!((&h["kind"], &h["converged"]), (&"certified interval".into(), &true.into()));
+        assert_eq!(
+            (&h["kind"], &h["converged"]),
+            (&"certified interval".into(), &true.into())
+        );
         for (direction, truth) in [(&h["forward"], 0.25), (&h["backward"], far), (&h, far)] {
             let (lower, upper) = (number(&direction["lower"]), number(&direction["upper"]));
-            assert!(lower <= truth && truth <= upper && upper - lower <= widest, "{gap}: {direction}");
+            assert!(
+                lower <= truth && truth <= upper && upper - lower <= widest,
+                "{gap}: {direction}"
+            );
         }
-        near(&h["upper_percent"], 100.0 * number(&h["upper"]) / 5f64.sqrt());
+        near(
+            &h["upper_percent"],
+            100.0 * number(&h["upper"]) / 5f64.sqrt(),
+        );
     }
-    let text = run("measure {} {} --certified", &[&low, &high]).expect(0).stdout;
-    for words in
-        ["certified", "at least", "at most", "backward maximum near (2, ", "% of the second mesh's diagonal"]
-    {
+    let text = run("measure {} {} --certified", &[&low, &high])
+        .expect(0)
+        .stdout;
+    for words in [
+        "certified",
+        "at least",
+        "at most",
+        "backward maximum near (2, ",
+        "% of the second mesh's diagonal",
+    ] {
         assert!(text.contains(words), "{words} in:\n{text}");
     }
 }
@@ -200,47 +313,87 @@ fn a_certified_interval_that_is_cut_short_is_given_with_code_3() {
     assert!(number(&short["lower"]) <= number(&whole["upper"]));
     assert!(number(&whole["lower"]) <= number(&short["upper"]));
     assert!(number(&short["upper"]) > number(&short["lower"]));
-    run(&format!("measure {arguments} --certified"), &[]).expect(3).saying("--max-work");
+    run(&format!("measure {arguments} --certified"), &[])
+        .expect(3)
+        .saying("--max-work");
 }
 
 #[test]
 fn what_belongs_to_certified_distances_and_what_does_not() {
     let two = "measure builtin:cup builtin:torus";
-    run(&format!("{two} --gap 1%"), &[]).expect(2).saying("--certified");
-    run(&format!("{two} --max-work 5"), &[]).expect(2).saying("--certified");
-    run(&format!("{two} --certified --gap -1"), &[]).expect(2).saying("at least 0");
-    run(&format!("{two} --certified --samples 9"), &[]).expect(2).saying("--samples");
-    run("measure builtin:cup --limit-of builtin:cup --certified --reference-levels 3", &[])
+    run(&format!("{two} --gap 1%"), &[])
         .expect(2)
-        .saying("sampled");
+        .saying("--certified");
+    run(&format!("{two} --max-work 5"), &[])
+        .expect(2)
+        .saying("--certified");
+    run(&format!("{two} --certified --gap -1"), &[])
+        .expect(2)
+        .saying("at least 0");
+    run(&format!("{two} --certified --samples 9"), &[])
+        .expect(2)
+        .saying("--samples");
+    run(
+        "measure builtin:cup --limit-of builtin:cup --certified --reference-levels 3",
+        &[],
+    )
+    .expect(2)
+    .saying("sampled");
 }
 
 #[test]
 fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let refined = run("refine builtin:cup -o {} --tolerance 0.5% --report -", &[&output]).expect(0).json();
-    let (lower, upper) = (number(&refined["error"]["lower"]), number(&refined["error"]["upper"]));
+    let refined = run(
+        "refine builtin:cup -o {} --tolerance 0.5% --report -",
+        &[&output],
+    )
+    .expect(0)
+    .json();
+    let (lower, upper) = (
+        number(&refined["error"]["lower"]),
+        number(&refined["error"]["upper"]),
+    );
     for options in ["", "--gap 0.05%"] {
         let words = format!("measure {{}} --limit-of builtin:cup --certified --json {options}");
         let report = run(&words, &[&output]).expect(0).json();
         let h = &report["hausdorff"];
         let (low, high) = (number(&h["lower"]), number(&h["upper"]));
         // Two intervals for one distance overlap.
-        assert!(low <= upper && lower <= high, "{low} {high} {lower} {upper}");
-        let wide =
-            if options.is_empty() { 0.1 * low } else { 0.0005 * number(&refined["error"]["diagonal"]) };
+        assert!(
+            low <= upper && lower <= high,
+            "{low} {high} {lower} {upper}"
+        );
+        let wide = if options.is_empty() {
+            0.1 * low
+        } else {
+            0.0005 * number(&refined["error"]["diagonal"])
+        };
         assert!(high - low <= wide * (1.0 + 1e-9), "{low} {high}");
         let limit = &report["reference"]["limit"];
         assert!(number(&limit["error"]) > 0.0 && number(&limit["error"]) <= 0.5 * wide);
         assert_eq!(h["converged"], true);
     }
-    let text = run("measure {} --limit-of builtin:cup --certified", &[&output]).expect(0).stdout;
-    assert!(text.contains("limit surface of builtin:cup") && text.contains("certainly within"), "{text}");
+    let text = run("measure {} --limit-of builtin:cup --certified", &[&output])
+        .expect(0)
+        .stdout;
+    assert!(
+        text.contains("limit surface of builtin:cup") && text.contains("certainly within"),
+        "{text}"
+    );
     let cut = "measure {} --limit-of builtin:cup --certified --gap 0.01% --max-work 1";
     assert!(run(cut, &[&output]).expect(3).stdout.contains("at most"));
-    run("measure {} --limit-of builtin:cup --certified --reference-levels 3", &[&output]).expect(2);
-    run("measure {} --limit-of builtin:cup --certified --scheme butterfly", &[&output]).expect(2);
+    run(
+        "measure {} --limit-of builtin:cup --certified --reference-levels 3",
+        &[&output],
+    )
+    .expect(2);
+    run(
+        "measure {} --limit-of builtin:cup --certified --scheme butterfly",
+        &[&output],
+    )
+    .expect(2);
 }
 
 /// Uniform refinement and a sphere: distances to the limit surface that no exact refinement had a part in.
@@ -248,14 +401,24 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
 fn the_distance_of_other_meshes_to_the_limit_surface_is_certified() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    for options in ["--method uniform --levels 2 --limit", "--method limit-normal --angle 8"] {
-        run(&format!("refine builtin:torus -o {{}} {options}"), &[&output]).expect(0);
+    for options in [
+        "--method uniform --levels 2 --limit",
+        "--method limit-normal --angle 8",
+    ] {
+        run(
+            &format!("refine builtin:torus -o {{}} {options}"),
+            &[&output],
+        )
+        .expect(0);
         let sampled = measure("{} --limit-of builtin:torus", &[&output]);
         let h = certified("{} --limit-of builtin:torus", &[&output], 0);
         let sampled = number(&sampled["hausdorff"]["symmetric"]);
         let (low, high) = (number(&h["lower"]), number(&h["upper"]));
         // The samples' own limit surface is a mesh as well: off by hundredths of this distance.
-        assert!(sampled <= 1.02 * high && sampled >= 0.9 * low, "{options}: {sampled} in {low}, {high}");
+        assert!(
+            sampled <= 1.02 * high && sampled >= 0.9 * low,
+            "{options}: {sampled} in {low}, {high}"
+        );
     }
 }
 
@@ -264,8 +427,15 @@ fn the_distance_of_other_meshes_to_the_limit_surface_is_certified() {
 #[test]
 fn refine_and_measure_speak_of_one_diagonal() {
     let folder = folder();
-    let (mesh, report) = (folder.path().join("cup.ply"), folder.path().join("cup.json"));
-    run("refine builtin:cup -o {} --tolerance 0.2% --report {}", &[&mesh, &report]).expect(0);
+    let (mesh, report) = (
+        folder.path().join("cup.ply"),
+        folder.path().join("cup.json"),
+    );
+    run(
+        "refine builtin:cup -o {} --tolerance 0.2% --report {}",
+        &[&mesh, &report],
+    )
+    .expect(0);
     let refined: Value =
         serde_json::from_str(&std::fs::read_to_string(&report).expect("a report")).expect("JSON");
     let error = &refined["error"];
@@ -274,7 +444,12 @@ fn refine_and_measure_speak_of_one_diagonal() {
     assert_eq!(number(&error["diagonal"]), diagonal);
 
     let sampled = measure("{} --limit-of builtin:cup", &[&mesh]);
-    let certified = run("measure {} --limit-of builtin:cup --certified --json", &[&mesh]).expect(0).json();
+    let certified = run(
+        "measure {} --limit-of builtin:cup --certified --json",
+        &[&mesh],
+    )
+    .expect(0)
+    .json();
     let (sampled, certified) = (&sampled["hausdorff"], &certified["hausdorff"]);
     for found in [sampled, certified] {
         assert_eq!(number(&found["diagonal"]), diagonal);
@@ -287,7 +462,10 @@ fn refine_and_measure_speak_of_one_diagonal() {
     assert!(percent(sampled, "symmetric_percent") >= 0.9 * percent(error, "lower_percent"));
     assert!(percent(certified, "lower_percent") <= percent(error, "upper_percent"));
     assert!(percent(certified, "upper_percent") >= percent(error, "lower_percent"));
-    near(&certified["upper_percent"], 100.0 * percent(certified, "upper") / diagonal);
+    near(
+        &certified["upper_percent"],
+        100.0 * percent(certified, "upper") / diagonal,
+    );
 
     // Two meshes: the second one's.
     let between = measure("{} builtin:cup", &[&mesh]);

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use crate::common::{file, folder, names, run};
 
-const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 fn is_unchanged(input: &Path) -> bool {
     std::fs::read_to_string(input).expect("text") == TETRAHEDRON
@@ -14,17 +15,33 @@ fn is_unchanged(input: &Path) -> bool {
 fn a_result_without_a_name_stands_by_its_input_as_smooth() {
     let folder = folder();
     let inputs = ["a.obj", "b.obj"].map(|name| file(&folder, name, TETRAHEDRON));
-    run("refine {} --tolerance 5%", &[&inputs[0]]).expect(0).saying("a-smooth.obj");
+    run("refine {} --tolerance 5%", &[&inputs[0]])
+        .expect(0)
+        .saying("a-smooth.obj");
     assert_eq!(names(folder.path()), ["a-smooth.obj", "a.obj", "b.obj"]);
     // Several, in another format; what is there of an earlier run is replaced.
-    run("refine {} {} --tolerance 5% --to stl", &[&inputs[0], &inputs[1]]).expect(0).saying("b-smooth.stl");
+    run(
+        "refine {} {} --tolerance 5% --to stl",
+        &[&inputs[0], &inputs[1]],
+    )
+    .expect(0)
+    .saying("b-smooth.stl");
     run("refine {} {} --tolerance 5%", &[&inputs[0], &inputs[1]]).expect(0);
-    let all = ["a-smooth.obj", "a-smooth.stl", "a.obj", "b-smooth.obj", "b-smooth.stl", "b.obj"];
+    let all = [
+        "a-smooth.obj",
+        "a-smooth.stl",
+        "a.obj",
+        "b-smooth.obj",
+        "b-smooth.stl",
+        "b.obj",
+    ];
     assert_eq!(names(folder.path()), all);
     assert!(inputs.iter().all(|input| is_unchanged(input)));
     run("refine {} --dry-run", &[&inputs[0]]).expect(0);
     assert_eq!(names(folder.path()), all);
-    run("refine - --from obj", &[]).expect(2).saying("--output FILE names it");
+    run("refine - --from obj", &[])
+        .expect(2)
+        .saying("--output FILE names it");
 }
 
 #[test]
@@ -44,13 +61,21 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
     let other = file(&folder, "b.obj", TETRAHEDRON);
     let dotted = folder.path().join(".").join("a.obj");
     let refused = |words: &str, paths: &[&Path]| {
-        run(words, paths).expect(2).saying("is an input, which the result would replace; --overwrite");
+        run(words, paths)
+            .expect(2)
+            .saying("is an input, which the result would replace; --overwrite");
         assert!(is_unchanged(&input) && is_unchanged(&other), "{words}");
     };
     refused("refine {} -o {} --tolerance 5%", &[&input, &input]);
     refused("refine {} -o {} --tolerance 5%", &[&input, &dotted]);
-    refused("refine {} {} -o {} --tolerance 5%", &[&input, &other, folder.path()]);
-    refused("refine {} {} -o {} --shared-topology --tolerance 5%", &[&input, &other, folder.path()]);
+    refused(
+        "refine {} {} -o {} --tolerance 5%",
+        &[&input, &other, folder.path()],
+    );
+    refused(
+        "refine {} {} -o {} --shared-topology --tolerance 5%",
+        &[&input, &other, folder.path()],
+    );
     #[cfg(unix)]
     {
         let link = folder.path().join("link.obj");
@@ -63,17 +88,34 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
     refused("refine {} -o {} --tolerance 5%", &[&input, &hard]);
     // Another input would be gone before it is read.
     let smooth = file(&folder, "a-smooth.obj", TETRAHEDRON);
-    run("refine {} {} --tolerance 5% --overwrite", &[&input, &smooth]).expect(2).saying("is an input, too");
+    run(
+        "refine {} {} --tolerance 5% --overwrite",
+        &[&input, &smooth],
+    )
+    .expect(2)
+    .saying("is an input, too");
     assert!(is_unchanged(&smooth));
     let ply = folder.path().join("c.ply");
     run("refine {} -o {} --tolerance 5%", &[&input, &ply]).expect(0);
     let before = std::fs::read(&ply).expect("a file");
     let words = "is an input, which the result would replace";
-    run("project {} --onto {} -o {}", &[&ply, &input, &ply]).expect(2).saying(words);
-    run("measure {} {} --heatmap {}", &[&ply, &input, &ply]).expect(2).saying("is an input");
+    run("project {} --onto {} -o {}", &[&ply, &input, &ply])
+        .expect(2)
+        .saying(words);
+    run("measure {} {} --heatmap {}", &[&ply, &input, &ply])
+        .expect(2)
+        .saying("is an input");
     assert_eq!(std::fs::read(&ply).expect("a file"), before);
 
-    run("refine {} {} -o {} --tolerance 5% --overwrite", &[&input, &other, folder.path()]).expect(0);
+    run(
+        "refine {} {} -o {} --tolerance 5% --overwrite",
+        &[&input, &other, folder.path()],
+    )
+    .expect(0);
     assert!(!is_unchanged(&input) && !is_unchanged(&other));
-    run("project {} --onto {} -o {} --overwrite", &[&ply, &input, &ply]).expect(0);
+    run(
+        "project {} --onto {} -o {} --overwrite",
+        &[&ply, &input, &ply],
+    )
+    .expect(0);
 }

@@ -13,31 +13,58 @@ const RELATIONSHIPS: &str = "<Relationships><Relationship Target=\"/3D/3dmodel.m
                              Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
 
 /// Sides of the cube from -1 to 1, by their corners; those on low z first, on high z last.
-const SIDES: [[usize; 4]; 6] =
-    [[0, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
+const SIDES: [[usize; 4]; 6] = [
+    [0, 2, 3, 1],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+    [4, 5, 7, 6],
+];
 
 /// A package with a cube, whose sides' triangles have the attributes `of_side`, more in its mesh, and these items of object 1.
-fn cube(folder: &TempDir, name: &str, of_side: &dyn Fn(usize) -> String, more: &str, items: &str) -> PathBuf {
-    let mut text =
-        String::from("<?xml version=\"1.0\"?>\n<model unit=\"centimeter\" xmlns=\"c\">\n<resources>\n");
+fn cube(
+    folder: &TempDir,
+    name: &str,
+    of_side: &dyn Fn(usize) -> String,
+    more: &str,
+    items: &str,
+) -> PathBuf {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<model unit=\"centimeter\" xmlns=\"c\">\n<resources>\n",
+    );
     text += "<m:colorgroup id=\"9\" xmlns:m=\"m\"><m:color color=\"#FF0000\"/></m:colorgroup>\n";
     text += "<object id=\"1\" name=\"Box\"><mesh><vertices>\n";
     for corner in 0..8 {
         let side = |bit: usize| if corner >> bit & 1 == 0 { -1 } else { 1 };
-        text += &format!("<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", side(0), side(1), side(2));
+        text += &format!(
+            "<vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n",
+            side(0),
+            side(1),
+            side(2)
+        );
     }
     text += "</vertices><triangles>\n";
     for (side, [a, b, c, d]) in SIDES.into_iter().enumerate() {
         for [a, b, c] in [[a, b, c], [a, c, d]] {
-            text += &format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"{}/>\n", of_side(side));
+            text += &format!(
+                "<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"{}/>\n",
+                of_side(side)
+            );
         }
     }
-    text += &format!("</triangles>{more}</mesh></object>\n</resources>\n<build>{items}</build>\n</model>\n");
+    text += &format!(
+        "</triangles>{more}</mesh></object>\n</resources>\n<build>{items}</build>\n</model>\n"
+    );
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, text) in
-        [("_rels/.rels", RELATIONSHIPS), ("3D/3dmodel.model", &text), ("Metadata/a.config", "<a/>")]
-    {
-        writer.start_file(name, SimpleFileOptions::default()).expect("an archive");
+    for (name, text) in [
+        ("_rels/.rels", RELATIONSHIPS),
+        ("3D/3dmodel.model", &text),
+        ("Metadata/a.config", "<a/>"),
+    ] {
+        writer
+            .start_file(name, SimpleFileOptions::default())
+            .expect("an archive");
         writer.write_all(text.as_bytes()).expect("an archive");
     }
     let path = folder.path().join(name);
@@ -55,7 +82,11 @@ pub(crate) fn triangles(path: &Path) -> Vec<Triangle> {
     let bytes = std::fs::read(path).expect("a file");
     let mut archive = ZipArchive::new(Cursor::new(bytes)).expect("an archive");
     let mut text = String::new();
-    archive.by_name("3D/3dmodel.model").expect("a model").read_to_string(&mut text).expect("text");
+    archive
+        .by_name("3D/3dmodel.model")
+        .expect("a model")
+        .read_to_string(&mut text)
+        .expect("text");
     let tags = |name: &'static str| text.split('<').filter(move |tag| tag.starts_with(name));
     let positions: Vec<[f64; 3]> = tags("vertex ")
         .map(|tag| ["x", "y", "z"].map(|key| value(tag, key).parse().expect("a number")))
@@ -63,18 +94,31 @@ pub(crate) fn triangles(path: &Path) -> Vec<Triangle> {
     let corners = |tag: &str| {
         ["v1", "v2", "v3"].map(|key| positions[value(tag, key).parse::<usize>().expect("an index")])
     };
-    tags("triangle ").map(|tag| (corners(tag), tag.to_owned())).collect()
+    tags("triangle ")
+        .map(|tag| (corners(tag), tag.to_owned()))
+        .collect()
 }
 
 /// An attribute of a tag, empty without one.
 fn value<'a>(tag: &'a str, key: &str) -> &'a str {
-    tag.split_once(&format!(" {key}=\"")).and_then(|(_, rest)| rest.split('"').next()).unwrap_or_default()
+    tag.split_once(&format!(" {key}=\""))
+        .and_then(|(_, rest)| rest.split('"').next())
+        .unwrap_or_default()
 }
 
 /// The side of the cube that a triangle lies in.
 fn side(corners: &[[f64; 3]; 3]) -> usize {
-    let planes = [(2, -1.0), (1, -1.0), (1, 1.0), (0, -1.0), (0, 1.0), (2, 1.0)];
-    let found = planes.iter().position(|&(axis, at)| corners.iter().all(|p| (p[axis] - at).abs() < 1e-9));
+    let planes = [
+        (2, -1.0),
+        (1, -1.0),
+        (1, 1.0),
+        (0, -1.0),
+        (0, 1.0),
+        (2, 1.0),
+    ];
+    let found = planes
+        .iter()
+        .position(|&(axis, at)| corners.iter().all(|p| (p[axis] - at).abs() < 1e-9));
     found.expect("a side")
 }
 
@@ -90,30 +134,57 @@ fn triangles_inherit_what_their_side_carries() {
     };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
     // With sharp edges the cube is itself; flat regions keep the sides apart, as these carry different things.
-    run("refine {} -o {} --crease-angle 30 --divide-flat --tolerance 1%", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --crease-angle 30 --divide-flat --tolerance 1%",
+        &[&input, &output],
+    )
+    .expect(0);
     let found = triangles(&output);
     assert!(found.len() >= 12);
     for (corners, tag) in &found {
-        let rest = tag.split_once("\" pid").map(|(_, rest)| rest.trim_end().trim_end_matches("/>"));
+        let rest = tag
+            .split_once("\" pid")
+            .map(|(_, rest)| rest.trim_end().trim_end_matches("/>"));
         let expected = of_side(side(corners));
         assert_eq!(rest, expected.strip_prefix(" pid"), "{tag}");
     }
     // The round cube: from each side two thirds and more of the surface where it was.
-    run("refine {} -o {} --tolerance 0.5% --crease-angle none", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --tolerance 0.5% --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0);
     let found = triangles(&output);
     assert!(found.len() > 100);
     for (corners, tag) in &found {
         let centre = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
-        let most = (0..3).fold(0, |best, i| if centre[i].abs() > centre[best].abs() { i } else { best });
-        let others = (0..3).filter(|&i| i != most).map(|i| centre[i].abs()).fold(0.0, f64::max);
+        let most = (0..3).fold(0, |best, i| {
+            if centre[i].abs() > centre[best].abs() {
+                i
+            } else {
+                best
+            }
+        });
+        let others = (0..3)
+            .filter(|&i| i != most)
+            .map(|i| centre[i].abs())
+            .fold(0.0, f64::max);
         if others < 0.3 * centre[most].abs() {
             let expected = [[3, 4], [1, 2], [0, 5]][most][usize::from(centre[most] > 0.0)];
             assert_eq!(value(tag, "p1"), expected.to_string(), "{corners:?}");
         }
     }
     // Left out on demand.
-    run("refine {} -o {} --channel paint_color=drop --channel x:own=drop", &[&input, &output]).expect(0);
-    assert!(triangles(&output).iter().all(|(_, tag)| !tag.contains("paint_color") && tag.contains("pid")));
+    run(
+        "refine {} -o {} --channel paint_color=drop --channel x:own=drop",
+        &[&input, &output],
+    )
+    .expect(0);
+    assert!(
+        triangles(&output)
+            .iter()
+            .all(|(_, tag)| !tag.contains("paint_color") && tag.contains("pid"))
+    );
     run("refine {} -o {} --channel pid=linear", &[&input, &output])
         .expect(2)
         .saying("it can be nearest or drop");
@@ -128,16 +199,28 @@ fn paint_in_parts_is_taken_at_the_centre() {
     let output = folder.path().join("out.3mf");
     // The top in four, the part in the middle painted 4, at the first corner 8.
     let of_side = |side: usize| {
-        if side == 5 { " slic3rpe:mmu_segmentation=\"80043\"".to_owned() } else { String::new() }
+        if side == 5 {
+            " slic3rpe:mmu_segmentation=\"80043\"".to_owned()
+        } else {
+            String::new()
+        }
     };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
-    let found = run("refine {} -o {} --tolerance 0.2% --crease-angle none", &[&input, &output]).expect(0);
+    let found = run(
+        "refine {} -o {} --tolerance 0.2% --crease-angle none",
+        &[&input, &output],
+    )
+    .expect(0);
     found.saying("took paint at the centre");
     let found = triangles(&output);
     let paint = |tag: &str| value(tag, "slic3rpe:mmu_segmentation").to_owned();
-    let painted: Vec<&Triangle> = found.iter().filter(|(_, tag)| !paint(tag).is_empty()).collect();
+    let painted: Vec<&Triangle> = found
+        .iter()
+        .filter(|(_, tag)| !paint(tag).is_empty())
+        .collect();
     assert!(
-        painted.iter().any(|(_, tag)| paint(tag) == "4") && painted.iter().any(|(_, tag)| paint(tag) == "8")
+        painted.iter().any(|(_, tag)| paint(tag) == "4")
+            && painted.iter().any(|(_, tag)| paint(tag) == "8")
     );
     for (corners, tag) in painted {
         let [x, y, z] = [0, 1, 2].map(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
@@ -155,40 +238,68 @@ fn lengths_are_the_builds() {
     let output = folder.path().join("out.3mf");
     let plain = |_: usize| String::new();
     let small = cube(&folder, "small.3mf", &plain, "", ITEM);
-    let large = "<item objectid=\"1\"/><item objectid=\"1\" transform=\"0 0 30 0 1 0 -1 0 0 100 0 0\"/>";
+    let large =
+        "<item objectid=\"1\"/><item objectid=\"1\" transform=\"0 0 30 0 1 0 -1 0 0 100 0 0\"/>";
     let large = cube(&folder, "large.3mf", &plain, "", large);
     let [few, many] = [&small, &large].map(|input: &PathBuf| {
-        run("refine {} -o {} --tolerance 0.5mm --crease-angle none", &[input, &output]).expect(0);
+        run(
+            "refine {} -o {} --tolerance 0.5mm --crease-angle none",
+            &[input, &output],
+        )
+        .expect(0);
         triangles(&output).len()
     });
     assert!(many > 4 * few, "{many} and {few}");
     // The file says what it is in.
-    run("refine {} -o {} --unit mm", &[&small, &output]).expect(2).saying("says that it is in cm");
-    let report = run("refine {} -o {} --tolerance 0.5mm --report - --crease-angle none", &[&small, &output])
-        .expect(0)
-        .json();
+    run("refine {} -o {} --unit mm", &[&small, &output])
+        .expect(2)
+        .saying("says that it is in cm");
+    let report = run(
+        "refine {} -o {} --tolerance 0.5mm --report - --crease-angle none",
+        &[&small, &output],
+    )
+    .expect(0)
+    .json();
     let mesh = &report["meshes"][0];
     assert_eq!(mesh["parameters"]["exact"]["tolerance"], 0.05);
     assert!(mesh["error"]["upper"].as_f64().expect("a number") <= 0.05);
     // What another command finds between the files.
-    let measured = run("measure {} --limit-of {} --certified --json --crease-angle none", &[&output, &small])
-        .expect(0)
-        .json();
+    let measured = run(
+        "measure {} --limit-of {} --certified --json --crease-angle none",
+        &[&output, &small],
+    )
+    .expect(0)
+    .json();
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") <= 0.0501);
     // All items together, in another format and from one.
     let stl = folder.path().join("out.stl");
     run("refine {} -o {} --tolerance 1%", &[&large, &stl]).expect(0);
     assert!(
-        soup(&stl).positions.iter().any(|p| p[0] > 90.0) && soup(&stl).positions.iter().any(|p| p[0] < 1.0)
+        soup(&stl).positions.iter().any(|p| p[0] > 90.0)
+            && soup(&stl).positions.iter().any(|p| p[0] < 1.0)
     );
     let from = folder.path().join("from.3mf");
     run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
     let read = soup(&from);
-    assert_eq!((counts(&read).boundary_edges, counts(&read).euler_characteristic), (0, 2));
+    assert_eq!(
+        (
+            counts(&read).boundary_edges,
+            counts(&read).euler_characteristic
+        ),
+        (0, 2)
+    );
     // The same package from and to streams of bytes.
     let picture = folder.path().join("out.png");
-    run("refine {} -o {} --tolerance 1% --picture {}", &[&large, &output, &picture]).expect(0);
-    assert!(std::fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
+    run(
+        "refine {} -o {} --tolerance 1% --picture {}",
+        &[&large, &output, &picture],
+    )
+    .expect(0);
+    assert!(
+        std::fs::read(&picture)
+            .expect("a picture")
+            .starts_with(b"\x89PNG")
+    );
 }
 
 #[test]
@@ -203,38 +314,73 @@ fn what_cannot_be_followed_stays_and_is_told() {
         "<b:beamlattice><b:beam v1=\"0\" v2=\"7\"/></b:beamlattice>",
         ITEM,
     );
-    run("refine {} -o {}", &[&beams, &output])
-        .expect(0)
-        .saying("object 1 'Box': kept as it is: b:beamlattice names its vertices or triangles by number");
+    run("refine {} -o {}", &[&beams, &output]).expect(0).saying(
+        "object 1 'Box': kept as it is: b:beamlattice names its vertices or triangles by number",
+    );
     assert_eq!(triangles(&output).len(), 12);
     let mixed = cube(&folder, "mixed.3mf", &of_side, "", ITEM);
     run("refine {} -o {} --optimize", &[&mixed, &output])
         .expect(0)
         .saying("its triangles carry different things");
-    let told = run("refine {} -o {} --method uniform --levels 1", &[&mixed, &output]).expect(0).stderr;
-    assert!(!told.contains("kept as it is") && triangles(&output).len() == 48, "{told}");
+    let told = run(
+        "refine {} -o {} --method uniform --levels 1",
+        &[&mixed, &output],
+    )
+    .expect(0)
+    .stderr;
+    assert!(
+        !told.contains("kept as it is") && triangles(&output).len() == 48,
+        "{told}"
+    );
     // What all triangles have in common can be followed anyway.
-    let plain = cube(&folder, "plain.3mf", &|_| " pid=\"9\" p1=\"0\"".to_owned(), "", ITEM);
-    run("refine {} -o {} --method uniform --levels 1", &[&plain, &output]).expect(0);
+    let plain = cube(
+        &folder,
+        "plain.3mf",
+        &|_| " pid=\"9\" p1=\"0\"".to_owned(),
+        "",
+        ITEM,
+    );
+    run(
+        "refine {} -o {} --method uniform --levels 1",
+        &[&plain, &output],
+    )
+    .expect(0);
     let found = triangles(&output);
-    assert!(found.len() == 48 && found.iter().all(|(_, tag)| tag.contains("pid=\"9\" p1=\"0\"")));
+    assert!(
+        found.len() == 48
+            && found
+                .iter()
+                .all(|(_, tag)| tag.contains("pid=\"9\" p1=\"0\""))
+    );
     run("refine {} --dry-run", &[&mixed]).expect(0);
-    run("refine {} -o {} --angle 5 --view 0,0,1", &[&plain, &output]).expect(2).saying("built many times");
+    run("refine {} -o {} --angle 5 --view 0,0,1", &[&plain, &output])
+        .expect(2)
+        .saying("built many times");
     let unbuilt = cube(&folder, "unbuilt.3mf", &of_side, "", "");
-    run("refine {} -o {}", &[&unbuilt, &output]).expect(1).saying("nothing is built");
+    run("refine {} -o {}", &[&unbuilt, &output])
+        .expect(1)
+        .saying("nothing is built");
 }
 
 #[test]
 fn info_lists_objects() {
     let folder = folder();
-    let input = cube(&folder, "in.3mf", &|_| " pid=\"9\"".to_owned(), "<x/>", &ITEM.repeat(3));
-    let found = run("info {}", &[&input]).expect(0);
-    assert!(found.stdout.contains("in cm; 3 items are built"), "{}", found.stdout);
-    assert!(
-        found
-            .stdout
-            .contains("object 1 'Box': 8 vertices, 12 triangles, built 3 times; triangles have pid; x")
+    let input = cube(
+        &folder,
+        "in.3mf",
+        &|_| " pid=\"9\"".to_owned(),
+        "<x/>",
+        &ITEM.repeat(3),
     );
+    let found = run("info {}", &[&input]).expect(0);
+    assert!(
+        found.stdout.contains("in cm; 3 items are built"),
+        "{}",
+        found.stdout
+    );
+    assert!(found.stdout.contains(
+        "object 1 'Box': 8 vertices, 12 triangles, built 3 times; triangles have pid; x"
+    ));
     let json = run("info {} --json", &[&input]).expect(0).json();
     assert_eq!(json["package"]["objects"][0]["built"], 3);
     assert_eq!(json["package"]["unit"], "cm");
@@ -245,13 +391,19 @@ fn info_lists_objects() {
 fn units_come_out_as_they_were_said() {
     let folder = folder();
     let output = folder.path().join("out.3mf");
-    for (words, unit, of_length) in
-        [("", "millimeter", "mm"), ("--unit in", "inch", "in"), ("--unit um", "micron", "µm")]
-    {
+    for (words, unit, of_length) in [
+        ("", "millimeter", "mm"),
+        ("--unit in", "inch", "in"),
+        ("--unit um", "micron", "µm"),
+    ] {
         run(&format!("refine builtin:cube -o {{}} {words}"), &[&output]).expect(0);
         let source = limitmesh_io::threemf::Package::open(&output).expect("a package");
         assert_eq!(format!("{:?}", source.unit()).to_lowercase(), unit);
         let again = folder.path().join("again.3mf");
-        run(&format!("refine {{}} -o {{}} --tolerance 0.5{of_length}"), &[&output, &again]).expect(0);
+        run(
+            &format!("refine {{}} -o {{}} --tolerance 0.5{of_length}"),
+            &[&output, &again],
+        )
+        .expect(0);
     }
 }

@@ -32,7 +32,14 @@ impl Solid {
             ]
         };
         let mut solid = Self::default();
-        for side in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        for side in [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ] {
             solid.quad(side.map(at));
         }
         solid
@@ -50,7 +57,9 @@ impl Solid {
         }
         for i in 1..facets - 1 {
             solid.0.push([at(0, 0.0), at(i + 1, 0.0), at(i, 0.0)]);
-            solid.0.push([at(0, height), at(i, height), at(i + 1, height)]);
+            solid
+                .0
+                .push([at(0, height), at(i, height), at(i + 1, height)]);
         }
         solid
     }
@@ -60,18 +69,63 @@ impl Solid {
         let mut solid = Self::default();
         for x in [0.0, 20.0] {
             solid.holed_square([x + 10.0, 10.0], facets, radius);
-            solid.quad([[x, 0.0, 0.0], [x + 20.0, 0.0, 0.0], [x + 20.0, 0.0, 5.0], [x, 0.0, 5.0]]);
-            solid.quad([[x, 20.0, 0.0], [x, 20.0, 5.0], [x + 20.0, 20.0, 5.0], [x + 20.0, 20.0, 0.0]]);
+            solid.quad([
+                [x, 0.0, 0.0],
+                [x + 20.0, 0.0, 0.0],
+                [x + 20.0, 0.0, 5.0],
+                [x, 0.0, 5.0],
+            ]);
+            solid.quad([
+                [x, 20.0, 0.0],
+                [x, 20.0, 5.0],
+                [x + 20.0, 20.0, 5.0],
+                [x + 20.0, 20.0, 0.0],
+            ]);
         }
-        solid.quad([[40.0, 0.0, 0.0], [40.0, 20.0, 0.0], [40.0, 20.0, 5.0], [40.0, 0.0, 5.0]]);
+        solid.quad([
+            [40.0, 0.0, 0.0],
+            [40.0, 20.0, 0.0],
+            [40.0, 20.0, 5.0],
+            [40.0, 0.0, 5.0],
+        ]);
         for [low, high] in [[0.0, 5.0], [5.0, 35.0]] {
-            solid.quad([[-5.0, 0.0, low], [0.0, 0.0, low], [0.0, 0.0, high], [-5.0, 0.0, high]]);
-            solid.quad([[-5.0, 20.0, low], [-5.0, 20.0, high], [0.0, 20.0, high], [0.0, 20.0, low]]);
-            solid.quad([[-5.0, 0.0, low], [-5.0, 0.0, high], [-5.0, 20.0, high], [-5.0, 20.0, low]]);
+            solid.quad([
+                [-5.0, 0.0, low],
+                [0.0, 0.0, low],
+                [0.0, 0.0, high],
+                [-5.0, 0.0, high],
+            ]);
+            solid.quad([
+                [-5.0, 20.0, low],
+                [-5.0, 20.0, high],
+                [0.0, 20.0, high],
+                [0.0, 20.0, low],
+            ]);
+            solid.quad([
+                [-5.0, 0.0, low],
+                [-5.0, 0.0, high],
+                [-5.0, 20.0, high],
+                [-5.0, 20.0, low],
+            ]);
         }
-        solid.quad([[0.0, 0.0, 5.0], [0.0, 20.0, 5.0], [0.0, 20.0, 35.0], [0.0, 0.0, 35.0]]);
-        solid.quad([[-5.0, 0.0, 35.0], [0.0, 0.0, 35.0], [0.0, 20.0, 35.0], [-5.0, 20.0, 35.0]]);
-        solid.quad([[-5.0, 0.0, 0.0], [-5.0, 20.0, 0.0], [0.0, 20.0, 0.0], [0.0, 0.0, 0.0]]);
+        solid.quad([
+            [0.0, 0.0, 5.0],
+            [0.0, 20.0, 5.0],
+            [0.0, 20.0, 35.0],
+            [0.0, 0.0, 35.0],
+        ]);
+        solid.quad([
+            [-5.0, 0.0, 35.0],
+            [0.0, 0.0, 35.0],
+            [0.0, 20.0, 35.0],
+            [-5.0, 20.0, 35.0],
+        ]);
+        solid.quad([
+            [-5.0, 0.0, 0.0],
+            [-5.0, 20.0, 0.0],
+            [0.0, 20.0, 0.0],
+            [0.0, 0.0, 0.0],
+        ]);
         solid
     }
 
@@ -88,14 +142,18 @@ impl Solid {
         };
         for i in 0..facets {
             let own = i / quarter;
-            self.0.push([corner(own, 5.0), rim(i + 1, 5.0), rim(i, 5.0)]);
-            self.0.push([corner(own, 0.0), rim(i, 0.0), rim(i + 1, 0.0)]);
+            self.0
+                .push([corner(own, 5.0), rim(i + 1, 5.0), rim(i, 5.0)]);
+            self.0
+                .push([corner(own, 0.0), rim(i, 0.0), rim(i + 1, 0.0)]);
             self.quad([rim(i, 0.0), rim(i, 5.0), rim(i + 1, 5.0), rim(i + 1, 0.0)]);
         }
         for own in 0..4 {
             let at = (own + 1) * quarter;
-            self.0.push([corner(own, 5.0), corner(own + 1, 5.0), rim(at, 5.0)]);
-            self.0.push([corner(own, 0.0), rim(at, 0.0), corner(own + 1, 0.0)]);
+            self.0
+                .push([corner(own, 5.0), corner(own + 1, 5.0), rim(at, 5.0)]);
+            self.0
+                .push([corner(own, 0.0), rim(at, 0.0), corner(own + 1, 0.0)]);
         }
     }
 
@@ -103,7 +161,9 @@ impl Solid {
         let mut text = "solid part\n".to_owned();
         for corners in &self.0 {
             text += "facet normal 0 0 0\nouter loop\n";
-            corners.iter().for_each(|[x, y, z]| writeln!(text, "vertex {x} {y} {z}").expect("text"));
+            corners
+                .iter()
+                .for_each(|[x, y, z]| writeln!(text, "vertex {x} {y} {z}").expect("text"));
             text += "endloop\nendfacet\n";
         }
         file(folder, name, &(text + "endsolid part\n"))
@@ -122,7 +182,11 @@ fn volume(soup: &PolygonSoup) -> f64 {
 
 fn refine(input: &Path, options: &str) -> (Run, PolygonSoup, Value) {
     let output = input.with_extension("out.ply");
-    let run = run(&format!("refine {{}} -o {{}} --report - {options}"), &[input, &output]).expect(0);
+    let run = run(
+        &format!("refine {{}} -o {{}} --report - {options}"),
+        &[input, &output],
+    )
+    .expect(0);
     let report = run.json();
     (run, soup(&output), report)
 }
@@ -141,14 +205,19 @@ fn a_box_is_itself_and_says_so_first() {
     let (run, found, report) = refine(&input, "");
     assert_eq!(
         run.stderr.lines().next(),
-        Some(&*format!("looks like a part: 12 edges sharper than 30° {KEPT}")),
+        Some(&*format!(
+            "looks like a part: 12 edges sharper than 30° {KEPT}"
+        )),
         "{}",
         run.stderr
     );
     assert!((volume(&found) - 4000.0).abs() < 1e-6, "{}", volume(&found));
     let parameters = &report["parameters"];
     assert_eq!(
-        (&parameters["crease_angle_degrees"], &parameters["crease_angle_auto"]),
+        (
+            &parameters["crease_angle_degrees"],
+            &parameters["crease_angle_auto"]
+        ),
         (&json!(30.0), &json!(true))
     );
     assert_eq!(parameters["interpolate_within"], 0.0);
@@ -156,21 +225,37 @@ fn a_box_is_itself_and_says_so_first() {
     assert_eq!(report["interpolation"]["folded_regions"], 0);
 
     let (run, found, report) = refine(&input, "--crease-angle none");
-    assert!(volume(&found) < 2000.0 && !run.stderr.contains("looks like"), "{}", run.stderr);
+    assert!(
+        volume(&found) < 2000.0 && !run.stderr.contains("looks like"),
+        "{}",
+        run.stderr
+    );
     assert_eq!(report["parameters"]["crease_angle_auto"], false);
     // An angle that is given means what it meant.
     let (run, _, report) = refine(&input, "--crease-angle 40");
     assert!(!run.stderr.contains("looks like"), "{}", run.stderr);
     assert_eq!(
-        (&report["parameters"]["crease_angle_degrees"], &report["interpolation"]),
+        (
+            &report["parameters"]["crease_angle_degrees"],
+            &report["interpolation"]
+        ),
         (&json!(40.0), &Value::Null)
     );
     let (run, _, report) = refine(&input, "--interpolate-within 0.1");
-    assert!(run.stderr.contains("kept sharp; --crease-angle none smooths them"), "{}", run.stderr);
+    assert!(
+        run.stderr
+            .contains("kept sharp; --crease-angle none smooths them"),
+        "{}",
+        run.stderr
+    );
     assert_eq!(report["parameters"]["interpolate_within"], 0.1);
     // Methods that are compared with keep their rules, unless they are asked.
     let (run, found, _) = refine(&input, "--method uniform");
-    assert!(volume(&found) < 2000.0 && !run.stderr.contains("looks like"), "{}", run.stderr);
+    assert!(
+        volume(&found) < 2000.0 && !run.stderr.contains("looks like"),
+        "{}",
+        run.stderr
+    );
     let (_, found, _) = refine(&input, "--method uniform --crease-angle auto");
     assert!((volume(&found) - 4000.0).abs() < 1e-3, "{}", volume(&found));
     let (_, found, _) = refine(&input, "--scheme sqrt3 --crease-angle auto --angle 20");
@@ -186,10 +271,22 @@ fn a_peg_keeps_its_radius_and_gets_the_volume_of_a_cylinder() {
     let folder = folder();
     let input = Solid::peg(16, 5.0, 8.0).stl(&folder, "peg.stl");
     let (_, found, report) = refine(&input, "--tolerance 0.01%");
-    let radii = found.positions.iter().map(|p| p[0].hypot(p[1])).filter(|radius| *radius > 4.5);
-    assert!(radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3), "{:?}", radii.collect::<Vec<_>>());
+    let radii = found
+        .positions
+        .iter()
+        .map(|p| p[0].hypot(p[1]))
+        .filter(|radius| *radius > 4.5);
+    assert!(
+        radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3),
+        "{:?}",
+        radii.collect::<Vec<_>>()
+    );
     let exact = PI * 25.0 * 8.0;
-    assert!((volume(&found) / exact - 1.0).abs() < 1e-3, "{} {exact}", volume(&found));
+    assert!(
+        (volume(&found) / exact - 1.0).abs() < 1e-3,
+        "{} {exact}",
+        volume(&found)
+    );
     assert_eq!(report["output"]["inverted_triangles"], 0);
 }
 
@@ -199,16 +296,26 @@ fn a_bracket_with_holes_keeps_its_volume() {
     let input = Solid::bracket(24, 4.0).stl(&folder, "bracket.stl");
     let exact = 5.0 * 20.0 * 35.0 + 5.0 * (40.0 * 20.0 - 2.0 * PI * 16.0);
     let (run, found, report) = refine(&input, "");
-    assert!((volume(&found) / exact - 1.0).abs() < 3e-3, "{} {exact}", volume(&found));
     assert!(
-        run.stderr.lines().next().is_some_and(|line| line.starts_with("looks like a part: ")),
+        (volume(&found) / exact - 1.0).abs() < 3e-3,
+        "{} {exact}",
+        volume(&found)
+    );
+    assert!(
+        run.stderr
+            .lines()
+            .next()
+            .is_some_and(|line| line.starts_with("looks like a part: ")),
         "{}",
         run.stderr
     );
     assert_eq!(report["output"]["inverted_triangles"], 0);
     // The rims of the holes are the circles through the input's vertices.
-    let holes =
-        found.positions.iter().map(|p| (p[0] - 10.0).hypot(p[1] - 10.0)).filter(|&radius| radius < 5.0);
+    let holes = found
+        .positions
+        .iter()
+        .map(|p| (p[0] - 10.0).hypot(p[1] - 10.0))
+        .filter(|&radius| radius < 5.0);
     assert!(
         holes.clone().count() >= 48 && holes.clone().all(|radius| (radius - 4.0).abs() < 4e-3),
         "{:?}",
@@ -221,12 +328,19 @@ fn a_bracket_with_holes_keeps_its_volume() {
 fn solids_that_touch_along_an_edge_are_closed() {
     let folder = folder();
     let mut boxes = Solid::cuboid([2.0, 3.0, 5.0]);
-    let moved =
-        boxes.0.iter().map(|corners| corners.map(|[x, y, z]| [x - 2.0, y - 3.0, z])).collect::<Vec<_>>();
+    let moved = boxes
+        .0
+        .iter()
+        .map(|corners| corners.map(|[x, y, z]| [x - 2.0, y - 3.0, z]))
+        .collect::<Vec<_>>();
     boxes.0.extend(moved);
     let input = boxes.stl(&folder, "boxes.stl");
     let (run, found, _) = refine(&input, "");
-    assert!(run.stderr.contains(", closed (") && run.stderr.contains("volume 60 to 60"), "{}", run.stderr);
+    assert!(
+        run.stderr.contains(", closed (") && run.stderr.contains("volume 60 to 60"),
+        "{}",
+        run.stderr
+    );
     assert!((volume(&found) - 60.0).abs() < 1e-9);
 }
 
@@ -248,29 +362,61 @@ fn all_commands_speak_of_one_surface() {
     assert!(near < 0.021 && far > 1.0, "{near} {far}");
     let line = "measure {} --limit-of {} --certified --json";
     let certified = run(line, &[&output, &input]).expect(0).json();
-    assert!(number(&certified["hausdorff"]["lower"]) <= 0.02, "{certified}");
+    assert!(
+        number(&certified["hausdorff"]["lower"]) <= 0.02,
+        "{certified}"
+    );
     assert_eq!(certified["reference"]["limit"]["crease_angle_auto"], true);
 
     let peg = Solid::peg(16, 5.0, 8.0).stl(&folder, "peg.stl");
     // The first facet's corner at (5, 0, 0).
-    let found = run("evaluate {} --at 0,1,0,0 --json", &[&peg]).expect(0).saying("looks like a part").json();
+    let found = run("evaluate {} --at 0,1,0,0 --json", &[&peg])
+        .expect(0)
+        .saying("looks like a part")
+        .json();
     let point = [0, 1, 2].map(|i| number(&found[0]["point"][i]));
-    assert!((point[0] - 5.0).abs() < 1e-9 && point[1].abs() < 1e-9 && point[2].abs() < 1e-9, "{point:?}");
+    assert!(
+        (point[0] - 5.0).abs() < 1e-9 && point[1].abs() < 1e-9 && point[2].abs() < 1e-9,
+        "{point:?}"
+    );
     let at = file(&folder, "points.csv", "5,0,0\n0,5,8\n");
-    let found = run("project {} --onto {} --json", &[&at, &peg]).expect(0).saying("looks like a part").json();
+    let found = run("project {} --onto {} --json", &[&at, &peg])
+        .expect(0)
+        .saying("looks like a part")
+        .json();
     assert!(number(&found["distance"]["greatest"]) < 1e-6, "{found}");
-    let limit = run("info {} --limit --json", &[&peg]).expect(0).saying("looks like a part").json();
-    assert!((number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3, "{limit}");
+    let limit = run("info {} --limit --json", &[&peg])
+        .expect(0)
+        .saying("looks like a part")
+        .json();
+    assert!(
+        (number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3,
+        "{limit}"
+    );
     let levels = folder.path().join("levels.ply");
-    run("lod {} -o {} --levels 2", &[&peg, &levels]).expect(0).saying("looks like a part");
+    run("lod {} -o {} --levels 2", &[&peg, &levels])
+        .expect(0)
+        .saying("looks like a part");
     let finest = soup(&folder.path().join("levels_LOD0.ply"));
-    assert!((volume(&finest) / (PI * 200.0) - 1.0).abs() < 5e-3, "{}", volume(&finest));
+    assert!(
+        (volume(&finest) / (PI * 200.0) - 1.0).abs() < 5e-3,
+        "{}",
+        volume(&finest)
+    );
     let picture = folder.path().join("peg.png");
-    run("render {} -o {} --exact --size 60x60", &[&peg, &picture]).expect(0).saying("looks like a part");
-    run("render {} -o {} --crease-angle auto", &[&peg, &picture]).expect(2).saying("--exact");
+    run("render {} -o {} --exact --size 60x60", &[&peg, &picture])
+        .expect(0)
+        .saying("looks like a part");
+    run("render {} -o {} --crease-angle auto", &[&peg, &picture])
+        .expect(2)
+        .saying("--exact");
     // Comparisons keep their rules.
     let compared = run("compare {} --levels 1 --samples 1000 --json", &[&peg]).expect(0);
-    assert!(!compared.stderr.contains("looks like"), "{}", compared.stderr);
+    assert!(
+        !compared.stderr.contains("looks like"),
+        "{}",
+        compared.stderr
+    );
 }
 
 /// Packages and assets: by mesh.
@@ -279,9 +425,16 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
     let folder = folder();
     let input = Solid::cuboid([40.0, 20.0, 5.0]).stl(&folder, "box.stl");
     for (name, unit) in [("box.3mf", "--unit mm"), ("box.glb", "")] {
-        let [plain, fine] = [name.to_owned(), format!("fine_{name}")].map(|name| folder.path().join(name));
-        run(&format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"), &[&input, &plain]).expect(0);
-        run("refine {} -o {}", &[&plain, &fine]).expect(0).saying("looks like a part: 12 edges");
+        let [plain, fine] =
+            [name.to_owned(), format!("fine_{name}")].map(|name| folder.path().join(name));
+        run(
+            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
+            &[&input, &plain],
+        )
+        .expect(0);
+        run("refine {} -o {}", &[&plain, &fine])
+            .expect(0)
+            .saying("looks like a part: 12 edges");
         let found = run("info {} --json", &[&fine]).expect(0).json();
         assert!(
             (number(&found["mesh"]["volume"]) - 4000.0).abs() < 1e-2,
@@ -290,7 +443,11 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
         );
         run("refine {} -o {} --crease-angle none", &[&plain, &fine]).expect(0);
         let found = run("info {} --json", &[&fine]).expect(0).json();
-        assert!(number(&found["mesh"]["volume"]) < 2000.0, "{name}: {}", found["mesh"]["volume"]);
+        assert!(
+            number(&found["mesh"]["volume"]) < 2000.0,
+            "{name}: {}",
+            found["mesh"]["volume"]
+        );
     }
 }
 
@@ -303,13 +460,29 @@ fn obj(
 ) -> PathBuf {
     let mut text = String::new();
     for (i, corners) in Solid::cuboid([4.0, 2.0, 1.0]).0.iter().enumerate() {
-        corners.iter().for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").expect("text"));
+        corners
+            .iter()
+            .for_each(|[x, y, z]| writeln!(text, "v {x} {y} {z}").expect("text"));
         let normal = normals(i / 2);
-        normal.iter().for_each(|[x, y, z]| writeln!(text, "vn {x} {y} {z}").expect("text"));
+        normal
+            .iter()
+            .for_each(|[x, y, z]| writeln!(text, "vn {x} {y} {z}").expect("text"));
         let corner = |k: usize| {
-            if normal.is_some() { format!("{}//{}", 3 * i + k, i + 1) } else { format!("{}", 3 * i + k) }
+            if normal.is_some() {
+                format!("{}//{}", 3 * i + k, i + 1)
+            } else {
+                format!("{}", 3 * i + k)
+            }
         };
-        writeln!(text, "{}f {} {} {}", before(i / 2), corner(1), corner(2), corner(3)).expect("text");
+        writeln!(
+            text,
+            "{}f {} {} {}",
+            before(i / 2),
+            corner(1),
+            corner(2),
+            corner(3)
+        )
+        .expect("text");
     }
     file(folder, "box.obj", &(text + tags))
 }
@@ -321,14 +494,34 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
     let is_part = |input: &Path| {
         let (run, found, _) = refine(input, "--tolerance 1%");
         let is_kept = (volume(&found) - 8.0).abs() < 1e-5;
-        assert_eq!(run.stderr.contains("looks like a part"), is_kept, "{}", run.stderr);
+        assert_eq!(
+            run.stderr.contains("looks like a part"),
+            is_kept,
+            "{}",
+            run.stderr
+        );
         is_kept
     };
     assert!(is_part(&obj(&folder, "", &|_| "", &none)));
-    assert!(!is_part(&obj(&folder, "t crease 2/1/0 0 1 10\n", &|_| "", &none)));
-    assert!(!is_part(&obj(&folder, "t corner 1/1/0 0 10\n", &|_| "", &none)));
+    assert!(!is_part(&obj(
+        &folder,
+        "t crease 2/1/0 0 1 10\n",
+        &|_| "",
+        &none
+    )));
+    assert!(!is_part(&obj(
+        &folder,
+        "t corner 1/1/0 0 10\n",
+        &|_| "",
+        &none
+    )));
     // One smoothing group, or none, says nothing.
-    assert!(!is_part(&obj(&folder, "", &|side| if side == 0 { "s 1\n" } else { "s 2\n" }, &none)));
+    assert!(!is_part(&obj(
+        &folder,
+        "",
+        &|side| if side == 0 { "s 1\n" } else { "s 2\n" },
+        &none
+    )));
     assert!(is_part(&obj(&folder, "", &|_| "s 1\n", &none)));
     assert!(is_part(&obj(&folder, "", &|_| "s off\n", &none)));
     // Facets that are shaded flat say nothing.
@@ -340,7 +533,9 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
         [-1.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],
     ];
-    assert!(is_part(&obj(&folder, "", &|_| "", &|side| Some(sides[side]))));
+    assert!(is_part(&obj(&folder, "", &|_| "", &|side| Some(
+        sides[side]
+    ))));
     // A cage of quadrilaterals is meant to become round.
     let quads = "v 0 0 0\nv 4 0 0\nv 0 2 0\nv 4 2 0\nv 0 0 1\nv 4 0 1\nv 0 2 1\nv 4 2 1\n\
         f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
@@ -370,15 +565,30 @@ fn normals_of_parts_say_which_edges_are_sharp() {
     };
     let (run, found, _) = refine(&peg(false), "--tolerance 0.01%");
     assert!(
-        run.stderr.contains("32 edges that have different normals on both sides kept sharp"),
+        run.stderr
+            .contains("32 edges that have different normals on both sides kept sharp"),
         "{}",
         run.stderr
     );
-    assert!((volume(&found) / (PI * 200.0) - 1.0).abs() < 1e-3, "{}", volume(&found));
+    assert!(
+        (volume(&found) / (PI * 200.0) - 1.0).abs() < 1e-3,
+        "{}",
+        volume(&found)
+    );
     let (run, _, _) = refine(&peg(true), "--tolerance 1%");
-    assert!(run.stderr.contains("looks like a part: 16 edges that have different normals"), "{}", run.stderr);
-    let limit = crate::common::run("info {} --limit --json", &[&peg(false)]).expect(0).json();
-    assert!((number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3, "{limit}");
+    assert!(
+        run.stderr
+            .contains("looks like a part: 16 edges that have different normals"),
+        "{}",
+        run.stderr
+    );
+    let limit = crate::common::run("info {} --limit --json", &[&peg(false)])
+        .expect(0)
+        .json();
+    assert!(
+        (number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3,
+        "{limit}"
+    );
 }
 
 /// Through vertices close together, the surface would turn over; it passes by them and says where.
@@ -392,7 +602,12 @@ fn where_the_surface_would_fold_it_passes_by() {
     let mut solid = Solid::default();
     for pair in [0.0, 3.95, 4.05, 8.0].windows(2) {
         (0..16).for_each(|i| {
-            solid.quad([at(i, pair[0]), at(i + 1, pair[0]), at(i + 1, pair[1]), at(i, pair[1])]);
+            solid.quad([
+                at(i, pair[0]),
+                at(i + 1, pair[0]),
+                at(i + 1, pair[1]),
+                at(i, pair[1]),
+            ]);
         });
     }
     for i in 1..15 {
@@ -408,8 +623,17 @@ fn where_the_surface_would_fold_it_passes_by() {
     let said = "the surface passes by 32 vertices: through them it would fold in 1 region; it has 32 faces, from (-5, -5, 3.95) to (5, 5, 4.05)";
     assert!(run.stderr.contains(said), "{}", run.stderr);
     // Triangles all look outwards, and the rims keep their radius.
-    assert!((volume(&found) / (PI * 200.0) - 1.0).abs() < 0.03, "{}", volume(&found));
-    let rims = found.positions.iter().filter(|p| p[2].abs() < 1e-6 || (p[2] - 8.0).abs() < 1e-6);
-    let radii = rims.map(|p| p[0].hypot(p[1])).filter(|radius| *radius > 4.5);
+    assert!(
+        (volume(&found) / (PI * 200.0) - 1.0).abs() < 0.03,
+        "{}",
+        volume(&found)
+    );
+    let rims = found
+        .positions
+        .iter()
+        .filter(|p| p[2].abs() < 1e-6 || (p[2] - 8.0).abs() < 1e-6);
+    let radii = rims
+        .map(|p| p[0].hypot(p[1]))
+        .filter(|radius| *radius > 4.5);
     assert!(radii.clone().count() >= 32 && radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3));
 }

@@ -17,28 +17,49 @@ fn near(found: &serde_json::Value, expected: f64) {
 fn points_along_the_axes_of_an_octahedron() {
     let folder = folder();
     let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let points = file(&folder, "points.csv", "x,y,z\n2,0,0\n0,-3,0\n0.3,0,0 # inside\n");
+    let points = file(
+        &folder,
+        "points.csv",
+        "x,y,z\n2,0,0\n0,-3,0\n0.3,0,0 # inside\n",
+    );
     let out = folder.path().join("out.csv");
-    let found = run("project {} --onto {} -o {} --json", &[&points, &control, &out]).expect(0).json();
-    assert_eq!((&found["points"]["count"], &found["sign"]), (&3.into(), &"inside".into()));
+    let found = run(
+        "project {} --onto {} -o {} --json",
+        &[&points, &control, &out],
+    )
+    .expect(0)
+    .json();
+    assert_eq!(
+        (&found["points"]["count"], &found["sign"]),
+        (&3.into(), &"inside".into())
+    );
     let distance = &found["distance"];
     let corner = 24.0 / 55.0;
     near(&distance["greatest"], 3.0 - corner);
     near(&distance["farthest"]["closest"][1], -corner);
-    assert_eq!((&distance["farthest"]["index"], &distance["negative"]), (&1.into(), &1.into()));
+    assert_eq!(
+        (&distance["farthest"]["index"], &distance["negative"]),
+        (&1.into(), &1.into())
+    );
     near(&distance["median"], 2.0 - corner);
     // As a table, with the distance of the point inside below 0 and no more than its way along the axis.
     let table = std::fs::read_to_string(&out).expect("a table");
     let rows: Vec<Vec<f64>> = table
         .lines()
         .skip(1)
-        .map(|line| line.split(',').map(|word| word.parse().expect("a number")).collect())
+        .map(|line| {
+            line.split(',')
+                .map(|word| word.parse().expect("a number"))
+                .collect()
+        })
         .collect();
     assert!(table.starts_with("x,y,z,distance,closest_x,"), "{table}");
     assert_eq!((rows.len(), rows[0].len()), (3, 11));
     assert!((rows[0][3] - (2.0 - corner)).abs() < 1e-6);
     assert!(rows[2][3] < 0.0 && rows[2][3] > 0.3 - corner - 3.5e-6);
-    let text = run("project {} --onto {}", &[&points, &control]).expect(0).stdout;
+    let text = run("project {} --onto {}", &[&points, &control])
+        .expect(0)
+        .stdout;
     assert!(text.contains("RMS") && text.contains("1 inside"), "{text}");
 }
 
@@ -47,29 +68,47 @@ fn points_along_the_axes_of_an_octahedron() {
 fn a_scan_keeps_its_vertices_and_triangles() {
     let folder = folder();
     let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let scan = file(&folder, "scan.obj", "v 0.5 0.1 0\nv 0 0.5 0.1\nv 0.1 0 0.5\nf 1 2 3\n");
+    let scan = file(
+        &folder,
+        "scan.obj",
+        "v 0.5 0.1 0\nv 0 0.5 0.1\nv 0.1 0 0.5\nf 1 2 3\n",
+    );
     let out = folder.path().join("map.ply");
     run("project {} --onto {} -o {}", &[&scan, &control, &out]).expect(0);
     let soup = limitmesh_io::read(&out).expect("a mesh");
-    assert_eq!(soup.positions, [[0.5, 0.1, 0.0], [0.0, 0.5, 0.1], [0.1, 0.0, 0.5]]);
+    assert_eq!(
+        soup.positions,
+        [[0.5, 0.1, 0.0], [0.0, 0.5, 0.1], [0.1, 0.0, 0.5]]
+    );
     assert_eq!(soup.faces.len(), 1);
     let value = |name: &str, vertex: usize| {
         let channel = soup.channels.iter().find(|channel| channel.name == name);
-        channel.unwrap_or_else(|| panic!("no {name}: {:?}", soup.channels)).value(vertex)[0]
+        channel
+            .unwrap_or_else(|| panic!("no {name}: {:?}", soup.channels))
+            .value(vertex)[0]
     };
     for vertex in 0..3 {
         let face = value("control_face", vertex);
         let weights = ["w0", "w1", "w2"].map(|name| value(name, vertex));
         let place = format!("{face},{},{},{}", weights[0], weights[1], weights[2]);
-        let there = run(&format!("evaluate {{}} --at {place} --json"), &[&control]).expect(0).json();
-        for (axis, name) in ["closest_x", "closest_y", "closest_z"].into_iter().enumerate() {
+        let there = run(&format!("evaluate {{}} --at {place} --json"), &[&control])
+            .expect(0)
+            .json();
+        for (axis, name) in ["closest_x", "closest_y", "closest_z"]
+            .into_iter()
+            .enumerate()
+        {
             near(&there[0]["point"][axis], value(name, vertex));
         }
         assert!(value("quality", vertex) > 0.0);
     }
     let picture = folder.path().join("map.png");
     run("project {} --onto {} -o {}", &[&scan, &control, &picture]).expect(0);
-    assert!(std::fs::read(&picture).expect("a picture").starts_with(b"\x89PNG"));
+    assert!(
+        std::fs::read(&picture)
+            .expect("a picture")
+            .starts_with(b"\x89PNG")
+    );
 }
 
 #[test]
@@ -78,7 +117,12 @@ fn open_surfaces_have_two_sides() {
     let points = file(&folder, "points.xyz", "0.5 0.3 2\n0.5 0.3 -1\n");
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
     let control = file(&folder, "square.obj", square);
-    let found = run("project {} --onto {} --boundary corners --json", &[&points, &control]).expect(0).json();
+    let found = run(
+        "project {} --onto {} --boundary corners --json",
+        &[&points, &control],
+    )
+    .expect(0)
+    .json();
     assert_eq!(found["sign"], "normal");
     near(&found["distance"]["greatest"], 2.0);
     near(&found["distance"]["least"], -1.0);
@@ -89,23 +133,52 @@ fn what_cannot_be_is_told() {
     let folder = folder();
     let control = file(&folder, "octahedron.obj", OCTAHEDRON);
     let points = file(&folder, "points.xyz", "1 2 3\n4 five 6\n");
-    let error = run("project {} --onto {}", &[&points, &control]).expect(1).stderr;
-    assert!(error.contains("points.xyz") && error.contains("line 2"), "{error}");
+    let error = run("project {} --onto {}", &[&points, &control])
+        .expect(1)
+        .stderr;
+    assert!(
+        error.contains("points.xyz") && error.contains("line 2"),
+        "{error}"
+    );
     let decimal = file(&folder, "decimal.csv", "x;y;z\n1,5;2,5;3,5\n");
-    let error = run("project {} --onto {}", &[&decimal, &control]).expect(1).stderr;
-    assert!(error.contains("decimal.csv") && error.contains("line 2") && error.contains("1,5"), "{error}");
+    let error = run("project {} --onto {}", &[&decimal, &control])
+        .expect(1)
+        .stderr;
+    assert!(
+        error.contains("decimal.csv") && error.contains("line 2") && error.contains("1,5"),
+        "{error}"
+    );
     let short = file(&folder, "short.pts", "3\n1 2 3\n2 3 4\n");
     run("project {} --onto {}", &[&short, &control])
         .expect(1)
         .saying("line 1 promises 3 points, but there are 2");
     let none = file(&folder, "none.xyz", "# none\n");
-    assert!(run("project {} --onto {}", &[&none, &control]).expect(1).stderr.contains("no points"));
+    assert!(
+        run("project {} --onto {}", &[&none, &control])
+            .expect(1)
+            .stderr
+            .contains("no points")
+    );
     let points = file(&folder, "points.txt", "1 2 3\n");
-    let error = run("project {} --onto {} -o map.png", &[&points, &control]).expect(2).stderr;
+    let error = run("project {} --onto {} -o map.png", &[&points, &control])
+        .expect(2)
+        .stderr;
     assert!(error.contains("no triangles"), "{error}");
-    assert!(run("project {} --onto {} -o map.stl", &[&points, &control]).expect(2).stderr.contains(".ply"));
-    let error = run("project {} --onto {} --scheme butterfly", &[&points, &control]).expect(2).stderr;
+    assert!(
+        run("project {} --onto {} -o map.stl", &[&points, &control])
+            .expect(2)
+            .stderr
+            .contains(".ply")
+    );
+    let error = run(
+        "project {} --onto {} --scheme butterfly",
+        &[&points, &control],
+    )
+    .expect(2)
+    .stderr;
     assert!(error.contains("butterfly"), "{error}");
-    let error = run("project {} --onto {} --tolerance 0", &[&points, &control]).expect(2).stderr;
+    let error = run("project {} --onto {} --tolerance 0", &[&points, &control])
+        .expect(2)
+        .stderr;
     assert!(error.contains("tolerance"), "{error}");
 }

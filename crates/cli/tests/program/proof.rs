@@ -13,24 +13,40 @@ use crate::common::{file, folder, run};
 
 /// Triangles that are refused, the files being as they are.
 fn refused(control: Option<&Path>, result: &Path, proof: &Path, times: f64) -> usize {
-    let mesh = |path: &Path| read::mesh(&path.to_string_lossy(), &std::fs::read(path).unwrap()).unwrap();
+    let mesh =
+        |path: &Path| read::mesh(&path.to_string_lossy(), &std::fs::read(path).unwrap()).unwrap();
     let proof = Proof::read(&std::fs::read(proof).unwrap()).unwrap();
     let control = proof.held.clone().unwrap_or_else(|| mesh(control.unwrap()));
-    verdict::refused(&control, &mesh(result), &proof, times * proof.within).unwrap().len()
+    verdict::refused(&control, &mesh(result), &proof, times * proof.within)
+        .unwrap()
+        .len()
 }
 
 /// Refines with a proof and checks that; the report.
 #[track_caller]
 fn proven(input: &str, options: &str, ending: &str) -> Value {
     let folder = folder();
-    let [result, proof] = ["result", "proof"].map(|name| folder.path().join(format!("{name}.{ending}")));
+    let [result, proof] =
+        ["result", "proof"].map(|name| folder.path().join(format!("{name}.{ending}")));
     let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
-    let report = run(&command, &[&result, &proof]).expect(0).saying("proves").json();
+    let report = run(&command, &[&result, &proof])
+        .expect(0)
+        .saying("proves")
+        .json();
     let control = (!input.starts_with("builtin:")).then_some(Path::new(input));
-    assert_eq!(refused(control, &result, &proof, 1.0), 0, "{input} {options}");
-    let lower = report["error"]["lower"].as_f64().unwrap() / report["error"]["upper"].as_f64().unwrap();
+    assert_eq!(
+        refused(control, &result, &proof, 1.0),
+        0,
+        "{input} {options}"
+    );
+    let lower =
+        report["error"]["lower"].as_f64().unwrap() / report["error"]["upper"].as_f64().unwrap();
     if lower > 0.5 && report["error"]["proven"].is_null() {
-        assert_ne!(refused(control, &result, &proof, 0.999 * lower), 0, "{input} {options}");
+        assert_ne!(
+            refused(control, &result, &proof, 0.999 * lower),
+            0,
+            "{input} {options}"
+        );
     }
     report
 }
@@ -40,9 +56,17 @@ fn proven(input: &str, options: &str, ending: &str) -> Value {
 fn built_in_models_are_confirmed_as_they_are_certified() {
     for model in limitmesh_models::all() {
         for tolerance in ["0.1%", "0.01%"] {
-            let report =
-                proven(&format!("builtin:{}", model.name), &format!("--tolerance {tolerance}"), "ply");
-            assert!(report["error"]["proven"].is_null(), "{} {tolerance}: {}", model.name, report["error"]);
+            let report = proven(
+                &format!("builtin:{}", model.name),
+                &format!("--tolerance {tolerance}"),
+                "ply",
+            );
+            assert!(
+                report["error"]["proven"].is_null(),
+                "{} {tolerance}: {}",
+                model.name,
+                report["error"]
+            );
         }
     }
 }
@@ -81,8 +105,16 @@ fn shared_models_are_confirmed_as_they_are_certified() {
     ] {
         let Some(path) = shared(name) else { return };
         for tolerance in ["0.1%", "0.01%"] {
-            let report = proven(&path.to_string_lossy(), &format!("--tolerance {tolerance}"), "ply");
-            assert!(report["error"]["proven"].is_null(), "{name} {tolerance}: {}", report["error"]);
+            let report = proven(
+                &path.to_string_lossy(),
+                &format!("--tolerance {tolerance}"),
+                "ply",
+            );
+            assert!(
+                report["error"]["proven"].is_null(),
+                "{name} {tolerance}: {}",
+                report["error"]
+            );
         }
     }
 }
@@ -98,11 +130,18 @@ fn all_kinds_of_results_are_confirmed() {
         ("--within 2%", "ply"),
         ("--tolerance 0.3% --scheme loop-warren", "ply"),
         ("--tolerance 0.3% --crease-angle 20", "obj"),
-        ("--tolerance 0.3% --pixels 0.5 --camera 0,0,5,0,0,0,0,1,0,40,300x200", "ply"),
+        (
+            "--tolerance 0.3% --pixels 0.5 --camera 0,0,5,0,0,0,0,1,0,40,300x200",
+            "ply",
+        ),
     ] {
         let (ending, more) = ending.split_once(' ').unwrap_or((ending, ""));
         for model in ["cup", "head"] {
-            proven(&format!("builtin:{model}"), &format!("{options} {more}"), ending);
+            proven(
+                &format!("builtin:{model}"),
+                &format!("{options} {more}"),
+                ending,
+            );
         }
     }
     // Tags that fade, sheets that are cut where three meet, a border.
@@ -110,7 +149,11 @@ fn all_kinds_of_results_are_confirmed() {
     let book = "v 0 0 0\nv 1 0 0\nv 0 1 0.3\nv 1 1 0.2\nv 0 -1 0.4\nv 1 -1 0\nv 0 0.2 1\nv 1 0.1 1.2\n\
         f 1 2 4\nf 1 4 3\nf 1 5 6\nf 1 6 2\nf 1 8 7\nf 1 2 8\nt crease 2/1/0 0 3 1.5\nt corner 1/1/0 3 0.5\n";
     let book = file(&folder, "book.obj", book);
-    proven(&book.to_string_lossy(), "--tolerance 0.2% --crease-angle none", "ply");
+    proven(
+        &book.to_string_lossy(),
+        "--tolerance 0.2% --crease-angle none",
+        "ply",
+    );
 }
 
 /// A clean file is not in the proof: less than a byte for each triangle. Others are.
@@ -119,20 +162,41 @@ fn proofs_are_small() {
     let folder = folder();
     let [clean, result, proof] =
         ["clean.obj", "result.ply", "result.proof"].map(|name| folder.path().join(name));
-    run("refine builtin:bunny -o {} --method uniform --levels 0", &[&clean]).expect(0);
-    let report = run("refine {} -o {} --tolerance 0.05% --proof {} --report -", &[&clean, &result, &proof])
-        .expect(0)
-        .json();
+    run(
+        "refine builtin:bunny -o {} --method uniform --levels 0",
+        &[&clean],
+    )
+    .expect(0);
+    let report = run(
+        "refine {} -o {} --tolerance 0.05% --proof {} --report -",
+        &[&clean, &result, &proof],
+    )
+    .expect(0)
+    .json();
     let triangles = report["output"]["triangles"].as_u64().unwrap();
     let bytes = std::fs::metadata(&proof).unwrap().len();
     assert!(bytes < triangles, "{bytes} bytes for {triangles} triangles");
-    assert!(Proof::read(&std::fs::read(&proof).unwrap()).unwrap().held.is_none());
+    assert!(
+        Proof::read(&std::fs::read(&proof).unwrap())
+            .unwrap()
+            .held
+            .is_none()
+    );
     assert_eq!(refused(Some(&clean), &result, &proof, 1.0), 0);
     // Two vertices at one place: the control mesh is not what the file holds.
     let text = std::fs::read_to_string(&clean).unwrap() + "v 9 9 9\n";
     std::fs::write(&clean, text).unwrap();
-    run("refine {} -o {} --tolerance 1% --proof {}", &[&clean, &result, &proof]).expect(0);
-    assert!(Proof::read(&std::fs::read(&proof).unwrap()).unwrap().held.is_some());
+    run(
+        "refine {} -o {} --tolerance 1% --proof {}",
+        &[&clean, &result, &proof],
+    )
+    .expect(0);
+    assert!(
+        Proof::read(&std::fs::read(&proof).unwrap())
+            .unwrap()
+            .held
+            .is_some()
+    );
 }
 
 #[test]
@@ -146,34 +210,50 @@ fn what_has_no_proof_is_refused_by_name() {
         ("--scheme sqrt3", "loop"),
         ("--method uniform", "--method exact"),
     ] {
-        run(&format!("refine builtin:cube -o {{}} {options} --proof {{}}"), &[&result, &proof])
-            .expect(2)
-            .saying(words);
+        run(
+            &format!("refine builtin:cube -o {{}} {options} --proof {{}}"),
+            &[&result, &proof],
+        )
+        .expect(2)
+        .saying(words);
         assert!(!proof.exists() && !result.exists(), "{options}");
     }
     for name in ["result.stl", "result.glb", "result.3mf"] {
-        run("refine builtin:cube -o {} --proof {}", &[&folder.path().join(name), &proof])
-            .expect(2)
-            .saying(".ply");
+        run(
+            "refine builtin:cube -o {} --proof {}",
+            &[&folder.path().join(name), &proof],
+        )
+        .expect(2)
+        .saying(".ply");
     }
-    run("refine builtin:cube -o - --to ply --ascii --proof {}", &[&proof]).expect(2).saying("file");
-    run("refine builtin:cube -o {} --proof {}", &[&result, &result]).expect(2).saying("twice");
+    run(
+        "refine builtin:cube -o - --to ply --ascii --proof {}",
+        &[&proof],
+    )
+    .expect(2)
+    .saying("file");
+    run("refine builtin:cube -o {} --proof {}", &[&result, &result])
+        .expect(2)
+        .saying("twice");
 }
 
 #[test]
 fn batches_and_folders_have_proofs() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
-    let job =
-        json!({"input": "builtin:cube", "output": at("a.ply"), "tolerance": "1%", "proof": at("a.proof")});
+    let job = json!({"input": "builtin:cube", "output": at("a.ply"), "tolerance": "1%", "proof": at("a.proof")});
     let jobs = file(&folder, "jobs.jsonl", &format!("{job}\n"));
     run("batch {} -o {}", &[&jobs, &at("results.jsonl")]).expect(0);
     assert_eq!(refused(None, &at("a.ply"), &at("a.proof"), 1.0), 0);
     std::fs::create_dir(at("out")).unwrap();
-    run("refine builtin:cube builtin:cup -o {} --tolerance 1% --proof {}", &[&at("out"), &at("out")])
-        .expect(0);
+    run(
+        "refine builtin:cube builtin:cup -o {} --tolerance 1% --proof {}",
+        &[&at("out"), &at("out")],
+    )
+    .expect(0);
     for name in ["cube", "cup"] {
-        let [result, proof] = ["ply", "proof"].map(|ending| at("out").join(format!("{name}.{ending}")));
+        let [result, proof] =
+            ["ply", "proof"].map(|ending| at("out").join(format!("{name}.{ending}")));
         assert_eq!(refused(None, &result, &proof, 1.0), 0);
     }
 }
@@ -193,15 +273,26 @@ fn the_checker_in_python_agrees() {
         ("builtin:cube", "--tolerance 1.5% --crease-angle none"),
         ("builtin:head", "--triangles 300"),
         ("builtin:torus", "--triangles 400 --balance"),
-        ("builtin:cube", "--tolerance 1% --scheme loop-warren --crease-angle none"),
+        (
+            "builtin:cube",
+            "--tolerance 1% --scheme loop-warren --crease-angle none",
+        ),
     ] {
         let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
         let report = run(&command, &[&result, &proof]).expect(0).json();
         let check = |within: f64| {
             let files = [Path::new("-"), &result, &proof];
             let mut python = Command::new("python3");
-            let ran = python.arg(&check).args(files).args(["--at", &within.to_string()]).output().unwrap();
-            (ran.status.code(), String::from_utf8_lossy(&ran.stdout).into_owned())
+            let ran = python
+                .arg(&check)
+                .args(files)
+                .args(["--at", &within.to_string()])
+                .output()
+                .unwrap();
+            (
+                ran.status.code(),
+                String::from_utf8_lossy(&ran.stdout).into_owned(),
+            )
         };
         let within = Proof::read(&std::fs::read(&proof).unwrap()).unwrap().within;
         let (code, said) = check(within);

@@ -22,10 +22,18 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
 
 /// Refines and gives the report, after checking that it fits the file.
 fn refine(input: &str, output: &Path, options: &str) -> Value {
-    let run = run(&format!("refine {input} -o {{}} --report - {options}"), &[output]).expect(0);
+    let run = run(
+        &format!("refine {input} -o {{}} --report - {options}"),
+        &[output],
+    )
+    .expect(0);
     let report = run.json();
     has_keys(&report, CONTRACT);
-    assert_eq!(claimed(&report["output"]), counts(&soup(output)), "{input} {options}");
+    assert_eq!(
+        claimed(&report["output"]),
+        counts(&soup(output)),
+        "{input} {options}"
+    );
     check_steps(&report);
     report
 }
@@ -40,7 +48,10 @@ fn check_steps(report: &Value) {
         let [a, b, c, d] = [0, 1, 2, 3].map(|case| number(&step["closure"][case]));
         let divisible = number(&step["divisible"]);
         assert_eq!(number(&step["faces_before"]), divisible + a + b + c + d);
-        assert_eq!(number(&step["faces_after"]), 4 * (divisible + d) + 3 * c + 2 * b + a);
+        assert_eq!(
+            number(&step["faces_after"]),
+            4 * (divisible + d) + 3 * c + 2 * b + a
+        );
         if i > 0 {
             assert_eq!(step["faces_before"], steps[i - 1]["faces_after"]);
         }
@@ -65,10 +76,19 @@ fn every_built_in_model_is_refined_by_every_method() {
         for options in methods {
             let report = refine(&name, &output, options);
             let info = run(&format!("info {name} --json"), &[]).expect(0).json();
-            assert_eq!(report["output"]["euler_characteristic"], info["mesh"]["euler_characteristic"]);
-            assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"], "{name} {options}");
+            assert_eq!(
+                report["output"]["euler_characteristic"],
+                info["mesh"]["euler_characteristic"]
+            );
+            assert_eq!(
+                report["output"]["watertight"], info["mesh"]["watertight"],
+                "{name} {options}"
+            );
             assert_eq!(report["output"]["t_junctions"], 0, "{name} {options}");
-            assert_eq!(report["output"]["non_manifold_edges"], 0, "{name} {options}");
+            assert_eq!(
+                report["output"]["non_manifold_edges"], 0,
+                "{name} {options}"
+            );
         }
     }
 }
@@ -76,7 +96,11 @@ fn every_built_in_model_is_refined_by_every_method() {
 #[test]
 fn uniform_refinement_quadruples_the_faces_of_the_head() {
     let folder = folder();
-    let report = refine("builtin:head", &folder.path().join("out.off"), "--method uniform");
+    let report = refine(
+        "builtin:head",
+        &folder.path().join("out.off"),
+        "--method uniform",
+    );
     assert_eq!(report["output"]["triangles"], 9088);
     assert_eq!(report["stop"], "levels");
     assert_eq!(report["parameters"]["angle_degrees"], Value::Null);
@@ -86,8 +110,12 @@ fn uniform_refinement_quadruples_the_faces_of_the_head() {
 #[test]
 fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let folder = folder();
-    let parameters =
-        refine("builtin:shoe", &folder.path().join("out.ply"), "--method limit-normal")["parameters"].clone();
+    let parameters = refine(
+        "builtin:shoe",
+        &folder.path().join("out.ply"),
+        "--method limit-normal",
+    )["parameters"]
+        .clone();
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
         "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null, "within": null,
@@ -103,7 +131,9 @@ fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
     let output = folder.path().join("out.ply");
     let triangles = |options: &str| {
         let options = format!("--method limit-normal {options}");
-        refine("builtin:icosphere", &output, &options)["output"]["triangles"].as_u64().expect("a count")
+        refine("builtin:icosphere", &output, &options)["output"]["triangles"]
+            .as_u64()
+            .expect("a count")
     };
     let (wide, narrow) = (triangles("--angle 10"), triangles("--angle 3"));
     assert!(wide < narrow, "{wide} {narrow}");
@@ -111,23 +141,37 @@ fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
     let seen = triangles("--angle 3 --levels 2 --view 0,0,-1");
     assert!(seen < narrow, "faces that look away stay: {seen} {narrow}");
     let from_near = triangles("--angle 3 --levels 2 --eye 0,0,3");
-    assert!(from_near < seen, "an eye sees less than half of a sphere: {from_near} {seen}");
+    assert!(
+        from_near < seen,
+        "an eye sees less than half of a sphere: {from_near} {seen}"
+    );
     assert!(triangles("--angle 3 --levels 2 --view 0,0,-1 --dilatation 3") < seen);
 }
 
 #[test]
 fn every_format_holds_the_same_mesh() {
     let folder = folder();
-    let welded =
-        |path: &Path| limitmesh::Mesh::from_soup(&soup(path), &Default::default()).expect("a mesh").0;
+    let welded = |path: &Path| {
+        limitmesh::Mesh::from_soup(&soup(path), &Default::default())
+            .expect("a mesh")
+            .0
+    };
     let ply = folder.path().join("out.ply");
     refine("builtin:cup", &ply, "--tolerance 0.5%");
     let expected = welded(&ply);
-    for (name, options) in
-        [("out.obj", ""), ("out.off", ""), ("text.ply", "--ascii"), ("out.stl", ""), ("text.stl", "--ascii")]
-    {
+    for (name, options) in [
+        ("out.obj", ""),
+        ("out.off", ""),
+        ("text.ply", "--ascii"),
+        ("out.stl", ""),
+        ("text.stl", "--ascii"),
+    ] {
         let path = folder.path().join(name);
-        run(&format!("refine builtin:cup -o {{}} --tolerance 0.5% {options}"), &[&path]).expect(0);
+        run(
+            &format!("refine builtin:cup -o {{}} --tolerance 0.5% {options}"),
+            &[&path],
+        )
+        .expect(0);
         let mesh = welded(&path);
         if name.ends_with("stl") {
             // Single precision, and vertices in the order of the facets.
@@ -144,15 +188,25 @@ fn every_format_holds_the_same_mesh() {
 fn limit_positions_of_a_tetrahedron_follow_the_closed_form() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    refine("builtin:tetrahedron", &output, "--method uniform --levels 0 --limit");
-    let control = limitmesh_models::find("tetrahedron").expect("a model").soup();
+    refine(
+        "builtin:tetrahedron",
+        &output,
+        "--method uniform --levels 0 --limit",
+    );
+    let control = limitmesh_models::find("tetrahedron")
+        .expect("a model")
+        .soup();
     let limit = soup(&output);
     for (i, p) in limit.positions.iter().enumerate() {
         for axis in 0..3 {
             // Loop at valence 3: each neighbour weighs 1/5, the vertex the remaining 2/5.
             let sum: f64 = control.positions.iter().map(|q| q[axis]).sum();
             let expected = 0.2 * sum + 0.2 * control.positions[i][axis];
-            assert!((p[axis] - expected).abs() < 1e-14, "vertex {i}: {} {expected}", p[axis]);
+            assert!(
+                (p[axis] - expected).abs() < 1e-14,
+                "vertex {i}: {} {expected}",
+                p[axis]
+            );
         }
     }
 }
@@ -166,7 +220,10 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
         "refine builtin:head -o {} --method uniform --levels 5 --max-triangles 3000 --report {} --quiet",
         &[&output, &report_path],
     );
-    let run = run.expect(3).saying("9,088 triangles").saying("--max-triangles 3,000");
+    let run = run
+        .expect(3)
+        .saying("9,088 triangles")
+        .saying("--max-triangles 3,000");
     assert_eq!(run.stdout, "");
     let report: Value =
         serde_json::from_slice(&std::fs::read(&report_path).expect("a report")).expect("JSON");
@@ -182,9 +239,12 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
 fn a_cap_below_the_input_writes_the_input() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:head -o {} --method limit-normal --max-triangles 10", &[&output])
-        .expect(3)
-        .saying("stopped short");
+    run(
+        "refine builtin:head -o {} --method limit-normal --max-triangles 10",
+        &[&output],
+    )
+    .expect(3)
+    .saying("stopped short");
     assert_eq!(counts(&soup(&output)).triangles, 142);
 }
 
@@ -195,9 +255,14 @@ fn flat_faces_satisfy_the_criterion_at_once() {
     let input = file(&folder, "square.obj", square);
     let output = folder.path().join("out.ply");
     let words = "refine {} -o {} --method limit-normal --report -";
-    let run = run(words, &[&input, &output]).expect(0).saying("no face is divisible");
+    let run = run(words, &[&input, &output])
+        .expect(0)
+        .saying("no face is divisible");
     assert_eq!(run.json()["stop"], "satisfied");
-    assert_eq!(run.json()["diagnosis"]["polygons"]["first"], serde_json::json!([0]));
+    assert_eq!(
+        run.json()["diagnosis"]["polygons"]["first"],
+        serde_json::json!([0])
+    );
     assert_eq!(
         counts(&soup(&output)),
         Counts {
@@ -215,7 +280,11 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
     let folder = folder();
     let bytes = |threads: usize, options: &str| {
         let output = folder.path().join(format!("out{threads}.ply"));
-        run(&format!("refine builtin:shoe -o {{}} --threads {threads} {options}"), &[&output]).expect(0);
+        run(
+            &format!("refine builtin:shoe -o {{}} --threads {threads} {options}"),
+            &[&output],
+        )
+        .expect(0);
         std::fs::read(&output).expect("a file")
     };
     // Large enough that the loops do run in parallel.
@@ -238,7 +307,8 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
 fn repairs_are_told_and_strict_refuses_them() {
     let folder = folder();
     // Three triangles on one edge, and a vertex that no face uses.
-    let fan = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nv 9 9 9\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+    let fan =
+        "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nv 9 9 9\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
     let input = file(&folder, "fan.obj", fan);
     let output = folder.path().join("out.ply");
     let report = run("refine {} -o {} --report -", &[&input, &output])
@@ -250,7 +320,9 @@ fn repairs_are_told_and_strict_refuses_them() {
     assert_eq!(report["diagnosis"]["non_manifold_edges"]["count"], 1);
     assert_eq!(claimed(&report["output"]), counts(&soup(&output)));
     std::fs::remove_file(&output).expect("removable");
-    run("refine {} -o {} --strict", &[&input, &output]).expect(1).saying("strict");
+    run("refine {} -o {} --strict", &[&input, &output])
+        .expect(1)
+        .saying("strict");
     assert!(!output.exists());
 }
 
@@ -260,7 +332,10 @@ fn welding_within_a_distance_closes_a_gap() {
     let gap = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 0 1.001 0\nv 1 1 0.2\nf 1 2 3\nf 4 6 5\n";
     let input = file(&folder, "gap.obj", gap);
     let components = |options: &str| {
-        run(&format!("info {{}} --json {options}"), &[&input]).expect(0).json()["mesh"]["components"].clone()
+        run(&format!("info {{}} --json {options}"), &[&input])
+            .expect(0)
+            .json()["mesh"]["components"]
+            .clone()
     };
     assert_eq!(components(""), 2);
     assert_eq!(components("--weld 0.01"), 1);
@@ -270,15 +345,29 @@ fn welding_within_a_distance_closes_a_gap() {
 fn ply_carries_limit_normals() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:icosphere -o {} --tolerance 5% --ascii", &[&output]).expect(0);
+    run(
+        "refine builtin:icosphere -o {} --tolerance 5% --ascii",
+        &[&output],
+    )
+    .expect(0);
     let text = std::fs::read_to_string(&output).expect("text");
     let (header, body) = text.split_once("end_header\n").expect("a header");
-    let properties: Vec<&str> =
-        header.lines().filter(|line| line.starts_with("property") && !line.contains("list")).collect();
-    let names: Vec<&str> = properties.iter().filter_map(|line| line.split(' ').next_back()).collect();
+    let properties: Vec<&str> = header
+        .lines()
+        .filter(|line| line.starts_with("property") && !line.contains("list"))
+        .collect();
+    let names: Vec<&str> = properties
+        .iter()
+        .filter_map(|line| line.split(' ').next_back())
+        .collect();
     assert_eq!(names, ["x", "y", "z", "nx", "ny", "nz"]);
-    let numbers: Vec<f64> =
-        body.lines().next().expect("a vertex").split(' ').map(|x| x.parse().expect("a number")).collect();
+    let numbers: Vec<f64> = body
+        .lines()
+        .next()
+        .expect("a vertex")
+        .split(' ')
+        .map(|x| x.parse().expect("a number"))
+        .collect();
     // A sphere's normal at a vertex of the icosahedron's symmetry points where the vertex does.
     let dot: f64 = (0..3).map(|i| numbers[i] * numbers[i + 3]).sum();
     let length = numbers[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -288,13 +377,21 @@ fn ply_carries_limit_normals() {
 #[test]
 fn tags_reach_the_output_where_its_format_has_them() {
     let folder = folder();
-    let cage = "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
+    let cage =
+        "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
     let input = file(&folder, "tagged.obj", cage);
     let output = folder.path().join("out.obj");
-    run("refine {} -o {} --method limit-normal --levels 2", &[&input, &output]).expect(0);
+    run(
+        "refine {} -o {} --method limit-normal --levels 2",
+        &[&input, &output],
+    )
+    .expect(0);
     let soup = soup(&output);
     assert_eq!(soup.corners.len(), 1);
-    assert_eq!(soup.positions[soup.corners[0].vertex as usize], [0.0, 0.0, 1.0]);
+    assert_eq!(
+        soup.positions[soup.corners[0].vertex as usize],
+        [0.0, 0.0, 1.0]
+    );
 }
 
 #[test]
@@ -306,12 +403,21 @@ fn tags_are_kept_or_the_loss_is_told() {
     std::fs::write(&input, content).expect("a file");
     for name in ["out.obj", "out.ply"] {
         let output = folder.path().join(name);
-        let run = run("refine {} -o {} --method limit-normal --levels 2", &[&input, &output]).expect(0);
+        let run = run(
+            "refine {} -o {} --method limit-normal --levels 2",
+            &[&input, &output],
+        )
+        .expect(0);
         let kept = name.ends_with("obj");
-        let told = run.stderr.contains("1 crease tag and 1 corner tag: followed, but left out of the output");
+        let told = run
+            .stderr
+            .contains("1 crease tag and 1 corner tag: followed, but left out of the output");
         assert_eq!(told, !kept, "{}", run.stderr);
         let soup = soup(&output);
-        assert_eq!((soup.creases.len(), soup.corners.len()), if kept { (4, 1) } else { (0, 0) });
+        assert_eq!(
+            (soup.creases.len(), soup.corners.len()),
+            if kept { (4, 1) } else { (0, 0) }
+        );
     }
 }
 
@@ -319,13 +425,20 @@ fn tags_are_kept_or_the_loss_is_told() {
 fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
     let folder = folder();
     let output = folder.path().join("cube.ply");
-    let report = refine("builtin:cube", &output, "--method uniform --levels 3 --crease-angle 30");
+    let report = refine(
+        "builtin:cube",
+        &output,
+        "--method uniform --levels 3 --crease-angle 30",
+    );
     assert_eq!(report["parameters"]["crease_angle_degrees"], 30.0);
-    let on_cube = |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
+    let on_cube =
+        |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
     assert!(soup(&output).positions.iter().all(on_cube));
     let off = |options: &str| {
         let words = format!("measure {{}} --limit-of builtin:cube --json --samples 2000 {options}");
-        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"].as_f64().expect("a number")
+        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"]
+            .as_f64()
+            .expect("a number")
     };
     assert!(off("--crease-angle 30") < 1e-7 && off("") > 0.1);
 }
@@ -333,13 +446,25 @@ fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
 #[test]
 fn boundaries_are_smooth_or_keep_their_corners_or_stay() {
     let folder = folder();
-    let square = file(&folder, "square.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n");
+    let square = file(
+        &folder,
+        "square.obj",
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n",
+    );
     let output = folder.path().join("out.obj");
     let kept = |rule: &str| {
         let words = format!("refine {{}} -o {{}} --method uniform --levels 2 --limit {rule}");
         run(&words, &[&square, &output]).expect(0);
-        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-        corners.iter().filter(|corner| soup(&output).positions.contains(corner)).count()
+        let corners = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+        ];
+        corners
+            .iter()
+            .filter(|corner| soup(&output).positions.contains(corner))
+            .count()
     };
     assert_eq!(kept(""), 0);
     assert_eq!(kept("--boundary smooth"), 0);
@@ -357,15 +482,31 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let input = file(&folder, "nearly.obj", NEARLY_CLOSED);
     let output = folder.path().join("out.ply");
     let first = run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
-    let told = first.stderr.split("--weld ").nth(1).and_then(|rest| rest.split(',').next());
-    let distance = told.unwrap_or_else(|| panic!("no distance in {}", first.stderr)).to_owned();
-    let second =
-        run(&format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"), &[&input, &output]).expect(0);
-    assert!(!second.stderr.contains("--weld") && second.stderr.contains(", closed ("), "{}", second.stderr);
+    let told = first
+        .stderr
+        .split("--weld ")
+        .nth(1)
+        .and_then(|rest| rest.split(',').next());
+    let distance = told
+        .unwrap_or_else(|| panic!("no distance in {}", first.stderr))
+        .to_owned();
+    let second = run(
+        &format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"),
+        &[&input, &output],
+    )
+    .expect(0);
+    assert!(
+        !second.stderr.contains("--weld") && second.stderr.contains(", closed ("),
+        "{}",
+        second.stderr
+    );
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
-    run(&format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"), &[&output, &input])
-        .expect(0);
+    run(
+        &format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"),
+        &[&output, &input],
+    )
+    .expect(0);
 }
 
 #[test]
@@ -374,9 +515,16 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
     let output = folder.path().join("out.ply");
     for (name, option) in [("in.obj", "--report"), ("in.png", "--picture")] {
         let input = file(&folder, name, NEARLY_CLOSED);
-        let run = run(&format!("refine {{}} -o {{}} {option} {{}}"), &[&input, &output, &input]).expect(2);
+        let run = run(
+            &format!("refine {{}} -o {{}} {option} {{}}"),
+            &[&input, &output, &input],
+        )
+        .expect(2);
         assert!(run.stderr.contains("is an input"), "{}", run.stderr);
-        assert_eq!(std::fs::read_to_string(&input).expect("a file"), NEARLY_CLOSED);
+        assert_eq!(
+            std::fs::read_to_string(&input).expect("a file"),
+            NEARLY_CLOSED
+        );
     }
 }
 
@@ -384,21 +532,42 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
 fn what_is_left_out_is_told() {
     let folder = folder();
     let content = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl red\nf 1/1 2/1 3/1\n";
-    let (input, output) = (file(&folder, "in.obj", content), folder.path().join("out.obj"));
+    let (input, output) = (
+        file(&folder, "in.obj", content),
+        folder.path().join("out.obj"),
+    );
     let told = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
     assert!(!told.contains("left out"), "{told}");
     let text = std::fs::read_to_string(&output).expect("it is there");
-    assert!(text.contains("vt 0 0\n") && text.contains("usemtl red\n"), "{text}");
+    assert!(
+        text.contains("vt 0 0\n") && text.contains("usemtl red\n"),
+        "{text}"
+    );
     let carried = "carries: texture coordinates (2 numbers a corner); materials (by face)";
     assert!(run("info {}", &[&input]).expect(0).stdout.contains(carried));
     let report = run("info {} --json", &[&input]).expect(0).json();
     assert_eq!(report["input"]["left_out"], serde_json::json!([]));
-    assert_eq!(report["input"]["channels"][0]["name"], "texture coordinates");
+    assert_eq!(
+        report["input"]["channels"][0]["name"],
+        "texture coordinates"
+    );
     let stl = folder.path().join("out.stl");
-    let words = "left out: texture coordinates; materials (the output's format has no place for them)";
-    run("refine {} -o {}", &[&input, &stl]).expect(0).saying(words);
-    for options in ["--optimize", "--method uniform --levels 1", "--method limit-normal"] {
-        let told = run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0).stderr;
+    let words =
+        "left out: texture coordinates; materials (the output's format has no place for them)";
+    run("refine {} -o {}", &[&input, &stl])
+        .expect(0)
+        .saying(words);
+    for options in [
+        "--optimize",
+        "--method uniform --levels 1",
+        "--method limit-normal",
+    ] {
+        let told = run(
+            &format!("refine {{}} -o {{}} {options}"),
+            &[&input, &output],
+        )
+        .expect(0)
+        .stderr;
         assert!(!told.contains("left out"), "{options}: {told}");
     }
 }
@@ -408,7 +577,14 @@ fn what_is_left_out_is_told() {
 #[test]
 fn textures_come_out_as_they_went_in() {
     let folder = folder();
-    let corners = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let corners = [
+        [0, 1, 3, 2],
+        [4, 6, 7, 5],
+        [0, 4, 5, 1],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 5, 7, 3],
+    ];
     let mut content = String::new();
     for v in 0..8 {
         content += &format!("v {} {} {}\n", v >> 2 & 1, v >> 1 & 1, v & 1);
@@ -418,14 +594,27 @@ fn textures_come_out_as_they_went_in() {
             content += &format!("vt {} {t}\n", side + s);
         }
         content += &format!("usemtl side{side}\nf");
-        corners.iter().enumerate().for_each(|(k, v)| content += &format!(" {}/{}", v + 1, 4 * side + k + 1));
+        corners
+            .iter()
+            .enumerate()
+            .for_each(|(k, v)| content += &format!(" {}/{}", v + 1, 4 * side + k + 1));
         content += "\n";
     }
-    let (input, output) = (file(&folder, "cube.obj", &content), folder.path().join("out.obj"));
-    for options in
-        ["--tolerance 1%", "--tolerance 0.2% --optimize", "--method uniform", "--method limit-normal"]
-    {
-        run(&format!("refine {{}} -o {{}} {options}"), &[&input, &output]).expect(0);
+    let (input, output) = (
+        file(&folder, "cube.obj", &content),
+        folder.path().join("out.obj"),
+    );
+    for options in [
+        "--tolerance 1%",
+        "--tolerance 0.2% --optimize",
+        "--method uniform",
+        "--method limit-normal",
+    ] {
+        run(
+            &format!("refine {{}} -o {{}} {options}"),
+            &[&input, &output],
+        )
+        .expect(0);
         check_net(&std::fs::read_to_string(&output).expect("it is there"));
     }
 }
@@ -438,10 +627,22 @@ fn check_net(text: &str) {
         let words: Vec<&str> = line.split(' ').collect();
         match words[0] {
             "vt" => places.push([1, 2].map(|i| words[i].parse().expect("a number"))),
-            "usemtl" => side = words[1].strip_prefix("side").expect("its name").parse().expect("a number"),
+            "usemtl" => {
+                side = words[1]
+                    .strip_prefix("side")
+                    .expect("its name")
+                    .parse()
+                    .expect("a number")
+            }
             "f" => {
                 let place = |word: &str| {
-                    places[word.split('/').nth(1).expect("vt").parse::<usize>().expect("vt") - 1]
+                    places[word
+                        .split('/')
+                        .nth(1)
+                        .expect("vt")
+                        .parse::<usize>()
+                        .expect("vt")
+                        - 1]
                 };
                 let [a, b, c] = [1, 2, 3].map(|i| place(words[i]));
                 // Each triangle lies in its own side's square.
@@ -452,7 +653,8 @@ fn check_net(text: &str) {
                         "{line}"
                     );
                 }
-                areas[side] += 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+                areas[side] +=
+                    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
                 count += 1;
             }
             _ => {}

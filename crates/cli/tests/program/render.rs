@@ -15,17 +15,41 @@ fn pictures_differ_by_what_is_asked_for() {
     let folder = folder();
     let path = folder.path().join("out.png");
     let mut pictures = Vec::new();
-    for options in ["", "--flat", "--wireframe", "--view 1,0,0", "--flat --wireframe --view 0,1,0"] {
-        run(&format!("render builtin:head -o {{}} --size 160x120 {options}"), &[&path]).expect(0);
+    for options in [
+        "",
+        "--flat",
+        "--wireframe",
+        "--view 1,0,0",
+        "--flat --wireframe --view 0,1,0",
+    ] {
+        run(
+            &format!("render builtin:head -o {{}} --size 160x120 {options}"),
+            &[&path],
+        )
+        .expect(0);
         let png = std::fs::read(&path).expect("a picture");
         assert_eq!(size(&png), [160, 120]);
         assert!(!pictures.contains(&png), "{options}");
         pictures.push(png);
     }
-    run("render builtin:head -o {} --size 160x120 --crease-angle 30 --threads 1", &[&path]).expect(0);
-    assert!(pictures[0] == std::fs::read(&path).expect("a picture"), "edges beyond 30° show by default");
-    run("render builtin:head -o {} --size 160x120 --smooth", &[&path]).expect(0);
-    assert!(pictures[0] != std::fs::read(&path).expect("a picture"), "and not where all is smooth");
+    run(
+        "render builtin:head -o {} --size 160x120 --crease-angle 30 --threads 1",
+        &[&path],
+    )
+    .expect(0);
+    assert!(
+        pictures[0] == std::fs::read(&path).expect("a picture"),
+        "edges beyond 30° show by default"
+    );
+    run(
+        "render builtin:head -o {} --size 160x120 --smooth",
+        &[&path],
+    )
+    .expect(0);
+    assert!(
+        pictures[0] != std::fs::read(&path).expect("a picture"),
+        "and not where all is smooth"
+    );
 }
 
 #[test]
@@ -42,32 +66,58 @@ fn refine_draws_its_result() {
 fn wrong_pictures_are_refused() {
     let folder = folder();
     let path = folder.path().join("out.png");
-    run("render builtin:head -o {} --flat --smooth", &[&path]).expect(2).saying("cannot be used with");
-    run("render builtin:head -o {} --flat --crease-angle 30", &[&path])
+    run("render builtin:head -o {} --flat --smooth", &[&path])
         .expect(2)
         .saying("cannot be used with");
+    run(
+        "render builtin:head -o {} --flat --crease-angle 30",
+        &[&path],
+    )
+    .expect(2)
+    .saying("cannot be used with");
     let missing = folder.path().join("missing.png");
     run("render builtin:head -o {} --texture {}", &[&path, &missing])
         .expect(1)
         .saying(&format!("--texture {}", missing.display()));
-    run("render builtin:head -o {} --size 0x10", &[&path]).expect(2).saying("1 to");
-    run("render builtin:head -o {} --size big", &[&path]).expect(2).saying("WxH");
-    run("render builtin:head -o {}", &[&path.with_extension("gif")]).expect(2).saying(".png");
+    run("render builtin:head -o {} --size 0x10", &[&path])
+        .expect(2)
+        .saying("1 to");
+    run("render builtin:head -o {} --size big", &[&path])
+        .expect(2)
+        .saying("WxH");
+    run("render builtin:head -o {}", &[&path.with_extension("gif")])
+        .expect(2)
+        .saying(".png");
     assert!(!path.exists());
 }
 
 #[test]
 fn textures_lie_on_surfaces_with_texture_coordinates() {
     let folder = folder();
-    let (mesh, path) = (folder.path().join("square.obj"), folder.path().join("out.png"));
+    let (mesh, path) = (
+        folder.path().join("square.obj"),
+        folder.path().join("out.png"),
+    );
     let plain = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n";
     std::fs::write(&mesh, format!("{plain}f 1 2 3 4\n")).expect("written");
-    let bare = run("render {} -o {} --size 160x120 --texture checker", &[&mesh, &path]);
-    bare.expect(2).saying("no texture coordinates").saying("--texture");
-    std::fs::write(&mesh, format!("{plain}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"))
-        .expect("written");
+    let bare = run(
+        "render {} -o {} --size 160x120 --texture checker",
+        &[&mesh, &path],
+    );
+    bare.expect(2)
+        .saying("no texture coordinates")
+        .saying("--texture");
+    std::fs::write(
+        &mesh,
+        format!("{plain}vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"),
+    )
+    .expect("written");
     let drawn = |options: &str| {
-        run(&format!("render {{}} -o {{}} --size 160x120 {options}"), &[&mesh, &path]).expect(0);
+        run(
+            &format!("render {{}} -o {{}} --size 160x120 {options}"),
+            &[&mesh, &path],
+        )
+        .expect(0);
         std::fs::read(&path).expect("a picture")
     };
     let none = drawn("");
@@ -79,8 +129,14 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     run("render {} -o {} --texture {}", &[&mesh, &path, &picture]).expect(0);
     std::fs::write(&picture, "no picture").expect("written");
     let broken = run("render {} -o {} --texture {}", &[&mesh, &path, &picture]);
-    broken.expect(1).saying("texture.png").saying("PNG and JPEG");
-    let missing = run("render {} -o {} --texture {}", &[&mesh, &path, &folder.path().join("none.png")]);
+    broken
+        .expect(1)
+        .saying("texture.png")
+        .saying("PNG and JPEG");
+    let missing = run(
+        "render {} -o {} --texture {}",
+        &[&mesh, &path, &folder.path().join("none.png")],
+    );
     missing.expect(1).saying("none.png");
 }
 
@@ -91,30 +147,60 @@ fn limit_surfaces_are_drawn_by_rays() {
     let folder = folder();
     let path = folder.path().join("exact.png");
     let draw = |options: &str| {
-        run(&format!("render builtin:cube -o {{}} --size 120x90 {options}"), &[&path]).expect(0);
+        run(
+            &format!("render builtin:cube -o {{}} --size 120x90 {options}"),
+            &[&path],
+        )
+        .expect(0);
         std::fs::read(&path).expect("a picture")
     };
     let exact = draw("--exact");
     assert_eq!(size(&exact), [120, 90]);
-    assert!(exact != draw(""), "it is not the control mesh that is drawn");
+    assert!(
+        exact != draw(""),
+        "it is not the control mesh that is drawn"
+    );
     let covered = |png: &[u8]| {
         let pixels = pixels(png);
         pixels.iter().filter(|&pixel| *pixel != pixels[0]).count()
     };
-    let (fine, drawn) = (folder.path().join("fine.ply"), folder.path().join("fine.png"));
-    run("refine builtin:cube -o {} --method uniform --levels 4 --limit", &[&fine]).expect(0);
+    let (fine, drawn) = (
+        folder.path().join("fine.ply"),
+        folder.path().join("fine.png"),
+    );
+    run(
+        "refine builtin:cube -o {} --method uniform --levels 4 --limit",
+        &[&fine],
+    )
+    .expect(0);
     run("render {} -o {} --size 120x90", &[&fine, &drawn]).expect(0);
-    let (own, other) = (covered(&exact), covered(&std::fs::read(&drawn).expect("a picture")));
-    assert!(other > 120 * 90 / 10 && own.abs_diff(other) * 50 < other, "{own} and {other} pixels");
-    assert!(exact == draw("--exact --threads 1"), "the same bytes on one thread");
+    let (own, other) = (
+        covered(&exact),
+        covered(&std::fs::read(&drawn).expect("a picture")),
+    );
+    assert!(
+        other > 120 * 90 / 10 && own.abs_diff(other) * 50 < other,
+        "{own} and {other} pixels"
+    );
+    assert!(
+        exact == draw("--exact --threads 1"),
+        "the same bytes on one thread"
+    );
     assert!(exact != draw("--exact --scheme loop-warren"));
     assert!(exact != draw("--exact --crease-angle 30"));
     run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
-    run("render builtin:cube -o {} --exact --smooth", &[&path]).expect(2).saying("--smooth");
-    run("render builtin:cube -o {} --scheme loop", &[&path]).expect(2).saying("it needs --exact");
-    run("render builtin:cube -o {} --exact --scheme butterfly", &[&path])
+    run("render builtin:cube -o {} --exact --smooth", &[&path])
         .expect(2)
-        .saying("loop, loop-warren]");
+        .saying("--smooth");
+    run("render builtin:cube -o {} --scheme loop", &[&path])
+        .expect(2)
+        .saying("it needs --exact");
+    run(
+        "render builtin:cube -o {} --exact --scheme butterfly",
+        &[&path],
+    )
+    .expect(2)
+    .saying("loop, loop-warren]");
 }
 
 /// A cube without normals looks as one whose file has the normal of its side at each corner; a ball of many faces as one that is smooth all
@@ -124,17 +210,38 @@ fn files_without_normals_are_shaded_apart_at_sharp_edges() {
     let folder = folder();
     let path = folder.path().join("out.png");
     let drawn = |input: &std::path::Path, options: &str| {
-        run(&format!("render {{}} -o {{}} --size 120x90 {options}"), &[input, &path]).expect(0);
+        run(
+            &format!("render {{}} -o {{}} --size 120x90 {options}"),
+            &[input, &path],
+        )
+        .expect(0);
         pixels(&std::fs::read(&path).expect("a picture"))
     };
-    let corners: String = (0..8).map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)).collect();
+    let corners: String = (0..8)
+        .map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2))
+        .collect();
     let normals = "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 0 1 0\nvn -1 0 0\nvn 1 0 0\n";
-    let sides = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    let sides = [
+        [1, 3, 4, 2],
+        [5, 6, 8, 7],
+        [1, 2, 6, 5],
+        [3, 7, 8, 4],
+        [1, 5, 7, 3],
+        [2, 4, 8, 6],
+    ];
     let faces = |has_normals: bool| -> String {
-        let corner =
-            |side: usize, v: u32| if has_normals { format!(" {v}//{}", side + 1) } else { format!(" {v}") };
+        let corner = |side: usize, v: u32| {
+            if has_normals {
+                format!(" {v}//{}", side + 1)
+            } else {
+                format!(" {v}")
+            }
+        };
         let face = |(side, corners): (usize, &[u32; 4])| {
-            format!("f{}\n", corners.iter().map(|&v| corner(side, v)).collect::<String>())
+            format!(
+                "f{}\n",
+                corners.iter().map(|&v| corner(side, v)).collect::<String>()
+            )
         };
         sides.iter().enumerate().map(face).collect()
     };
@@ -150,18 +257,31 @@ fn files_without_normals_are_shaded_apart_at_sharp_edges() {
     assert!(plain != drawn(&bare, "--smooth"));
     let ball = folder.path().join("ball.stl");
     run("refine builtin:sphere -o {} --triangles 5000", &[&ball]).expect(0);
-    assert!(drawn(&ball, "") == drawn(&ball, "--smooth") && drawn(&ball, "") != drawn(&ball, "--flat"));
+    assert!(
+        drawn(&ball, "") == drawn(&ball, "--smooth") && drawn(&ball, "") != drawn(&ball, "--flat")
+    );
 }
 
 /// A dense mesh is not blackened by edges that nobody could tell apart; a coarse one shows them.
 #[test]
 fn edges_of_small_triangles_are_left_out() {
     let folder = folder();
-    let (mesh, path) = (folder.path().join("ball.stl"), folder.path().join("out.png"));
+    let (mesh, path) = (
+        folder.path().join("ball.stl"),
+        folder.path().join("out.png"),
+    );
     let differ = |triangles: usize| {
-        run(&format!("refine builtin:sphere -o {{}} --triangles {triangles}"), &[&mesh]).expect(0);
+        run(
+            &format!("refine builtin:sphere -o {{}} --triangles {triangles}"),
+            &[&mesh],
+        )
+        .expect(0);
         let drawn = |options: &str| {
-            run(&format!("render {{}} -o {{}} --size 160x120 {options}"), &[&mesh, &path]).expect(0);
+            run(
+                &format!("render {{}} -o {{}} --size 160x120 {options}"),
+                &[&mesh, &path],
+            )
+            .expect(0);
             std::fs::read(&path).expect("a picture")
         };
         drawn("") != drawn("--wireframe")
@@ -176,8 +296,17 @@ fn edges_of_small_triangles_are_left_out() {
 fn results_name_their_pictures_and_say_distances_once() {
     let folder = folder();
     let (mesh, picture) = (folder.path().join("cup.ply"), folder.path().join("cup.png"));
-    let run = run("refine builtin:cup -o {} --picture {} --max-triangles 2000", &[&mesh, &picture]).expect(3);
-    let run = run.saying(&format!("{}: ", picture.display())).saying("triangles drawn");
-    let within = run.stderr.matches("of the limit surface, certified").count();
+    let run = run(
+        "refine builtin:cup -o {} --picture {} --max-triangles 2000",
+        &[&mesh, &picture],
+    )
+    .expect(3);
+    let run = run
+        .saying(&format!("{}: ", picture.display()))
+        .saying("triangles drawn");
+    let within = run
+        .stderr
+        .matches("of the limit surface, certified")
+        .count();
     assert_eq!(within, 1, "{}", run.stderr);
 }

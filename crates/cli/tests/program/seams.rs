@@ -18,7 +18,13 @@ pub(crate) fn cube() -> String {
         }
     }
     for side in 0..6 {
-        text += &format!("4 {} {} {} {}\n", 4 * side, 4 * side + 1, 4 * side + 2, 4 * side + 3);
+        text += &format!(
+            "4 {} {} {} {}\n",
+            4 * side,
+            4 * side + 1,
+            4 * side + 2,
+            4 * side + 3
+        );
     }
     text
 }
@@ -28,9 +34,12 @@ fn texture_coordinates_of_vertices_stay_so() {
     let folder = folder();
     let input = file(&folder, "in.ply", &cube());
     let output = folder.path().join("out.ply");
-    for options in
-        ["", "--crease-angle 30", "--creases-from normals", "--crease-angle 30 --provenance --ascii"]
-    {
+    for options in [
+        "",
+        "--crease-angle 30",
+        "--creases-from normals",
+        "--crease-angle 30 --provenance --ascii",
+    ] {
         let command = format!("refine {{}} -o {{}} --tolerance 2% --report - {options}");
         let said = run(&command, &[&input, &output]).expect(0);
         let said = said.saying("seams of texture coordinates");
@@ -48,7 +57,11 @@ fn texture_coordinates_of_vertices_stay_so() {
         assert!(!header.contains("texcoord"));
         // Each side shows all of the picture, once; what is torn there holds together in space.
         let found = soup(&output);
-        let own = found.channels.iter().find(|own| own.name == "s,t").expect("texture coordinates");
+        let own = found
+            .channels
+            .iter()
+            .find(|own| own.name == "s,t")
+            .expect("texture coordinates");
         let area: f64 = found
             .faces
             .iter()
@@ -59,13 +72,21 @@ fn texture_coordinates_of_vertices_stay_so() {
             .sum();
         assert!((area - 6.0).abs() < 1e-5, "{area}");
         assert!(counts(&found).boundary_edges > 0);
-        let mut places = found.positions.iter().map(|p| p.map(f64::to_bits)).collect::<Vec<_>>();
+        let mut places = found
+            .positions
+            .iter()
+            .map(|p| p.map(f64::to_bits))
+            .collect::<Vec<_>>();
         places.sort_unstable();
         places.dedup();
         assert_eq!(report["output"]["vertices"], places.len());
         // Normals are of the side that their vertex is on.
         if !options.is_empty() {
-            let normals = found.channels.iter().find(|own| own.name == "normals").expect("normals");
+            let normals = found
+                .channels
+                .iter()
+                .find(|own| own.name == "normals")
+                .expect("normals");
             for (v, p) in found.positions.iter().enumerate() {
                 let n = normals.value(v);
                 let axis = (0..3).find(|&i| n[i].abs() > 0.999).expect("along an axis");
@@ -74,6 +95,11 @@ fn texture_coordinates_of_vertices_stay_so() {
         }
     }
     // Without seams a vertex is one.
-    let report = run("refine {} -o {} --channel s,t=drop --report -", &[&input, &output]).expect(0).json();
+    let report = run(
+        "refine {} -o {} --channel s,t=drop --report -",
+        &[&input, &output],
+    )
+    .expect(0)
+    .json();
     assert_eq!(report["output"]["vertices"], soup(&output).positions.len());
 }

@@ -8,7 +8,8 @@ fn prism() -> String {
     let corners = 12;
     for z in [0.0, 1.0] {
         for i in 0..corners {
-            let (sine, cosine) = (std::f64::consts::TAU * f64::from(i) / f64::from(corners)).sin_cos();
+            let (sine, cosine) =
+                (std::f64::consts::TAU * f64::from(i) / f64::from(corners)).sin_cos();
             text += &format!("v {} {} {z}\n", 2.0 * cosine, 2.0 * sine);
         }
     }
@@ -24,7 +25,9 @@ fn prism() -> String {
 }
 
 fn numbers(line: &str) -> Vec<f64> {
-    line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    line.split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -32,7 +35,11 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn normal(corners: [&Vec<f64>; 3]) -> Vec<f64> {
-    let [u, v] = [1, 2].map(|at| (0..3).map(|i| corners[at][i] - corners[0][i]).collect::<Vec<f64>>());
+    let [u, v] = [1, 2].map(|at| {
+        (0..3)
+            .map(|i| corners[at][i] - corners[0][i])
+            .collect::<Vec<f64>>()
+    });
     let cross = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
     let normal = [cross(1, 2), cross(2, 0), cross(0, 1)];
     let length = dot(&normal, &normal).sqrt();
@@ -41,7 +48,9 @@ fn normal(corners: [&Vec<f64>; 3]) -> Vec<f64> {
 
 /// The pixels of a picture, row by row.
 pub(crate) fn pixels(png: &[u8]) -> Vec<Vec<u8>> {
-    let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a picture");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .expect("a picture");
     let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut bytes).expect("a picture");
     let bytes = &bytes[..info.buffer_size()];
@@ -58,10 +67,17 @@ fn each_side_of_a_rim_has_its_normals() {
         ["out.obj", "out.ply", "split.ply", "out.stl"].map(|name| folder.path().join(name));
     let options = "--crease-angle 40 --tolerance 0.01 --quiet --ascii";
     for method in ["", "--optimize"] {
-        run(&format!("refine {{}} -o {{}} {options} {method}"), &[&input, &obj]).expect(0);
+        run(
+            &format!("refine {{}} -o {{}} {options} {method}"),
+            &[&input, &obj],
+        )
+        .expect(0);
         let text = std::fs::read_to_string(&obj).expect("written");
         let list = |key: &str| -> Vec<Vec<f64>> {
-            text.lines().filter(|line| line.split(' ').next() == Some(key)).map(numbers).collect()
+            text.lines()
+                .filter(|line| line.split(' ').next() == Some(key))
+                .map(numbers)
+                .collect()
         };
         let (positions, normals) = (list("v"), list("vn"));
         let mut flat = 0;
@@ -76,18 +92,29 @@ fn each_side_of_a_rim_has_its_normals() {
             flat += usize::from(is_flat);
             for (_, at) in corners {
                 let least = if is_flat { 1.0 - 1e-9 } else { 0.9 };
-                assert!(dot(&own, &normals[at - 1]) > least, "{line}: {own:?} {:?}", normals[at - 1]);
+                assert!(
+                    dot(&own, &normals[at - 1]) > least,
+                    "{line}: {own:?} {:?}",
+                    normals[at - 1]
+                );
             }
         }
         assert!(flat > 20, "{flat}");
     }
 
-    let said = run(&format!("refine {{}} -o {{}} {}", options.replace("--quiet", "")), &[&input, &ply]);
+    let said = run(
+        &format!("refine {{}} -o {{}} {}", options.replace("--quiet", "")),
+        &[&input, &ply],
+    );
     said.expect(0).saying("--split-normals");
     let text = std::fs::read_to_string(&ply).expect("written");
     assert!(!text.contains(" nx\n"));
     let options = format!("{options} --split-normals");
-    run(&format!("refine {{}} -o {{}} {options} --provenance"), &[&input, &split]).expect(0);
+    run(
+        &format!("refine {{}} -o {{}} {options} --provenance"),
+        &[&input, &split],
+    )
+    .expect(0);
     let text = std::fs::read_to_string(&split).expect("written");
     let (header, body) = text.split_once("end_header\n").expect("a header");
     assert!(header.contains("nx\n") && header.contains("parent_a\n"));
@@ -102,7 +129,9 @@ fn each_side_of_a_rim_has_its_normals() {
             assert!(dot(&own, &corner[3..6]) > 0.9, "{own:?} {corner:?}");
         }
     }
-    run(&format!("refine {{}} -o {{}} {options}"), &[&input, &stl]).expect(2).saying("--split-normals");
+    run(&format!("refine {{}} -o {{}} {options}"), &[&input, &stl])
+        .expect(2)
+        .saying("--split-normals");
 }
 
 /// Without sharp edges files have a normal for each vertex, as ever.
@@ -110,7 +139,11 @@ fn each_side_of_a_rim_has_its_normals() {
 fn smooth_meshes_have_a_normal_for_each_vertex() {
     let folder = folder();
     let output = folder.path().join("out.obj");
-    run("refine builtin:cube -o {} --tolerance 2% --quiet", &[&output]).expect(0);
+    run(
+        "refine builtin:cube -o {} --tolerance 2% --quiet",
+        &[&output],
+    )
+    .expect(0);
     let text = std::fs::read_to_string(&output).expect("written");
     let count = |key: &str| text.lines().filter(|line| line.starts_with(key)).count();
     assert_eq!(count("v "), count("vn "));
@@ -122,38 +155,65 @@ fn pictures_are_shaded_by_the_files_normals() {
     let folder = folder();
     let picture = folder.path().join("out.png");
     let draw = |input: &std::path::Path, options: &str| {
-        run(&format!("render {{}} -o {{}} --size 200x150 {options}"), &[input, &picture]).expect(0);
+        run(
+            &format!("render {{}} -o {{}} --size 200x150 {options}"),
+            &[input, &picture],
+        )
+        .expect(0);
         std::fs::read(&picture).expect("a picture")
     };
     // A sphere's own normals at the corners of an octahedron, which are the means of its faces', and then all along z.
     let octahedron = |normal: &dyn Fn([i32; 3]) -> String| {
-        let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+        let corners = [
+            [1, 0, 0],
+            [-1, 0, 0],
+            [0, 1, 0],
+            [0, -1, 0],
+            [0, 0, 1],
+            [0, 0, -1],
+        ];
         let mut text = String::new();
-        corners.iter().for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
-        corners.iter().for_each(|&corner| text += &format!("vn {}\n", normal(corner)));
+        corners
+            .iter()
+            .for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
+        corners
+            .iter()
+            .for_each(|&corner| text += &format!("vn {}\n", normal(corner)));
         for [a, b] in [[1, 3], [3, 2], [2, 4], [4, 1]] {
             text += &format!("f {a}//{a} {b}//{b} 5//5\nf {b}//{b} {a}//{a} 6//6\n");
         }
         text
     };
     let own = octahedron(&|[x, y, z]| format!("{x} {y} {z}"));
-    let plain = own.lines().filter(|line| !line.starts_with("vn")).map(|line| {
-        let words: Vec<&str> = line.split(' ').map(|word| word.split("//").next().expect("a word")).collect();
-        words.join(" ") + "\n"
-    });
+    let plain = own
+        .lines()
+        .filter(|line| !line.starts_with("vn"))
+        .map(|line| {
+            let words: Vec<&str> = line
+                .split(' ')
+                .map(|word| word.split("//").next().expect("a word"))
+                .collect();
+            words.join(" ") + "\n"
+        });
     let without = file(&folder, "plain.obj", &plain.collect::<String>());
     let (plain, apart_at_edges) = (draw(&without, "--smooth"), draw(&without, ""));
     assert!(plain != apart_at_edges);
     assert!(draw(&file(&folder, "own.obj", &own), "") == plain);
     // Of any length, and against the way round of their faces.
-    let inwards =
-        file(&folder, "inwards.obj", &octahedron(&|[x, y, z]| format!("{} {} {}", -2 * x, -2 * y, -2 * z)));
+    let inwards = file(
+        &folder,
+        "inwards.obj",
+        &octahedron(&|[x, y, z]| format!("{} {} {}", -2 * x, -2 * y, -2 * z)),
+    );
     assert!(draw(&inwards, "") == plain);
     // Zeros are none.
     let none = file(&folder, "none.obj", &octahedron(&|_| "0 0 0".to_owned()));
     assert!(draw(&none, "") == plain);
-    let bent =
-        file(&folder, "bent.obj", &octahedron(&|[x, y, z]| format!("{} {} {}", x + 2 * y, y - x, z + x)));
+    let bent = file(
+        &folder,
+        "bent.obj",
+        &octahedron(&|[x, y, z]| format!("{} {} {}", x + 2 * y, y - x, z + x)),
+    );
     assert!(draw(&bent, "") != plain);
     assert!(draw(&bent, "--smooth") == plain);
     assert!(draw(&bent, "--crease-angle 179") == plain);
@@ -162,16 +222,30 @@ fn pictures_are_shaded_by_the_files_normals() {
     let input = file(&folder, "prism.obj", &prism());
     let pictures = ["obj", "ply", "glb"].map(|format| {
         let output = folder.path().join(format!("refined.{format}"));
-        let split = if format == "ply" { "--split-normals" } else { "" };
-        run(&format!("refine {{}} -o {{}} --crease-angle 40 --tolerance 0.01 {split}"), &[&input, &output])
-            .expect(0);
+        let split = if format == "ply" {
+            "--split-normals"
+        } else {
+            ""
+        };
+        run(
+            &format!("refine {{}} -o {{}} --crease-angle 40 --tolerance 0.01 {split}"),
+            &[&input, &output],
+        )
+        .expect(0);
         (draw(&output, ""), draw(&output, "--smooth"))
     });
     let apart = |a: &[u8], b: &[u8]| {
         let [a, b] = [a, b].map(|png| pixels(png).concat());
-        a.iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().expect("pixels")
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| a.abs_diff(b))
+            .max()
+            .expect("pixels")
     };
-    assert!(pictures.iter().all(|(own, smooth)| own != smooth), "rims are sharp");
+    assert!(
+        pictures.iter().all(|(own, smooth)| own != smooth),
+        "rims are sharp"
+    );
     // Positions and normals are rounded to floats in some of them.
     assert!(apart(&pictures[0].0, &pictures[1].0) <= 2);
     assert!(apart(&pictures[0].0, &pictures[2].0) <= 2);
@@ -183,7 +257,11 @@ fn boxes_show_one_colour_a_side() {
     let folder = folder();
     let colours = |option: &str| {
         let picture = folder.path().join("cube.png");
-        run(&format!("render builtin:cube -o {{}} --size 200x150 {option}"), &[&picture]).expect(0);
+        run(
+            &format!("render builtin:cube -o {{}} --size 200x150 {option}"),
+            &[&picture],
+        )
+        .expect(0);
         let mut counts = std::collections::BTreeMap::new();
         for pixel in pixels(&std::fs::read(&picture).expect("written")) {
             *counts.entry(pixel).or_insert(0usize) += 1;

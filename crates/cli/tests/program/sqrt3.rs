@@ -8,11 +8,19 @@ fn steps_triple_the_triangles() {
     let output = folder.path().join("out.ply");
     let mut faces = None;
     for (levels, limit) in [(0, ""), (1, "--limit"), (3, ""), (4, "--limit")] {
-        let options = format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
-        let run = run(&format!("refine builtin:torus -o {{}} {options}"), &[&output]).expect(0);
+        let options =
+            format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
+        let run = run(
+            &format!("refine builtin:torus -o {{}} {options}"),
+            &[&output],
+        )
+        .expect(0);
         let report = run.json();
         let triangles = report["output"]["triangles"].as_u64().expect("a count");
-        assert_eq!(triangles, *faces.get_or_insert(triangles) * 3u64.pow(levels));
+        assert_eq!(
+            triangles,
+            *faces.get_or_insert(triangles) * 3u64.pow(levels)
+        );
         assert_eq!(report["parameters"]["scheme"], "sqrt3");
         assert_eq!(report["output"]["watertight"], true);
         assert_eq!(counts(&soup(&output)).triangles, triangles);
@@ -31,11 +39,20 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--method planarity", "--method planarity"),
         ("--method vertex-error --angle 5", "--method vertex-error"),
         ("--no-input-distance", "--no-input-distance"),
-        ("--method uniform --no-input-distance", "--no-input-distance"),
-        ("--method uniform --tolerance 1%", "--tolerance is for exact refinement"),
+        (
+            "--method uniform --no-input-distance",
+            "--no-input-distance",
+        ),
+        (
+            "--method uniform --tolerance 1%",
+            "--tolerance is for exact refinement",
+        ),
         ("--limit", "--limit has no effect"),
         ("--seam any", "--seam has no effect"),
-        ("--shared-topology", "--scheme sqrt3 does not go with --shared-topology"),
+        (
+            "--shared-topology",
+            "--scheme sqrt3 does not go with --shared-topology",
+        ),
         ("--method uniform --angle 5", "--angle"),
         ("--method uniform --optimize", "--optimize"),
         ("--optimize", "--optimize"),
@@ -43,7 +60,11 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--view 0,0,1 --angle 5", "--view"),
         ("--levels 3", "--levels"),
     ] {
-        let run = run(&format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"), &[&output]).expect(2);
+        let run = run(
+            &format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"),
+            &[&output],
+        )
+        .expect(2);
         assert!(run.stderr.contains(word), "{options}: {}", run.stderr);
     }
 }
@@ -53,7 +74,12 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
 fn goals_are_reached_without_cracks() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    for options in ["--angle 20", "--triangles 900", "--tolerance 0.5%", "--angle 30 --provenance"] {
+    for options in [
+        "--angle 20",
+        "--triangles 900",
+        "--tolerance 0.5%",
+        "--angle 30 --provenance",
+    ] {
         let asked = format!("refine builtin:torus -o {{}} --scheme sqrt3 --report - {options}");
         let done = run(&asked, &[&output]).expect(0);
         let report = done.json();
@@ -72,7 +98,10 @@ fn goals_are_reached_without_cracks() {
             assert!(done.stderr.contains("not certified"), "{}", done.stderr);
         }
     }
-    let short = run("refine builtin:torus -o {} --scheme sqrt3 --angle 2 --max-triangles 700", &[&output]);
+    let short = run(
+        "refine builtin:torus -o {} --scheme sqrt3 --angle 2 --max-triangles 700",
+        &[&output],
+    );
     assert!(short.expect(3).stderr.contains("--max-triangles"));
 }
 
@@ -80,10 +109,17 @@ fn goals_are_reached_without_cracks() {
 fn tags_that_fade_are_an_error_with_their_name() {
     let folder = folder();
     let input = folder.path().join("in.obj");
-    let text =
-        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nt crease 2/1/0 0 1 2.5\n";
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nt crease 2/1/0 0 1 2.5\n";
     std::fs::write(&input, text).expect("a file can be written");
     let output = folder.path().join("out.obj");
-    let run = run("refine {} -o {} --scheme sqrt3 --method uniform", &[&input, &output]).expect(1);
-    assert!(run.stderr.contains("the sharpness 2.5, which fades"), "{}", run.stderr);
+    let run = run(
+        "refine {} -o {} --scheme sqrt3 --method uniform",
+        &[&input, &output],
+    )
+    .expect(1);
+    assert!(
+        run.stderr.contains("the sharpness 2.5, which fades"),
+        "{}",
+        run.stderr
+    );
 }

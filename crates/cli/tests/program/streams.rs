@@ -26,7 +26,8 @@ fn fed(bytes: &[u8], arguments: &str, paths: &[&Path]) -> Output {
     output
 }
 
-const TETRAHEDRON: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 #[test]
 fn a_mesh_goes_from_standard_input_to_standard_output() {
@@ -35,24 +36,57 @@ fn a_mesh_goes_from_standard_input_to_standard_output() {
     let whole = folder.path().join("whole.ply");
     run("refine {} -o {}", &[&input, &whole]).expect(0);
     let expected = std::fs::read(&whole).expect("a file");
-    let piped = fed(TETRAHEDRON.as_bytes(), "refine - --from obj -o - --to ply", &[]);
-    assert_eq!(piped.status.code(), Some(0), "{}", String::from_utf8_lossy(&piped.stderr));
+    let piped = fed(
+        TETRAHEDRON.as_bytes(),
+        "refine - --from obj -o - --to ply",
+        &[],
+    );
+    assert_eq!(
+        piped.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&piped.stderr)
+    );
     assert!(piped.stdout == expected);
     assert!(String::from_utf8_lossy(&piped.stderr).contains("standard output: "));
     // As a frame, too, which is read once.
-    let frame = fed(TETRAHEDRON.as_bytes(), "refine - --from obj -o - --to ply --shared-topology", &[]);
-    assert_eq!(frame.status.code(), Some(0), "{}", String::from_utf8_lossy(&frame.stderr));
+    let frame = fed(
+        TETRAHEDRON.as_bytes(),
+        "refine - --from obj -o - --to ply --shared-topology",
+        &[],
+    );
+    assert_eq!(
+        frame.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&frame.stderr)
+    );
     assert!(frame.stdout.starts_with(b"ply\n"));
     // Half of it by name.
-    let half = fed(&expected, "refine - --from ply -o {} --quiet", &[&folder.path().join("half.off")]);
+    let half = fed(
+        &expected,
+        "refine - --from ply -o {} --quiet",
+        &[&folder.path().join("half.off")],
+    );
     assert_eq!(half.status.code(), Some(0));
     let told = fed(TETRAHEDRON.as_bytes(), "info - --from obj --json", &[]);
     let told: Value = serde_json::from_slice(&told.stdout).expect("JSON");
-    assert_eq!((&told["input"]["path"], &told["mesh"]["triangles"]), (&"standard input".into(), &4.into()));
-    let measured = fed(TETRAHEDRON.as_bytes(), "measure - {} --from obj --json", &[&input]);
+    assert_eq!(
+        (&told["input"]["path"], &told["mesh"]["triangles"]),
+        (&"standard input".into(), &4.into())
+    );
+    let measured = fed(
+        TETRAHEDRON.as_bytes(),
+        "measure - {} --from obj --json",
+        &[&input],
+    );
     let measured: Value = serde_json::from_slice(&measured.stdout).expect("JSON");
     assert!(measured["hausdorff"]["symmetric"].as_f64() < Some(1e-12));
-    let picture = fed(TETRAHEDRON.as_bytes(), "render - --from obj -o - --size 64x48", &[]);
+    let picture = fed(
+        TETRAHEDRON.as_bytes(),
+        "render - --from obj -o - --size 64x48",
+        &[],
+    );
     assert!(picture.stdout.starts_with(b"\x89PNG"));
 }
 
@@ -61,15 +95,24 @@ fn formats_that_nothing_tells_are_asked_for() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     run("refine - -o {}", &[&output]).expect(2).saying("--from");
-    run("refine builtin:head -o -", &[]).expect(2).saying("--to");
+    run("refine builtin:head -o -", &[])
+        .expect(2)
+        .saying("--to");
     run("measure - -", &[]).expect(2).saying("once");
-    run("refine builtin:head -o - --to ply --report -", &[]).expect(2).saying("twice");
+    run("refine builtin:head -o - --to ply --report -", &[])
+        .expect(2)
+        .saying("twice");
     let run_of = fed(b"", "refine - --from obj -o {}", &[&output]);
     assert_eq!(run_of.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&run_of.stderr).contains("standard input: the file is empty"));
     // Names without an extension that is known, on both sides.
-    let (input, unnamed) = (file(&folder, "scan.dat", TETRAHEDRON), folder.path().join("unnamed"));
-    run("refine {} -o {}", &[&input, &output]).expect(1).saying("'dat'");
+    let (input, unnamed) = (
+        file(&folder, "scan.dat", TETRAHEDRON),
+        folder.path().join("unnamed"),
+    );
+    run("refine {} -o {}", &[&input, &output])
+        .expect(1)
+        .saying("'dat'");
     run("refine {} -o {} --from obj --to off", &[&input, &unnamed]).expect(0);
     assert!(std::fs::read(&unnamed).expect("a file").starts_with(b"OFF"));
     // A name that tells its format wins over --from, which is for standard input and the like.
@@ -81,10 +124,15 @@ fn formats_that_nothing_tells_are_asked_for() {
 #[test]
 fn several_inputs_go_into_a_folder_by_their_names() {
     let folder = folder();
-    let (one, two) = (file(&folder, "one.obj", TETRAHEDRON), file(&folder, "two.obj", TETRAHEDRON));
+    let (one, two) = (
+        file(&folder, "one.obj", TETRAHEDRON),
+        file(&folder, "two.obj", TETRAHEDRON),
+    );
     let out = folder.path().join("out/");
     let words = "refine {} {} builtin:cube -o {} --report {} --picture {} --triangles 100";
-    run(words, &[&one, &two, &out, &out, &out]).expect(0).saying("two.obj: 100 triangles");
+    run(words, &[&one, &two, &out, &out, &out])
+        .expect(0)
+        .saying("two.obj: 100 triangles");
     let expected = [
         "cube.json",
         "cube.ply",
@@ -98,7 +146,8 @@ fn several_inputs_go_into_a_folder_by_their_names() {
     ];
     assert_eq!(names(&out), expected);
     let report: Value =
-        serde_json::from_slice(&std::fs::read(out.join("two.json")).expect("a file")).expect("JSON");
+        serde_json::from_slice(&std::fs::read(out.join("two.json")).expect("a file"))
+            .expect("JSON");
     assert_eq!(report["input"]["path"], two.display().to_string());
     assert_eq!(
         soup(&out.join("two.obj")).faces.len() as u64,
@@ -128,9 +177,15 @@ fn several_inputs_go_on_after_one_that_fails() {
     run(short, &[&good, &out]).expect(3).saying("2 of 2 inputs");
     // What makes no sense is found before anything is done.
     let file_for_two = folder.path().join("both.ply");
-    run("refine {} {} -o {}", &[&good, &bad, &file_for_two]).expect(2).saying("FOLDER/");
-    run("refine {} {} -o {}", &[&good, &good, &out]).expect(2).saying("twice");
-    run("refine - --from obj -o {}", &[&out]).expect(2).saying("has no name");
+    run("refine {} {} -o {}", &[&good, &bad, &file_for_two])
+        .expect(2)
+        .saying("FOLDER/");
+    run("refine {} {} -o {}", &[&good, &good, &out])
+        .expect(2)
+        .saying("twice");
+    run("refine - --from obj -o {}", &[&out])
+        .expect(2)
+        .saying("has no name");
     let none = folder.path().join("none/");
     run("refine {} -o {} --limit", &[&good, &none]).expect(2);
     assert!(!none.exists());
@@ -148,8 +203,14 @@ fn names_may_be_in_any_encoding() {
     std::fs::write(&input, TETRAHEDRON).expect("writable");
     run("refine {} -o {} --report {}", &[&input, &output, &report]).expect(0);
     assert!(soup(&output).faces.len() > 100);
-    let report: Value = serde_json::from_slice(&std::fs::read(&report).expect("a file")).expect("JSON");
-    assert!(report["input"]["path"].as_str().expect("a name").ends_with("B\u{fffd}ste.obj"));
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(&report).expect("a file")).expect("JSON");
+    assert!(
+        report["input"]["path"]
+            .as_str()
+            .expect("a name")
+            .ends_with("B\u{fffd}ste.obj")
+    );
     run("info {}", &[&input]).expect(0);
     run("measure {} --limit-of {}", &[&output, &input]).expect(0);
 }
@@ -158,11 +219,24 @@ fn names_may_be_in_any_encoding() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_standard_output_is_named() {
-    for arguments in ["refine builtin:cube -o - --to ply", "info builtin:cube --json"] {
-        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has one");
-        let ended = command(arguments, &[]).stdout(full).stderr(Stdio::piped()).output().expect("it ends");
+    for arguments in [
+        "refine builtin:cube -o - --to ply",
+        "info builtin:cube --json",
+    ] {
+        let full = std::fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .expect("Linux has one");
+        let ended = command(arguments, &[])
+            .stdout(full)
+            .stderr(Stdio::piped())
+            .output()
+            .expect("it ends");
         let said = String::from_utf8_lossy(&ended.stderr);
         assert_eq!(ended.status.code(), Some(1), "{arguments}: {said}");
-        assert!(said.contains("standard output") && said.contains("No space left"), "{arguments}: {said}");
+        assert!(
+            said.contains("standard output") && said.contains("No space left"),
+            "{arguments}: {said}"
+        );
     }
 }

@@ -19,14 +19,24 @@ fn lengths_are_in_the_unit_of_the_package_for_all_formats() {
         let output = folder.path().join(name);
         run("refine {} -o {} --tolerance 0.05mm", &[&input, &output]).expect(0);
         assert_eq!(soup(&output).faces.len(), 5120, "{name}");
-        run("refine {} -o {} --tolerance 0.05mm --unit in", &[&input, &output]).expect(0);
-        run("refine {} -o {} --tolerance 0.05mm --unit mm", &[&input, &output])
-            .expect(2)
-            .saying("says that it is in in");
+        run(
+            "refine {} -o {} --tolerance 0.05mm --unit in",
+            &[&input, &output],
+        )
+        .expect(0);
+        run(
+            "refine {} -o {} --tolerance 0.05mm --unit mm",
+            &[&input, &output],
+        )
+        .expect(2)
+        .saying("says that it is in in");
     }
-    run("refine {} -o {} --tolerance 0.05mm", &[&input, &folder.path().join("out.stl")])
-        .expect(0)
-        .saying("its numbers are in");
+    run(
+        "refine {} -o {} --tolerance 0.05mm",
+        &[&input, &folder.path().join("out.stl")],
+    )
+    .expect(0)
+    .saying("its numbers are in");
 }
 
 #[test]
@@ -38,16 +48,30 @@ fn every_command_knows_the_unit_of_a_package() {
     let commands = [
         ("info {} --weld 0.001mm", &[&input][..]),
         ("measure {} {} --certified --gap 0.1mm", &[&input, &input]),
-        ("measure {} --limit-of {} --interpolate-within 0.1mm --reference-levels 2", &[&input, &input]),
-        ("project {} --onto {} --tolerance 0.1mm -o {}", &[&input, &input, &output]),
-        ("evaluate {} --at 0,1,0,0 --interpolate-within 0.1mm", &[&input]),
-        ("lod {} -o {} --levels 2 --tolerance 1mm", &[&input, &levels]),
+        (
+            "measure {} --limit-of {} --interpolate-within 0.1mm --reference-levels 2",
+            &[&input, &input],
+        ),
+        (
+            "project {} --onto {} --tolerance 0.1mm -o {}",
+            &[&input, &input, &output],
+        ),
+        (
+            "evaluate {} --at 0,1,0,0 --interpolate-within 0.1mm",
+            &[&input],
+        ),
+        (
+            "lod {} -o {} --levels 2 --tolerance 1mm",
+            &[&input, &levels],
+        ),
         ("render {} -o {} --weld 0.001mm", &[&input, &picture]),
     ];
     for (command, paths) in commands {
         let paths: Vec<&Path> = paths.iter().map(|path| path.as_path()).collect();
         run(command, &paths).expect(0);
-        run(&format!("{command} --unit mm"), &paths).expect(2).saying("says that it is in in");
+        run(&format!("{command} --unit mm"), &paths)
+            .expect(2)
+            .saying("says that it is in in");
     }
     let scale = &Glb::read(&levels).json["nodes"][0]["scale"];
     assert_eq!(scale, &serde_json::json!([0.0254, 0.0254, 0.0254]));
@@ -55,15 +79,26 @@ fn every_command_knows_the_unit_of_a_package() {
 
 /// The distance of the farthest point from the middle.
 fn radius(points: impl Iterator<Item = [f64; 3]>) -> f64 {
-    points.map(|p| p.iter().map(|x| x * x).sum::<f64>().sqrt()).fold(0.0, f64::max)
+    points
+        .map(|p| p.iter().map(|x| x * x).sum::<f64>().sqrt())
+        .fold(0.0, f64::max)
 }
 
 /// The unit that a package names.
 fn unit(path: &Path) -> String {
-    let mut archive = ZipArchive::new(Cursor::new(std::fs::read(path).expect("a file"))).expect("an archive");
+    let mut archive =
+        ZipArchive::new(Cursor::new(std::fs::read(path).expect("a file"))).expect("an archive");
     let mut text = String::new();
-    archive.by_name("3D/3dmodel.model").expect("a model").read_to_string(&mut text).expect("text");
-    text.split("unit=\"").nth(1).and_then(|rest| rest.split('"').next()).expect("a unit").to_owned()
+    archive
+        .by_name("3D/3dmodel.model")
+        .expect("a model")
+        .read_to_string(&mut text)
+        .expect("text");
+    text.split("unit=\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next())
+        .expect("a unit")
+        .to_owned()
 }
 
 #[test]
@@ -71,29 +106,49 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
     let folder = folder();
     let input = data("ball_mm.3mf");
     let path = |name: &str| folder.path().join(name);
-    let (package, document, back, plain) = (path("a.3mf"), path("a.glb"), path("b.3mf"), path("c.3mf"));
+    let (package, document, back, plain) =
+        (path("a.3mf"), path("a.glb"), path("b.3mf"), path("c.3mf"));
     run("refine {} -o {} --tolerance 0.05mm", &[&input, &package]).expect(0);
-    run("refine {} -o {} --tolerance 0.05mm", &[&input, &document]).expect(0).saying("scales the mm");
+    run("refine {} -o {} --tolerance 0.05mm", &[&input, &document])
+        .expect(0)
+        .saying("scales the mm");
     let glb = Glb::read(&document);
     let scale = glb.json["nodes"][0]["scale"][0].as_f64().expect("a scale");
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
-    let expected = radius(package::triangles(&package).into_iter().flat_map(|own| own.0));
+    let expected = radius(
+        package::triangles(&package)
+            .into_iter()
+            .flat_map(|own| own.0),
+    );
     let shown = scale * radius(points.into_iter());
     assert!(
         (1000.0 * shown - expected).abs() < 1e-5 && (8.0..10.0).contains(&expected),
         "{shown} {expected}"
     );
     // The other way, and with the unit that somebody says.
-    run("refine {} -o {} --tolerance 10m", &[&document, &back]).expect(0).saying("in mm, 1000");
-    run("refine {} -o {} --tolerance 10m --unit cm", &[&document, &plain]).expect(0);
+    run("refine {} -o {} --tolerance 10m", &[&document, &back])
+        .expect(0)
+        .saying("in mm, 1000");
+    run(
+        "refine {} -o {} --tolerance 10m --unit cm",
+        &[&document, &plain],
+    )
+    .expect(0);
     for (path, of_metres, name) in [(&back, 1000.0, "millimeter"), (&plain, 1.0, "centimeter")] {
         let found = radius(package::triangles(path).into_iter().flat_map(|own| own.0));
-        assert!((0.9 * shown..shown).contains(&(found / of_metres)), "{found} of {shown} m");
+        assert!(
+            (0.9 * shown..shown).contains(&(found / of_metres)),
+            "{found} of {shown} m"
+        );
         assert_eq!(unit(path), name);
     }
     // A measure knows both units.
-    let run = run("measure {} {} --json", &[&package, &document]).expect(0).saying("its mm are taken to m");
-    let distance = run.json()["hausdorff"]["symmetric"].as_f64().expect("a distance");
+    let run = run("measure {} {} --json", &[&package, &document])
+        .expect(0)
+        .saying("its mm are taken to m");
+    let distance = run.json()["hausdorff"]["symmetric"]
+        .as_f64()
+        .expect("a distance");
     assert!(distance < 1e-8, "{distance} m");
 }
 
@@ -106,7 +161,10 @@ fn bulk(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> [f64; 2] {
     triangles.fold([0.0; 2], |[area, volume], [a, b, c]| {
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
         let normal = cross(u, v);
-        [area + 0.5 * dot(normal, normal).sqrt(), volume + dot(a, cross(b, c)) / 6.0]
+        [
+            area + 0.5 * dot(normal, normal).sqrt(),
+            volume + dot(a, cross(b, c)) / 6.0,
+        ]
     })
 }
 
@@ -115,16 +173,30 @@ fn areas_and_volumes_are_those_of_stretched_and_sheared_meshes() {
     let folder = folder();
     let check = |report: &serde_json::Value, list: &str, [area, volume]: [f64; 2]| {
         let size = &report[list][0]["size"]["after"];
-        let [found_area, found_volume] = ["area", "volume"].map(|key| size[key].as_f64().expect("a number"));
-        assert!((found_area / area - 1.0).abs() < 1e-5, "{found_area} for {area}");
-        assert!((found_volume / volume - 1.0).abs() < 1e-5, "{found_volume} for {volume}");
+        let [found_area, found_volume] =
+            ["area", "volume"].map(|key| size[key].as_f64().expect("a number"));
+        assert!(
+            (found_area / area - 1.0).abs() < 1e-5,
+            "{found_area} for {area}"
+        );
+        assert!(
+            (found_volume / volume - 1.0).abs() < 1e-5,
+            "{found_volume} for {volume}"
+        );
     };
     let (input, output) = (data("ball_stretched.glb"), folder.path().join("out.glb"));
     let run_stretched = run("refine {} -o {} --report -", &[&input, &output]).expect(0);
     let glb = Glb::read(&output);
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
-    let shown = glb.triangles(0).into_iter().map(|t| t.map(|v| points[v as usize]));
-    check(&run_stretched.json(), "meshes", bulk(shown.map(|t| t.map(|[x, y, z]| [3.0 * x, y, z]))));
+    let shown = glb
+        .triangles(0)
+        .into_iter()
+        .map(|t| t.map(|v| points[v as usize]));
+    check(
+        &run_stretched.json(),
+        "meshes",
+        bulk(shown.map(|t| t.map(|[x, y, z]| [3.0 * x, y, z]))),
+    );
     let (input, output) = (data("ball_sheared.3mf"), folder.path().join("out.3mf"));
     let run_sheared = run("refine {} -o {} --report -", &[&input, &output]).expect(0);
     let shown = package::triangles(&output)

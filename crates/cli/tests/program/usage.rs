@@ -12,15 +12,35 @@ fn nothing_to_do_is_a_usage_error() {
 #[test]
 fn help_and_version_are_printed() {
     let help = run("--help", &[]).expect(0).stdout;
-    for command in ["refine", "measure", "compare", "render", "info", "models", "batch", "Exit codes"] {
+    for command in [
+        "refine",
+        "measure",
+        "compare",
+        "render",
+        "info",
+        "models",
+        "batch",
+        "Exit codes",
+    ] {
         assert!(help.contains(command), "{command} in:\n{help}");
     }
     let help = run("refine --help", &[]).expect(0).stdout;
-    for word in ["degrees", "default: 3", "Examples:", "limit-normal", "silhouette", "--tolerance", "0.1%"] {
+    for word in [
+        "degrees",
+        "default: 3",
+        "Examples:",
+        "limit-normal",
+        "silhouette",
+        "--tolerance",
+        "0.1%",
+    ] {
         assert!(help.contains(word), "{word} in:\n{help}");
     }
     let version = run("--version", &[]).expect(0).stdout;
-    assert_eq!(version.trim(), concat!("limitmesh ", env!("CARGO_PKG_VERSION")));
+    assert_eq!(
+        version.trim(),
+        concat!("limitmesh ", env!("CARGO_PKG_VERSION"))
+    );
 }
 
 #[test]
@@ -28,12 +48,31 @@ fn the_short_help_shows_what_most_people_need() {
     let help = run("refine -h", &[]).expect(0).stdout;
     let is_option = |line: &&str| line.trim_start().starts_with('-') && line.starts_with("  ");
     let options: Vec<&str> = help.lines().filter(is_option).collect();
-    assert!(options.len() <= 20 && options.len() > 12, "{} in:\n{help}", options.len());
-    for option in ["--output", "--tolerance", "--triangles", "--crease-angle", "--picture"] {
-        assert!(options.iter().any(|line| line.contains(option)), "{option} in:\n{help}");
+    assert!(
+        options.len() <= 20 && options.len() > 12,
+        "{} in:\n{help}",
+        options.len()
+    );
+    for option in [
+        "--output",
+        "--tolerance",
+        "--triangles",
+        "--crease-angle",
+        "--picture",
+    ] {
+        assert!(
+            options.iter().any(|line| line.contains(option)),
+            "{option} in:\n{help}"
+        );
     }
     let whole = run("refine --help", &[]).expect(0).stdout;
-    for option in ["--provenance", "--uv-tolerance", "--seam", "--max-memory", "--weld-ignores"] {
+    for option in [
+        "--provenance",
+        "--uv-tolerance",
+        "--seam",
+        "--max-memory",
+        "--weld-ignores",
+    ] {
         assert!(whole.contains(option) && !help.contains(option), "{option}");
     }
 }
@@ -41,11 +80,19 @@ fn the_short_help_shows_what_most_people_need() {
 /// A command offers the schemes that it takes, and no others.
 #[test]
 fn help_offers_the_schemes_that_there_are() {
-    for command in ["render builtin:cube -o x.png --exact", "project builtin:cube --onto builtin:cube"] {
+    for command in [
+        "render builtin:cube -o x.png --exact",
+        "project builtin:cube --onto builtin:cube",
+    ] {
         let name = command.split(' ').next().expect("a command");
         let help = run(&format!("{name} --help"), &[]).expect(0).stdout;
-        assert!(help.contains("loop-warren") && !help.contains("butterfly"), "{help}");
-        run(&format!("{command} --scheme butterfly"), &[]).expect(2).saying("loop, loop-warren]");
+        assert!(
+            help.contains("loop-warren") && !help.contains("butterfly"),
+            "{help}"
+        );
+        run(&format!("{command} --scheme butterfly"), &[])
+            .expect(2)
+            .saying("loop, loop-warren]");
     }
 }
 
@@ -53,7 +100,11 @@ fn help_offers_the_schemes_that_there_are() {
 #[test]
 fn usage_is_shown_for_what_is_written_wrong_alone() {
     let shown = |words: &str| run(words, &[]).expect(2).stderr.contains("Usage:");
-    for written_wrong in ["refine", "refine builtin:cup -o x.ply --tolerence 1", "measure builtin:cup"] {
+    for written_wrong in [
+        "refine",
+        "refine builtin:cup -o x.ply --tolerence 1",
+        "measure builtin:cup",
+    ] {
         assert!(shown(written_wrong), "{written_wrong}");
     }
     for makes_no_sense in [
@@ -74,11 +125,19 @@ fn slips_are_answered_with_what_was_meant() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for unit in ["mm", "in", "%"] {
-        let said = run(&format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02"), &[&output]).expect(2);
+        let said = run(
+            &format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02"),
+            &[&output],
+        )
+        .expect(2);
         said.saying(&format!("such as 0.1{unit}"));
     }
-    run("refine {} -o {}", &[folder.path(), &output]).expect(2).saying("is a folder; `limitmesh batch`");
-    run("peg.stl", &[]).expect(2).saying("`limitmesh refine peg.stl` smooths a file");
+    run("refine {} -o {}", &[folder.path(), &output])
+        .expect(2)
+        .saying("is a folder; `limitmesh batch`");
+    run("peg.stl", &[])
+        .expect(2)
+        .saying("`limitmesh refine peg.stl` smooths a file");
 }
 
 #[test]
@@ -122,7 +181,10 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--method limit-normal --max-levels 3", "--method exact"),
         ("--method limit-normal --provenance", "--method exact"),
         ("--pixels 1", "--camera"),
-        ("--pixels 0 --camera 0,0,5,0,0,0,0,1,0,40,800x600", "above 0"),
+        (
+            "--pixels 0 --camera 0,0,5,0,0,0,0,1,0,40,800x600",
+            "above 0",
+        ),
         ("--camera 0,0,5,0,0,0,0,0,0,40,800x600", "upward direction"),
         ("--camera 0,0,0,0,0,0,0,1,0,40,800x600", "eye to its target"),
         ("--camera 0,0,5", "eye, target and up"),
@@ -142,35 +204,70 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--threads 100000", "at most"),
     ];
     for (options, words) in wrong {
-        run(&format!("refine builtin:head -o {{}} {options}"), &[&output]).expect(2).saying(words);
+        run(
+            &format!("refine builtin:head -o {{}} {options}"),
+            &[&output],
+        )
+        .expect(2)
+        .saying(words);
     }
-    run("refine builtin:head -o {} --provenance", &[&folder.path().join("out.obj")]).expect(2).saying("PLY");
+    run(
+        "refine builtin:head -o {} --provenance",
+        &[&folder.path().join("out.obj")],
+    )
+    .expect(2)
+    .saying("PLY");
     let other = folder.path().join("out.vtk");
-    run("refine builtin:head -o {}", &[&other]).expect(2).saying("'vtk'").saying(".ply");
-    run("refine builtin:head -o {} --report {}", &[&output, &output]).expect(2).saying("twice");
+    run("refine builtin:head -o {}", &[&other])
+        .expect(2)
+        .saying("'vtk'")
+        .saying(".ply");
+    run("refine builtin:head -o {} --report {}", &[&output, &output])
+        .expect(2)
+        .saying("twice");
     assert_eq!(names(folder.path()), [""; 0]);
 }
 
 #[test]
 fn measuring_needs_exactly_one_reference() {
     run("measure builtin:head", &[]).expect(2);
-    run("measure builtin:head builtin:cup --limit-of builtin:head", &[])
+    run(
+        "measure builtin:head builtin:cup --limit-of builtin:head",
+        &[],
+    )
+    .expect(2)
+    .saying("cannot be used with");
+    run("measure builtin:head builtin:cup --reference-levels 3", &[])
         .expect(2)
-        .saying("cannot be used with");
-    run("measure builtin:head builtin:cup --reference-levels 3", &[]).expect(2).saying("--limit-of");
-    for option in ["--crease-angle 30", "--creases-from normals", "--scheme loop", "--interpolate"] {
+        .saying("--limit-of");
+    for option in [
+        "--crease-angle 30",
+        "--creases-from normals",
+        "--scheme loop",
+        "--interpolate",
+    ] {
         let name = option.split(' ').next().expect("a name");
         run(&format!("measure builtin:head builtin:cup {option}"), &[])
             .expect(2)
-            .saying(&format!("{name} belongs to a limit surface; it needs --limit-of"));
+            .saying(&format!(
+                "{name} belongs to a limit surface; it needs --limit-of"
+            ));
     }
-    run("measure builtin:head builtin:cup --samples 0", &[]).expect(2).saying("at least 1");
-    run("measure builtin:head --limit-of builtin:head --reference-levels 12", &[])
+    run("measure builtin:head builtin:cup --samples 0", &[])
         .expect(2)
-        .saying("levels are possible");
-    run("measure builtin:head --limit-of builtin:head --reference-levels 0", &[])
-        .expect(2)
-        .saying("would measure against the control mesh's own triangles");
+        .saying("at least 1");
+    run(
+        "measure builtin:head --limit-of builtin:head --reference-levels 12",
+        &[],
+    )
+    .expect(2)
+    .saying("levels are possible");
+    run(
+        "measure builtin:head --limit-of builtin:head --reference-levels 0",
+        &[],
+    )
+    .expect(2)
+    .saying("would measure against the control mesh's own triangles");
 }
 
 #[test]
@@ -186,7 +283,9 @@ fn an_empty_file_is_called_that() {
             ("lod {} -o {}", "out.glb"),
         ] {
             let output = folder.path().join(output);
-            run(command, &[&input, &output]).expect(1).saying(&format!("{name}: the file is empty"));
+            run(command, &[&input, &output])
+                .expect(1)
+                .saying(&format!("{name}: the file is empty"));
         }
     }
 }
@@ -195,13 +294,20 @@ fn an_empty_file_is_called_that() {
 fn an_unknown_built_in_model_lists_those_there_are() {
     let run = run("info builtin:dragon", &[]).expect(1).saying("dragon");
     for model in limitmesh_models::all() {
-        assert!(run.stderr.contains(model.name), "{} in {}", model.name, run.stderr);
+        assert!(
+            run.stderr.contains(model.name),
+            "{} in {}",
+            model.name,
+            run.stderr
+        );
     }
 }
 
 #[test]
 fn a_missing_file_is_named() {
-    let run = run("info no-such-file.obj", &[]).expect(1).saying("no-such-file.obj");
+    let run = run("info no-such-file.obj", &[])
+        .expect(1)
+        .saying("no-such-file.obj");
     assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
     assert_eq!(run.stdout, "");
 }

@@ -35,30 +35,47 @@ fn ball(radius: i32) -> (String, Vec<Square>) {
             });
             let own = face.map(|corner| corners[corner]);
             let end = |pick: fn(f64, f64) -> f64| {
-                own.into_iter().reduce(|a, b| [0, 1, 2].map(|i| pick(a[i], b[i]))).expect("corners")
+                own.into_iter()
+                    .reduce(|a, b| [0, 1, 2].map(|i| pick(a[i], b[i])))
+                    .expect("corners")
             };
             squares.push([end(f64::min), end(f64::max)]);
             faces.push(face);
         }
     }
     let mut text = format!("OFF\n{} {} 0\n", corners.len(), faces.len());
-    corners.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").expect("text"));
-    faces.iter().for_each(|[a, b, c, d]| writeln!(text, "4 {a} {b} {c} {d}").expect("text"));
+    corners
+        .iter()
+        .for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").expect("text"));
+    faces
+        .iter()
+        .for_each(|[a, b, c, d]| writeln!(text, "4 {a} {b} {c} {d}").expect("text"));
     (text, squares)
 }
 
 /// The greatest distance of vertices from the nearest square.
 fn distance(positions: &[[f64; 3]], squares: &[Square]) -> f64 {
     let to = |p: [f64; 3], [low, high]: &Square| {
-        (0..3).map(|i| (low[i] - p[i]).max(p[i] - high[i]).max(0.0).powi(2)).sum::<f64>()
+        (0..3)
+            .map(|i| (low[i] - p[i]).max(p[i] - high[i]).max(0.0).powi(2))
+            .sum::<f64>()
     };
-    let nearest = |&p: &[f64; 3]| squares.iter().map(|own| to(p, own)).fold(f64::INFINITY, f64::min).sqrt();
+    let nearest = |&p: &[f64; 3]| {
+        squares
+            .iter()
+            .map(|own| to(p, own))
+            .fold(f64::INFINITY, f64::min)
+            .sqrt()
+    };
     positions.iter().map(nearest).fold(0.0, f64::max)
 }
 
 /// Standard deviation of the distances from the origin.
 fn deviation(positions: &[[f64; 3]]) -> f64 {
-    let radii: Vec<f64> = positions.iter().map(|p| p.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
+    let radii: Vec<f64> = positions
+        .iter()
+        .map(|p| p.iter().map(|x| x * x).sum::<f64>().sqrt())
+        .collect();
     let mean = radii.iter().sum::<f64>() / radii.len() as f64;
     (radii.iter().map(|r| (r - mean).powi(2)).sum::<f64>() / radii.len() as f64).sqrt()
 }
@@ -70,7 +87,11 @@ fn voxels_become_round_within_the_distance_in_every_format() {
     let input = file(&folder, "ball.off", &text);
     for name in ["round.ply", "round.stl", "round.obj", "round.off"] {
         let output = folder.path().join(name);
-        let run = run("refine {} -o {} --within 0.87mm --unit mm --report -", &[&input, &output]).expect(0);
+        let run = run(
+            "refine {} -o {} --within 0.87mm --unit mm --report -",
+            &[&input, &output],
+        )
+        .expect(0);
         let report = run.json();
         assert_eq!(report["parameters"]["within"], 0.87);
         let found = &report["input_distance"];
@@ -78,17 +99,34 @@ fn voxels_become_round_within_the_distance_in_every_format() {
         assert!(ends[0] <= ends[1] && ends[1] <= 0.87, "{name}: {found}");
         let positions = soup(&output).positions;
         let farthest = distance(&positions, &squares);
-        assert!(farthest <= ends[1] && deviation(&positions) <= 0.07, "{name}: {farthest}");
+        assert!(
+            farthest <= ends[1] && deviation(&positions) <= 0.07,
+            "{name}: {farthest}"
+        );
         let size = &report["size"];
-        let volumes = ["before", "after"].map(|when| size[when]["volume"].as_f64().expect("a number"));
-        assert!((volumes[1] / volumes[0] - 1.0).abs() < 0.01, "{name}: {volumes:?}");
-        assert!(run.stderr.contains("mm) of the input, either way, certified"), "{}", run.stderr);
+        let volumes =
+            ["before", "after"].map(|when| size[when]["volume"].as_f64().expect("a number"));
+        assert!(
+            (volumes[1] / volumes[0] - 1.0).abs() < 0.01,
+            "{name}: {volumes:?}"
+        );
+        assert!(
+            run.stderr
+                .contains("mm) of the input, either way, certified"),
+            "{}",
+            run.stderr
+        );
     }
     let output = folder.path().join("percent.ply");
-    let report = run("refine {} -o {} --within 4% --report -", &[&input, &output]).expect(0).json();
+    let report = run("refine {} -o {} --within 4% --report -", &[&input, &output])
+        .expect(0)
+        .json();
     let within = report["parameters"]["within"].as_f64().expect("a number");
     let diagonal = report["error"]["diagonal"].as_f64().expect("a number");
-    assert!((within / diagonal - 0.04).abs() < 1e-12, "{within} of {diagonal}");
+    assert!(
+        (within / diagonal - 0.04).abs() < 1e-12,
+        "{within} of {diagonal}"
+    );
     assert!(distance(&soup(&output).positions, &squares) <= within);
 }
 
@@ -98,17 +136,37 @@ fn assets_packages_batches_and_dry_runs_have_it_too() {
     let (text, squares) = ball(5);
     let input = file(&folder, "ball.off", &text);
     for kind in ["glb", "3mf"] {
-        let [plain, output] = ["plain", "round"].map(|name| folder.path().join(format!("{name}.{kind}")));
+        let [plain, output] =
+            ["plain", "round"].map(|name| folder.path().join(format!("{name}.{kind}")));
         let unit = if kind == "3mf" { "--unit mm" } else { "" };
-        run(&format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"), &[&input, &plain]).expect(0);
-        let report = run("refine {} -o {} --within 0.8 --report -", &[&plain, &output]).expect(0).json();
+        run(
+            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
+            &[&input, &plain],
+        )
+        .expect(0);
+        let report = run(
+            "refine {} -o {} --within 0.8 --report -",
+            &[&plain, &output],
+        )
+        .expect(0)
+        .json();
         let found = &report["meshes"][0];
         assert_eq!(found["parameters"]["within"], 0.8, "{kind}");
-        assert!(found["input_distance"]["upper"].as_f64().expect("a number") <= 0.8, "{kind}: {found}");
+        assert!(
+            found["input_distance"]["upper"].as_f64().expect("a number") <= 0.8,
+            "{kind}: {found}"
+        );
         let back = folder.path().join(format!("{kind}.ply"));
-        run("refine {} -o {} --method uniform --levels 0", &[&output, &back]).expect(0);
+        run(
+            "refine {} -o {} --method uniform --levels 0",
+            &[&output, &back],
+        )
+        .expect(0);
         let positions = soup(&back).positions;
-        assert!(distance(&positions, &squares) <= 0.8 + 1e-6 && deviation(&positions) < 0.1, "{kind}");
+        assert!(
+            distance(&positions, &squares) <= 0.8 + 1e-6 && deviation(&positions) < 0.1,
+            "{kind}"
+        );
     }
     let jobs = format!(
         "{{\"input\": {:?}, \"output\": {:?}, \"within\": 0.8}}\n",
@@ -116,9 +174,15 @@ fn assets_packages_batches_and_dry_runs_have_it_too() {
         folder.path().join("job.ply").display().to_string()
     );
     let jobs = file(&folder, "jobs.jsonl", &jobs);
-    run("batch {} -o {}", &[&jobs, &folder.path().join("results.jsonl")]).expect(0);
+    run(
+        "batch {} -o {}",
+        &[&jobs, &folder.path().join("results.jsonl")],
+    )
+    .expect(0);
     assert!(deviation(&soup(&folder.path().join("job.ply")).positions) < 0.1);
-    let dry = run("refine {} --dry-run --within 0.8 --report -", &[&input]).expect(0).json();
+    let dry = run("refine {} --dry-run --within 0.8 --report -", &[&input])
+        .expect(0)
+        .json();
     assert_eq!(dry["parameters"]["within"], 0.8);
 }
 
@@ -128,23 +192,43 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
     let input = file(&folder, "ball.off", &ball(3).0);
     let output = folder.path().join("out.ply");
     // A tiny distance neither takes many triangles nor is it missed.
-    run("refine {} -o {} --within 1e-7 --max-triangles 20k --strict", &[&input, &output])
-        .expect(0)
-        .saying("edges stay sharp");
+    run(
+        "refine {} -o {} --within 1e-7 --max-triangles 20k --strict",
+        &[&input, &output],
+    )
+    .expect(0)
+    .saying("edges stay sharp");
     // A box of twelve triangles has no smooth surface so near.
-    let corners: String =
-        (0..8).map(|c| format!("v {} {} {}\n", 40 * (c & 1), 20 * (c >> 1 & 1), 5 * (c >> 2))).collect();
+    let corners: String = (0..8)
+        .map(|c| {
+            format!(
+                "v {} {} {}\n",
+                40 * (c & 1),
+                20 * (c >> 1 & 1),
+                5 * (c >> 2)
+            )
+        })
+        .collect();
     let sides = "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
     let box_of_twelve = file(&folder, "box.obj", &(corners + sides));
-    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output]).expect(0).saying("12 edges stay sharp");
+    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output])
+        .expect(0)
+        .saying("12 edges stay sharp");
     let positions = soup(&output).positions;
     let is_on_box = |p: &[f64; 3]| {
-        let beyond = [40.0, 20.0, 5.0].iter().zip(p).map(|(size, x)| (-x).max(x - size));
+        let beyond = [40.0, 20.0, 5.0]
+            .iter()
+            .zip(p)
+            .map(|(size, x)| (-x).max(x - size));
         beyond.fold(f64::MIN, f64::max).abs() <= 0.04
     };
     assert!(positions.len() >= 8 && positions.iter().all(is_on_box));
     // With few triangles it is not near, either.
-    run("refine {} -o {} --within 0.5 --max-triangles 300", &[&input, &output]).expect(3);
+    run(
+        "refine {} -o {} --within 0.5 --max-triangles 300",
+        &[&input, &output],
+    )
+    .expect(3);
 }
 
 #[test]
@@ -153,15 +237,33 @@ fn edges_are_sharp_only_where_somebody_says_so() {
     let mut text = String::new();
     for corner in 0..8 {
         let side = |bit: u32, size: f64| if corner >> bit & 1 == 0 { 0.0 } else { size };
-        writeln!(text, "v {} {} {}", side(0, 40.0), side(1, 20.0), side(2, 5.0)).expect("text");
+        writeln!(
+            text,
+            "v {} {} {}",
+            side(0, 40.0),
+            side(1, 20.0),
+            side(2, 5.0)
+        )
+        .expect("text");
     }
-    for [a, b, c, d] in [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]] {
+    for [a, b, c, d] in [
+        [1, 3, 4, 2],
+        [5, 6, 8, 7],
+        [1, 2, 6, 5],
+        [3, 7, 8, 4],
+        [1, 5, 7, 3],
+        [2, 4, 8, 6],
+    ] {
         writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").expect("text");
     }
     let input = file(&folder, "box.obj", &text);
     let output = folder.path().join("out.ply");
     let refined = |options: &str| {
-        run(&format!("refine {{}} -o {{}} --within 0.5 {options}"), &[&input, &output]).expect(0);
+        run(
+            &format!("refine {{}} -o {{}} --within 0.5 {options}"),
+            &[&input, &output],
+        )
+        .expect(0);
         soup(&output).positions
     };
     // Rounded, a corner is left; sharp, it is there.
@@ -174,8 +276,15 @@ fn edges_are_sharp_only_where_somebody_says_so() {
 #[test]
 fn fewer_triangles_than_there_are_end_with_3() {
     let folder = folder();
-    let (input, output) = (file(&folder, "ball.off", &ball(4).0), folder.path().join("out.ply"));
-    let said = run("refine {} -o {} --within 0.9 --triangles 100", &[&input, &output]).expect(3);
+    let (input, output) = (
+        file(&folder, "ball.off", &ball(4).0),
+        folder.path().join("out.ply"),
+    );
+    let said = run(
+        "refine {} -o {} --within 0.9 --triangles 100",
+        &[&input, &output],
+    )
+    .expect(3);
     said.saying("more than --triangles 100; --optimize goes below");
 }
 
@@ -196,6 +305,10 @@ fn what_does_not_go_with_it_is_refused() {
         run(&line, &[output]).expect(2).saying("--within");
     }
     for length in ["0", "-1", "nonsense", "0%", "101%"] {
-        run(&format!("refine builtin:cup -o {{}} --within {length}"), &[output]).expect(2);
+        run(
+            &format!("refine builtin:cup -o {{}} --within {length}"),
+            &[output],
+        )
+        .expect(2);
     }
 }

@@ -12,8 +12,13 @@ fn a_failed_run_leaves_an_earlier_file_as_it_was() {
     let folder = folder();
     let input = file(&folder, "bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 7\n");
     let output = file(&folder, "out.ply", "precious");
-    run("refine {} -o {}", &[&input, &output]).expect(1).saying("bad.obj");
-    assert_eq!(std::fs::read_to_string(&output).expect("a file"), "precious");
+    run("refine {} -o {}", &[&input, &output])
+        .expect(1)
+        .saying("bad.obj");
+    assert_eq!(
+        std::fs::read_to_string(&output).expect("a file"),
+        "precious"
+    );
     assert_eq!(names(folder.path()), ["bad.obj", "out.ply"]);
 }
 
@@ -32,9 +37,17 @@ fn numbers_that_overflow_are_not_written() {
 fn a_mesh_may_be_refined_in_place() {
     let folder = folder();
     let mesh = folder.path().join("mesh.off");
-    run("refine builtin:cube -o {} --levels 0 --method uniform", &[&mesh]).expect(0);
+    run(
+        "refine builtin:cube -o {} --levels 0 --method uniform",
+        &[&mesh],
+    )
+    .expect(0);
     assert_eq!(soup(&mesh).faces.len(), 12);
-    run("refine {} -o {} --levels 1 --method uniform --overwrite", &[&mesh, &mesh]).expect(0);
+    run(
+        "refine {} -o {} --levels 1 --method uniform --overwrite",
+        &[&mesh, &mesh],
+    )
+    .expect(0);
     assert_eq!(soup(&mesh).faces.len(), 48);
     assert_eq!(names(folder.path()), ["mesh.off"]);
 }
@@ -43,11 +56,19 @@ fn a_mesh_may_be_refined_in_place() {
 fn a_folder_that_does_not_exist_is_found_before_the_work() {
     let folder = folder();
     let nowhere = folder.path().join("nowhere").join("out.ply");
-    run("refine builtin:head -o {}", &[&nowhere]).expect(1).saying("nowhere");
+    run("refine builtin:head -o {}", &[&nowhere])
+        .expect(1)
+        .saying("nowhere");
     let output = folder.path().join("out.ply");
     let report = folder.path().join("nowhere").join("report.json");
-    run("refine builtin:head -o {} --report {}", &[&output, &report]).expect(1).saying("nowhere");
-    run("refine builtin:head -o {}", &[&folder.path().join("sub.ply")]).expect(0);
+    run("refine builtin:head -o {} --report {}", &[&output, &report])
+        .expect(1)
+        .saying("nowhere");
+    run(
+        "refine builtin:head -o {}",
+        &[&folder.path().join("sub.ply")],
+    )
+    .expect(0);
     assert_eq!(names(folder.path()), ["sub.ply"]);
 }
 
@@ -56,15 +77,27 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let picture = folder.path().join("out.png");
-    let silent =
-        run("refine builtin:head -o {} --tolerance 1% --picture {} --quiet", &[&output, &picture]).expect(0);
+    let silent = run(
+        "refine builtin:head -o {} --tolerance 1% --picture {} --quiet",
+        &[&output, &picture],
+    )
+    .expect(0);
     assert_eq!((silent.stdout.as_str(), silent.stderr.as_str()), ("", ""));
     assert_eq!(names(folder.path()), ["out.ply", "out.png"]);
     let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
     assert_eq!(told.stdout, "");
     // The head folds over in places, and that is said.
-    assert_eq!(told.stderr.lines().count(), 6, "summary and a warning, no progress: {}", told.stderr);
-    for command in ["info builtin:cup", "measure builtin:cup builtin:cup", "models"] {
+    assert_eq!(
+        told.stderr.lines().count(),
+        6,
+        "summary and a warning, no progress: {}",
+        told.stderr
+    );
+    for command in [
+        "info builtin:cup",
+        "measure builtin:cup builtin:cup",
+        "models",
+    ] {
         let run = run(&format!("{command} -q"), &[]).expect(0);
         assert_eq!(run.stderr, "", "{command}");
         assert!(!run.stdout.is_empty(), "{command}");
@@ -92,10 +125,13 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
         for delay in [20, 200, 600] {
             let folder = folder();
             let output = folder.path().join("out.ply");
-            let child = command("refine builtin:shoe -o {} -q --method uniform --levels 5", &[&output])
-                .stderr(Stdio::piped())
-                .spawn()
-                .expect("the program starts");
+            let child = command(
+                "refine builtin:shoe -o {} -q --method uniform --levels 5",
+                &[&output],
+            )
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
             std::thread::sleep(Duration::from_millis(delay));
             // Fails if the program has ended by then, which is fine.
             let _ = std::process::Command::new("kill")
@@ -110,11 +146,18 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
                 [] if ended.is_none() && delay < 100 => {}
                 [] => {
                     assert_eq!(ended, Some(code), "{told}");
-                    assert!(told.contains("cancelled by") && told.contains("nothing was written"), "{told}");
+                    assert!(
+                        told.contains("cancelled by") && told.contains("nothing was written"),
+                        "{told}"
+                    );
                 }
                 [name] if name == "out.ply" => {
                     assert!(ended == Some(0) || ended == Some(code), "{ended:?} {told}");
-                    assert_eq!(told.contains("out.ply written by then"), ended != Some(0), "{told}");
+                    assert_eq!(
+                        told.contains("out.ply written by then"),
+                        ended != Some(0),
+                        "{told}"
+                    );
                     assert_eq!(soup(&output).faces.len(), 684 * 4usize.pow(5));
                 }
                 other => panic!("left behind: {other:?}"),
@@ -135,13 +178,24 @@ fn a_signal_ends_the_writing_of_a_large_file() {
         // Before the work one is made, too, to find out whether that is possible; nothing is written to it.
         running.until("a temporary file", || {
             let temporary = |name: &String| name.ends_with(".tmp");
-            let length = |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
-            names(folder.path()).into_iter().filter(temporary).any(|name| length(name) > 0)
+            let length =
+                |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
+            names(folder.path())
+                .into_iter()
+                .filter(temporary)
+                .any(|name| length(name) > 0)
         });
         running.signal("TERM");
-        running.end().expect(143).saying("while writing ").saying("nothing was written");
+        running
+            .end()
+            .expect(143)
+            .saying("while writing ")
+            .saying("nothing was written");
         assert_eq!(names(folder.path()), [name]);
-        assert_eq!(std::fs::read_to_string(&output).expect("the earlier file"), "precious");
+        assert_eq!(
+            std::fs::read_to_string(&output).expect("the earlier file"),
+            "precious"
+        );
     }
 }
 
@@ -151,12 +205,19 @@ fn a_signal_ends_the_writing_of_a_large_file() {
 fn a_signal_ends_the_writing_into_a_full_pipe() {
     let folder = folder();
     let pipe = pipe(&folder, "pipe.ply");
-    let mut running = Running::start("refine builtin:shoe -o {} -q --method uniform --levels 3", &[&pipe]);
+    let mut running = Running::start(
+        "refine builtin:shoe -o {} -q --method uniform --levels 3",
+        &[&pipe],
+    );
     // Opens when the program does, and is read from by nobody.
     let reader = std::thread::spawn(move || std::fs::File::open(&pipe));
     running.until("a pipe", || reader.is_finished());
     running.signal("TERM");
-    running.end().expect(143).saying("while writing ").saying("part of it may have been read");
+    running
+        .end()
+        .expect(143)
+        .saying("while writing ")
+        .saying("part of it may have been read");
 }
 
 /// Of files that belong together none counts as written before all are.
@@ -167,7 +228,9 @@ fn a_document_is_not_written_when_what_it_names_is() {
     let document = pipe(&folder, "pipe.gltf");
     let mut running = Running::start("refine builtin:cup -o {} -q", &[&document]);
     // Then nothing is left but the pipe, which nobody opens.
-    running.until("pipe.bin", || names(folder.path()).contains(&"pipe.bin".to_owned()));
+    running.until("pipe.bin", || {
+        names(folder.path()).contains(&"pipe.bin".to_owned())
+    });
     running.signal("TERM");
     let told = running.end().expect(143).saying("while writing ");
     assert!(!told.stderr.contains("written by then"), "{}", told.stderr);
@@ -176,7 +239,13 @@ fn a_document_is_not_written_when_what_it_names_is() {
 #[cfg(unix)]
 fn pipe(folder: &tempfile::TempDir, name: &str) -> std::path::PathBuf {
     let pipe = folder.path().join(name);
-    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .expect("mkfifo")
+            .success()
+    );
     pipe
 }
 
@@ -191,7 +260,10 @@ fn an_ignored_hangup_stays_ignored() {
         "trap '' HUP; {program} refine builtin:shoe -o '{}' --method uniform --levels 5 -q & sleep 0.3; kill -HUP $!; wait $!",
         output.display()
     );
-    let status = std::process::Command::new("sh").args(["-c", &script]).status().expect("a shell");
+    let status = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .status()
+        .expect("a shell");
     assert_eq!(status.code(), Some(0));
     assert_eq!(names(folder.path()), ["out.ply"]);
 }
@@ -203,10 +275,19 @@ fn what_is_read_only_is_an_error_before_the_work() {
     let folder = folder();
     let output = file(&folder, "out.ply", "precious");
     std::fs::set_permissions(&output, std::fs::Permissions::from_mode(0o444)).expect("own file");
-    for words in ["refine builtin:head -o {}", "refine builtin:head -o x.ply --dry-run --report {}"] {
-        run(words, &[&output]).expect(1).saying("out.ply").saying("read-only");
+    for words in [
+        "refine builtin:head -o {}",
+        "refine builtin:head -o x.ply --dry-run --report {}",
+    ] {
+        run(words, &[&output])
+            .expect(1)
+            .saying("out.ply")
+            .saying("read-only");
     }
-    assert_eq!(std::fs::read_to_string(&output).expect("a file"), "precious");
+    assert_eq!(
+        std::fs::read_to_string(&output).expect("a file"),
+        "precious"
+    );
     assert_eq!(names(folder.path()), ["out.ply"]);
 }
 
@@ -231,7 +312,11 @@ fn lines_of_results_are_short() {
             .output()
             .expect("it runs");
         let told = String::from_utf8_lossy(&told.stderr).into_owned();
-        let longest = told.lines().map(|line| line.chars().count()).max().expect("a line");
+        let longest = told
+            .lines()
+            .map(|line| line.chars().count())
+            .max()
+            .expect("a line");
         assert!(longest <= 100, "{options}: {longest}\n{told}");
     }
 }

@@ -19,12 +19,19 @@ use crate::mesh::{Channel, Domain, Mesh};
 /// ```
 pub fn borders(channels: &[Channel], mesh: &Mesh) -> Vec<[u32; 2]> {
     let topology = mesh.topology();
-    let differs = |channel: &Channel, a: usize, b: usize| channel.indices.get(a) != channel.indices.get(b);
-    let has_other_value = |channel: &Channel, a: usize, b: usize| channel.value(a) != channel.value(b);
-    let channels: Vec<&Channel> = channels.iter().filter(|channel| !channel.is_constant()).collect();
+    let differs =
+        |channel: &Channel, a: usize, b: usize| channel.indices.get(a) != channel.indices.get(b);
+    let has_other_value =
+        |channel: &Channel, a: usize, b: usize| channel.value(a) != channel.value(b);
+    let channels: Vec<&Channel> = channels
+        .iter()
+        .filter(|channel| !channel.is_constant())
+        .collect();
     let mut found = Vec::new();
     for h in topology.half_edges() {
-        let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else { continue };
+        let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else {
+            continue;
+        };
         let is_border = channels.iter().any(|channel| match channel.domain {
             Domain::Vertex => false,
             Domain::Corner => {

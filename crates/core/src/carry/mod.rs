@@ -60,9 +60,14 @@ pub fn carried(
     scheme: &dyn Scheme,
     result: &dyn Traced,
 ) -> Result<Vec<Channel>, ChannelError> {
-    let is_by_face = channels.iter().all(|channel| !channel.varies_within_faces());
+    let is_by_face = channels
+        .iter()
+        .all(|channel| !channel.varies_within_faces());
     let places = Places::of(control, result, is_by_face)?;
-    channels.iter().map(|channel| one(channel, control, scheme, &places)).collect()
+    channels
+        .iter()
+        .map(|channel| one(channel, control, scheme, &places))
+        .collect()
 }
 
 fn one(
@@ -74,13 +79,27 @@ fn one(
     let corners = control.topology().half_edge_count();
     channel.check(control.vertex_count(), corners, control.face_count())?;
     if channel.domain == Domain::Face {
-        let indices = places.parents.iter().map(|&face| channel.indices[face as usize]).collect();
-        return Ok(Channel { indices, ..channel.clone() });
+        let indices = places
+            .parents
+            .iter()
+            .map(|&face| channel.indices[face as usize])
+            .collect();
+        return Ok(Channel {
+            indices,
+            ..channel.clone()
+        });
     }
     if channel.is_constant() {
         let indices = vec![0; places.corners().len()];
-        let one = Channel { values: channel.value(0).to_vec(), indices, ..channel.clone() };
-        return Ok(Channel { domain: Domain::Corner, ..one });
+        let one = Channel {
+            values: channel.value(0).to_vec(),
+            indices,
+            ..channel.clone()
+        };
+        return Ok(Channel {
+            domain: Domain::Corner,
+            ..one
+        });
     }
     let by_corner = by_corner(channel, control);
     match by_corner.interpolation {
@@ -88,12 +107,20 @@ fn one(
         Interpolation::Linear => {
             let sites = Sites::of(&by_corner, places)?;
             let values = linear(&by_corner, &sites);
-            Ok(Channel { indices: sites.indices, values, ..by_corner })
+            Ok(Channel {
+                indices: sites.indices,
+                values,
+                ..by_corner
+            })
         }
         Interpolation::Smooth(rule) => {
             let sites = Sites::of(&by_corner, places)?;
             let values = smooth(&by_corner, rule, control, scheme, &sites)?;
-            Ok(Channel { indices: sites.indices, values, ..by_corner })
+            Ok(Channel {
+                indices: sites.indices,
+                values,
+                ..by_corner
+            })
         }
     }
 }
@@ -111,14 +138,18 @@ pub fn goal(
 ) -> Result<Option<AttributeGoal>, ChannelError> {
     let corners = control.topology().half_edge_count();
     channel.check(control.vertex_count(), corners, control.face_count())?;
-    let Interpolation::Smooth(rule) = channel.interpolation else { return Ok(None) };
+    let Interpolation::Smooth(rule) = channel.interpolation else {
+        return Ok(None);
+    };
     if channel.domain == Domain::Face {
         return Ok(None);
     }
     let by_corner = by_corner(channel, control);
     let values = ValueMeshes::of(&by_corner, rule, control)?;
-    let meshes =
-        (0..channel.arity).step_by(TOGETHER).map(|first| values.mesh(first)).collect::<Result<_, _>>()?;
+    let meshes = (0..channel.arity)
+        .step_by(TOGETHER)
+        .map(|first| values.mesh(first))
+        .collect::<Result<_, _>>()?;
     Ok(Some(AttributeGoal::values(meshes, tolerance)))
 }
 
@@ -127,8 +158,15 @@ fn by_corner(channel: &Channel, control: &Mesh) -> Channel {
     match channel.domain {
         Domain::Vertex => {
             let vertices = control.triangles().as_flattened();
-            let indices = vertices.iter().map(|&vertex| channel.indices[vertex as usize]).collect();
-            Channel { indices, domain: Domain::Corner, ..channel.clone() }
+            let indices = vertices
+                .iter()
+                .map(|&vertex| channel.indices[vertex as usize])
+                .collect();
+            Channel {
+                indices,
+                domain: Domain::Corner,
+                ..channel.clone()
+            }
         }
         _ => channel.clone(),
     }
@@ -146,15 +184,22 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelErro
         }
         Ok(channel.indices[3 * face as usize + first])
     };
-    let indices = (0..places.corners().len()).map(of_corner).collect::<Result<_, _>>()?;
+    let indices = (0..places.corners().len())
+        .map(of_corner)
+        .collect::<Result<_, _>>()?;
     Ok(Channel { indices, ..channel })
 }
 
 /// Values on the plane of the control faces.
 fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
     let mut values = limitmesh_pages::with_capacity(channel.arity * sites.len());
-    for &Origin { face, barycentric: [at_first, at_second, at_third] } in sites.iter() {
-        let [first, second, third] = [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
+    for &Origin {
+        face,
+        barycentric: [at_first, at_second, at_third],
+    } in sites.iter()
+    {
+        let [first, second, third] =
+            [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
         for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
             // What is at a corner, or the same at all, is that to the bit.
             let is_one = a == b && b == c;
@@ -177,7 +222,11 @@ impl<'a> ValueMeshes<'a> {
     fn of(channel: &'a Channel, rule: SeamRule, control: &Mesh) -> Result<Self, ChannelError> {
         let seams::ValueMesh { mesh, values } =
             value_mesh(control, channel, rule).map_err(|error| no_limit(channel, error))?;
-        Ok(Self { channel, mesh, values })
+        Ok(Self {
+            channel,
+            mesh,
+            values,
+        })
     }
 
     /// The one whose positions are the numbers from `first` on, and zeros where there are no more.
@@ -187,16 +236,25 @@ impl<'a> ValueMeshes<'a> {
             let mut position = [0.0; TOGETHER];
             let start = value as usize * self.channel.arity;
             let own = &self.channel.values[start + first..start + last];
-            position.iter_mut().zip(own).for_each(|(x, &value)| *x = value);
+            position
+                .iter_mut()
+                .zip(own)
+                .for_each(|(x, &value)| *x = value);
             position
         };
         let positions = self.values.iter().map(coordinates).collect();
-        self.mesh.clone().with_positions(positions).map_err(|error| no_limit(self.channel, error))
+        self.mesh
+            .clone()
+            .with_positions(positions)
+            .map_err(|error| no_limit(self.channel, error))
     }
 }
 
 fn no_limit(channel: &Channel, why: impl ToString) -> ChannelError {
-    ChannelError::Limit { name: channel.name.clone(), why: why.to_string() }
+    ChannelError::Limit {
+        name: channel.name.clone(),
+        why: why.to_string(),
+    }
 }
 
 /// Values of the limit surface of the mesh of values.
@@ -213,13 +271,18 @@ fn smooth(
     let mut values = limitmesh_pages::defaults(channel.arity * sites.len());
     for first in (0..channel.arity).step_by(TOGETHER) {
         let mesh = meshes.mesh(first)?;
-        let surface =
-            LimitSurface::without_normals(&mesh, scheme).map_err(|error| no_limit(channel, error))?;
+        let surface = LimitSurface::without_normals(&mesh, scheme)
+            .map_err(|error| no_limit(channel, error))?;
         let own = (channel.arity, first);
         match channel.arity - first {
             1 => put(&mut values, own, &by_face, surface.coordinates::<1>(places)),
             2 => put(&mut values, own, &by_face, surface.coordinates::<2>(places)),
-            _ => put(&mut values, own, &by_face, surface.coordinates::<TOGETHER>(places)),
+            _ => put(
+                &mut values,
+                own,
+                &by_face,
+                surface.coordinates::<TOGETHER>(places),
+            ),
         }
         if let Some(error) = surface.failure() {
             return Err(no_limit(channel, error));

@@ -37,11 +37,18 @@ impl<'a> Places<'a> {
         if !is_by_face && result.origins().len() != mesh.vertex_count() {
             return unknown("the vertices have no origins");
         }
-        let places = Self { control, result, parents: result.parents() };
+        let places = Self {
+            control,
+            result,
+            parents: result.parents(),
+        };
         // Without a way out of the loops several are looked at together.
         let last_parent = places.parents.iter().copied().max();
         let last_origin = result.origins().iter().map(|origin| origin.face).max();
-        if last_parent.max(last_origin).is_some_and(|face| face as usize >= control.face_count()) {
+        if last_parent
+            .max(last_origin)
+            .is_some_and(|face| face as usize >= control.face_count())
+        {
             return unknown("they come from another control mesh");
         }
         Ok(places)
@@ -59,11 +66,19 @@ impl<'a> Places<'a> {
 
     /// Calls `visit` with the vertices at which a channel has one value in whatever face: those inside of control faces, on edges that
     /// are no seams, and at control vertices where no seam ends.
-    pub(super) fn for_each_vertex_of_one_value(&self, channel: &Channel, mut visit: impl FnMut(usize)) {
+    pub(super) fn for_each_vertex_of_one_value(
+        &self,
+        channel: &Channel,
+        mut visit: impl FnMut(usize),
+    ) {
         let topology = self.control.topology();
         let is_seam: Vec<bool> = topology
             .half_edges()
-            .map(|h| topology.twin(h).is_some_and(|twin| !channel.is_continuous(h, twin)))
+            .map(|h| {
+                topology
+                    .twin(h)
+                    .is_some_and(|twin| !channel.is_continuous(h, twin))
+            })
             .collect();
         let triangles = self.control.triangles();
         let has_one = values_of_vertices(channel, self.control);
@@ -95,7 +110,9 @@ impl<'a> Places<'a> {
         let corner = HalfEdgeId(corner as u32);
         self.result
             .corner_origin(self.control.triangles(), corner)
-            .ok_or(ChannelError::Unknown { why: "a triangle reaches over several control faces" })
+            .ok_or(ChannelError::Unknown {
+                why: "a triangle reaches over several control faces",
+            })
     }
 
     /// The numbers of the values that a place depends on, in the order of their control vertices.
@@ -116,7 +133,12 @@ impl<'a> Places<'a> {
 fn values_of_vertices(channel: &Channel, control: &Mesh) -> Vec<bool> {
     let mut first = vec![NONE; control.vertex_count()];
     let mut has_one = vec![true; control.vertex_count()];
-    for (&vertex, &value) in control.triangles().as_flattened().iter().zip(&channel.indices) {
+    for (&vertex, &value) in control
+        .triangles()
+        .as_flattened()
+        .iter()
+        .zip(&channel.indices)
+    {
         let (first, has_one) = (&mut first[vertex as usize], &mut has_one[vertex as usize]);
         match *first {
             NONE => *first = value,

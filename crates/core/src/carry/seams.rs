@@ -30,9 +30,17 @@ struct Fan {
 ///
 /// # Errors
 /// There are more fans than can be numbered.
-pub(super) fn value_mesh(control: &Mesh, channel: &Channel, rule: SeamRule) -> Result<ValueMesh, MeshError> {
+pub(super) fn value_mesh(
+    control: &Mesh,
+    channel: &Channel,
+    rule: SeamRule,
+) -> Result<ValueMesh, MeshError> {
     let topology = control.topology();
-    let continuous = |h: HalfEdgeId| topology.twin(h).filter(|&twin| channel.is_continuous(h, twin));
+    let continuous = |h: HalfEdgeId| {
+        topology
+            .twin(h)
+            .filter(|&twin| channel.is_continuous(h, twin))
+    };
     let mut sets = DisjointSets::new(topology.half_edge_count());
     for h in topology.half_edges() {
         if let Some(twin) = continuous(h).filter(|&twin| h < twin) {
@@ -51,7 +59,12 @@ pub(super) fn value_mesh(control: &Mesh, channel: &Channel, rule: SeamRule) -> R
             if of_corner[root] == u32::MAX {
                 of_corner[root] = fans.len() as u32;
                 let value = channel.indices[corner.index()];
-                fans.push(Fan { value, faces: 0, is_open: false, is_creased: false });
+                fans.push(Fan {
+                    value,
+                    faces: 0,
+                    is_open: false,
+                    is_creased: false,
+                });
             }
             let number = of_corner[root];
             of_corner[corner.index()] = number;
@@ -70,7 +83,10 @@ pub(super) fn value_mesh(control: &Mesh, channel: &Channel, rule: SeamRule) -> R
     for h in topology.half_edges() {
         let is_first = continuous(h).is_some_and(|twin| h < twin);
         if is_first && sharpness.edge(h) > 0.0 {
-            tags.creases.push(CreaseTag { vertices: [fan(h), fan(h.next())], sharpness: sharpness.edge(h) });
+            tags.creases.push(CreaseTag {
+                vertices: [fan(h), fan(h.next())],
+                sharpness: sharpness.edge(h),
+            });
         }
     }
     for (vertex, own) in starts.windows(2).enumerate() {
@@ -80,13 +96,19 @@ pub(super) fn value_mesh(control: &Mesh, channel: &Channel, rule: SeamRule) -> R
             let is_kept = is_kept((&fans[own[0]..own[1]], is_rim), number - own[0], rule);
             let sharpness = if is_kept { f64::INFINITY } else { tagged };
             if sharpness > 0.0 {
-                tags.corners.push(CornerTag { vertex: number as u32, sharpness });
+                tags.corners.push(CornerTag {
+                    vertex: number as u32,
+                    sharpness,
+                });
             }
         }
     }
     let triangles = of_corner.as_chunks::<3>().0.to_vec();
     let mesh = Mesh::from_triangles(vec![[0.0; 3]; fans.len()], triangles)?.with_tags(tags)?;
-    Ok(ValueMesh { mesh, values: fans.iter().map(|fan| fan.value).collect() })
+    Ok(ValueMesh {
+        mesh,
+        values: fans.iter().map(|fan| fan.value).collect(),
+    })
 }
 
 /// Whether a fan's value stays what it is, given all fans of its vertex and whether that is on the control mesh's boundary.
@@ -107,7 +129,11 @@ fn is_kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> bool {
         SeamRule::CornersPlus1 => corners_only || plus1,
         SeamRule::CornersPlus2 => {
             let has_one_face = |&value: &u32| {
-                fans.iter().filter(|fan| fan.value == value).map(|fan| fan.faces).sum::<usize>() == 1
+                fans.iter()
+                    .filter(|fan| fan.value == value)
+                    .map(|fan| fan.faces)
+                    .sum::<usize>()
+                    == 1
             };
             let beside_corner = values.len() == 2 && values.iter().any(has_one_face);
             let is_dart = fans.len() == 1 && fan.is_open && !is_rim;

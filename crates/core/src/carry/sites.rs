@@ -37,7 +37,12 @@ impl<'a> Sites<'a> {
         });
         let corners = places.corners();
         if vertices.len() == origins.len() {
-            return Ok(Self { indices: corners.to_vec(), vertices, origins, others: Vec::new() });
+            return Ok(Self {
+                indices: corners.to_vec(),
+                vertices,
+                origins,
+                others: Vec::new(),
+            });
         }
         let mut others: Vec<Origin> = Vec::new();
         // What each depends on, and the one of its vertex before it; by vertex, the last.
@@ -65,7 +70,12 @@ impl<'a> Sites<'a> {
             }
             indices.push(vertices.len() as u32 + other);
         }
-        Ok(Self { indices, vertices, origins, others })
+        Ok(Self {
+            indices,
+            vertices,
+            origins,
+            others,
+        })
     }
 
     /// How many values there are.
@@ -84,7 +94,10 @@ impl<'a> Sites<'a> {
 
     /// Where all values are, in order.
     pub(super) fn iter(&self) -> impl Iterator<Item = &Origin> {
-        self.vertices.iter().map(|&vertex| &self.origins[vertex as usize]).chain(&self.others)
+        self.vertices
+            .iter()
+            .map(|&vertex| &self.origins[vertex as usize])
+            .chain(&self.others)
     }
 
     /// The values by face, of which there are `faces`.
@@ -104,9 +117,14 @@ impl<'a> Sites<'a> {
         // A stable sort: runs of a face stay in order.
         runs.sort_by_key(|(face, _)| *face);
         let mut starts = vec![0; faces + 1];
-        runs.iter().for_each(|(face, _)| starts[*face as usize + 1] += 1);
+        runs.iter()
+            .for_each(|(face, _)| starts[*face as usize + 1] += 1);
         (0..faces).for_each(|face| starts[face + 1] += starts[face]);
-        SitesByFace { sites: self, starts, runs }
+        SitesByFace {
+            sites: self,
+            starts,
+            runs,
+        }
     }
 }
 
@@ -123,12 +141,15 @@ impl SitesByFace<'_> {
     /// Calls `visit` with the place of each value of a face.
     pub(super) fn for_each_place(&self, face: usize, mut visit: impl FnMut([f64; 3])) {
         for (_, run) in &self.runs[self.starts[face]..self.starts[face + 1]] {
-            run.clone().for_each(|number| visit(self.sites.origin(number).barycentric));
+            run.clone()
+                .for_each(|number| visit(self.sites.origin(number).barycentric));
         }
     }
 
     /// Calls `visit` with the numbers of all values, face by face.
     pub(super) fn for_each_number(&self, mut visit: impl FnMut(usize)) {
-        self.runs.iter().for_each(|(_, run)| (run.start as usize..run.end as usize).for_each(&mut visit));
+        self.runs
+            .iter()
+            .for_each(|(_, run)| (run.start as usize..run.end as usize).for_each(&mut visit));
     }
 }

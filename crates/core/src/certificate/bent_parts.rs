@@ -80,11 +80,22 @@ impl<'a> Bender<'a> {
     pub(crate) fn of(jet: &'a QuarticJet) -> Self {
         let [uu, uv, vv] = jet.second();
         let [a, b, c, d, e] = *jet.fourth();
-        let pairs = [a, e, a - 4.0 * b + 6.0 * c - 4.0 * d + e, c, a - 2.0 * b + c, e - 2.0 * d + c];
+        let pairs = [
+            a,
+            e,
+            a - 4.0 * b + 6.0 * c - 4.0 * d + e,
+            c,
+            a - 2.0 * b + c,
+            e - 2.0 * d + c,
+        ];
         Self {
             jet,
             across: from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]),
-            fourth: pairs.iter().map(|pair| pair.length_squared()).fold(0.0, f64::max).sqrt(),
+            fourth: pairs
+                .iter()
+                .map(|pair| pair.length_squared())
+                .fold(0.0, f64::max)
+                .sqrt(),
         }
     }
 
@@ -94,11 +105,17 @@ impl<'a> Bender<'a> {
         let ([uu, _, vv], half, third) = (self.jet.second(), 0.5 * size, size * (1.0 / 3.0));
         let (square, reach) = (size * size, size.abs());
         let bend = |c: &[DVec3; 6], at: Places| quadratic(c, at).map(|bend| bend * square);
-        let bends =
-            [bend(uu, [u + half, v]), bend(&self.across, [u + half, v + half]), bend(vv, [u, v + half])];
+        let bends = [
+            bend(uu, [u + half, v]),
+            bend(&self.across, [u + half, v + half]),
+            bend(vv, [u, v + half]),
+        ];
         let [third, bubble] =
             thirds(&self.third([u + third, v + third])).map(|length| length * (square * reach));
-        Bent { bends, rest: Rest::of([third, bubble], self.fourth * (square * square)) }
+        Bent {
+            bends,
+            rest: Rest::of([third, bubble], self.fourth * (square * square)),
+        }
     }
 
     /// Parts with any corners.
@@ -124,10 +141,21 @@ impl<'a> Bender<'a> {
         for axis in 0..3 {
             let form = form.map(|c| c[axis]);
             let (twice_s, twice_r) = (along_twice(form, s), along_twice(form, r));
-            let values = [inner(twice_s, s), inner(twice_s, r), inner(twice_r, s), inner(twice_r, r)];
-            along.iter_mut().zip(values).for_each(|(along, value)| along[axis] = value);
+            let values = [
+                inner(twice_s, s),
+                inner(twice_s, r),
+                inner(twice_r, s),
+                inner(twice_r, r),
+            ];
+            along
+                .iter_mut()
+                .zip(values)
+                .for_each(|(along, value)| along[axis] = value);
         }
-        Bent { bends, rest: Rest::of(thirds(&along), fourth) }
+        Bent {
+            bends,
+            rest: Rest::of(thirds(&along), fourth),
+        }
     }
 
     /// The third derivatives at places: by u three times to v three times.
@@ -173,15 +201,25 @@ impl Bent {
     #[inline]
     pub(crate) fn kept(&self, scale: f64) -> BentFour {
         let bends = self.bends.map(|bend| bend.map(|axis| axis * scale));
-        let size =
-            bends.iter().fold(f64x4::ZERO, |size, [x, y, z]| size.fast_max(x.abs() + y.abs() + z.abs()));
-        let Rest { height, curve, steep, first } = &self.rest;
-        let [height, curve, steep, first] = [height, curve, steep, first].map(|&bound| bound * scale);
+        let size = bends.iter().fold(f64x4::ZERO, |size, [x, y, z]| {
+            size.fast_max(x.abs() + y.abs() + z.abs())
+        });
+        let Rest {
+            height,
+            curve,
+            steep,
+            first,
+        } = &self.rest;
+        let [height, curve, steep, first] =
+            [height, curve, steep, first].map(|&bound| bound * scale);
         let off = ROUNDED * size;
         let above = |bound: f64x4| (bound + off) * A_LITTLE_MORE;
         let single = |numbers: f64x4| numbers.to_array().map(|number| number as f32);
         // What is not a number is not below it.
-        let sum = bends.iter().flatten().fold(height + first, |sum, axis| sum + axis.abs());
+        let sum = bends
+            .iter()
+            .flatten()
+            .fold(height + first, |sum, axis| sum + axis.abs());
         let is_known = (sum + curve + steep).simd_lt(f64x4::splat(TOO_GREAT));
         BentFour {
             bends: bends.map(|bend| bend.map(single)),
@@ -208,7 +246,9 @@ impl BentFour {
     pub(crate) fn take(&mut self, to: usize, other: &Self, from: usize, turn: usize) {
         for (edge, bends) in other.bends.iter().enumerate() {
             let own = &mut self.bends[(edge + turn) % 3];
-            own.iter_mut().zip(bends).for_each(|(own, other)| own[to] = other[from]);
+            own.iter_mut()
+                .zip(bends)
+                .for_each(|(own, other)| own[to] = other[from]);
         }
         (self.rest[to], self.curve[to]) = (other.rest[from], other.curve[from]);
         (self.steep[to], self.first[to]) = (other.steep[from], other.first[from]);
@@ -222,7 +262,9 @@ fn thirds([a, b, c, d]: &[Vectors; 4]) -> [f64x4; 2] {
     let across: Vectors = from_fn(|axis| d[axis] - a[axis] + 3.0 * (b[axis] - c[axis]));
     let bubble: Vectors =
         from_fn(|axis| 0.25 * a[axis] - 0.5 * b[axis] + (across[axis] + d[axis]) * (1.0 / 12.0));
-    let most = dot(a, a).fast_max(dot(d, d)).fast_max(dot(&across, &across));
+    let most = dot(a, a)
+        .fast_max(dot(d, d))
+        .fast_max(dot(&across, &across));
     [most.sqrt(), dot(&bubble, &bubble).sqrt()]
 }
 
@@ -254,7 +296,11 @@ fn dot(a: &Vectors, b: &Vectors) -> f64x4 {
 
 #[inline]
 fn cross(a: &Vectors, b: &Vectors) -> Vectors {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 #[inline]

@@ -36,7 +36,9 @@ pub(super) fn corner(borders: Borders, edge: usize) -> Corner {
 /// The points of a piece's net that stand for the surface rather than for its curve over an edge of the triangle, one bit each.
 #[inline]
 pub(super) fn inner_points(borders: Borders) -> u16 {
-    let inside = (0..3).fold(0, |bits, edge| bits | usize::from(borders[edge] == INSIDE) << edge);
+    let inside = (0..3).fold(0, |bits, edge| {
+        bits | usize::from(borders[edge] == INSIDE) << edge
+    });
     INNER_POINTS[inside]
 }
 

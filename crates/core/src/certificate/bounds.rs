@@ -80,12 +80,21 @@ pub(crate) struct Pieces<'a> {
 
 impl<'a> Pieces<'a> {
     pub(crate) fn of(patch: &'a Patch) -> Self {
-        Self { patch, known: None, refined: None, net: None, samples: None }
+        Self {
+            patch,
+            known: None,
+            refined: None,
+            net: None,
+            samples: None,
+        }
     }
 
     /// The same for a patch with its refinement.
     pub(crate) fn with_refined(patch: &'a Patch, refined: &'a RefinedPatch<'a>) -> Self {
-        Self { known: Some(refined), ..Self::of(patch) }
+        Self {
+            known: Some(refined),
+            ..Self::of(patch)
+        }
     }
 
     /// The patch itself.
@@ -97,7 +106,9 @@ impl<'a> Pieces<'a> {
     pub(crate) fn refined(&mut self, rules: &'a Rules<'a>) -> &RefinedPatch<'a> {
         match self.known {
             Some(known) => known,
-            None => self.refined.get_or_insert_with(|| self.patch.refined(rules)),
+            None => self
+                .refined
+                .get_or_insert_with(|| self.patch.refined(rules)),
         }
     }
 
@@ -126,7 +137,9 @@ impl<'a> Pieces<'a> {
             return Deviation::alone(f64::INFINITY);
         }
         if let Patch::Mesh(local) = self.patch {
-            let samples = self.samples.get_or_insert_with(|| Samples::of(local, rules));
+            let samples = self
+                .samples
+                .get_or_insert_with(|| Samples::of(local, rules));
             return samples.deviation(part, &effort.bound::<DVec3>(frame));
         }
         match effort.seen_from(frame) {
@@ -163,7 +176,11 @@ impl<'a> Pieces<'a> {
 }
 
 /// The deviation that the points of a triangle's own net tell, without halving it, and a height that the piece attains.
-pub(crate) fn at_a_glance(net: &BezierTriangle, frame: &TriangleFrame, open: [bool; 3]) -> (Deviation, f64) {
+pub(crate) fn at_a_glance(
+    net: &BezierTriangle,
+    frame: &TriangleFrame,
+    open: [bool; 3],
+) -> (Deviation, f64) {
     glance(net, ALL, frame, open)
 }
 
@@ -180,8 +197,16 @@ fn glance(
         open: [bool; 3],
     ) -> (Deviation, f64) {
         let mut seen = BezierTriangle([P::default(); 15]);
-        seen.0.iter_mut().zip(&net.0).for_each(|(seen, &point)| *seen = P::of(frame, point));
-        DeviationBound::<P> { frame, open, rim_alone: false }.net(&seen, borders)
+        seen.0
+            .iter_mut()
+            .zip(&net.0)
+            .for_each(|(seen, &point)| *seen = P::of(frame, point));
+        DeviationBound::<P> {
+            frame,
+            open,
+            rim_alone: false,
+        }
+        .net(&seen, borders)
     }
     let has_neighbours = open == [false; 3];
     match has_neighbours.then(|| TrilinearFrame::of(frame)).flatten() {
@@ -197,7 +222,12 @@ impl NetPart {
     }
 
     /// The deviation where the net is halved as often as it helps.
-    pub(crate) fn deviation(&self, frame: &TriangleFrame, rules: &Rules<'_>, effort: Effort) -> Deviation {
+    pub(crate) fn deviation(
+        &self,
+        frame: &TriangleFrame,
+        rules: &Rules<'_>,
+        effort: Effort,
+    ) -> Deviation {
         fn halved<P: HullPoint>(
             part: &NetPart,
             frame: &P::Frame,

@@ -12,7 +12,8 @@ mod part_bounds;
 use core::array::from_fn;
 
 use super::quartic_cell::{
-    CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, edge_range, quadratic, quadratic_height,
+    CUBIC, CURVE_CUBIC, Domain, QUARTIC, QUARTIC_SLOPE, QuarticJet, edge_range, quadratic,
+    quadratic_height,
 };
 use crate::patch::{Quartic, reciprocal_power};
 use crate::vector::DVec3;
@@ -77,8 +78,13 @@ pub(crate) struct RowExtent {
 }
 
 impl RowExtent {
-    pub(crate) const NONE: Self =
-        Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };
+    pub(crate) const NONE: Self = Self {
+        tilt: 0.0,
+        slope: f64::INFINITY,
+        drift_slope: 0.0,
+        bound: 0.0,
+        worst: None,
+    };
 }
 
 /// Marks of the parts of a level: upright ones and those on their heads, by row and column.
@@ -92,7 +98,11 @@ pub(crate) struct Marks {
 impl Marks {
     /// The mark of the part in column i and row j.
     pub(crate) fn at(&self, i: usize, j: usize, is_headlong: bool) -> Mark {
-        let list = if is_headlong { &self.headlong } else { &self.upright };
+        let list = if is_headlong {
+            &self.headlong
+        } else {
+            &self.upright
+        };
         list[j * self.n + i]
     }
 
@@ -102,7 +112,10 @@ impl Marks {
             let count = self.n - j;
             let upright = &self.upright[j * self.n..j * self.n + count];
             let headlong = &self.headlong[j * self.n..j * self.n + count - 1];
-            upright.iter().chain(headlong).all(|&mark| mark == Mark::Passes)
+            upright
+                .iter()
+                .chain(headlong)
+                .all(|&mark| mark == Mark::Passes)
         })
     }
 }
@@ -143,12 +156,23 @@ pub(crate) struct CellRows {
 impl Default for CellRows {
     fn default() -> Self {
         let (row, narrow) = ([[0.0; WIDTH]; 3], [[0.0; WIDTH]; 3]);
-        let bends = || Bends { along: narrow, size: 0.0 };
-        let corners =
-            [0; 2].map(|_| CornerRow { points: row, normals: narrow, edges: narrow, bends: bends() });
+        let bends = || Bends {
+            along: narrow,
+            size: 0.0,
+        };
+        let corners = [0; 2].map(|_| CornerRow {
+            points: row,
+            normals: narrow,
+            edges: narrow,
+            bends: bends(),
+        });
         Self {
             corners,
-            between: Between { edges: narrow, upward: bends(), across: bends() },
+            between: Between {
+                edges: narrow,
+                upward: bends(),
+                across: bends(),
+            },
             normals: row,
             few: Box::default(),
             found: Found::default(),
@@ -177,13 +201,27 @@ impl<'a> RowBlock<'a> {
         for corner in corners {
             let [a, b, c, d] = jet.third_at(corner);
             let across = d - a + 3.0 * (b - c);
-            let most = a.length_squared().larger(d.length_squared()).larger(across.length_squared());
+            let most = a
+                .length_squared()
+                .larger(d.length_squared())
+                .larger(across.length_squared());
             third = third.larger(most);
-            bubble = bubble.larger((-0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0).length_squared());
+            bubble =
+                bubble.larger((-0.25 * (a + 2.0 * (b - a)) + (across + d) / 12.0).length_squared());
         }
         let [a, b, c, d, e] = *jet.fourth();
-        let pairs = [a, e, a - 4.0 * b + 6.0 * c - 4.0 * d + e, c, a - 2.0 * b + c, e - 2.0 * d + c];
-        let fourth = pairs.iter().map(|pair| pair.length_squared()).fold(0.0, f64::max);
+        let pairs = [
+            a,
+            e,
+            a - 4.0 * b + 6.0 * c - 4.0 * d + e,
+            c,
+            a - 2.0 * b + c,
+            e - 2.0 * d + c,
+        ];
+        let fourth = pairs
+            .iter()
+            .map(|pair| pair.length_squared())
+            .fold(0.0, f64::max);
         let middle = at.map(|from| from + size / 3.0);
         Self {
             piece,
@@ -191,18 +229,35 @@ impl<'a> RowBlock<'a> {
             at,
             size,
             tangents: piece.tangents(middle[0], middle[1]),
-            height: [CUBIC * third.sqrt() + bubble.sqrt() / 27.0, QUARTIC * fourth.sqrt()],
+            height: [
+                CUBIC * third.sqrt() + bubble.sqrt() / 27.0,
+                QUARTIC * fourth.sqrt(),
+            ],
         }
     }
 
     /// The divisions below which parts certainly fail, as far as the second derivatives in a few places tell, and those by which
     /// they pass.
-    pub(crate) fn levels(&self, &RowTarget { distance, range_share, .. }: &RowTarget) -> (u32, u32) {
+    pub(crate) fn levels(
+        &self,
+        &RowTarget {
+            distance,
+            range_share,
+            ..
+        }: &RowTarget,
+    ) -> (u32, u32) {
         let [u, v] = self.tangents;
         let normal = u.cross(v).normalize_or_zero();
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
         let square = self.size * self.size;
-        for [s, t] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]] {
+        for [s, t] in [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [0.5, 0.0],
+            [0.5, 0.5],
+            [0.0, 0.5],
+        ] {
             let place = [self.at[0] + s * self.size, self.at[1] + t * self.size];
             let [uu, uv, vv] = self.jet.second_at(place).map(|c| normal.dot(c) * square);
             let bends = [uu, uu - 2.0 * uv + vv, vv];
@@ -236,7 +291,12 @@ impl<'a> RowBlock<'a> {
             0.5 * third + QUARTIC_SLOPE * fourth,
         ];
         let [height, curve, steep, first] = bounds.map(|bound| above(scale * bound));
-        Remainder { height, curve, steep, first }
+        Remainder {
+            height,
+            curve,
+            steep,
+            first,
+        }
     }
 
     /// The power of two that makes edges of parts about 1.
@@ -281,7 +341,11 @@ impl CellRows {
             let mut found = [Mark::Passes; FEW];
             let worst = self.found.mark((n * n, scale), target, extent, &mut found);
             for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
-                let list = if is_headlong { &mut marks.headlong } else { &mut marks.upright };
+                let list = if is_headlong {
+                    &mut marks.headlong
+                } else {
+                    &mut marks.upright
+                };
                 list[j * n + i] = found[number];
                 if worst == Some(number) {
                     extent.worst = Some((i, j, is_headlong, divisions));
@@ -294,12 +358,20 @@ impl CellRows {
         for j in 0..n {
             let count = n - j;
             let [first, second] = &mut self.corners;
-            let (lower, upper) = if j % 2 == 0 { (first, second) } else { (second, first) };
+            let (lower, upper) = if j % 2 == 0 {
+                (first, second)
+            } else {
+                (second, first)
+            };
             upper.fill(block, steps, (j + 1, n), &mut self.normals);
-            self.between.fill(block, steps, (j, count), [&lower.points, &upper.points]);
-            let rows = [false, true].map(|is_headlong| self.between.parts(lower, upper, is_headlong));
+            self.between
+                .fill(block, steps, (j, count), [&lower.points, &upper.points]);
+            let rows =
+                [false, true].map(|is_headlong| self.between.parts(lower, upper, is_headlong));
             let lists = [&mut marks.upright, &mut marks.headlong];
-            for (is_headlong, (parts, list)) in [false, true].into_iter().zip(rows.iter().zip(lists)) {
+            for (is_headlong, (parts, list)) in
+                [false, true].into_iter().zip(rows.iter().zip(lists))
+            {
                 let count = count - usize::from(is_headlong);
                 if count == 0 {
                     continue;
@@ -324,7 +396,13 @@ impl CornerRow {
         wide: &mut Row,
     ) {
         let (v, count) = (block.at[1] + step * j as f64, n - j);
-        block.piece.by_axis_along(v, block.at[0], step, count + 1, [&mut self.points, &mut *wide]);
+        block.piece.by_axis_along(
+            v,
+            block.at[0],
+            step,
+            count + 1,
+            [&mut self.points, &mut *wide],
+        );
         for (points, edges) in self.points.iter().zip(&mut self.edges) {
             differences(&points[..count], &points[1..count + 1], scale, edges);
         }
@@ -333,7 +411,8 @@ impl CornerRow {
             normals.for_each(|(rounded, &normal)| *rounded = normal as f32);
         }
         let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
-        self.bends.fill(uu, [block.at[0] + 0.5 * step, v], (step, count), factor);
+        self.bends
+            .fill(uu, [block.at[0] + 0.5 * step, v], (step, count), factor);
     }
 }
 
@@ -347,30 +426,57 @@ impl Between {
         [lower, upper]: [&Row; 2],
     ) {
         for axis in 0..3 {
-            differences(&lower[axis][..count], &upper[axis][..count], scale, &mut self.edges[axis]);
+            differences(
+                &lower[axis][..count],
+                &upper[axis][..count],
+                scale,
+                &mut self.edges[axis],
+            );
         }
         let (u, v) = (block.at[0], block.at[1] + step * (j as f64 + 0.5));
         let [uu, uv, vv] = block.jet.second();
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
         let factor = step * step * scale;
-        self.across.fill(&across, [u + 0.5 * step, v], (step, count), factor);
+        self.across
+            .fill(&across, [u + 0.5 * step, v], (step, count), factor);
         self.upward.fill(vv, [u, v], (step, count + 1), factor);
     }
 
     /// The parts between two rows that stand upright, or those on their heads.
-    fn parts<'r>(&'r self, lower: &'r CornerRow, upper: &'r CornerRow, is_headlong: bool) -> Parts<'r> {
+    fn parts<'r>(
+        &'r self,
+        lower: &'r CornerRow,
+        upper: &'r CornerRow,
+        is_headlong: bool,
+    ) -> Parts<'r> {
         // Those on their heads have their edge along a row in the upper one, and the others turned.
         let (own, turned) = if is_headlong { (upper, 1) } else { (lower, 0) };
-        let size = self.across.size.larger(self.upward.size).larger(own.bends.size);
+        let size = self
+            .across
+            .size
+            .larger(self.upward.size)
+            .larger(own.bends.size);
         let normals = match is_headlong {
-            false => [at(&lower.normals, 0), at(&lower.normals, 1), at(&upper.normals, 0)],
-            true => [at(&upper.normals, 1), at(&upper.normals, 0), at(&lower.normals, 1)],
+            false => [
+                at(&lower.normals, 0),
+                at(&lower.normals, 1),
+                at(&upper.normals, 0),
+            ],
+            true => [
+                at(&upper.normals, 1),
+                at(&upper.normals, 0),
+                at(&lower.normals, 1),
+            ],
         };
         Parts {
             edges: [at(&own.edges, 0), at(&self.edges, turned)],
             is_turned: is_headlong,
             normals,
-            bends: [at(&own.bends.along, 0), at(&self.across.along, 0), at(&self.upward.along, turned)],
+            bends: [
+                at(&own.bends.along, 0),
+                at(&self.across.along, 0),
+                at(&self.upward.along, turned),
+            ],
             size,
         }
     }
@@ -392,7 +498,10 @@ impl Bends {
         let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);
         let constant = (c[0] + (c[2] + c[5] * v) * v) * factor;
         let from = (square * u + linear) * u + constant;
-        let (by_one, by_two) = ((2.0 * u * square + linear) * length, square * (length * length));
+        let (by_one, by_two) = (
+            (2.0 * u * square + linear) * length,
+            square * (length * length),
+        );
         let share = 1.0 / count as f32;
         self.size = 0.0;
         for axis in 0..3 {
@@ -417,7 +526,11 @@ fn at(row: &NarrowRow, from: usize) -> Slices<'_> {
 impl QuarticJet {
     fn second_at(&self, place: Domain) -> [DVec3; 3] {
         let [uu, uv, vv] = self.second();
-        [quadratic(uu, place), quadratic(uv, place), quadratic(vv, place)]
+        [
+            quadratic(uu, place),
+            quadratic(uv, place),
+            quadratic(vv, place),
+        ]
     }
 }
 

@@ -37,7 +37,13 @@ impl Deviation {
 
     /// That of a piece which is as far from the triangle, its curves from their edges, and counts on its own.
     pub(crate) fn alone(own: f64) -> Self {
-        Self { own, height: own, drift: 0.0, slopes: [0.0; 3], across: own }
+        Self {
+            own,
+            height: own,
+            drift: 0.0,
+            slopes: [0.0; 3],
+            across: own,
+        }
     }
 
     /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that along
@@ -52,14 +58,30 @@ impl Deviation {
         }
         let height = hypotenuse(greater(self.height, moved), 2.0 * aside);
         let across = self.across + 2.0 * aside;
-        Self { own: greater(self.own, moved), height, drift: self.drift + aside, across, ..self }
+        Self {
+            own: greater(self.own, moved),
+            height,
+            drift: self.drift + aside,
+            across,
+            ..self
+        }
     }
 
     /// That of a piece each of whose points is within `distance` of one of the piece that this is for, and the other way round: so pieces
     /// at irregular vertices are bounded ([`super::bounds`]).
     pub(crate) fn grown(self, distance: f64) -> Self {
-        let Self { own, height, across, .. } = self;
-        Self { own: own + distance, height: height + distance, across: across + distance, ..self }
+        let Self {
+            own,
+            height,
+            across,
+            ..
+        } = self;
+        Self {
+            own: own + distance,
+            height: height + distance,
+            across: across + distance,
+            ..self
+        }
     }
 
     /// The greatest of the slopes.
@@ -78,7 +100,8 @@ impl Deviation {
     /// are the greatest that are allowed, by edge.
     #[inline]
     pub(crate) fn bound(&self, chord: f64, slopes: [f64; 3]) -> f64 {
-        self.among_neighbours(chord, slopes).map_or(self.own, |bound| self.own.min(bound))
+        self.among_neighbours(chord, slopes)
+            .map_or(self.own, |bound| self.own.min(bound))
     }
 
     /// The part of the bound that takes help of the neighbours; `None` where they can't help.
@@ -100,9 +123,23 @@ impl Deviation {
     /// the chord between them; and where it is a strip that covers, at the tangent of half their angle beside it at
     /// most, all of which is within that angle of the triangle's own normal or counts as little.
     pub(crate) fn apart(&self, chord: f64, slopes: [f64; 3]) -> Apart {
-        let bound = self.among_neighbours(chord, slopes).unwrap_or(f64::INFINITY);
-        let across = if bound.is_finite() { self.across.min(bound) } else { self.own };
-        let height = if bound.is_finite() { bound - across } else { 0.0 };
-        Apart { own: self.own, height, across }
+        let bound = self
+            .among_neighbours(chord, slopes)
+            .unwrap_or(f64::INFINITY);
+        let across = if bound.is_finite() {
+            self.across.min(bound)
+        } else {
+            self.own
+        };
+        let height = if bound.is_finite() {
+            bound - across
+        } else {
+            0.0
+        };
+        Apart {
+            own: self.own,
+            height,
+            across,
+        }
     }
 }

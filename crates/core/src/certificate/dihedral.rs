@@ -14,7 +14,9 @@ const UNSETTLED: (f64, [f64; 3]) = (4.0, [0.0; 3]);
 /// opposite, and the greatest slopes at which points may drift over them, by edge.
 pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f64; 3]) {
     let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
-    let Some((normal, area)) = plane(edges[0], edges[1]) else { return UNSETTLED };
+    let Some((normal, area)) = plane(edges[0], edges[1]) else {
+        return UNSETTLED;
+    };
     let lengths = edges.map(DVec3::length);
     // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
     let free = [0, 1, 2].map(|corner| {
@@ -23,10 +25,14 @@ pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f
     });
     let (mut squared, mut slopes) = (0.0f64, [STEEP; 3]);
     for edge in 0..3 {
-        let Some(opposite) = opposite[edge] else { continue };
+        let Some(opposite) = opposite[edge] else {
+            continue;
+        };
         let out = opposite - own[edge];
         // The neighbour runs along the edge the other way.
-        let Some((other, area)) = plane(out, edges[edge]) else { return UNSETTLED };
+        let Some((other, area)) = plane(out, edges[edge]) else {
+            return UNSETTLED;
+        };
         squared = squared.max(normal.distance_squared(other));
         // Tangents of the neighbour's angles at both ends: the lesser is that of the greater product.
         let at_start = out.dot(edges[edge]);
@@ -42,5 +48,7 @@ fn plane(a: DVec3, b: DVec3) -> Option<(DVec3, f64)> {
     let across = a.cross(b);
     let squared = across.length_squared();
     let area = squared.sqrt();
-    (1e-290..1e290).contains(&squared).then(|| (across / area, area))
+    (1e-290..1e290)
+        .contains(&squared)
+        .then(|| (across / area, area))
 }

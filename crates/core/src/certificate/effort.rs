@@ -47,7 +47,11 @@ impl Effort {
 
     /// The bound of a triangle that looks as far as this says.
     pub(super) fn bound<'f, P: HullPoint>(&self, frame: &'f P::Frame) -> DeviationBound<'f, P> {
-        DeviationBound { frame, open: self.open, rim_alone: self.rim_alone }
+        DeviationBound {
+            frame,
+            open: self.open,
+            rim_alone: self.rim_alone,
+        }
     }
 
     /// The triangle's own frame, if points can be looked at from there.

@@ -65,7 +65,11 @@ pub(super) fn of_net(
         }
         if borders[edge] != INSIDE {
             let over = usize::from(borders[edge]);
-            let first = if matches!(corners[edge], Corner::On(_)) { start } else { middle };
+            let first = if matches!(corners[edge], Corner::On(_)) {
+                start
+            } else {
+                middle
+            };
             greatest.curve(over, [first, second, middle, fourth].map(|at| &points[at]));
             if matches!(corners[(edge + 1) % 3], Corner::On(_)) {
                 greatest.curve(over, [&points[end]; TOGETHER]);
@@ -99,7 +103,10 @@ pub(super) fn of_points(
     if greatest.is_beside() {
         inner.iter().for_each(|&point| greatest.beside(point));
     }
-    for (edge, own) in curves.chunk_by(|a, b| a.0 == b.0).map(|own| (own[0].0, own)) {
+    for (edge, own) in curves
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|own| (own[0].0, own))
+    {
         for some in own.chunks(TOGETHER) {
             let four = from_fn(|at| &some[at.min(some.len() - 1)].1);
             greatest.most(four.map(|&point| point));
@@ -123,7 +130,10 @@ fn attained(net: &BezierTriangle<Trilinear>) -> (f64, bool) {
     let (on_edges, middle) = (on_edges.to_array(), middle.to_array());
     // Weights are positive: a number that is none, or infinite, is left in the sum.
     let is_finite = middle.iter().all(|sum| sum.is_finite());
-    ((on_edges[0] / 16.0).larger(middle[0].abs() / 81.0), is_finite)
+    (
+        (on_edges[0] / 16.0).larger(middle[0].abs() / 81.0),
+        is_finite,
+    )
 }
 
 impl<'a> Greatest<'a> {
@@ -143,7 +153,9 @@ impl<'a> Greatest<'a> {
     /// Heights of points, and where those of the surface stand to the edges.
     #[inline(always)]
     fn most<const N: usize>(&mut self, points: [Trilinear; N]) {
-        self.most = points.into_iter().fold(self.most, |most, point| most.fast_max(with_size(point)));
+        self.most = points
+            .into_iter()
+            .fold(self.most, |most, point| most.fast_max(with_size(point)));
     }
 
     /// Whether one of these may stand outside an edge.
@@ -157,12 +169,20 @@ impl<'a> Greatest<'a> {
     #[inline]
     fn beside(&mut self, point: Trilinear) {
         let on_edge = self.frame.on_edge;
-        if !point.0.simd_gt(f64x4::new([f64::INFINITY, on_edge, on_edge, on_edge])).any() {
+        if !point
+            .0
+            .simd_gt(f64x4::new([f64::INFINITY, on_edge, on_edge, on_edge]))
+            .any()
+        {
             return;
         }
         let (height, outside) = point.split();
         let mut side = 0.0f64;
-        for (edge, outside) in outside.into_iter().enumerate().filter(|&(_, outside)| outside > on_edge) {
+        for (edge, outside) in outside
+            .into_iter()
+            .enumerate()
+            .filter(|&(_, outside)| outside > on_edge)
+        {
             let along = point.beside(self.frame, edge).along;
             let room = along.min(self.frame.lengths[edge] - along);
             side = side.larger(outside);
@@ -199,14 +219,32 @@ impl<'a> Greatest<'a> {
     /// What that comes to; `None` if the points have to be looked at one by one.
     #[inline]
     fn deviation(self) -> Option<Deviation> {
-        let Self { frame, most, squared, side, drift, slopes, .. } = self;
+        let Self {
+            frame,
+            most,
+            squared,
+            side,
+            drift,
+            slopes,
+            ..
+        } = self;
         let (height, _) = Trilinear(most).split();
         let squared = squared.larger(height * height);
         // Squares of tiny lengths vanish.
-        let own = if squared > 1e-280 { squared.sqrt() } else { hypotenuse(height, side) };
+        let own = if squared > 1e-280 {
+            squared.sqrt()
+        } else {
+            hypotenuse(height, side)
+        };
         // A curve that swings less than the angles at its edge open crosses no other edge.
         let stays = (0..3).all(|edge| self.swings[edge] <= frame.slopes[edge]);
-        (stays && !self.beyond).then_some(Deviation { own, height, drift, slopes, across: 0.0 })
+        (stays && !self.beyond).then_some(Deviation {
+            own,
+            height,
+            drift,
+            slopes,
+            across: 0.0,
+        })
     }
 }
 

@@ -48,7 +48,11 @@ pub(super) trait HullPoint: Blend {
     ) -> (Option<Deviation>, f64);
 
     /// What points of the surface, and of curves over edges, come to if they can be looked at together.
-    fn points_together(frame: &Self::Frame, inner: &[Self], curves: &[(usize, Self)]) -> Option<Deviation>;
+    fn points_together(
+        frame: &Self::Frame,
+        inner: &[Self],
+        curves: &[(usize, Self)],
+    ) -> Option<Deviation>;
 }
 
 impl HullPoint for DVec3 {
@@ -169,15 +173,22 @@ impl<P: HullPoint> DeviationBound<'_, P> {
     /// The deviation of a net's points, and a height that the piece itself attains.
     pub(super) fn net(&self, net: &BezierTriangle<P>, borders: Borders) -> (Deviation, f64) {
         let (together, attained) = P::net_together(self.frame, net, borders);
-        (together.unwrap_or_else(|| self.each_of_net(net, borders)), attained)
+        (
+            together.unwrap_or_else(|| self.each_of_net(net, borders)),
+            attained,
+        )
     }
 
     /// The deviation of points of the surface, and of curves over edges.
     pub(super) fn points(&self, inner: &[P], curves: &[(usize, P)]) -> Deviation {
         P::points_together(self.frame, inner, curves).unwrap_or_else(|| {
             let mut deviation = Deviation::default();
-            inner.iter().for_each(|&point| self.inner_point(point, &mut deviation));
-            curves.iter().for_each(|&(edge, point)| self.curve_point(edge, point, &mut deviation));
+            inner
+                .iter()
+                .for_each(|&point| self.inner_point(point, &mut deviation));
+            curves
+                .iter()
+                .for_each(|&(edge, point)| self.curve_point(edge, point, &mut deviation));
             deviation
         })
     }
@@ -273,13 +284,20 @@ impl<P: HullPoint> DeviationBound<'_, P> {
     /// For a triangle that has no plane.
     fn found_alone(&self, distance: f64, deviation: &mut Deviation) {
         let slopes = [f64::INFINITY; 3];
-        *deviation = deviation.max(Deviation { slopes, ..Deviation::alone(distance) });
+        *deviation = deviation.max(Deviation {
+            slopes,
+            ..Deviation::alone(distance)
+        });
     }
 
     fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
         let room = beside.along.min(P::length(self.frame, edge) - beside.along);
         deviation.drift = greater(deviation.drift, beside.outside);
-        let slope = if room > 0.0 { beside.outside / room } else { f64::INFINITY };
+        let slope = if room > 0.0 {
+            beside.outside / room
+        } else {
+            f64::INFINITY
+        };
         deviation.slopes[edge] = greater(deviation.slopes[edge], slope);
     }
 }
@@ -301,10 +319,14 @@ mod tests {
         for case in 0..4000 {
             // A net over the triangle or a part of it, stirred.
             let noise = 0.15 * 0.5f64.powi(case % 12);
-            let mut point =
-                |x: f64, y: f64| DVec3::new(x, y, 0.0) + noise * DVec3::new(number(), number(), number());
+            let mut point = |x: f64, y: f64| {
+                DVec3::new(x, y, 0.0) + noise * DVec3::new(number(), number(), number())
+            };
             let frame = TriangleFrame::new([point(0.0, 0.0), point(1.0, 0.1), point(0.2, 0.9)]);
-            let (size, from) = ([1.0, 0.5, 0.25][case as usize % 3], [0.0, 0.2][case as usize % 2]);
+            let (size, from) = (
+                [1.0, 0.5, 0.25][case as usize % 3],
+                [0.0, 0.2][case as usize % 2],
+            );
             let mut net = BezierTriangle([DVec3::ZERO; 15]);
             let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (f64::from(j), f64::from(k))));
             for (at, (j, k)) in net.0.iter_mut().zip(places) {
@@ -312,18 +334,34 @@ mod tests {
                 *at = point(s + 0.2 * t, 0.1 * s + 0.9 * t);
             }
             let borders = [0, 2, 4].map(|shift| [0, 1, 2, INSIDE][(case as usize >> shift) % 4]);
-            let in_space = DeviationBound { frame: &frame, open: [false; 3], rim_alone: false };
+            let in_space = DeviationBound {
+                frame: &frame,
+                open: [false; 3],
+                rim_alone: false,
+            };
             let own = TrilinearFrame::of(&frame).unwrap();
-            let from_triangle =
-                DeviationBound::<Trilinear> { frame: &own, open: [false; 3], rim_alone: false };
+            let from_triangle = DeviationBound::<Trilinear> {
+                frame: &own,
+                open: [false; 3],
+                rim_alone: false,
+            };
             let seen = BezierTriangle(net.0.map(|point| own.see(point)));
-            let (found, each) = (from_triangle.net(&seen, borders).0, in_space.each_of_net(&net, borders));
+            let (found, each) = (
+                from_triangle.net(&seen, borders).0,
+                in_space.each_of_net(&net, borders),
+            );
             let each_seen = from_triangle.each_of_net(&seen, borders);
-            assert!((each_seen.own - each.own).abs() <= 1e-12, "{case}: {each_seen:?} {each:?}");
+            assert!(
+                (each_seen.own - each.own).abs() <= 1e-12,
+                "{case}: {each_seen:?} {each:?}"
+            );
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * (1.0 + b.abs()) || a == b;
             if each.slopes.iter().all(|slope| slope.is_finite()) {
                 compared += 1;
-                assert!(near(found.own, each.own) || found.own >= each.own, "{case}: {found:?} {each:?}");
+                assert!(
+                    near(found.own, each.own) || found.own >= each.own,
+                    "{case}: {found:?} {each:?}"
+                );
                 assert!(
                     near(found.height, each.height) && near(found.drift, each.drift),
                     "{case}: {found:?} {each:?}"

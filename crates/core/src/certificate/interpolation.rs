@@ -38,7 +38,10 @@ impl Sheet {
         let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
         [0, 1, 2, 3].map(|child| {
             let corners = child_corners(self.corners, middles, child);
-            Self { patch: refined.part(child), corners }
+            Self {
+                patch: refined.part(child),
+                corners,
+            }
         })
     }
 
@@ -48,13 +51,21 @@ impl Sheet {
             return self.corners;
         }
         let refined = self.patch.refined(rules);
-        part.corners(self.corners, [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge)))
+        part.corners(
+            self.corners,
+            [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge)),
+        )
     }
 
     /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
     /// above `target`. Of schemes outside Loop's family an estimate from samples.
     pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
-        self.off(part, (self.corners_of(part, rules), self.corners), target, rules)
+        self.off(
+            part,
+            (self.corners_of(part, rules), self.corners),
+            target,
+            rules,
+        )
     }
 
     /// The same for the linear function with other values at the part's corners. Where the function is not regular over a part that is
@@ -66,7 +77,11 @@ impl Sheet {
         target: f64,
         rules: &Rules<'_>,
     ) -> f64 {
-        let mut search = Search { rules, target, found: 0.0 };
+        let mut search = Search {
+            rules,
+            target,
+            found: 0.0,
+        };
         match (&self.patch, part) {
             (_, SubTriangle::Whole) => {
                 search.found = greatest_distance(own, self.corners);
@@ -111,13 +126,18 @@ impl Search<'_> {
 
     fn patch(&mut self, patch: &Patch, linear: [DVec3; 3], depth: usize) {
         match patch {
-            Patch::Regular(points) => return self.net(&BezierTriangle::of(points), linear, HALVINGS),
+            Patch::Regular(points) => {
+                return self.net(&BezierTriangle::of(points), linear, HALVINGS);
+            }
             Patch::Mesh(_) => return self.samples(patch, linear, SAMPLED_LEVELS),
             _ => {}
         }
         let mut farthest = 0.0;
         patch.for_each_hull_point(|point| {
-            let apart = linear.iter().map(|corner| point.distance(*corner)).fold(0.0, greater);
+            let apart = linear
+                .iter()
+                .map(|corner| point.distance(*corner))
+                .fold(0.0, greater);
             farthest = greater(farthest, apart);
         });
         if depth >= DEEPEST || farthest <= greater(self.found, NEGLIGIBLE * self.target) {
@@ -127,7 +147,11 @@ impl Search<'_> {
         let refined = patch.refined(self.rules);
         for regular in [true, false] {
             for child in (0..4).filter(|&child| refined.is_regular(child) == regular) {
-                self.patch(&refined.part(child), child_corners(linear, middles(linear), child), depth + 1);
+                self.patch(
+                    &refined.part(child),
+                    child_corners(linear, middles(linear), child),
+                    depth + 1,
+                );
             }
         }
     }
@@ -158,11 +182,18 @@ impl Search<'_> {
     fn samples(&mut self, patch: &Patch, linear: [DVec3; 3], levels: usize) {
         let refined = patch.refined(self.rules);
         for (edge, middle) in middles(linear).into_iter().enumerate() {
-            self.found = greater(self.found, refined.middle_as::<DVec3>(edge).distance(middle));
+            self.found = greater(
+                self.found,
+                refined.middle_as::<DVec3>(edge).distance(middle),
+            );
         }
         if levels > 1 {
             for child in 0..4 {
-                self.samples(&refined.part(child), child_corners(linear, middles(linear), child), levels - 1);
+                self.samples(
+                    &refined.part(child),
+                    child_corners(linear, middles(linear), child),
+                    levels - 1,
+                );
             }
         }
     }

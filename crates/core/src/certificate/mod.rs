@@ -39,7 +39,10 @@ pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 
 /// Whether a value is not known to be within a limit: also where either is not a number.
 #[inline]
-#[expect(clippy::neg_cmp_op_on_partial_ord, reason = "what is not a number must not pass")]
+#[expect(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "what is not a number must not pass"
+)]
 pub(crate) fn exceeds(value: f64, limit: f64) -> bool {
     !(value <= limit)
 }
@@ -47,5 +50,9 @@ pub(crate) fn exceeds(value: f64, limit: f64) -> bool {
 /// The greater of two, infinite where either is not a number.
 #[inline]
 fn greater(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
+    if a.is_nan() || b.is_nan() {
+        f64::INFINITY
+    } else {
+        a.max(b)
+    }
 }

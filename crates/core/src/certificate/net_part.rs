@@ -17,7 +17,10 @@ impl<V: Blend> NetPart<V> {
     pub(super) fn of(net: &BezierTriangle<V>, part: SubTriangle, borders: Borders) -> Self {
         match part {
             SubTriangle::Whole | SubTriangle::Child(_) => Self { net: *net, borders },
-            SubTriangle::Half { edge, second } => Self { net: net.half(edge, second), borders },
+            SubTriangle::Half { edge, second } => Self {
+                net: net.half(edge, second),
+                borders,
+            },
             SubTriangle::Quarter { edge, at_end } => {
                 let (net, borders) = quarter(net, edge, at_end, borders);
                 Self { net, borders }
@@ -58,6 +61,9 @@ fn quarter<V: Blend>(
         (net.half(end, true).half(tip, true), [edge, end, tip])
     };
     let mut turned = borders;
-    order.into_iter().zip(borders).for_each(|(at, border)| turned[at] = border);
+    order
+        .into_iter()
+        .zip(borders)
+        .for_each(|(at, border)| turned[at] = border);
     (quarter, turned)
 }

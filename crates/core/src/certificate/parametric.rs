@@ -28,15 +28,30 @@ impl SecondDerivatives {
     pub(crate) fn of(piece: &Quartic) -> Self {
         let ([uu, uv, vv], [uuu, uuv, uvv, vvv], [uuuu, uuuv, uuvv, uvvv, vvvv]) = piece.powers();
         Self([
-            [2.0 * uu, 6.0 * uuu, 2.0 * uuv, 12.0 * uuuu, 6.0 * uuuv, 2.0 * uuvv],
+            [
+                2.0 * uu,
+                6.0 * uuu,
+                2.0 * uuv,
+                12.0 * uuuu,
+                6.0 * uuuv,
+                2.0 * uuvv,
+            ],
             [uv, 2.0 * uuv, 2.0 * uvv, 3.0 * uuuv, 4.0 * uuvv, 3.0 * uvvv],
-            [2.0 * vv, 2.0 * uvv, 6.0 * vvv, 2.0 * uuvv, 6.0 * uvvv, 12.0 * vvvv],
+            [
+                2.0 * vv,
+                2.0 * uvv,
+                6.0 * vvv,
+                2.0 * uuvv,
+                6.0 * uvvv,
+                12.0 * vvvv,
+            ],
         ])
     }
 
     fn at(&self, [u, v]: Domain) -> [DVec3; 3] {
-        let value =
-            |&[c, cu, cv, cuu, cuv, cvv]: &[DVec3; 6]| (cuu * u + cuv * v + cu) * u + (cvv * v + cv) * v + c;
+        let value = |&[c, cu, cv, cuu, cuv, cvv]: &[DVec3; 6]| {
+            (cuu * u + cuv * v + cu) * u + (cvv * v + cv) * v + c
+        };
         [value(&self.0[0]), value(&self.0[1]), value(&self.0[2])]
     }
 
@@ -46,12 +61,17 @@ impl SecondDerivatives {
         let [a, b, c] = corners;
         let middle = |a: Domain, b: Domain| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let ends = [self.at(a), self.at(b), self.at(c)];
-        let between = [self.at(middle(a, b)), self.at(middle(b, c)), self.at(middle(c, a))];
+        let between = [
+            self.at(middle(a, b)),
+            self.at(middle(b, c)),
+            self.at(middle(c, a)),
+        ];
         let [mut along, mut medians] = [[0.0f64; 3]; 2];
         let mut take = |[uu, uv, vv]: [DVec3; 3]| {
             let edges = [uu, uu - 2.0 * uv + vv, vv];
             for edge in 0..3 {
-                let median = 0.5 * (edges[(edge + 1) % 3] + edges[(edge + 2) % 3]) - 0.25 * edges[edge];
+                let median =
+                    0.5 * (edges[(edge + 1) % 3] + edges[(edge + 2) % 3]) - 0.25 * edges[edge];
                 along[edge] = greater(along[edge], edges[edge].length_squared());
                 medians[edge] = greater(medians[edge], median.length_squared());
             }
@@ -59,7 +79,9 @@ impl SecondDerivatives {
         for edge in 0..3 {
             take(ends[edge]);
             let (from, to) = (&ends[edge], &ends[(edge + 1) % 3]);
-            take(core::array::from_fn(|i| 2.0 * between[edge][i] - 0.5 * (from[i] + to[i])));
+            take(core::array::from_fn(|i| {
+                2.0 * between[edge][i] - 0.5 * (from[i] + to[i])
+            }));
         }
         size * size * worst(along.map(f64::sqrt), medians.map(f64::sqrt))
     }
@@ -106,7 +128,12 @@ mod tests {
         for seed in 0..20 {
             let piece = arbitrary(f64::from(seed) * 3.3);
             let derivatives = SecondDerivatives::of(&piece);
-            let parts = [([0.0, 0.0], 1.0), ([0.25, 0.5], 0.25), ([0.5, 0.5], -0.5), ([0.125, 0.25], 0.0625)];
+            let parts = [
+                ([0.0, 0.0], 1.0),
+                ([0.25, 0.5], 0.25),
+                ([0.5, 0.5], -0.5),
+                ([0.125, 0.25], 0.0625),
+            ];
             for ([u, v], size) in parts {
                 let corners = [[u, v], [u + size, v], [u, v + size]];
                 let bound = derivatives.off_triangles(corners, size);
@@ -114,11 +141,15 @@ mod tests {
                     corner @ 0..3 => corners[corner],
                     new => {
                         let edge = new - 3;
-                        mixed([corners[edge], corners[(edge + 1) % 3], [0.0; 2]], [0.5, 0.5, 0.0])
+                        mixed(
+                            [corners[edge], corners[(edge + 1) % 3], [0.0; 2]],
+                            [0.5, 0.5, 0.0],
+                        )
                     }
                 };
                 let closures = (0..8).flat_map(|split| {
-                    [Diagonal::FromStart, Diagonal::FromEnd].map(|diagonal| closure(split, diagonal))
+                    [Diagonal::FromStart, Diagonal::FromEnd]
+                        .map(|diagonal| closure(split, diagonal))
                 });
                 for triangle in closures.flat_map(|pattern| pattern.triangles()) {
                     let places = triangle.map(place);
@@ -128,7 +159,10 @@ mod tests {
                         let [u, v] = mixed(places, weights);
                         let there = DVec3::from_array(mixed(points, weights));
                         let apart = piece.point(u, v).distance(there);
-                        assert!(apart <= bound * (1.0 + 1e-12) + 1e-14, "{apart} beyond {bound}");
+                        assert!(
+                            apart <= bound * (1.0 + 1e-12) + 1e-14,
+                            "{apart} beyond {bound}"
+                        );
                         nearest = nearest.max(apart / bound);
                     }
                 }

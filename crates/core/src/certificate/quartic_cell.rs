@@ -84,12 +84,27 @@ where
     /// The derivatives of a polynomial with these coefficients of u², uv, v², of u³ to v³, and of u⁴ to v⁴.
     #[inline]
     fn of(square: [T; 3], cubic: [T; 4], quartic: [T; 5]) -> Self {
-        let ([uu, uv, vv], [uuu, uuv, uvv, vvv], [uuuu, uuuv, uuvv, uvvv, vvvv]) = (square, cubic, quartic);
+        let ([uu, uv, vv], [uuu, uuv, uvv, vvv], [uuuu, uuuv, uuvv, uvvv, vvvv]) =
+            (square, cubic, quartic);
         Self {
             second: [
-                [uu * 2.0, uuu * 6.0, uuv * 2.0, uuuu * 12.0, uuuv * 6.0, uuvv * 2.0],
+                [
+                    uu * 2.0,
+                    uuu * 6.0,
+                    uuv * 2.0,
+                    uuuu * 12.0,
+                    uuuv * 6.0,
+                    uuvv * 2.0,
+                ],
                 [uv, uuv * 2.0, uvv * 2.0, uuuv * 3.0, uuvv * 4.0, uvvv * 3.0],
-                [vv * 2.0, uvv * 2.0, vvv * 6.0, uuvv * 2.0, uvvv * 6.0, vvvv * 12.0],
+                [
+                    vv * 2.0,
+                    uvv * 2.0,
+                    vvv * 6.0,
+                    uuvv * 2.0,
+                    uvvv * 6.0,
+                    vvvv * 12.0,
+                ],
             ],
             third: [
                 [uuu * 6.0, uuuu * 24.0, uuuv * 6.0],
@@ -128,7 +143,10 @@ impl QuarticJet {
             let ends = (c + u).length_squared().larger((c + v).length_squared());
             *most = c.length_squared().larger(ends).sqrt();
         }
-        sizes.iter_mut().zip(&jet.fourth).for_each(|(size, c): (&mut f64, &DVec3)| *size = c.length());
+        sizes
+            .iter_mut()
+            .zip(&jet.fourth)
+            .for_each(|(size, c): (&mut f64, &DVec3)| *size = c.length());
         Self {
             jet,
             powers: (square, cubic, quartic),
@@ -150,12 +168,25 @@ impl QuarticJet {
 
     /// What a part of the surface does beside the edges of the triangle of its corners; `open` edges have no neighbour. Third and fourth
     /// derivatives count by what they come to all over the piece.
-    pub(crate) fn beside(&self, cell: &Cell, frame: &TriangleFrame, open: [bool; 3]) -> BesideEdges {
+    pub(crate) fn beside(
+        &self,
+        cell: &Cell,
+        frame: &TriangleFrame,
+        open: [bool; 3],
+    ) -> BesideEdges {
         let bends = self.bends(cell);
         let (third, fourth) = self.most(reach(cell));
-        let is_folding = is_folding(frame, &bends, frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth));
+        let is_folding = is_folding(
+            frame,
+            &bends,
+            frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth),
+        );
         let steep = third / 12.0 + fourth / 48.0;
-        let rest = EdgeRest { off: CURVE_CUBIC * third + fourth / 384.0, outward: steep, along: steep };
+        let rest = EdgeRest {
+            off: CURVE_CUBIC * third + fourth / 384.0,
+            outward: steep,
+            along: steep,
+        };
         BesideEdges::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
     }
 
@@ -170,7 +201,14 @@ impl QuarticJet {
         let BesideEdges { bends, rest, .. } = known;
         let part = self.part(cell);
         let rests = [0, 1, 2].map(|edge| part.rest(edge, frame));
-        BesideEdges::of(frame, bends, rests, open, part.is_folding(frame, bends), *rest)
+        BesideEdges::of(
+            frame,
+            bends,
+            rests,
+            open,
+            part.is_folding(frame, bends),
+            *rest,
+        )
     }
 
     /// Third and fourth derivatives of a part.
@@ -196,7 +234,14 @@ impl QuarticJet {
         PartDerivatives {
             thirds: [a, across, d],
             bubble: -0.25 * (2.0 * b - a) + (across + d) / 12.0,
-            pairs: [ssss, both, rrrr, ssrr, ssss - 2.0 * sssr + ssrr, rrrr - 2.0 * srrr + ssrr],
+            pairs: [
+                ssss,
+                both,
+                rrrr,
+                ssrr,
+                ssss - 2.0 * sssr + ssrr,
+                rrrr - 2.0 * srrr + ssrr,
+            ],
             // A sixth and a third of the way from the centroid.
             middles: [
                 a + ssss / 6.0 - sssr / 3.0,
@@ -258,7 +303,9 @@ impl QuarticJet {
         if du == 0.0 {
             return quadratic(vv, at) * (dv * dv);
         }
-        quadratic(uu, at) * (du * du) + quadratic(uv, at) * (2.0 * du * dv) + quadratic(vv, at) * (dv * dv)
+        quadratic(uu, at) * (du * du)
+            + quadratic(uv, at) * (2.0 * du * dv)
+            + quadratic(vv, at) * (dv * dv)
     }
 }
 
@@ -301,7 +348,11 @@ impl PartDerivatives {
         let (outward, along) = (frame.outward(edge), frame.along(edge));
         let steep = |way: DVec3| third.dot(way).abs() / 12.0 + fourth.dot(way).abs() / 48.0;
         let off = CURVE_CUBIC * third.dot(outward).abs() + fourth.dot(outward).abs() / 384.0;
-        EdgeRest { off, outward: steep(outward), along: steep(along) }
+        EdgeRest {
+            off,
+            outward: steep(outward),
+            along: steep(along),
+        }
     }
 
     /// [`is_folding`] by them.
@@ -309,8 +360,12 @@ impl PartDerivatives {
     fn is_folding(&self, frame: &TriangleFrame, bends: &[DVec3; 3]) -> bool {
         let length = |vector: DVec3| frame.stretched_squared(vector).sqrt();
         let thirds = self.thirds.map(length).iter().sum::<f64>();
-        let fourth =
-            self.pairs.iter().map(|&pair| frame.stretched_squared(pair)).fold(0.0, f64::larger).sqrt();
+        let fourth = self
+            .pairs
+            .iter()
+            .map(|&pair| frame.stretched_squared(pair))
+            .fold(0.0, f64::larger)
+            .sqrt();
         let rest = thirds / 12.0 + 0.25 * length(self.bubble) + QUARTIC_SLOPE * fourth;
         is_folding(frame, bends, rest)
     }
@@ -339,7 +394,15 @@ impl BesideEdges {
         rest: f64,
     ) -> Self {
         let slopes = [0.0; 3];
-        let mut found = Self { side: 0.0, open: 0.0, drift: 0.0, slopes, loose: None, bends: *bends, rest };
+        let mut found = Self {
+            side: 0.0,
+            open: 0.0,
+            drift: 0.0,
+            slopes,
+            loose: None,
+            bends: *bends,
+            rest,
+        };
         let mut is_plain = !frame.is_flat() && !is_folding;
         for edge in 0..3 {
             // Outwards where the derivative points inwards.
@@ -361,7 +424,11 @@ impl BesideEdges {
             }
         }
         if !is_plain {
-            let most = bends.iter().map(|bend| bend.length_squared()).fold(0.0, f64::max).sqrt();
+            let most = bends
+                .iter()
+                .map(|bend| bend.length_squared())
+                .fold(0.0, f64::max)
+                .sqrt();
             found.loose = Some((most + rest) / 6.0);
         }
         found
@@ -375,12 +442,21 @@ impl BesideEdges {
     /// The deviation where the surface is so high at most.
     pub(crate) fn deviation(&self, height: f64) -> Deviation {
         match self.loose {
-            Some(own) => Deviation { slopes: [f64::INFINITY; 3], ..Deviation::alone(own) },
+            Some(own) => Deviation {
+                slopes: [f64::INFINITY; 3],
+                ..Deviation::alone(own)
+            },
             None => {
                 let alone = hypotenuse(height, self.open);
                 let across = if self.open > 0.0 { alone } else { 0.0 };
                 let (own, drift, slopes) = (hypotenuse(height, self.side), self.drift, self.slopes);
-                Deviation { own, height: alone, drift, slopes, across }
+                Deviation {
+                    own,
+                    height: alone,
+                    drift,
+                    slopes,
+                    across,
+                }
             }
         }
     }
@@ -396,8 +472,18 @@ impl BesideEdges {
         if self.loose.is_some() {
             return self.deviation(height).grown(moved);
         }
-        let farther = |distance: f64| if distance > 0.0 { distance + aside } else { 0.0 };
-        let moved_piece = Self { side: self.side + aside, open: farther(self.open), ..*self };
+        let farther = |distance: f64| {
+            if distance > 0.0 {
+                distance + aside
+            } else {
+                0.0
+            }
+        };
+        let moved_piece = Self {
+            side: self.side + aside,
+            open: farther(self.open),
+            ..*self
+        };
         moved_piece.deviation(height).off(moved, aside)
     }
 }
@@ -406,7 +492,11 @@ impl BesideEdges {
 /// and what third and fourth ones may change in the first derivatives along edges, in the metric of the triangle.
 #[inline]
 fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
-    let most = bends.iter().map(|&bend| frame.stretched_squared(bend)).fold(0.0, f64::max).sqrt();
+    let most = bends
+        .iter()
+        .map(|&bend| frame.stretched_squared(bend))
+        .fold(0.0, f64::max)
+        .sqrt();
     // Fails for what is not a number.
     let is_apart = most + DIRECTIONS * rest < NEARLY_ONE;
     !is_apart
@@ -416,7 +506,10 @@ fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
 #[inline]
 fn reach(&Cell([a, b, c]): &Cell) -> f64 {
     let edges = [minus(b, a), minus(c, b), minus(a, c)];
-    edges.as_flattened().iter().fold(0.0, |most, x| most.larger(x.abs()))
+    edges
+        .as_flattened()
+        .iter()
+        .fold(0.0, |most, x| most.larger(x.abs()))
 }
 
 /// A symmetric form with one direction put in: N − 1 = M.

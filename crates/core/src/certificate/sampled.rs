@@ -31,7 +31,8 @@ impl Samples {
         let corners = places_of(part, UNIT);
         let mut deviation = Deviation::default();
         for &(place, point) in &self.0 {
-            let within = [0, 1, 2].map(|i| determinant([place, corners[(i + 1) % 3], corners[(i + 2) % 3]]));
+            let within =
+                [0, 1, 2].map(|i| determinant([place, corners[(i + 1) % 3], corners[(i + 2) % 3]]));
             if within.iter().any(|&x| x < 0) {
                 continue;
             }
@@ -86,8 +87,20 @@ mod tests {
         let mut shares = Vec::new();
         for i in 0..3 {
             for flag in [false, true] {
-                shares.push((SubTriangle::Half { edge: i, second: flag }, 2));
-                shares.push((SubTriangle::Quarter { edge: i, at_end: flag }, 4));
+                shares.push((
+                    SubTriangle::Half {
+                        edge: i,
+                        second: flag,
+                    },
+                    2,
+                ));
+                shares.push((
+                    SubTriangle::Quarter {
+                        edge: i,
+                        at_end: flag,
+                    },
+                    4,
+                ));
             }
             shares.push((SubTriangle::Child(i), 4));
         }

@@ -73,7 +73,12 @@ pub(super) struct Search<'a, P: HullPoint> {
 
 impl<'a, P: HullPoint> Search<'a, P> {
     pub(super) fn of(bound: DeviationBound<'a, P>, rules: &'a Rules<'a>, effort: Effort) -> Self {
-        Self { bound, rules, effort, found: Deviation::default() }
+        Self {
+            bound,
+            rules,
+            effort,
+            found: Deviation::default(),
+        }
     }
 
     /// A piece as it is seen.
@@ -83,14 +88,28 @@ impl<'a, P: HullPoint> Search<'a, P> {
 
     /// The net of a piece, or of a part of one.
     pub(super) fn own_net(&mut self, part: &NetPart) {
-        self.net(&part.seen(self.bound.frame), part.borders, self.effort.halvings);
+        self.net(
+            &part.seen(self.bound.frame),
+            part.borders,
+            self.effort.halvings,
+        );
     }
 
     /// A part of a piece that nothing is derived from yet.
-    pub(super) fn part(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) {
+    pub(super) fn part(
+        &mut self,
+        patch: &Patch,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) {
         match (patch, part) {
             (_, SubTriangle::Child(child)) => {
-                self.refined(&patch.refined(self.rules), (child, SubTriangle::Whole, borders), depth + 1);
+                self.refined(
+                    &patch.refined(self.rules),
+                    (child, SubTriangle::Whole, borders),
+                    depth + 1,
+                );
             }
             (Patch::Regular(points), _) => self.regular_in_space(points, part, borders),
             (Patch::Extraordinary(piece), _) => {
@@ -116,7 +135,9 @@ impl<'a, P: HullPoint> Search<'a, P> {
 
     fn regular_in_space(&mut self, points: &Points, part: SubTriangle, borders: Borders) {
         let mut seen = [P::default(); 12];
-        seen.iter_mut().zip(points).for_each(|(seen, &point)| *seen = P::of(self.bound.frame, point));
+        seen.iter_mut()
+            .zip(points)
+            .for_each(|(seen, &point)| *seen = P::of(self.bound.frame, point));
         self.regular(&seen, part, borders);
     }
 
@@ -146,13 +167,20 @@ impl<'a, P: HullPoint> Search<'a, P> {
     fn with(&self, deviation: Deviation) -> Deviation {
         // A slope that is too great must not spoil what others are good for.
         let counts = deviation.is_within(self.effort.slopes);
-        self.found.max(if counts { deviation } else { Deviation::alone(deviation.own) })
+        self.found.max(if counts {
+            deviation
+        } else {
+            Deviation::alone(deviation.own)
+        })
     }
 
     fn add(&mut self, deviation: Deviation) {
         self.found = self.with(deviation);
         if let Some(chord) = self.effort.least_chord
-            && exceeds(self.found.bound(chord, self.effort.slopes), self.effort.target)
+            && exceeds(
+                self.found.bound(chord, self.effort.slopes),
+                self.effort.target,
+            )
         {
             self.found = Deviation::alone(f64::INFINITY);
         }
@@ -182,8 +210,13 @@ impl<'a, P: HullPoint> Search<'a, P> {
         // The longest edge, so that the pieces stay as round as they can be.
         let [a, b, c] = net.corners();
         let lengths = [b - a, c - b, a - c].map(|side| side.length_squared(self.bound.frame));
-        let edge =
-            (1..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
+        let edge = (1..3).fold(0, |longest, edge| {
+            if lengths[edge] > lengths[longest] {
+                edge
+            } else {
+                longest
+            }
+        });
         let halves = net.halves(edge);
         for (half, cut) in halves.iter().zip([(edge + 1) % 3, (edge + 2) % 3]) {
             let mut sides = borders;
@@ -209,21 +242,40 @@ impl<'a, P: HullPoint> Search<'a, P> {
                 };
                 self.pieces(
                     refined,
-                    [inner(0), inner(1), inner(2), (3, SubTriangle::Whole, [INSIDE; 3])],
+                    [
+                        inner(0),
+                        inner(1),
+                        inner(2),
+                        (3, SubTriangle::Whole, [INSIDE; 3]),
+                    ],
                     depth,
                 );
             }
-            SubTriangle::Child(child) => self.pieces(refined, [(child, SubTriangle::Whole, borders)], depth),
+            SubTriangle::Child(child) => {
+                self.pieces(refined, [(child, SubTriangle::Whole, borders)], depth)
+            }
             SubTriangle::Half { edge, second } => self.half(refined, edge, second, borders, depth),
-            SubTriangle::Quarter { edge, at_end } => self.quarter(refined, edge, at_end, borders, depth),
+            SubTriangle::Quarter { edge, at_end } => {
+                self.quarter(refined, edge, at_end, borders, depth)
+            }
         }
     }
 
     /// The pieces that make up a half; see [`SubTriangle::Half`].
-    fn half(&mut self, refined: &impl Parts<P>, edge: usize, second: bool, borders: Borders, depth: usize) {
+    fn half(
+        &mut self,
+        refined: &impl Parts<P>,
+        edge: usize,
+        second: bool,
+        borders: Borders,
+        depth: usize,
+    ) {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
         let half = SubTriangle::Half { edge, second };
-        let other = SubTriangle::Half { edge, second: !second };
+        let other = SubTriangle::Half {
+            edge,
+            second: !second,
+        };
         let (mut whole, mut middle, mut tip) = ([INSIDE; 3], [INSIDE; 3], [INSIDE; 3]);
         (tip[next], tip[last]) = (borders[next], borders[last]);
         whole[edge] = borders[edge];
@@ -238,7 +290,11 @@ impl<'a, P: HullPoint> Search<'a, P> {
         };
         self.pieces(
             refined,
-            [(3, other, middle), (kept, SubTriangle::Whole, whole), (last, half, tip)],
+            [
+                (3, other, middle),
+                (kept, SubTriangle::Whole, whole),
+                (last, half, tip),
+            ],
             depth,
         );
     }
@@ -263,14 +319,43 @@ impl<'a, P: HullPoint> Search<'a, P> {
             (middle[tip], middle[edge]) = (borders[0], borders[1]);
             (edge, end)
         };
-        let own = (at, SubTriangle::Half { edge: cut, second: !at_end }, corner);
-        self.pieces(refined, [(3, SubTriangle::Half { edge: cut, second: at_end }, middle), own], depth);
+        let own = (
+            at,
+            SubTriangle::Half {
+                edge: cut,
+                second: !at_end,
+            },
+            corner,
+        );
+        self.pieces(
+            refined,
+            [
+                (
+                    3,
+                    SubTriangle::Half {
+                        edge: cut,
+                        second: at_end,
+                    },
+                    middle,
+                ),
+                own,
+            ],
+            depth,
+        );
     }
 
     /// Pieces of the parts of a refinement: the regular ones first, so that little is left to do for the others.
-    fn pieces<const N: usize>(&mut self, refined: &impl Parts<P>, pieces: [PartOf; N], depth: usize) {
+    fn pieces<const N: usize>(
+        &mut self,
+        refined: &impl Parts<P>,
+        pieces: [PartOf; N],
+        depth: usize,
+    ) {
         for regular in [true, false] {
-            for part in pieces.into_iter().filter(|part| refined.is_regular(part.0) == regular) {
+            for part in pieces
+                .into_iter()
+                .filter(|part| refined.is_regular(part.0) == regular)
+            {
                 self.refined(refined, part, depth + 1);
             }
         }

@@ -33,7 +33,10 @@ impl SubTriangle {
         let edges = || (0..3).flat_map(|edge| [(edge, false), (edge, true)]);
         let halves = edges().map(|(edge, second)| Self::Half { edge, second });
         let quarters = edges().map(|(edge, at_end)| Self::Quarter { edge, at_end });
-        core::iter::once(Self::Whole).chain((0..4).map(Self::Child)).chain(halves).chain(quarters)
+        core::iter::once(Self::Whole)
+            .chain((0..4).map(Self::Child))
+            .chain(halves)
+            .chain(quarters)
     }
 
     /// What is at its corners, given what is at those of the domain and in the middles of its edges.
@@ -48,7 +51,11 @@ impl SubTriangle {
             }
             Self::Quarter { edge, at_end } => {
                 let from = (edge + usize::from(at_end)) % 3;
-                [corners[from], middles[(edge + 1) % 3], middles[(edge + 2) % 3]]
+                [
+                    corners[from],
+                    middles[(edge + 1) % 3],
+                    middles[(edge + 2) % 3],
+                ]
             }
         }
     }

@@ -56,7 +56,11 @@ pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
 #[inline]
 fn greatest_coordinate<'a>(vectors: impl Iterator<Item = &'a DVec3>) -> f64 {
     let larger = |most: DVec3, v: &DVec3| {
-        DVec3::new(most.x.larger(v.x.abs()), most.y.larger(v.y.abs()), most.z.larger(v.z.abs()))
+        DVec3::new(
+            most.x.larger(v.x.abs()),
+            most.y.larger(v.y.abs()),
+            most.z.larger(v.z.abs()),
+        )
     };
     let most = vectors.fold(DVec3::ZERO, larger);
     most.x.larger(most.y).larger(most.z)
@@ -80,11 +84,20 @@ impl TriangleFrame {
         };
         let across = along[0].cross(along[1]);
         let sine = across.length();
-        let mut normal = if sine > FLAT { across / sine } else { DVec3::ZERO };
+        let mut normal = if sine > FLAT {
+            across / sine
+        } else {
+            DVec3::ZERO
+        };
         if sine < SLIVER && normal != DVec3::ZERO {
             // Rounding must not tilt a sliver along its length.
-            let longest =
-                (1..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
+            let longest = (1..3).fold(0, |longest, edge| {
+                if lengths[edge] > lengths[longest] {
+                    edge
+                } else {
+                    longest
+                }
+            });
             normal = unit_or_zero(normal - normal.dot(along[longest]) * along[longest]);
         }
         let outward = along.map(|edge| edge.cross(normal));
@@ -155,7 +168,11 @@ impl TriangleFrame {
         let offset = point - self.corners[edge];
         let outside = self.outward[edge].dot(offset);
         Beside {
-            outside: if exceeds(outside, self.on_edge) { outside } else { 0.0 },
+            outside: if exceeds(outside, self.on_edge) {
+                outside
+            } else {
+                0.0
+            },
             along: self.along[edge].dot(offset),
         }
     }
@@ -164,7 +181,10 @@ impl TriangleFrame {
     #[inline]
     pub(crate) fn squared_to_edge(&self, edge: usize, point: DVec3) -> f64 {
         let offset = point - self.corners[edge];
-        let foot = offset.dot(self.along[edge]).max(0.0).min(self.lengths[edge]);
+        let foot = offset
+            .dot(self.along[edge])
+            .max(0.0)
+            .min(self.lengths[edge]);
         (offset - foot * self.along[edge]).length_squared()
     }
 
@@ -201,7 +221,8 @@ impl TriangleFrame {
     #[inline]
     pub(super) fn stretched_squared(&self, vector: DVec3) -> f64 {
         let changes = [0, 1, 2].map(|edge| self.outward[edge].dot(vector) * self.lengths[edge]);
-        0.5 * changes.iter().map(|change| change * change).sum::<f64>() / self.parallelogram().powi(2)
+        0.5 * changes.iter().map(|change| change * change).sum::<f64>()
+            / self.parallelogram().powi(2)
     }
 
     /// What that metric stretches lengths within the plane by at most. With the barycentric gradients' squares, whose sum is twice the
@@ -209,7 +230,13 @@ impl TriangleFrame {
     #[inline]
     pub(super) fn stretch(&self) -> f64 {
         let square = self.parallelogram().powi(2);
-        let half_trace = 0.25 * self.lengths.iter().map(|length| length * length).sum::<f64>() / square;
+        let half_trace = 0.25
+            * self
+                .lengths
+                .iter()
+                .map(|length| length * length)
+                .sum::<f64>()
+            / square;
         let determinant = 0.75 / square;
         (half_trace + (half_trace * half_trace - determinant).max(0.0).sqrt()).sqrt()
     }

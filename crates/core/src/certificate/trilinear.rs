@@ -47,7 +47,10 @@ pub(super) struct TrilinearFrame {
 impl TrilinearFrame {
     /// The frame of a triangle; `None` if too many digits would be lost, or it is not of numbers.
     pub(super) fn of(triangle: &TriangleFrame) -> Option<Self> {
-        let (up, outward) = (triangle.normal(), [0, 1, 2].map(|edge| triangle.outward(edge)));
+        let (up, outward) = (
+            triangle.normal(),
+            [0, 1, 2].map(|edge| triangle.outward(edge)),
+        );
         let along = [0, 1, 2].map(|edge| triangle.along(edge));
         // By corner, of the edges that meet there.
         let sines = [0, 1, 2].map(|corner| -outward[(corner + 2) % 3].dot(along[corner]));
@@ -60,7 +63,8 @@ impl TrilinearFrame {
             f64x4::new([of(up), a, b, c])
         };
         let [a, b, c] = [0, 1, 2].map(|edge| triangle.offset(edge));
-        let weights = [0, 1, 2].map(|edge| cosines[(edge + 2) % 3] / (sines[edge] * sines[(edge + 1) % 3]));
+        let weights =
+            [0, 1, 2].map(|edge| cosines[(edge + 2) % 3] / (sines[edge] * sines[(edge + 1) % 3]));
         if !weights.iter().all(|weight| weight.abs() <= MOST_LOST) {
             return None;
         }
@@ -115,7 +119,14 @@ impl Trilinear {
         let own = outside[edge];
         let [by_before, by_own] = frame.shares_along(edge);
         let along = by_before * outside[(edge + 2) % 3] + by_own * own;
-        Beside { outside: if exceeds(own, frame.on_edge) { own } else { 0.0 }, along }
+        Beside {
+            outside: if exceeds(own, frame.on_edge) {
+                own
+            } else {
+                0.0
+            },
+            along,
+        }
     }
 
     fn is_finite(self) -> bool {
@@ -142,7 +153,10 @@ impl Trilinear {
         if outside.iter().all(|&outside| outside <= 0.0) {
             return height * height;
         }
-        [0, 1, 2].map(|edge| self.squared_to_edge(frame, edge)).into_iter().fold(f64::INFINITY, f64::min)
+        [0, 1, 2]
+            .map(|edge| self.squared_to_edge(frame, edge))
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -213,7 +227,11 @@ mod tests {
             let size = 10f64.powi(case % 7 - 3);
             let (a, b) = (size * vector(), size * vector());
             // Now and then a thin one.
-            let thin = if case % 3 == 0 { 0.3f64.powi(case % 8) } else { 1.0 };
+            let thin = if case % 3 == 0 {
+                0.3f64.powi(case % 8)
+            } else {
+                1.0
+            };
             let triangle = TriangleFrame::new([a, a + b, a + 0.4 * b + thin * size * vector()]);
             let Some(frame) = TrilinearFrame::of(&triangle) else {
                 slivers += 1;
@@ -221,7 +239,10 @@ mod tests {
             };
             seen += 1;
             let near = |a: f64, b: f64, size: f64| {
-                assert!((a - b).abs() <= 1e-12 * size.max(b.abs()), "{case}: {a} {b} {triangle:?}");
+                assert!(
+                    (a - b).abs() <= 1e-12 * size.max(b.abs()),
+                    "{case}: {a} {b} {triangle:?}"
+                );
             };
             let (point, other) = (a + 2.0 * size * vector(), a + 2.0 * size * vector());
             let (own, second) = (frame.see(point), frame.see(other));
@@ -234,14 +255,22 @@ mod tests {
                 near(own.squared_to_edge(&frame, edge), squared, size * size);
             }
             near(own.squared(&frame), triangle.squared(point), size * size);
-            near(frame.length_squared(own - second), point.distance_squared(other), size * size);
+            near(
+                frame.length_squared(own - second),
+                point.distance_squared(other),
+                size * size,
+            );
         }
         assert!(seen > 2000 && slivers > 50, "{seen}, {slivers}");
     }
 
     #[test]
     fn what_is_not_a_number_is_near_nothing() {
-        let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.3, 0.8, 0.0)];
+        let corners = [
+            DVec3::ZERO,
+            DVec3::new(1.0, 0.0, 0.0),
+            DVec3::new(0.3, 0.8, 0.0),
+        ];
         let frame = TrilinearFrame::of(&TriangleFrame::new(corners)).unwrap();
         for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for axis in 0..3 {

@@ -60,7 +60,11 @@ impl Criterion for LimitNormal {
                 }
             };
             let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
-            ratio(normal, corners.map(|corner| vector(normals.at(mesh.topology(), corner))), limit)
+            ratio(
+                normal,
+                corners.map(|corner| vector(normals.at(mesh.topology(), corner))),
+                limit,
+            )
         }))
     }
 }
@@ -68,7 +72,10 @@ impl Criterion for LimitNormal {
 /// How many times over a triangle's normal leaves the cones of that angle around the limit normals of its corners. All
 /// are of unit length; those that are zero have no say.
 pub(crate) fn ratio(normal: DVec3, corners: [DVec3; 3], limit: f64) -> f64 {
-    let cosines = corners.iter().filter(|&&corner| corner != DVec3::ZERO).map(|corner| corner.dot(normal));
+    let cosines = corners
+        .iter()
+        .filter(|&&corner| corner != DVec3::ZERO)
+        .map(|corner| corner.dot(normal));
     match cosines.reduce(f64::min) {
         Some(cosine) if normal != DVec3::ZERO => angle_ratio(cosine, limit),
         _ => 0.0,
@@ -112,7 +119,12 @@ mod tests {
 
     fn region(random: &mut Random) -> Region {
         let (centre, axis) = (random.signed() * random.direction(), random.direction());
-        Region { centre, axis, radius: 0.3 * random.signed().abs(), sine: 0.5 * random.signed().abs() }
+        Region {
+            centre,
+            axis,
+            radius: 0.3 * random.signed().abs(),
+            sine: 0.5 * random.signed().abs(),
+        }
     }
 
     fn criterion(random: &mut Random) -> LimitNormal {
@@ -121,15 +133,22 @@ mod tests {
         } else {
             Viewpoint::Eye((2.0 * random.direction()).to_array())
         };
-        LimitNormal::new(0.1).view(View { viewpoint, dilatation: 2.0 + 2.0 * random.signed() })
+        LimitNormal::new(0.1).view(View {
+            viewpoint,
+            dilatation: 2.0 + 2.0 * random.signed(),
+        })
     }
 
     /// A point of a region and a normal.
     fn within(random: &mut Random, region: &Region) -> (DVec3, DVec3) {
         let sine = region.sine * random.signed().abs().sqrt().sqrt();
         let across = region.axis.cross(random.direction()).normalize();
-        let point = region.centre + region.radius * random.signed().abs().sqrt().sqrt() * random.direction();
-        (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
+        let point = region.centre
+            + region.radius * random.signed().abs().sqrt().sqrt() * random.direction();
+        (
+            point,
+            (1.0 - sine * sine).sqrt() * region.axis + sine * across,
+        )
     }
 
     /// Equation (11) by hand, not below the angle.
@@ -140,7 +159,11 @@ mod tests {
             Viewpoint::Eye(eye) => point - vector(eye),
         };
         let facing = -sight.dot(normal) / sight.length();
-        if facing < 0.0 { f64::INFINITY } else { (0.1 * view.dilatation * facing).clamp(0.1, 3.15) }
+        if facing < 0.0 {
+            f64::INFINITY
+        } else {
+            (0.1 * view.dilatation * facing).clamp(0.1, 3.15)
+        }
     }
 
     #[test]
@@ -155,13 +178,19 @@ mod tests {
             for _ in 0..60 {
                 let (point, normal) = within(&mut random, &region);
                 let found = limit(&criterion, point, normal);
-                assert!(allowed <= found * (1.0 + 1e-12), "{allowed} {found} {criterion:?} {region:?}");
+                assert!(
+                    allowed <= found * (1.0 + 1e-12),
+                    "{allowed} {found} {criterion:?} {region:?}"
+                );
                 if allowed > 0.1 && allowed.is_finite() {
                     closest = closest.min(found / allowed);
                 }
             }
         }
-        assert!(unseen > 200 && wide > 200 && closest < 1.02, "{unseen} {wide} {closest}");
+        assert!(
+            unseen > 200 && wide > 200 && closest < 1.02,
+            "{unseen} {wide} {closest}"
+        );
     }
 
     #[test]
@@ -170,22 +199,42 @@ mod tests {
         for _ in 0..20_000 {
             let (criterion, region) = (criterion(&mut random), region(&mut random));
             let share = random.signed().abs();
-            let centre = region.centre + (1.0 - share) * region.radius * random.signed() * random.direction();
+            let centre = region.centre
+                + (1.0 - share) * region.radius * random.signed() * random.direction();
             let (_, axis) = within(&mut random, &region);
             let turn = region.axis.dot(axis).clamp(-1.0, 1.0).acos();
             let sine = (region.sine.asin() - turn).max(0.0).sin();
-            let inner = Region { centre, radius: share * region.radius, axis, sine };
-            let (outer, less) = (criterion.allowed_angle(&region), criterion.allowed_angle(&inner));
-            assert!(less >= outer * (1.0 - 1e-6), "{outer} {less}: {criterion:?} {region:?} {inner:?}");
+            let inner = Region {
+                centre,
+                radius: share * region.radius,
+                axis,
+                sine,
+            };
+            let (outer, less) = (
+                criterion.allowed_angle(&region),
+                criterion.allowed_angle(&inner),
+            );
+            assert!(
+                less >= outer * (1.0 - 1e-6),
+                "{outer} {less}: {criterion:?} {region:?} {inner:?}"
+            );
         }
     }
 
     /// Without a viewer, and with one who sees nothing but silhouettes, the angle is the one that was asked for.
     #[test]
     fn a_viewer_never_asks_for_more() {
-        let region = Region { centre: DVec3::ZERO, radius: 0.1, axis: DVec3::X, sine: 1.0 };
+        let region = Region {
+            centre: DVec3::ZERO,
+            radius: 0.1,
+            axis: DVec3::X,
+            sine: 1.0,
+        };
         assert_eq!(LimitNormal::new(0.2).allowed_angle(&region), 0.2);
-        let view = View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation: 0.5 };
+        let view = View {
+            viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]),
+            dilatation: 0.5,
+        };
         assert_eq!(LimitNormal::new(0.2).view(view).allowed_angle(&region), 0.2);
         assert_eq!(LimitNormal::new(5f64.to_radians()).deepest(), 14);
     }

@@ -42,8 +42,14 @@ impl Criteria {
         pixels: Option<Pixels>,
         rounding: f64,
     ) -> Result<Self, CriterionError> {
-        cone.and_then(|cone| cone.view).map_or(Ok(()), |view| view.check())?;
-        Ok(Self { distance, cone, pixels, rounding })
+        cone.and_then(|cone| cone.view)
+            .map_or(Ok(()), |view| view.check())?;
+        Ok(Self {
+            distance,
+            cone,
+            pixels,
+            rounding,
+        })
     }
 
     /// Whether anything is asked for.
@@ -80,7 +86,9 @@ impl Criteria {
         mut is_back: impl FnMut(usize, &Viewpoint, f64) -> Option<f64>,
     ) -> Backs {
         let cameras = self.pixels.as_ref();
-        let mut backs = cameras.map_or(Backs::nobodys(), |pixels| pixels.backs(region, &mut is_back));
+        let mut backs = cameras.map_or(Backs::nobodys(), |pixels| {
+            pixels.backs(region, &mut is_back)
+        });
         if let Some(view) = self.cone.and_then(|cone| cone.view) {
             let viewer = cameras.map_or(0, Pixels::viewers);
             backs.view = is_back(viewer, &view.viewpoint, VIEW_REST * region.radius).is_some();
@@ -107,7 +115,9 @@ impl Criteria {
             None if self.is_some() => 0.0,
             None => apart.least(),
         };
-        let Some(pixels) = &self.pixels else { return plain };
+        let Some(pixels) = &self.pixels else {
+            return plain;
+        };
         let allowed = pixels.allowed(region, backs);
         let own = (apart.own + self.rounding) / allowed.length;
         let among = apart.height / allowed.height + (apart.across + self.rounding) / allowed.length;
@@ -117,7 +127,9 @@ impl Criteria {
     /// Whether there are cameras and none sees more of a region than its back.
     pub(crate) fn is_unseen(&self, region: &Region, backs: &Backs) -> bool {
         let allowed = |pixels: &Pixels| pixels.allowed_length(region.centre, region.radius, backs);
-        self.pixels.as_ref().is_some_and(|pixels| allowed(pixels) == f64::INFINITY)
+        self.pixels
+            .as_ref()
+            .is_some_and(|pixels| allowed(pixels) == f64::INFINITY)
     }
 
     /// How many pixels a distance comes to at most; `None` without cameras.

@@ -14,7 +14,9 @@ impl Distance {
     /// `rounding` is what rounding may add to a bound. What is within that needs no more triangles; a tolerance
     /// below it is not called met.
     pub(crate) fn new(tolerance: f64, rounding: f64) -> Self {
-        Self { allowed: (tolerance - rounding).max(rounding).max(LEAST) }
+        Self {
+            allowed: (tolerance - rounding).max(rounding).max(LEAST),
+        }
     }
 
     /// The greatest bound that is good enough.

@@ -50,7 +50,11 @@ fn check_angle(angle: f64) -> Result<(), CriterionError> {
     if (0.0..=core::f64::consts::PI).contains(&angle) {
         return Ok(());
     }
-    Err(CriterionError::BadParameter { name: "angle", value: angle, expected: "radians from 0 to π" })
+    Err(CriterionError::BadParameter {
+        name: "angle",
+        value: angle,
+        expected: "radians from 0 to π",
+    })
 }
 
 /// The least ratio that fails.
@@ -61,7 +65,11 @@ const JUST_TOO_BAD: f64 = 1.0 + f64::EPSILON;
 /// Whether it passes is decided by the cosines, so that the arc's rounding does not count.
 fn angle_ratio(cosine: f64, limit: f64) -> f64 {
     let ratio = cosine.clamp(-1.0, 1.0).acos() / limit;
-    if cosine < limit.cos() { ratio.max(JUST_TOO_BAD) } else { ratio.min(1.0) }
+    if cosine < limit.cos() {
+        ratio.max(JUST_TOO_BAD)
+    } else {
+        ratio.min(1.0)
+    }
 }
 
 /// Says how badly faces stand for the surface.
@@ -81,6 +89,10 @@ pub trait Criterion: Sync {
     /// # Errors
     /// As for [`Self::ratios`].
     fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
-        Ok(self.ratios(mesh, limits)?.into_iter().map(|ratio| ratio > 1.0).collect())
+        Ok(self
+            .ratios(mesh, limits)?
+            .into_iter()
+            .map(|ratio| ratio > 1.0)
+            .collect())
     }
 }

@@ -43,7 +43,9 @@ impl Criterion for NeighbourNormal {
                 let counts = other.length_squared() > 0.0 && sharpness.edge(h) < INFINITELY_SHARP;
                 counts.then(|| other.dot(normal))
             });
-            cosines.reduce(f64::min).map_or(0.0, |cosine| angle_ratio(cosine, self.angle))
+            cosines
+                .reduce(f64::min)
+                .map_or(0.0, |cosine| angle_ratio(cosine, self.angle))
         }))
     }
 }

@@ -111,9 +111,17 @@ impl Pixels {
     ///
     /// # Errors
     /// A camera that looks nowhere, has no upright, no picture or an impossible angle.
-    pub(crate) fn new(limit: f64, cameras: &[Camera], is_closed: bool) -> Result<Self, CriterionError> {
+    pub(crate) fn new(
+        limit: f64,
+        cameras: &[Camera],
+        is_closed: bool,
+    ) -> Result<Self, CriterionError> {
         let lenses = cameras.iter().map(Lens::new).collect::<Result<_, _>>()?;
-        Ok(Self { limit, is_closed, lenses })
+        Ok(Self {
+            limit,
+            is_closed,
+            lenses,
+        })
     }
 
     /// How many cameras there are that something may look away from.
@@ -133,9 +141,12 @@ impl Pixels {
             return backs;
         }
         for (camera, lens) in self.lenses.iter().enumerate() {
-            let Some(glance) = lens.glance(region.centre, region.radius) else { continue };
+            let Some(glance) = lens.glance(region.centre, region.radius) else {
+                continue;
+            };
             let viewpoint = Viewpoint::Eye(lens.eye.to_array());
-            let Some(rest) = is_back(camera, &viewpoint, REST * glance.allowed(self.limit, 1.0)) else {
+            let Some(rest) = is_back(camera, &viewpoint, REST * glance.allowed(self.limit, 1.0))
+            else {
                 continue;
             };
             let rest = lens
@@ -154,7 +165,8 @@ impl Pixels {
     /// Never less for a ball within the ball.
     pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64, backs: &Backs) -> f64 {
         let seen = self.glances(centre, radius, backs);
-        seen.map(|glance| glance.allowed(self.limit, 1.0)).fold(f64::INFINITY, f64::min)
+        seen.map(|glance| glance.allowed(self.limit, 1.0))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The same in any direction and along the normals of a region. Neither is less than [`Self::allowed_length`].
@@ -162,11 +174,17 @@ impl Pixels {
     /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
     /// half of the other are within the limit together.
     pub(crate) fn allowed(&self, region: &Region, backs: &Backs) -> Allowed {
-        let nothing = Allowed { length: f64::INFINITY, height: f64::INFINITY };
-        self.glances(region.centre, region.radius, backs).fold(nothing, |least, glance| Allowed {
-            length: least.length.min(glance.allowed(self.limit, 1.0)),
-            height: least.height.min(glance.allowed(self.limit, glance.sine(region))),
-        })
+        let nothing = Allowed {
+            length: f64::INFINITY,
+            height: f64::INFINITY,
+        };
+        self.glances(region.centre, region.radius, backs)
+            .fold(nothing, |least, glance| Allowed {
+                length: least.length.min(glance.allowed(self.limit, 1.0)),
+                height: least
+                    .height
+                    .min(glance.allowed(self.limit, glance.sine(region))),
+            })
     }
 
     /// How many times over what is not certain of those that see the back is more than the limit.
@@ -178,13 +196,19 @@ impl Pixels {
     /// normals and `across` in any direction from it.
     pub(crate) fn seen(&self, region: &Region, (height, across): (f64, f64), backs: &Backs) -> f64 {
         let seen = self.glances(region.centre, region.radius, backs);
-        let seen = seen.map(|glance| glance.pixels(height, across, glance.sine(region))).fold(0.0, f64::max);
+        let seen = seen
+            .map(|glance| glance.pixels(height, across, glance.sine(region)))
+            .fold(0.0, f64::max);
         seen.max(backs.rest)
     }
 
     /// Each camera that sees more of a ball than its back.
     fn glances(&self, centre: DVec3, radius: f64, backs: &Backs) -> impl Iterator<Item = Glance> {
-        let front = self.lenses.iter().enumerate().filter(|&(camera, _)| !backs.has(camera));
+        let front = self
+            .lenses
+            .iter()
+            .enumerate()
+            .filter(|&(camera, _)| !backs.has(camera));
         front.filter_map(move |(_, lens)| lens.glance(centre, radius))
     }
 }
@@ -246,24 +270,46 @@ pub(crate) struct Lens {
 
 impl Lens {
     pub(crate) fn new(camera: &Camera) -> Result<Self, CriterionError> {
-        let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
+        let bad = |name, value, expected| {
+            Err(CriterionError::BadParameter {
+                name,
+                value,
+                expected,
+            })
+        };
         let places = [camera.eye, camera.target, camera.up];
         if let Some(&value) = places.as_flattened().iter().find(|x| !x.is_finite()) {
             return bad("camera", value, "finite coordinates");
         }
         if let Some(&value) = places.as_flattened().iter().find(|x| x.abs() > FARTHEST) {
-            return bad("camera's coordinate", value, "a number up to 1e150, whose square is finite");
+            return bad(
+                "camera's coordinate",
+                value,
+                "a number up to 1e150, whose square is finite",
+            );
         }
         if !(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0) {
-            return bad("camera's angle of view", camera.fov_degrees, "degrees above 0 and below 180");
+            return bad(
+                "camera's angle of view",
+                camera.fov_degrees,
+                "degrees above 0 and below 180",
+            );
         }
         if camera.width == 0 || camera.height == 0 {
-            return bad("camera's picture", 0.0, "a width and a height of at least one pixel");
+            return bad(
+                "camera's picture",
+                0.0,
+                "a width and a height of at least one pixel",
+            );
         }
         let (eye, target) = (vector(camera.eye), vector(camera.target));
         let forward = unit_or_zero(target - eye);
         if forward == DVec3::ZERO {
-            return bad("distance from the camera's eye to its target", 0.0, "different points");
+            return bad(
+                "distance from the camera's eye to its target",
+                0.0,
+                "different points",
+            );
         }
         let right = forward.cross(unit_or_zero(vector(camera.up)));
         let sine = right.length();
@@ -280,7 +326,12 @@ impl Lens {
         Ok(Self {
             eye,
             forward,
-            sides: [side(right, across), side(-right, across), side(up, along), side(-up, along)],
+            sides: [
+                side(right, across),
+                side(-right, across),
+                side(up, along),
+                side(-up, along),
+            ],
             pixels: 0.5 * height / along,
             greatest_stretch: across.hypot(along).hypot(1.0),
         })
@@ -298,13 +349,24 @@ impl Lens {
         // Also where either is not a number.
         if !(room > 0.0 && distance.is_finite()) {
             let pixels = self.pixels * self.greatest_stretch;
-            return Some(Glance { pixels, depth: 0.0, toward: DVec3::ZERO, spread: 1.0 });
+            return Some(Glance {
+                pixels,
+                depth: 0.0,
+                toward: DVec3::ZERO,
+                spread: 1.0,
+            });
         }
         let spread = radius / distance;
-        let (cosine, sine) = (depth / distance, sight.cross(self.forward).length() / distance);
+        let (cosine, sine) = (
+            depth / distance,
+            sight.cross(self.forward).length() / distance,
+        );
         let farthest = cosine * cosine_of(spread) - sine * spread;
-        let stretch =
-            if farthest * self.greatest_stretch > 1.0 { 1.0 / farthest } else { self.greatest_stretch };
+        let stretch = if farthest * self.greatest_stretch > 1.0 {
+            1.0 / farthest
+        } else {
+            self.greatest_stretch
+        };
         Some(Glance {
             pixels: self.pixels * stretch,
             depth: (depth - radius).max(room / stretch),
@@ -332,7 +394,11 @@ mod tests {
     }
 
     fn region(random: &mut Random, size: f64) -> Region {
-        let sine = if random.signed() > 0.9 { 1.0 } else { 0.4 * (1.0 + random.signed()) };
+        let sine = if random.signed() > 0.9 {
+            1.0
+        } else {
+            0.4 * (1.0 + random.signed())
+        };
         Region {
             centre: random.vector(),
             radius: size * (1.0 + random.signed()),
@@ -343,14 +409,26 @@ mod tests {
 
     /// A point of a region and a normal, on its rim now and then.
     fn within(random: &mut Random, region: &Region) -> (DVec3, DVec3) {
-        let reach = if random.signed() > 0.0 { 1.0 } else { random.signed().abs() };
+        let reach = if random.signed() > 0.0 {
+            1.0
+        } else {
+            random.signed().abs()
+        };
         let point = region.centre + reach * region.radius * random.direction();
         if region.sine >= 1.0 {
             return (point, random.direction());
         }
-        let sine = region.sine * if random.signed() > 0.0 { 1.0 } else { random.signed().abs() };
+        let sine = region.sine
+            * if random.signed() > 0.0 {
+                1.0
+            } else {
+                random.signed().abs()
+            };
         let across = region.axis.cross(random.direction()).normalize();
-        (point, (1.0 - sine * sine).sqrt() * region.axis + sine * across)
+        (
+            point,
+            (1.0 - sine * sine).sqrt() * region.axis + sine * across,
+        )
     }
 
     /// The pixel at which a camera sees a point, from its description alone; `None` behind it. And whether that is in the
@@ -367,7 +445,10 @@ mod tests {
             return None;
         }
         let at = [right, up].map(|axis| focal * sight.dot(axis) / depth);
-        Some((at, 2.0 * at[0].abs() <= width && 2.0 * at[1].abs() <= height))
+        Some((
+            at,
+            2.0 * at[0].abs() <= width && 2.0 * at[1].abs() <= height,
+        ))
     }
 
     fn pixels_between(camera: &Camera, a: DVec3, b: DVec3) -> f64 {
@@ -403,11 +484,17 @@ mod tests {
                     assert!(length.is_finite() && height.is_finite());
                     let aside = random.direction();
                     let found = pixels_between(camera, point, point + length * aside);
-                    assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {camera:?} {region:?}");
+                    assert!(
+                        found <= limit * (1.0 + 1e-9),
+                        "{found} of {limit}: {camera:?} {region:?}"
+                    );
                     closest = closest.max(found / limit);
                     for along in [height * normal, -height * normal] {
                         let found = pixels_between(camera, point, point + along);
-                        assert!(found <= limit * (1.0 + 1e-9), "{found} of {limit}: {region:?}");
+                        assert!(
+                            found <= limit * (1.0 + 1e-9),
+                            "{found} of {limit}: {region:?}"
+                        );
                         closest_along = closest_along.max(found / limit);
                     }
                     // Both parts together, and the number of pixels that is told.
@@ -420,7 +507,10 @@ mod tests {
                 }
             }
         }
-        assert!(seen > 10_000 && closest > 0.9 && closest_along > 0.9, "{seen} {closest} {closest_along}");
+        assert!(
+            seen > 10_000 && closest > 0.9 && closest_along > 0.9,
+            "{seen} {closest} {closest_along}"
+        );
     }
 
     /// A smaller region within never allows less.
@@ -428,10 +518,12 @@ mod tests {
     fn smaller_regions_allow_no_less() {
         let mut random = Random::new(11);
         for _ in 0..20_000 {
-            let pixels = Pixels::new(1.0, &[camera(&mut random), camera(&mut random)], true).unwrap();
+            let pixels =
+                Pixels::new(1.0, &[camera(&mut random), camera(&mut random)], true).unwrap();
             let region = region(&mut random, 0.7);
             let share = random.signed().abs();
-            let centre = region.centre + (1.0 - share) * region.radius * random.signed() * random.direction();
+            let centre = region.centre
+                + (1.0 - share) * region.radius * random.signed() * random.direction();
             let (_, axis) = within(&mut random, &region);
             let sine = if region.sine >= 1.0 {
                 random.signed().abs()
@@ -439,15 +531,26 @@ mod tests {
                 let turn = region.axis.dot(axis).clamp(-1.0, 1.0).acos();
                 (region.sine.asin() - turn).max(0.0).sin()
             };
-            let inner = Region { centre, radius: share * region.radius, axis, sine };
+            let inner = Region {
+                centre,
+                radius: share * region.radius,
+                axis,
+                sine,
+            };
             let nobodys = Backs::nobodys();
-            let (outer, less) = (pixels.allowed(&region, &nobodys), pixels.allowed(&inner, &nobodys));
-            let is_less =
-                less.length < outer.length * (1.0 - 1e-7) || less.height < outer.height * (1.0 - 1e-7);
+            let (outer, less) = (
+                pixels.allowed(&region, &nobodys),
+                pixels.allowed(&inner, &nobodys),
+            );
+            let is_less = less.length < outer.length * (1.0 - 1e-7)
+                || less.height < outer.height * (1.0 - 1e-7);
             assert!(!is_less, "{outer:?} {less:?}: {region:?} {inner:?}");
             let outer = pixels.allowed_length(region.centre, region.radius, &nobodys);
             let less = pixels.allowed_length(inner.centre, inner.radius, &nobodys);
-            assert!(less >= outer * (1.0 - 1e-12), "{outer} {less}: {region:?} {inner:?}");
+            assert!(
+                less >= outer * (1.0 - 1e-12),
+                "{outer} {less}: {region:?} {inner:?}"
+            );
         }
     }
 
@@ -470,9 +573,17 @@ mod tests {
         assert!(length(DVec3::new(6.0, 0.0, 0.0), 1.0).is_finite());
         // At depth 5 a pixel is a tenth of a unit.
         assert!((length(DVec3::ZERO, 0.0) - 5.0 / 51.0).abs() < 1e-12);
-        let region = Region { centre: DVec3::ZERO, radius: 0.1, axis: DVec3::Z, sine: 0.1 };
+        let region = Region {
+            centre: DVec3::ZERO,
+            radius: 0.1,
+            axis: DVec3::Z,
+            sine: 0.1,
+        };
         assert!(pixels.allowed(&region, &nobodys).height > 3.0 * length(DVec3::ZERO, 0.1));
-        assert_eq!(pixels.seen(&region, (0.0, f64::NAN), &nobodys), f64::INFINITY);
+        assert_eq!(
+            pixels.seen(&region, (0.0, f64::NAN), &nobodys),
+            f64::INFINITY
+        );
     }
 
     /// Cameras that see nothing but the back ask for nothing but that what is not certain is within the limit; the others go on asking.
@@ -486,15 +597,21 @@ mod tests {
             let pixels = Pixels::new(2.0, &cameras, true).unwrap();
             let is_second = |viewpoint: &Viewpoint| *viewpoint == Viewpoint::Eye(cameras[1].eye);
             let share = 1.5 * random.signed().abs();
-            let backs =
-                pixels.backs(&region, |_, viewpoint, rest| is_second(viewpoint).then_some(share * rest));
+            let backs = pixels.backs(&region, |_, viewpoint, rest| {
+                is_second(viewpoint).then_some(share * rest)
+            });
             let first = Pixels::new(2.0, &cameras[..1], true).unwrap();
             let nobodys = Backs::nobodys();
-            assert_eq!(pixels.allowed(&region, &backs), first.allowed(&region, &nobodys));
+            assert_eq!(
+                pixels.allowed(&region, &backs),
+                first.allowed(&region, &nobodys)
+            );
             let told = pixels.seen(&region, (0.01, 0.02), &backs);
             assert_eq!(
                 told,
-                first.seen(&region, (0.01, 0.02), &nobodys).max(2.0 * pixels.rest_ratio(&backs))
+                first
+                    .seen(&region, (0.01, 0.02), &nobodys)
+                    .max(2.0 * pixels.rest_ratio(&backs))
             );
             // An eighth of what is allowed comes to a little more where it is nearer to the eye than the region.
             assert!(pixels.rest_ratio(&backs) < 0.25);

@@ -21,26 +21,48 @@ pub(crate) struct Region {
 impl Region {
     /// The ball around a triangle's centroid that holds it, and a normal of it without a cone.
     pub(crate) fn around(corners: [DVec3; 3], normal: DVec3) -> Self {
-        let centre = corners.into_iter().map(|corner| corner / 3.0).sum::<DVec3>();
-        let radius = corners.iter().map(|corner| corner.distance_squared(centre)).fold(0.0, f64::max).sqrt();
-        Self { centre, radius, axis: normal, sine: if normal == DVec3::ZERO { 1.0 } else { 0.0 } }
+        let centre = corners
+            .into_iter()
+            .map(|corner| corner / 3.0)
+            .sum::<DVec3>();
+        let radius = corners
+            .iter()
+            .map(|corner| corner.distance_squared(centre))
+            .fold(0.0, f64::max)
+            .sqrt();
+        Self {
+            centre,
+            radius,
+            axis: normal,
+            sine: if normal == DVec3::ZERO { 1.0 } else { 0.0 },
+        }
     }
 
     /// The same for all that is within `distance` of the ball.
     pub(crate) fn grown(self, distance: f64) -> Self {
-        Self { radius: self.radius + distance, ..self }
+        Self {
+            radius: self.radius + distance,
+            ..self
+        }
     }
 
     /// The same with normals that differ by an angle with this chord (2 sin(θ/2)) from what the cone holds.
     pub(crate) fn turned(self, chord: f64) -> Self {
-        Self { sine: sum_of_angles(self.sine, sine_of_chord(chord)), ..self }
+        Self {
+            sine: sum_of_angles(self.sine, sine_of_chord(chord)),
+            ..self
+        }
     }
 }
 
 /// The sine of the angle whose chord is given; 1 for angles from 90° on.
 pub(crate) fn sine_of_chord(chord: f64) -> f64 {
     let squared = chord * chord;
-    if squared < 2.0 { chord * (1.0 - 0.25 * squared).sqrt() } else { 1.0 }
+    if squared < 2.0 {
+        chord * (1.0 - 0.25 * squared).sqrt()
+    } else {
+        1.0
+    }
 }
 
 /// The cosine of an angle up to 90° by its sine.
@@ -52,7 +74,11 @@ pub(super) fn cosine_of(sine: f64) -> f64 {
 pub(super) fn sum_of_angles(a: f64, b: f64) -> f64 {
     let (cosine_a, cosine_b) = (cosine_of(a), cosine_of(b));
     let is_acute = cosine_a * cosine_b > a * b;
-    if is_acute { (a * cosine_b + b * cosine_a).min(1.0) } else { 1.0 }
+    if is_acute {
+        (a * cosine_b + b * cosine_a).min(1.0)
+    } else {
+        1.0
+    }
 }
 
 #[cfg(test)]
@@ -64,13 +90,30 @@ mod tests {
     fn angles_add_up_and_saturate() {
         for i in 0..=18 {
             for j in 0..=18 {
-                let (a, b) = (FRAC_PI_2 * f64::from(i) / 18.0, FRAC_PI_2 * f64::from(j) / 18.0);
-                let sine = if a + b < FRAC_PI_2 { (a + b).sin() } else { 1.0 };
-                assert!((sum_of_angles(a.sin(), b.sin()) - sine).abs() < 1e-8, "{i} {j}");
+                let (a, b) = (
+                    FRAC_PI_2 * f64::from(i) / 18.0,
+                    FRAC_PI_2 * f64::from(j) / 18.0,
+                );
+                let sine = if a + b < FRAC_PI_2 {
+                    (a + b).sin()
+                } else {
+                    1.0
+                };
+                assert!(
+                    (sum_of_angles(a.sin(), b.sin()) - sine).abs() < 1e-8,
+                    "{i} {j}"
+                );
             }
             let angle = FRAC_PI_2 * f64::from(i) / 18.0;
             assert!((sine_of_chord(2.0 * (0.5 * angle).sin()) - angle.sin()).abs() < 1e-12);
         }
-        assert_eq!((sine_of_chord(1.5), sine_of_chord(2.0), sum_of_angles(1.0, 0.0)), (1.0, 1.0, 1.0));
+        assert_eq!(
+            (
+                sine_of_chord(1.5),
+                sine_of_chord(2.0),
+                sum_of_angles(1.0, 0.0)
+            ),
+            (1.0, 1.0, 1.0)
+        );
     }
 }

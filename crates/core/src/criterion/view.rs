@@ -47,7 +47,11 @@ impl View {
             return AngleLimit::Never;
         }
         let scaled = angle * self.dilatation * -cosine;
-        if scaled > 0.0 { AngleLimit::Angle(scaled.min(PI)) } else { AngleLimit::Always }
+        if scaled > 0.0 {
+            AngleLimit::Angle(scaled.min(PI))
+        } else {
+            AngleLimit::Always
+        }
     }
 
     /// The least of the limits of all faces whose centroid is in the region's ball and whose normal is in its cone.
@@ -57,7 +61,11 @@ impl View {
             Viewpoint::Eye(eye) => {
                 let sight = region.centre - vector(eye);
                 let distance = sight.length();
-                let spread = if distance > region.radius { region.radius / distance } else { 1.0 };
+                let spread = if distance > region.radius {
+                    region.radius / distance
+                } else {
+                    1.0
+                };
                 (unit_or_zero(sight), spread)
             }
         };
@@ -76,9 +84,19 @@ impl View {
 
     /// Refuses a dilatation below 0, a direction without length, and what is no number.
     pub(crate) fn check(&self) -> Result<(), CriterionError> {
-        let bad = |name, value, expected| Err(CriterionError::BadParameter { name, value, expected });
+        let bad = |name, value, expected| {
+            Err(CriterionError::BadParameter {
+                name,
+                value,
+                expected,
+            })
+        };
         if !(self.dilatation >= 0.0 && self.dilatation.is_finite()) {
-            return bad("dilatation", self.dilatation, "a finite number of at least 0");
+            return bad(
+                "dilatation",
+                self.dilatation,
+                "a finite number of at least 0",
+            );
         }
         let (name, place) = match self.viewpoint {
             Viewpoint::Direction(direction) => ("direction of sight", direction),
@@ -109,7 +127,10 @@ mod tests {
     const DEGREE: f64 = PI / 180.0;
 
     fn view(dilatation: f64) -> View {
-        View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation }
+        View {
+            viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]),
+            dilatation,
+        }
     }
 
     /// Equation (13) as the paper prints it for sight along −z.
@@ -128,7 +149,10 @@ mod tests {
                     AngleLimit::Always => 0.0,
                     AngleLimit::Angle(a) => a,
                 };
-                assert!((found - expected).abs() < 1e-15, "z {z}, k {k}: {found} {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-15,
+                    "z {z}, k {k}: {found} {expected}"
+                );
             }
         }
     }

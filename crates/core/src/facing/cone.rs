@@ -36,7 +36,8 @@ impl Cone {
 
     /// A narrow cone around directions, of any length, that are off by up to `rounding` each.
     pub(super) fn around(directions: &[DVec3], rounding: f64) -> Option<Self> {
-        let sum = |unit: fn(DVec3) -> DVec3| directions.iter().map(|&direction| unit(direction)).sum();
+        let sum =
+            |unit: fn(DVec3) -> DVec3| directions.iter().map(|&direction| unit(direction)).sum();
         let mut axis = unit_or_zero(sum(unit_or_zero));
         let (mut best, mut farthest) = (axis, DVec3::ZERO);
         let mut greatest = -1.0;
@@ -57,14 +58,20 @@ impl Cone {
         let mut sine = 0.0f64;
         for direction in directions {
             let length = direction.length();
-            let (along, across) = (best.dot(*direction), best.cross(*direction).length() + rounding);
+            let (along, across) = (
+                best.dot(*direction),
+                best.cross(*direction).length() + rounding,
+            );
             // What is off by a ball's radius turns by less than the sine of its angle.
             if !(along > rounding && length > rounding) {
                 return None;
             }
             sine = sine.max(across / length + rounding / length);
         }
-        (sine < 1.0 - SINE_ROUNDING).then_some(Self { axis: best, sine: sine + SINE_ROUNDING })
+        (sine < 1.0 - SINE_ROUNDING).then_some(Self {
+            axis: best,
+            sine: sine + SINE_ROUNDING,
+        })
     }
 
     /// A cone that holds two; `None` where it would not be below 90°.
@@ -103,7 +110,10 @@ impl Cone {
             Viewpoint::Eye(eye) => points.for_each(|point| {
                 let eye = vector(eye);
                 // Scaled first: squares of very large or small coordinates overflow or vanish.
-                add((eye - point) / eye.abs().max(point.abs()).max_element(), POINT_ROUNDING);
+                add(
+                    (eye - point) / eye.abs().max(point.abs()).max_element(),
+                    POINT_ROUNDING,
+                );
             }),
         }
         match (front, back) {
@@ -119,7 +129,9 @@ impl Cone {
         let count = points.clone().count().max(1) as f64;
         let centre = points.clone().map(|point| point / count).sum::<DVec3>();
         let slope = self.sine / (1.0 - self.sine * self.sine).sqrt();
-        let greatest = points.clone().fold(centre.abs(), |greatest, point| greatest.max(point.abs()));
+        let greatest = points
+            .clone()
+            .fold(centre.abs(), |greatest, point| greatest.max(point.abs()));
         // Scaled: squares of very large or small coordinates overflow or vanish.
         let size = greatest.max_element().max(f64::MIN_POSITIVE);
         let (mut front, mut back) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -130,7 +142,10 @@ impl Cone {
             back = back.min(height - off * slope);
         }
         let rounding = POINT_ROUNDING * (1.0 + slope);
-        [centre + (front + rounding) * size * self.axis, centre + (back - rounding) * size * self.axis]
+        [
+            centre + (front + rounding) * size * self.axis,
+            centre + (back - rounding) * size * self.axis,
+        ]
     }
 }
 
@@ -163,7 +178,10 @@ impl NormalCone {
     /// How the surface looks from there, by one product a side: never wrong, and now and then
     /// [undecided](Facing::Undecided) where [`LimitSurface::facing`](crate::LimitSurface::facing) is not.
     pub fn facing(&self, viewpoint: &Viewpoint) -> Facing {
-        let cone = Cone { axis: vector(self.axis), sine: self.half_angle.sin() + SINE_ROUNDING };
+        let cone = Cone {
+            axis: vector(self.axis),
+            sine: self.half_angle.sin() + SINE_ROUNDING,
+        };
         let apexes = [self.front_apex, self.back_apex].map(vector);
         let [front, back] = apexes.map(|apex| cone.look(core::iter::once(apex), viewpoint));
         match (front, back) {
@@ -210,7 +228,11 @@ mod tests {
         }
         ratios.sort_by(f64::total_cmp);
         assert!(ratios.len() > 200 && wide < 60, "{wide}");
-        assert!(ratios[ratios.len() / 2] < 1.1, "{}", ratios[ratios.len() / 2]);
+        assert!(
+            ratios[ratios.len() / 2] < 1.1,
+            "{}",
+            ratios[ratios.len() / 2]
+        );
     }
 
     #[test]
@@ -218,7 +240,10 @@ mod tests {
         let mut random = Random::new(17);
         let mut found = 0;
         for _ in 0..2000 {
-            let mut cone = || Cone { axis: unit_or_zero(random.vector()), sine: 0.5 * random.signed().abs() };
+            let mut cone = || Cone {
+                axis: unit_or_zero(random.vector()),
+                sine: 0.5 * random.signed().abs(),
+            };
             let (a, b) = (cone(), cone());
             let Some(both) = a.with(b) else { continue };
             found += 1;

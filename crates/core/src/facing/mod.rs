@@ -91,25 +91,38 @@ impl From<Look> for Facing {
 
 /// How a regular piece looks from there, by its own coefficients.
 fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
-    let Some(normals) = NormalNet::of(net) else { return Look::Unknown };
+    let Some(normals) = NormalNet::of(net) else {
+        return Look::Unknown;
+    };
     let eye = match *viewpoint {
         Viewpoint::Direction(sight) => return normals.along(unit_or_zero(vector(sight))),
         Viewpoint::Eye(eye) => vector(eye),
     };
     let by_cone = Cone::of(&normals).map(|cone| cone.look(net.0.into_iter(), viewpoint));
-    by_cone.filter(|look| look.is_known()).unwrap_or_else(|| normals.from(eye))
+    by_cone
+        .filter(|look| look.is_known())
+        .unwrap_or_else(|| normals.from(eye))
 }
 
 /// How a piece looks from there, of which parts at irregular vertices are looked at so many levels down.
-pub(crate) fn of_patch(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Facing {
+pub(crate) fn of_patch(
+    patch: &Patch,
+    rules: &Rules<'_>,
+    viewpoint: &Viewpoint,
+    levels: u32,
+) -> Facing {
     look(patch, rules, viewpoint, levels).into()
 }
 
 /// Whether all of a regular piece shows its back, by its own coefficients.
 pub(crate) fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
-    let Some(normals) = NormalNet::of(net) else { return false };
+    let Some(normals) = NormalNet::of(net) else {
+        return false;
+    };
     match *viewpoint {
-        Viewpoint::Direction(sight) => normals.along(unit_or_zero(vector(sight))) == Look::All(Side::Back),
+        Viewpoint::Direction(sight) => {
+            normals.along(unit_or_zero(vector(sight))) == Look::All(Side::Back)
+        }
         Viewpoint::Eye(eye) => normals.is_back_from(vector(eye)),
     }
 }
@@ -124,7 +137,9 @@ pub(crate) fn back_but_for(
     levels: u32,
 ) -> Option<f64> {
     let look = match patch {
-        Patch::Regular(points) => return is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0),
+        Patch::Regular(points) => {
+            return is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0);
+        }
         Patch::Mesh(_) => return None,
         Patch::Extraordinary(patch) => {
             tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
@@ -148,7 +163,13 @@ pub(crate) fn back_but_for(
     let mut left = 0.0f64;
     // Where the middle part is not known, nothing is.
     for part in [3, 0, 1, 2] {
-        let own = back_but_for(&refined.part(part), rules, viewpoint, (corners, rest), levels - 1)?;
+        let own = back_but_for(
+            &refined.part(part),
+            rules,
+            viewpoint,
+            (corners, rest),
+            levels - 1,
+        )?;
         left = left.max(own);
     }
     Some(left)
@@ -156,10 +177,16 @@ pub(crate) fn back_but_for(
 
 fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {
     let (at_once, levels) = match patch {
-        Patch::Regular(points) => (of_net(&BezierTriangle::of(points), viewpoint), levels.min(DIVISIONS)),
+        Patch::Regular(points) => (
+            of_net(&BezierTriangle::of(points), viewpoint),
+            levels.min(DIVISIONS),
+        ),
         Patch::Extraordinary(patch) => {
             let cone = tip::cone(patch, rules);
-            (cone.map_or(Look::Unknown, |cone| cone.look(patch.points(), viewpoint)), levels)
+            (
+                cone.map_or(Look::Unknown, |cone| cone.look(patch.points(), viewpoint)),
+                levels,
+            )
         }
         Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => (Look::Unknown, levels),
         Patch::Mesh(_) => (Look::Unknown, 0),
@@ -271,7 +298,11 @@ mod tests {
 
     fn viewpoint(random: &mut Random, size: f64) -> Viewpoint {
         let place = (size * random.vector()).to_array();
-        if random.signed() > 0.3 { Viewpoint::Direction(place) } else { Viewpoint::Eye(place) }
+        if random.signed() > 0.3 {
+            Viewpoint::Direction(place)
+        } else {
+            Viewpoint::Eye(place)
+        }
     }
 
     #[test]
@@ -297,8 +328,15 @@ mod tests {
     fn backs_but_for_corners_are_backs_elsewhere() {
         let mut random = Random::new(29);
         let (mut certain, mut but_for) = (0, 0);
-        for (name, degrees) in [("cup", 40.0), ("head", 35.0), ("bunny", 50.0), ("torus", 170.0)] {
-            let mesh = stirred(name, 3).with_creases_above(f64::to_radians(degrees)).unwrap();
+        for (name, degrees) in [
+            ("cup", 40.0),
+            ("head", 35.0),
+            ("bunny", 50.0),
+            ("torus", 170.0),
+        ] {
+            let mesh = stirred(name, 3)
+                .with_creases_above(f64::to_radians(degrees))
+                .unwrap();
             let surface = LimitSurface::new(&mesh, &Loop).unwrap();
             let (sharpness, rules) = (Sharpness::of(&mesh), Rules::of(&Loop));
             let large = LargeRings::of(&mesh);
@@ -307,16 +345,25 @@ mod tests {
                 let viewpoint = viewpoint(&mut random, 3.0 * mesh.diagonal());
                 let rest = 1e-3 * mesh.diagonal() * random.signed().abs();
                 let at = |u: f64, v: f64| surface.at(FaceId(face), [1.0 - u - v, u, v]);
-                let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| vector(at(u, v).position));
+                let corners =
+                    [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)].map(|(u, v)| vector(at(u, v).position));
                 let left = back_but_for(&patch, &rules, &viewpoint, (&corners, rest), DEEPEST);
                 let Some(left) = left else { continue };
                 assert!(left <= rest);
-                (certain, but_for) = (certain + usize::from(left == 0.0), but_for + usize::from(left > 0.0));
+                (certain, but_for) = (
+                    certain + usize::from(left == 0.0),
+                    but_for + usize::from(left > 0.0),
+                );
                 for (u, v) in places() {
                     let point = at(u, v);
                     let (position, normal) = (vector(point.position), vector(point.normal));
-                    let is_near = corners.iter().any(|corner| corner.distance(position) <= left);
-                    assert!(is_near || before(&viewpoint, position, normal) < 0.0, "{name}, face {face}");
+                    let is_near = corners
+                        .iter()
+                        .any(|corner| corner.distance(position) <= left);
+                    assert!(
+                        is_near || before(&viewpoint, position, normal) < 0.0,
+                        "{name}, face {face}"
+                    );
                 }
             }
         }

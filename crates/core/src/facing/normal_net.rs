@@ -49,16 +49,26 @@ impl NormalNet {
     pub(crate) fn of(net: &BezierTriangle) -> Option<Self> {
         let differences = tangents(net);
         let greatest = |points: &[DVec3]| {
-            points.iter().fold(DVec3::ZERO, |greatest, point| greatest.max(point.abs())).max_element()
+            points
+                .iter()
+                .fold(DVec3::ZERO, |greatest, point| greatest.max(point.abs()))
+                .max_element()
         };
         let scale = greatest(differences.as_flattened()).recip();
         let point_rounding = POINT_ROUNDING * (greatest(&net.0) * scale).max(1.0);
         if !(scale > 0.0 && scale.is_finite() && point_rounding.is_finite()) {
             return None;
         }
-        let normals = cross_products(&differences.map(|net| net.map(|difference| difference * scale)));
+        let normals =
+            cross_products(&differences.map(|net| net.map(|difference| difference * scale)));
         let rounding = CROSS_ROUNDING * 2.0 * point_rounding + SUM_ROUNDING;
-        Some(Self { normals, rounding, points: net.0.map(|point| point * scale), point_rounding, scale })
+        Some(Self {
+            normals,
+            rounding,
+            points: net.0.map(|point| point * scale),
+            point_rounding,
+            scale,
+        })
     }
 
     /// How it looks to one who looks along a unit direction.
@@ -133,7 +143,11 @@ mod tests {
 
     fn in_triangle(random: &mut Random) -> (f64, f64) {
         let (u, v) = (random.signed().abs(), random.signed().abs());
-        if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) }
+        if u + v > 1.0 {
+            (1.0 - u, 1.0 - v)
+        } else {
+            (u, v)
+        }
     }
 
     #[test]
@@ -169,7 +183,11 @@ mod tests {
                     all += 1;
                 }
             }
-            let truth = if fronts == all { 0 } else { 1 + usize::from(fronts > 0) };
+            let truth = if fronts == all {
+                0
+            } else {
+                1 + usize::from(fronts > 0)
+            };
             counts[truth] += 1;
             match normals.from(eye) {
                 Look::All(Side::Front) => assert_eq!(truth, 0),
@@ -189,8 +207,12 @@ mod tests {
     fn pieces_without_extent_have_no_net() {
         assert!(NormalNet::of(&BezierTriangle([DVec3::ONE; 15])).is_none());
         assert!(NormalNet::of(&BezierTriangle([DVec3::NAN; 15])).is_none());
-        let net =
-            BezierTriangle([DVec3::splat(1e300), DVec3::ZERO, DVec3::ONE].repeat(5).try_into().unwrap());
+        let net = BezierTriangle(
+            [DVec3::splat(1e300), DVec3::ZERO, DVec3::ONE]
+                .repeat(5)
+                .try_into()
+                .unwrap(),
+        );
         assert!(NormalNet::of(&net).is_some_and(|net| net.along(DVec3::X) == Look::Unknown));
     }
 }

@@ -37,11 +37,18 @@ pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone
     // Scaled: products of very large or small tangents overflow or vanish.
     let scale = t1.abs().max(t2.abs()).max_element().recip();
     let (t1, t2, left) = (scale * t1, scale * t2, scale * left);
-    let (normal, steepest) = (t1.cross(t2), t1.length() * map.steepest[0] + t2.length() * map.steepest[1]);
+    let (normal, steepest) = (
+        t1.cross(t2),
+        t1.length() * map.steepest[0] + t2.length() * map.steepest[1],
+    );
     let off = left * (2.0 * steepest + left);
     let axis = unit_or_zero(normal);
     let sine = off / (map.least_jacobian * normal.length());
     // What is not a number is no cone.
-    let is_one = scale > 0.0 && axis != DVec3::ZERO && map.least_jacobian > 0.0 && sine < 1.0 - 1e-9;
-    is_one.then_some(Cone { axis, sine: sine + 1e-12 })
+    let is_one =
+        scale > 0.0 && axis != DVec3::ZERO && map.least_jacobian > 0.0 && sine < 1.0 - 1e-9;
+    is_one.then_some(Cone {
+        axis,
+        sine: sine + 1e-12,
+    })
 }

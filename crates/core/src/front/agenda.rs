@@ -49,7 +49,12 @@ impl Agenda {
     }
 
     fn of(scale: Scale, buckets: usize) -> Self {
-        Self { scale, buckets: vec![Vec::new(); buckets], now: 0, entries: 0 }
+        Self {
+            scale,
+            buckets: vec![Vec::new(); buckets],
+            now: 0,
+            entries: 0,
+        }
     }
 
     /// Whether keys are times.
@@ -102,8 +107,15 @@ impl Agenda {
 
     /// Turns the hand of a ring to `time`, and takes out the nodes that are due by then; `is_current` tells from a node's number and stamp
     /// whether it is still there.
-    pub(super) fn turn_to(&mut self, time: f64, is_current: impl Fn(u32, u32) -> bool, due: &mut Vec<u32>) {
-        let Scale::Turning { width } = self.scale else { return };
+    pub(super) fn turn_to(
+        &mut self,
+        time: f64,
+        is_current: impl Fn(u32, u32) -> bool,
+        due: &mut Vec<u32>,
+    ) {
+        let Scale::Turning { width } = self.scale else {
+            return;
+        };
         let last = ((time / width) as u64).max(self.now);
         let count = (last - self.now).min(RING as u64 - 1);
         let mut later = Vec::new();
@@ -111,14 +123,23 @@ impl Agenda {
             let bucket = ((self.now + ahead) % RING as u64) as usize;
             let mut list = core::mem::take(&mut self.buckets[bucket]);
             self.entries -= list.len();
-            for entry in list.drain(..).filter(|entry| is_current(entry.node, entry.stamp)) {
-                if entry.key <= time { due.push(entry.node) } else { later.push(entry) }
+            for entry in list
+                .drain(..)
+                .filter(|entry| is_current(entry.node, entry.stamp))
+            {
+                if entry.key <= time {
+                    due.push(entry.node)
+                } else {
+                    later.push(entry)
+                }
             }
             // Its room is used again.
             self.buckets[bucket] = list;
         }
         self.now = last;
-        later.into_iter().for_each(|entry| self.put(entry.key, entry.node, entry.stamp));
+        later
+            .into_iter()
+            .for_each(|entry| self.put(entry.key, entry.node, entry.stamp));
     }
 
     /// Drops the entries of nodes that are gone.
@@ -141,7 +162,9 @@ mod tests {
         let mut ladder = Agenda::ladder(100.0);
         let keys: Vec<f64> = (0..200).map(|i| 200.0 * 0.93f64.powi(i)).collect();
         let mut stamps = vec![7; keys.len()];
-        (0..).zip(&keys).for_each(|(node, &key)| ladder.put(key, node, 7));
+        (0..)
+            .zip(&keys)
+            .for_each(|(node, &key)| ladder.put(key, node, 7));
         stamps[40] = 8;
         let (low, high) = (keys[60], keys[20]);
         let mut found = vec![false; keys.len()];
@@ -187,7 +210,11 @@ mod tests {
             }
             now += 100.0 * share().powi(3);
             let (mut due, mut expected) = (Vec::new(), Vec::new());
-            ring.turn_to(now, |node: u32, stamp| stamps[node as usize] == stamp, &mut due);
+            ring.turn_to(
+                now,
+                |node: u32, stamp| stamps[node as usize] == stamp,
+                &mut due,
+            );
             waiting.retain(|&(key, node)| {
                 if key <= now {
                     expected.push(node);

@@ -34,7 +34,10 @@ impl Watch for Asking<'_, '_> {
     }
 
     fn goes_on(&mut self, forest: &Forest<'_>) -> bool {
-        let is_allowed = self.halt.as_mut().is_none_or(|halt| halt.goes_on(forest.triangles));
+        let is_allowed = self
+            .halt
+            .as_mut()
+            .is_none_or(|halt| halt.goes_on(forest.triangles));
         is_allowed && forest.triangles <= self.most
     }
 }

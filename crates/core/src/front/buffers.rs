@@ -34,7 +34,9 @@ impl Buffers {
     /// Brings the triangles up to date, and tells which slots were written.
     pub(super) fn update(&mut self, forest: &mut Forest<'_>) -> Vec<u32> {
         let mut holes = core::mem::take(&mut forest.released);
-        holes.iter().for_each(|&slot| self.owners[slot as usize].0 = NOBODY);
+        holes
+            .iter()
+            .for_each(|&slot| self.owners[slot as usize].0 = NOBODY);
         for node in forest.take_touched() {
             if forest.exists(node) && !forest.is_divided(node) {
                 self.leaf(forest, node, &mut holes);
@@ -97,15 +99,21 @@ impl Buffers {
 pub(super) fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize) {
     let corners = forest.node(node).corners;
     let splits = [0, 1, 2].map(|edge| forest.split_of(node, edge));
-    let split = (0..3).filter(|&edge| splits[edge].is_some()).fold(0, |bits, edge| bits | 1 << edge);
+    let split = (0..3)
+        .filter(|&edge| splits[edge].is_some())
+        .fold(0, |bits, edge| bits | 1 << edge);
     let label = |label: u8| match usize::from(label) {
         corner @ 0..3 => corners[corner],
         middle => splits[middle - 3].unwrap_or(NONE),
     };
     let diagonal = if u32::from(split).count_ones() == 2 {
         let whole = (0..3).find(|&edge| splits[edge].is_none()).unwrap_or(0);
-        let at = |edge: usize| splits[edge].map_or(DVec3::ZERO, |vertex| forest.vertices.at(vertex));
-        let (start, end) = (forest.vertices.at(corners[whole]), forest.vertices.at(corners[(whole + 1) % 3]));
+        let at =
+            |edge: usize| splits[edge].map_or(DVec3::ZERO, |vertex| forest.vertices.at(vertex));
+        let (start, end) = (
+            forest.vertices.at(corners[whole]),
+            forest.vertices.at(corners[(whole + 1) % 3]),
+        );
         let (after, before) = (at((whole + 1) % 3), at((whole + 2) % 3));
         if start.distance_squared(after) <= end.distance_squared(before) {
             Diagonal::FromStart
@@ -117,6 +125,9 @@ pub(super) fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize)
     };
     let mut found = [[0; 3]; 4];
     let pattern = closure(split, diagonal).triangles();
-    found.iter_mut().zip(pattern).for_each(|(triangle, labels)| *triangle = labels.map(label));
+    found
+        .iter_mut()
+        .zip(pattern)
+        .for_each(|(triangle, labels)| *triangle = labels.map(label));
     (found, pattern.len())
 }

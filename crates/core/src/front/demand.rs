@@ -62,7 +62,11 @@ impl Demand {
     }
 
     fn of(goal: Goal) -> Self {
-        Self { goal, most: None, max_levels: MOST_LEVELS }
+        Self {
+            goal,
+            most: None,
+            max_levels: MOST_LEVELS,
+        }
     }
 
     /// No more than so many triangles; ten million by default. Where what is asked takes more, it is the least distance that does not.
@@ -86,7 +90,11 @@ impl Demand {
             Goal::Pixels(limit, cameras) => ("limit in pixels", *limit, &cameras[..]),
         };
         if !(value >= 0.0 && value.is_finite()) {
-            return Err(CriterionError::BadParameter { name, value, expected: "a finite number from 0 on" });
+            return Err(CriterionError::BadParameter {
+                name,
+                value,
+                expected: "a finite number from 0 on",
+            });
         }
         cameras.iter().try_for_each(Camera::check)
     }
@@ -106,8 +114,13 @@ pub(super) struct Eye {
 
 impl Eye {
     fn of(camera: &Camera) -> Result<Self, CriterionError> {
-        let Lens { eye, forward, sides: [right, left, top, bottom], pixels, greatest_stretch } =
-            Lens::new(camera)?;
+        let Lens {
+            eye,
+            forward,
+            sides: [right, left, top, bottom],
+            pixels,
+            greatest_stretch,
+        } = Lens::new(camera)?;
         Ok(Self {
             at: eye,
             sides: [right, left, top, bottom, -forward],
@@ -122,7 +135,11 @@ impl Eye {
         if self.pixels != from.pixels || self.stretch != from.stretch {
             return [f64::INFINITY; 2];
         }
-        let turned = self.sides.iter().zip(&from.sides).map(|(a, b)| a.distance(*b));
+        let turned = self
+            .sides
+            .iter()
+            .zip(&from.sides)
+            .map(|(a, b)| a.distance(*b));
         let way = self.at.distance(from.at);
         [way, way + length * turned.fold(0.0, f64::max)]
     }
@@ -140,13 +157,21 @@ impl Eye {
             return 0.0;
         }
         let room = (distance - extent.radius) / extent.value - self.stretch;
-        if room > 0.0 { self.pixels / room } else { f64::INFINITY }
+        if room > 0.0 {
+            self.pixels / room
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// How many pixels away from the surface a node may be seen.
     fn pixels(&self, extent: &Extent) -> f64 {
         let pixels = self.pixels_at(extent, extent.centre.distance(self.at));
-        if pixels > 0.0 && self.outside(extent) > 0.0 { 0.0 } else { pixels }
+        if pixels > 0.0 && self.outside(extent) > 0.0 {
+            0.0
+        } else {
+            pixels
+        }
     }
 
     /// Whether those are above a limit, and for how long that is certain.
@@ -156,14 +181,30 @@ impl Eye {
         let rounding = ROUNDING * (distance + near + extent.centre.length() + self.at.length());
         let is_too_far = self.pixels_at(extent, distance) <= limit;
         if is_too_far {
-            let margin = if extent.value > 0.0 { distance - near - rounding } else { f64::INFINITY };
-            return Answer { wants: false, margin, turns: false };
+            let margin = if extent.value > 0.0 {
+                distance - near - rounding
+            } else {
+                f64::INFINITY
+            };
+            return Answer {
+                wants: false,
+                margin,
+                turns: false,
+            };
         }
         let outside = self.outside(extent);
         let slowed = outside.abs() * (length / distance).min(1.0) - rounding;
         let wants = outside <= 0.0 || outside.is_nan();
-        let margin = if wants { slowed.min(near - distance - rounding) } else { slowed };
-        Answer { wants, margin, turns: true }
+        let margin = if wants {
+            slowed.min(near - distance - rounding)
+        } else {
+            slowed
+        };
+        Answer {
+            wants,
+            margin,
+            turns: true,
+        }
     }
 }
 
@@ -183,10 +224,18 @@ impl Answer {
     fn and(self, other: Self) -> Self {
         let turns = self.turns || other.turns;
         match (self.wants, other.wants) {
-            (true, true) => Self { margin: self.margin.max(other.margin), turns, ..self },
+            (true, true) => Self {
+                margin: self.margin.max(other.margin),
+                turns,
+                ..self
+            },
             (true, false) => self,
             (false, true) => other,
-            (false, false) => Self { margin: self.margin.min(other.margin), turns, ..self },
+            (false, false) => Self {
+                margin: self.margin.min(other.margin),
+                turns,
+                ..self
+            },
         }
     }
 }
@@ -211,31 +260,58 @@ impl Question {
                 (Some(eyes?), *limit)
             }
         };
-        Ok(Self { eyes, limit, max_levels: demand.max_levels })
+        Ok(Self {
+            eyes,
+            limit,
+            max_levels: demand.max_levels,
+        })
     }
 
     /// What is compared with the limit.
     pub(super) fn measure(&self, extent: &Extent) -> f64 {
         match &self.eyes {
             None => extent.value,
-            Some(eyes) => eyes.iter().map(|eye| eye.pixels(extent)).fold(0.0, f64::max),
+            Some(eyes) => eyes
+                .iter()
+                .map(|eye| eye.pixels(extent))
+                .fold(0.0, f64::max),
         }
     }
 
     /// Whether a node is to be divided for the sake of a camera.
     pub(super) fn answer(&self, extent: &Extent, length: f64) -> Answer {
-        let nobody = Answer { wants: false, margin: f64::INFINITY, turns: false };
+        let nobody = Answer {
+            wants: false,
+            margin: f64::INFINITY,
+            turns: false,
+        };
         let eyes = self.eyes.iter().flatten();
-        let answer = eyes.map(|eye| eye.answer(extent, self.limit, length)).fold(nobody, Answer::and);
-        Answer { margin: if answer.margin > 0.0 { answer.margin } else { 0.0 }, ..answer }
+        let answer = eyes
+            .map(|eye| eye.answer(extent, self.limit, length))
+            .fold(nobody, Answer::and);
+        Answer {
+            margin: if answer.margin > 0.0 {
+                answer.margin
+            } else {
+                0.0
+            },
+            ..answer
+        }
     }
 
     /// How far clocks advance from another question to this one, without turns and with them; infinitely far where margins do not tell.
     pub(super) fn moved(&self, from: &Self, length: f64) -> [f64; 2] {
         match (&self.eyes, &from.eyes) {
-            (Some(eyes), Some(before)) if eyes.len() == before.len() && self.limit == from.limit => {
-                let moved = eyes.iter().zip(before).map(|(eye, before)| eye.moved(before, length));
-                moved.fold([0.0; 2], |most, own| [most[0].max(own[0]), most[1].max(own[1])])
+            (Some(eyes), Some(before))
+                if eyes.len() == before.len() && self.limit == from.limit =>
+            {
+                let moved = eyes
+                    .iter()
+                    .zip(before)
+                    .map(|(eye, before)| eye.moved(before, length));
+                moved.fold([0.0; 2], |most, own| {
+                    [most[0].max(own[0]), most[1].max(own[1])]
+                })
             }
             _ => [f64::INFINITY; 2],
         }

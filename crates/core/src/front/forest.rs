@@ -123,11 +123,17 @@ impl<'a> Forest<'a> {
         let edges = Edges::of(control);
         let pieces = Pieces::of(surface, measure);
         let share = parallel::share(faces);
-        let values = parallel::pieces_polled(faces, share, &mut |_| halt.watch().poll(), |block| {
-            block.map(|face| pieces.control_value(face as u32)).collect::<Vec<_>>()
-        })?
-        .concat();
-        let mut vertices = Vertices { positions: control.positions().to_vec(), ..Vertices::default() };
+        let values =
+            parallel::pieces_polled(faces, share, &mut |_| halt.watch().poll(), |block| {
+                block
+                    .map(|face| pieces.control_value(face as u32))
+                    .collect::<Vec<_>>()
+            })?
+            .concat();
+        let mut vertices = Vertices {
+            positions: control.positions().to_vec(),
+            ..Vertices::default()
+        };
         let mut nodes = Vec::with_capacity(faces);
         let mut extents = Vec::with_capacity(faces);
         for (face, &value) in (0u32..).zip(&values) {
@@ -140,12 +146,20 @@ impl<'a> Forest<'a> {
                 Some(twin) => Across::Node(twin / 3, (twin % 3) as u8),
                 None => Across::Border,
             });
-            nodes.push(Node::new(Place::root(face), corners, across, NONE, Ground::Control));
+            nodes.push(Node::new(
+                Place::root(face),
+                corners,
+                across,
+                NONE,
+                Ground::Control,
+            ));
             extents.push(Extent::of(places, value, 0));
         }
         let has_copies = edges.group_count() > 0;
         let touched = (0..faces as u32).collect();
-        nodes.iter_mut().for_each(|node: &mut Node| node.is_touched = true);
+        nodes
+            .iter_mut()
+            .for_each(|node: &mut Node| node.is_touched = true);
         debug_assert_eq!(topology.face_count(), faces);
         Ok(Self {
             triangles: faces,
@@ -191,15 +205,21 @@ impl<'a> Forest<'a> {
 
     /// The greatest measure of a leaf.
     pub(super) fn worst(&self, measure: impl Fn(&Extent) -> f64) -> f64 {
-        let leaves =
-            (0u32..).zip(&self.extents).filter(|&(node, _)| self.exists(node) && !self.is_divided(node));
-        leaves.map(|(_, extent)| measure(extent)).fold(0.0, f64::max)
+        let leaves = (0u32..)
+            .zip(&self.extents)
+            .filter(|&(node, _)| self.exists(node) && !self.is_divided(node));
+        leaves
+            .map(|(_, extent)| measure(extent))
+            .fold(0.0, f64::max)
     }
 
     /// The greatest measure of a control face.
     pub(super) fn greatest(&self, measure: impl Fn(&Extent) -> f64) -> f64 {
         let faces = self.surface().control().face_count();
-        self.extents[..faces].iter().map(measure).fold(0.0, f64::max)
+        self.extents[..faces]
+            .iter()
+            .map(measure)
+            .fold(0.0, f64::max)
     }
 
     pub(super) fn is_divided(&self, node: u32) -> bool {
@@ -240,19 +260,33 @@ impl<'a> Forest<'a> {
 
     /// The places of all other nodes along a cut edge, in the order of the group; the first says whose point counts.
     fn copies_of(&self, place: Place, edge: u8) -> SmallVec<[(Place, u8); 4]> {
-        let Beyond::Control(along) = beyond(place, usize::from(edge)) else { return SmallVec::new() };
-        let Some(group) = self.edges.group(along.half_edge) else { return SmallVec::new() };
+        let Beyond::Control(along) = beyond(place, usize::from(edge)) else {
+            return SmallVec::new();
+        };
+        let Some(group) = self.edges.group(along.half_edge) else {
+            return SmallVec::new();
+        };
         let members = self.edges.members(group);
-        let turned = members.iter().any(|&(member, turned)| member == along.half_edge && turned);
-        let index = if turned { (1 << along.level) - 1 - along.index } else { along.index };
+        let turned = members
+            .iter()
+            .any(|&(member, turned)| member == along.half_edge && turned);
+        let index = if turned {
+            (1 << along.level) - 1 - along.index
+        } else {
+            along.index
+        };
         let first = Along { index, ..along };
-        let places = members.iter().map(|&(member, turned)| first.node_at(member, turned));
+        let places = members
+            .iter()
+            .map(|&(member, turned)| first.node_at(member, turned));
         places.map(|(place, edge)| (place, edge as u8)).collect()
     }
 
     fn copies(&self, node: u32, edge: u8) -> Copies {
         let places = self.copies_of(self.node(node).place, edge);
-        let found = places.iter().filter_map(|&(place, edge)| Some((self.find(place).ok()?, edge)));
+        let found = places
+            .iter()
+            .filter_map(|&(place, edge)| Some((self.find(place).ok()?, edge)));
         found.filter(|&(other, _)| other != node).collect()
     }
 
@@ -290,7 +324,9 @@ impl<'a> Forest<'a> {
     /// The nodes whose triangles may be others than before; they are untouched then.
     pub(super) fn take_touched(&mut self) -> Vec<u32> {
         let touched = core::mem::take(&mut self.touched);
-        touched.iter().for_each(|&node| self.node_mut(node).is_touched = false);
+        touched
+            .iter()
+            .for_each(|&node| self.node_mut(node).is_touched = false);
         touched
     }
 
@@ -324,7 +360,10 @@ impl<'a> Forest<'a> {
             let index = (first as usize) + child;
             self.nodes[index] = Node::new(place.child(child), at, sides, node, ground);
             let stamp = self.extents[index].stamp;
-            self.extents[index] = Extent { stamp, ..Extent::of(at_places, value, place.level + 1) };
+            self.extents[index] = Extent {
+                stamp,
+                ..Extent::of(at_places, value, place.level + 1)
+            };
         }
         for (edge, side) in (0u32..).zip(across) {
             if let Across::Node(other, side) = side {
@@ -351,9 +390,16 @@ impl<'a> Forest<'a> {
             return first;
         }
         let first = self.nodes.len();
-        let blank = Node::new(Place::root(0), [0; 3], [Across::Border; 3], NONE, Ground::Control);
+        let blank = Node::new(
+            Place::root(0),
+            [0; 3],
+            [Across::Border; 3],
+            NONE,
+            Ground::Control,
+        );
         self.nodes.resize(first + 4, blank);
-        self.extents.resize(first + 4, Extent::of([DVec3::ZERO; 3], 0.0, 0));
+        self.extents
+            .resize(first + 4, Extent::of([DVec3::ZERO; 3], 0.0, 0));
         first as u32
     }
 
@@ -373,7 +419,11 @@ impl<'a> Forest<'a> {
             _ => Copies::new(),
         };
         let position = self.middle_position(node, edge);
-        self.triangles += if matches!(across, Across::Border) { 1 } else { 2 };
+        self.triangles += if matches!(across, Across::Border) {
+            1
+        } else {
+            2
+        };
         let vertex = self.vertices.put(position);
         for (other, side) in copies {
             let theirs = self.vertices.put(position);
@@ -390,7 +440,9 @@ impl<'a> Forest<'a> {
         let key = |node: u32| (self.node(node).place.face, self.node(node).place.path);
         let beside = self.beside(node, edge);
         let all = beside.iter().copied().chain([(node, edge)]);
-        let (teller, side) = all.min_by_key(|&(node, edge)| (key(node), edge)).unwrap_or((node, edge));
+        let (teller, side) = all
+            .min_by_key(|&(node, edge)| (key(node), edge))
+            .unwrap_or((node, edge));
         let Node { ground, place, .. } = self.node(teller);
         self.pieces.middle(*ground, place.face, usize::from(side))
     }
@@ -438,7 +490,11 @@ impl<'a> Forest<'a> {
     }
 
     fn merge_copies(&mut self, node: u32, edge: u8, vertex: u32) {
-        let copies = if self.has_copies { self.copies(node, edge) } else { Copies::new() };
+        let copies = if self.has_copies {
+            self.copies(node, edge)
+        } else {
+            Copies::new()
+        };
         if copies.iter().any(|&(other, _)| self.is_divided(other)) {
             self.hanging.insert((node, edge), vertex);
             return;
@@ -459,7 +515,13 @@ impl<'a> Forest<'a> {
 }
 
 impl Node {
-    fn new(place: Place, corners: [u32; 3], across: [Across; 3], parent: u32, ground: Ground) -> Self {
+    fn new(
+        place: Place,
+        corners: [u32; 3],
+        across: [Across; 3],
+        parent: u32,
+        ground: Ground,
+    ) -> Self {
         Self {
             place,
             corners,
@@ -478,6 +540,13 @@ impl Node {
 impl Extent {
     fn of(corners: [DVec3; 3], value: f64, level: u32) -> Self {
         let Region { centre, radius, .. } = Region::around(corners, DVec3::ZERO).grown(value);
-        Self { centre, radius, value, stamp: 0, level: level as u8, wants: false }
+        Self {
+            centre,
+            radius,
+            value,
+            stamp: 0,
+            level: level as u8,
+            wants: false,
+        }
     }
 }

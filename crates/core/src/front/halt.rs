@@ -14,7 +14,11 @@ pub(super) struct Halt<'o> {
 
 impl<'o> Halt<'o> {
     pub(super) fn new(observer: &'o mut Observer<'_>) -> Self {
-        Self { watch: Watch::new(observer, Stage::Refining), left: 0, is_asked: false }
+        Self {
+            watch: Watch::new(observer, Stage::Refining),
+            left: 0,
+            is_asked: false,
+        }
     }
 
     /// Whether to go on after a step, there being so many triangles; once it is not, it never is again.

@@ -49,7 +49,12 @@ pub(super) struct Outcome {
 /// somebody asks to stop, leaving.
 pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_>) -> Outcome {
     let suspects = suspected(forest, lost);
-    let mut settling = Settling { forest, watch: None, work: Vec::new(), outcome: Outcome::default() };
+    let mut settling = Settling {
+        forest,
+        watch: None,
+        work: Vec::new(),
+        outcome: Outcome::default(),
+    };
     for &node in &suspects {
         if settling.forest.node(node).is_suspect && settling.has_reason(node) {
             settling.acquit(node);
@@ -57,7 +62,10 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_
     }
     settling.run();
     let Settling { mut outcome, .. } = settling;
-    let mut guilty: Vec<u32> = suspects.into_iter().filter(|&node| forest.node(node).is_suspect).collect();
+    let mut guilty: Vec<u32> = suspects
+        .into_iter()
+        .filter(|&node| forest.node(node).is_suspect)
+        .collect();
     guilty.sort_unstable_by_key(|&node| (core::cmp::Reverse(forest.node(node).place.level), node));
     for node in guilty {
         forest.node_mut(node).is_suspect = false;
@@ -74,7 +82,12 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_
 /// Brings into the set what is in it now: `gained` want. Where the watch stops it, the set is that of a demand between, and what is
 /// missing waits.
 pub(super) fn extend(forest: &mut Forest<'_>, gained: &[u32], watch: &mut dyn Watch) -> Outcome {
-    let mut settling = Settling { forest, watch: Some(watch), work: Vec::new(), outcome: Outcome::default() };
+    let mut settling = Settling {
+        forest,
+        watch: Some(watch),
+        work: Vec::new(),
+        outcome: Outcome::default(),
+    };
     for &node in gained {
         if settling.is_reachable(node) {
             settling.join(node);
@@ -159,7 +172,9 @@ impl Settling<'_, '_, '_> {
 
     /// Divides a node, after those that must be before it.
     fn divide(&mut self, node: u32) {
-        let Some(watch) = &mut self.watch else { return self.outcome.waiting.push(node) };
+        let Some(watch) = &mut self.watch else {
+            return self.outcome.waiting.push(node);
+        };
         let mut way = SmallVec::<[u32; 8]>::from_slice(&[node]);
         while let Some(&next) = way.last() {
             if self.forest.is_divided(next) {

@@ -43,7 +43,11 @@ impl Sampled {
         let refined = patch.refined(rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
         drop(refined);
-        Self { patch, corners, middles }
+        Self {
+            patch,
+            corners,
+            middles,
+        }
     }
 
     /// Those over the four parts.
@@ -68,7 +72,11 @@ impl Sampled {
             Measure::VertexError => self.vertex_error(),
         };
         // What is no number is never good enough.
-        if greatest.is_nan() { f64::INFINITY } else { greatest }
+        if greatest.is_nan() {
+            f64::INFINITY
+        } else {
+            greatest
+        }
     }
 
     fn normal(&self) -> DVec3 {
@@ -80,7 +88,11 @@ impl Sampled {
     fn angle(&self) -> f64 {
         let own = self.normal();
         let all = self.corners.iter().chain(&self.middles);
-        let angles = all.map(|point| own.cross(point.normal).length().atan2(own.dot(point.normal)));
+        let angles = all.map(|point| {
+            own.cross(point.normal)
+                .length()
+                .atan2(own.dot(point.normal))
+        });
         greatest(angles)
     }
 
@@ -90,17 +102,30 @@ impl Sampled {
         greatest((0..3).map(|edge| {
             let straight = 0.5 * (corners[edge] + corners[(edge + 1) % 3]);
             let off = self.middles[edge].position - straight;
-            if own == DVec3::ZERO { off.length() } else { off.dot(own).abs() }
+            if own == DVec3::ZERO {
+                off.length()
+            } else {
+                off.dot(own).abs()
+            }
         }))
     }
 
     fn vertex_error(&self) -> f64 {
         let corners = self.corners.iter().enumerate();
-        greatest(corners.map(|(corner, limit)| self.patch.control_point(corner).distance(limit.position)))
+        greatest(
+            corners
+                .map(|(corner, limit)| self.patch.control_point(corner).distance(limit.position)),
+        )
     }
 }
 
 /// The greatest of some numbers from 0 on; none if one of them is none.
 pub(super) fn greatest(numbers: impl Iterator<Item = f64>) -> f64 {
-    numbers.fold(0.0, |most: f64, own| if own > most || own.is_nan() { own } else { most })
+    numbers.fold(0.0, |most: f64, own| {
+        if own > most || own.is_nan() {
+            own
+        } else {
+            most
+        }
+    })
 }

@@ -164,7 +164,11 @@ impl<'a> Front<'a> {
         if let Some(why) = forest.surface().failure() {
             return Err(why.clone().into());
         }
-        let question = Question { eyes: None, limit: f64::INFINITY, max_levels: demand::MOST_LEVELS };
+        let question = Question {
+            eyes: None,
+            limit: f64::INFINITY,
+            max_levels: demand::MOST_LEVELS,
+        };
         let agenda = Agenda::ladder(length);
         let (changes, waiting, leaving) = (Changes::default(), Vec::new(), Vec::new());
         let buffers = Buffers::default();
@@ -211,8 +215,16 @@ impl<'a> Front<'a> {
         if let Goal::Pixels(value, _) = demand.goal
             && self.forest.measure() != Measure::Distance
         {
-            let (name, expected) = ("limit in pixels", "none, for a front that does not go by distances");
-            return Err(CriterionError::BadParameter { name, value, expected }.into());
+            let (name, expected) = (
+                "limit in pixels",
+                "none, for a front that does not go by distances",
+            );
+            return Err(CriterionError::BadParameter {
+                name,
+                value,
+                expected,
+            }
+            .into());
         }
         if self.demand.as_ref() == Some(demand) {
             self.changes = Changes::default();
@@ -225,8 +237,13 @@ impl<'a> Front<'a> {
         // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
         if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
             let greatest = self.forest.greatest(|extent| question.measure(extent));
-            let is_near = demand.most.is_some() && self.question.eyes.is_some() == question.eyes.is_some();
-            let start = if is_near { self.question.limit.min(greatest) } else { greatest };
+            let is_near =
+                demand.most.is_some() && self.question.eyes.is_some() == question.eyes.is_some();
+            let start = if is_near {
+                self.question.limit.min(greatest)
+            } else {
+                greatest
+            };
             self.fit(question, start, (most, &mut counts, &mut halt));
         }
         self.finish(counts);
@@ -250,7 +267,15 @@ impl<'a> Front<'a> {
     ) {
         let is_over = core::cell::Cell::new(false);
         let mut fits = |limit: f64| {
-            let fits = self.ask_kept(Question { limit, ..question.clone() }, most, counts, halt);
+            let fits = self.ask_kept(
+                Question {
+                    limit,
+                    ..question.clone()
+                },
+                most,
+                counts,
+                halt,
+            );
             is_over.set(halt.is_asked());
             fits
         };
@@ -273,7 +298,11 @@ impl<'a> Front<'a> {
         } else {
             loop {
                 let unfit = next;
-                next = if next > 0.0 { next * factor } else { f64::INFINITY };
+                next = if next > 0.0 {
+                    next * factor
+                } else {
+                    f64::INFINITY
+                };
                 if is_over.get() {
                     return;
                 }
@@ -288,7 +317,11 @@ impl<'a> Front<'a> {
         let [mut low, mut high] = [low, high].map(f64::to_bits);
         while high - low > 1 && !is_over.get() {
             let middle = low + (high - low) / 2;
-            if fits(f64::from_bits(middle)) { high = middle } else { low = middle }
+            if fits(f64::from_bits(middle)) {
+                high = middle
+            } else {
+                low = middle
+            }
         }
         fits(f64::from_bits(high));
     }
@@ -345,21 +378,29 @@ impl<'a> Front<'a> {
             && question.max_levels == self.question.max_levels
             && question.eyes == self.question.eyes;
         if !is_known {
-            self.agenda =
-                Agenda::ladder(self.forest.greatest(|extent| question.measure(extent)).min(f64::MAX));
+            self.agenda = Agenda::ladder(
+                self.forest
+                    .greatest(|extent| question.measure(extent))
+                    .min(f64::MAX),
+            );
             self.turning = Agenda::ring(self.length);
             let (lost, gained) = self.ask_all(question, halt);
             return self.settle(lost, gained, (most, counts, halt));
         }
-        let (low, high) = (question.limit.min(self.question.limit), question.limit.max(self.question.limit));
+        let (low, high) = (
+            question.limit.min(self.question.limit),
+            question.limit.max(self.question.limit),
+        );
         self.question = question;
         let mut asked = Vec::new();
         let extents = &self.forest.extents;
         let is_current = |node: u32, stamp| extents[node as usize].stamp == stamp;
-        self.agenda.visit_between(low, high, is_current, |node| asked.push(node));
+        self.agenda
+            .visit_between(low, high, is_current, |node| asked.push(node));
         let (mut lost, mut gained) = (Vec::new(), Vec::new());
         for node in asked {
-            let wants = self.question.measure(&self.forest.extents[node as usize]) > self.question.limit;
+            let wants =
+                self.question.measure(&self.forest.extents[node as usize]) > self.question.limit;
             self.note(node, wants, &mut lost, &mut gained);
         }
         self.settle(lost, gained, (most, counts, halt))
@@ -368,7 +409,11 @@ impl<'a> Front<'a> {
     fn note(&mut self, node: u32, wants: bool, lost: &mut Vec<u32>, gained: &mut Vec<u32>) {
         let before = core::mem::replace(&mut self.forest.extents[node as usize].wants, wants);
         if before != wants {
-            if wants { gained.push(node) } else { lost.push(node) }
+            if wants {
+                gained.push(node)
+            } else {
+                lost.push(node)
+            }
         }
     }
 
@@ -438,7 +483,12 @@ impl<'a> Front<'a> {
         let mut vertices = core::mem::take(&mut self.forest.vertices.written);
         vertices.sort_unstable();
         vertices.dedup();
-        self.changes = Changes { vertices, triangles, divided, merged };
+        self.changes = Changes {
+            vertices,
+            triangles,
+            divided,
+            merged,
+        };
     }
 
     /// The vertices' positions, on the limit surface: those of the control mesh, then others in places that stay theirs as long as they
@@ -463,7 +513,10 @@ impl<'a> Front<'a> {
     /// A coordinate is not finite.
     pub fn mesh(&self) -> Result<Mesh, FrontError> {
         let numbered = snapshot::numbered(&self.forest);
-        Ok(Mesh::from_triangles(numbered.positions, numbered.triangles)?)
+        Ok(Mesh::from_triangles(
+            numbered.positions,
+            numbered.triangles,
+        )?)
     }
 
     /// The same mesh with the tags that last, and with where it came from.

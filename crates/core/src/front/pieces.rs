@@ -49,7 +49,10 @@ struct Shelf<T> {
 
 impl<T> Default for Shelf<T> {
     fn default() -> Self {
-        Self { all: Vec::new(), free: Vec::new() }
+        Self {
+            all: Vec::new(),
+            free: Vec::new(),
+        }
     }
 }
 
@@ -88,7 +91,13 @@ pub(super) type Part = (Ground, f64);
 impl<'a> Pieces<'a> {
     pub(super) fn of(surface: LimitSurface<'a>, measure: Measure) -> Self {
         let (regular, general, sampled) = (Shelf::default(), Shelf::default(), Shelf::default());
-        Self { surface, measure, regular, general, sampled }
+        Self {
+            surface,
+            measure,
+            regular,
+            general,
+            sampled,
+        }
     }
 
     pub(super) fn measure(&self) -> Measure {
@@ -154,10 +163,15 @@ impl<'a> Pieces<'a> {
         match ground {
             Ground::Control => [(Ground::Control, f64::INFINITY); 4],
             Ground::Regular(piece, spot) => {
-                let derivatives = self.regular.get(piece).map(|piece| SecondDerivatives::of(piece));
+                let derivatives = self
+                    .regular
+                    .get(piece)
+                    .map(|piece| SecondDerivatives::of(piece));
                 from_fn(|child| {
                     let own = spot.child(child);
-                    let value = derivatives.as_ref().map(|all| all.off_triangles(own.corners(), own.size));
+                    let value = derivatives
+                        .as_ref()
+                        .map(|all| all.off_triangles(own.corners(), own.size));
                     (Ground::Regular(piece, own), value.unwrap_or(f64::INFINITY))
                 })
             }
@@ -165,7 +179,10 @@ impl<'a> Pieces<'a> {
                 let Some(piece) = self.general.get(piece) else {
                     return [(Ground::Control, f64::INFINITY); 4];
                 };
-                piece.sheet.children(self.surface.rules()).map(|sheet| self.part(sheet))
+                piece
+                    .sheet
+                    .children(self.surface.rules())
+                    .map(|sheet| self.part(sheet))
             }
             Ground::Sampled(piece) => {
                 let Some(piece) = self.sampled.get(piece) else {
@@ -183,13 +200,19 @@ impl<'a> Pieces<'a> {
         if let Patch::Regular(points) = &sheet.patch {
             let piece = quartic(points);
             let value = SecondDerivatives::of(&piece).off_triangles(Spot::WHOLE.corners(), 1.0);
-            return (Ground::Regular(self.regular.put(Box::new(piece)), Spot::WHOLE), value);
+            return (
+                Ground::Regular(self.regular.put(Box::new(piece)), Spot::WHOLE),
+                value,
+            );
         }
         let refined = sheet.patch.refined(self.surface.rules());
         let middles = from_fn(|edge| refined.middle(edge).position);
         let value = self.general_value(&sheet, middles);
         drop(refined);
-        (Ground::General(self.general.put(Box::new(General { sheet, middles }))), value)
+        (
+            Ground::General(self.general.put(Box::new(General { sheet, middles }))),
+            value,
+        )
     }
 
     /// Gives back the piece of a node that is its own.
@@ -219,11 +242,18 @@ impl<'a> Pieces<'a> {
                     _ => sheet.patch.refined(rules).middle(edge).position,
                 }
             }
-            Ground::Regular(piece, spot) => {
-                self.regular.get(piece).map_or(DVec3::NAN, |piece| at(piece, spot.along(edge, 0.5)))
-            }
-            Ground::General(piece) => self.general.get(piece).map_or(DVec3::NAN, |piece| piece.middles[edge]),
-            Ground::Sampled(piece) => self.sampled.get(piece).map_or(DVec3::NAN, |piece| piece.middle(edge)),
+            Ground::Regular(piece, spot) => self
+                .regular
+                .get(piece)
+                .map_or(DVec3::NAN, |piece| at(piece, spot.along(edge, 0.5))),
+            Ground::General(piece) => self
+                .general
+                .get(piece)
+                .map_or(DVec3::NAN, |piece| piece.middles[edge]),
+            Ground::Sampled(piece) => self
+                .sampled
+                .get(piece)
+                .map_or(DVec3::NAN, |piece| piece.middle(edge)),
         }
     }
 }

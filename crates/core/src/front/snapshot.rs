@@ -38,8 +38,17 @@ impl Traced for Snapshot {
 impl Snapshot {
     pub(super) fn of(forest: &Forest<'_>) -> Result<Self, MeshError> {
         let control = forest.surface().control();
-        let Numbered { positions, triangles, origins, parents } = numbered(forest);
-        let mut found = Self { mesh: Mesh::from_triangles(positions, triangles)?, origins, parents };
+        let Numbered {
+            positions,
+            triangles,
+            origins,
+            parents,
+        } = numbered(forest);
+        let mut found = Self {
+            mesh: Mesh::from_triangles(positions, triangles)?,
+            origins,
+            parents,
+        };
         let tags = found.lasting_tags(control);
         found.mesh = found.mesh.with_tags(tags)?;
         Ok(found)
@@ -53,15 +62,26 @@ impl Snapshot {
             .creases
             .iter()
             .filter(|tag| lasts(tag.sharpness))
-            .map(|tag| [tag.vertices[0].min(tag.vertices[1]), tag.vertices[0].max(tag.vertices[1])])
+            .map(|tag| {
+                [
+                    tag.vertices[0].min(tag.vertices[1]),
+                    tag.vertices[0].max(tag.vertices[1]),
+                ]
+            })
             .collect();
         sharp.sort_unstable();
-        let corners: Vec<CornerTag> =
-            tags.corners.iter().filter(|tag| lasts(tag.sharpness)).copied().collect();
+        let corners: Vec<CornerTag> = tags
+            .corners
+            .iter()
+            .filter(|tag| lasts(tag.sharpness))
+            .copied()
+            .collect();
         let topology = self.mesh.topology();
         let is_along = |h: &HalfEdgeId| {
             let ends = [*h, h.next()].map(|corner| self.corner_origin(control.triangles(), corner));
-            let [Some(from), Some(to)] = ends else { return false };
+            let [Some(from), Some(to)] = ends else {
+                return false;
+            };
             let corners = control.triangles()[from.face as usize];
             (0..3).any(|opposite| {
                 let [a, b] = [1, 2].map(|i| corners[(opposite + i) % 3]);
@@ -98,7 +118,10 @@ pub(super) struct Numbered {
 pub(super) fn numbered(forest: &Forest<'_>) -> Numbered {
     let control = forest.surface().control();
     let (vertices, faces) = (control.vertex_count(), control.face_count());
-    let nowhere = Origin { face: NONE, barycentric: [0.0; 3] };
+    let nowhere = Origin {
+        face: NONE,
+        barycentric: [0.0; 3],
+    };
     let mut walk = Walk {
         forest,
         numbers: vec![NONE; forest.vertices.positions.len()],
@@ -132,7 +155,11 @@ impl Walk<'_, '_> {
         if own.children != NONE {
             let first = own.children;
             for child in 0..4 {
-                self.node(face, first + child as u32, child_corners(corners, middles, child));
+                self.node(
+                    face,
+                    first + child as u32,
+                    child_corners(corners, middles, child),
+                );
             }
             return;
         }
@@ -156,8 +183,13 @@ impl Walk<'_, '_> {
         let number = &mut self.numbers[vertex as usize];
         if *number == NONE {
             *number = self.found.positions.len() as u32;
-            self.found.positions.push(self.forest.vertices.positions[vertex as usize]);
-            self.found.origins.push(Origin { face: NONE, barycentric: [0.0; 3] });
+            self.found
+                .positions
+                .push(self.forest.vertices.positions[vertex as usize]);
+            self.found.origins.push(Origin {
+                face: NONE,
+                barycentric: [0.0; 3],
+            });
         }
         *number
     }

@@ -28,7 +28,10 @@ pub(crate) fn distance_to(bounds: &Bounds, point: DVec3) -> f64 {
 /// The square of [`distance_to`].
 #[inline]
 pub(crate) fn distance_squared_to(bounds: &Bounds, point: DVec3) -> f64 {
-    (bounds[0] - point).max(point - bounds[1]).max(DVec3::ZERO).length_squared()
+    (bounds[0] - point)
+        .max(point - bounds[1])
+        .max(DVec3::ZERO)
+        .length_squared()
 }
 
 /// A box, and what is in it.
@@ -100,7 +103,9 @@ impl BoxTree {
 
     /// Searches from the root, what has the lesser bound first.
     pub(crate) fn search(&self, search: &mut impl Search) {
-        let Some(root) = self.nodes.first() else { return };
+        let Some(root) = self.nodes.first() else {
+            return;
+        };
         let mut waiting: SmallVec<[(f64, usize); 64]> = SmallVec::new();
         waiting.push((search.bound(&root.bounds), 0));
         while let Some((bound, node)) = waiting.pop() {
@@ -111,7 +116,8 @@ impl BoxTree {
             match self.children(node) {
                 None => search.visit(self.items[self.nodes[node].first as usize]),
                 Some(children) => {
-                    let [a, b] = children.map(|child| (search.bound(&self.nodes[child].bounds), child));
+                    let [a, b] =
+                        children.map(|child| (search.bound(&self.nodes[child].bounds), child));
                     let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
                     waiting.extend([far, near]);
                 }
@@ -128,7 +134,12 @@ fn append(nodes: &mut Vec<Node>, boxes: &[Bounds], items: &mut [u32], first: u32
     };
     let bounds = items.iter().fold(NO_BOUNDS, joined);
     let own = nodes.len();
-    nodes.push(Node { bounds, first, count: items.len() as u32, second: 0 });
+    nodes.push(Node {
+        bounds,
+        first,
+        count: items.len() as u32,
+        second: 0,
+    });
     if items.len() < 2 {
         return;
     }
@@ -139,9 +150,17 @@ fn append(nodes: &mut Vec<Node>, boxes: &[Bounds], items: &mut [u32], first: u32
     };
     let [low, high] = items.iter().map(middle).fold(NO_BOUNDS, grown);
     let sides = (0.5 * high - 0.5 * low).to_array();
-    let axis = (1..3).fold(0, |longest, axis| if sides[axis] > sides[longest] { axis } else { longest });
+    let axis = (1..3).fold(0, |longest, axis| {
+        if sides[axis] > sides[longest] {
+            axis
+        } else {
+            longest
+        }
+    });
     let half = items.len() / 2;
-    items.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(b)));
+    items.select_nth_unstable_by(half, |a, b| {
+        middle(a)[axis].total_cmp(&middle(b)[axis]).then(a.cmp(b))
+    });
     let (before, after) = items.split_at_mut(half);
     append(nodes, boxes, before, first);
     nodes[own].second = nodes.len() as u32;
@@ -156,7 +175,10 @@ mod tests {
         let at = |i: usize, step: f64| (0.3 + step * i as f64).fract();
         let boxes = (0..count).map(|i| {
             let low = DVec3::new(at(i, 0.618), at(i, 0.7548), at(i, 0.5698));
-            [low, low + 0.05 * DVec3::new(at(i, 0.31), at(i, 0.17), at(i, 0.93))]
+            [
+                low,
+                low + 0.05 * DVec3::new(at(i, 0.31), at(i, 0.17), at(i, 0.93)),
+            ]
         });
         boxes.collect()
     }
@@ -192,11 +214,18 @@ mod tests {
         let boxes = scattered(1000);
         let tree = BoxTree::of(&boxes);
         for at in scattered(200).into_iter().map(|[low, _]| 1.4 * low - 0.2) {
-            let mut search =
-                Nearest { from: at, boxes: &boxes, found: (f64::INFINITY, u32::MAX), visited: 0 };
+            let mut search = Nearest {
+                from: at,
+                boxes: &boxes,
+                found: (f64::INFINITY, u32::MAX),
+                visited: 0,
+            };
             tree.search(&mut search);
-            let expected =
-                boxes.iter().map(|bounds| distance_to(bounds, at)).min_by(f64::total_cmp).unwrap_or(f64::NAN);
+            let expected = boxes
+                .iter()
+                .map(|bounds| distance_to(bounds, at))
+                .min_by(f64::total_cmp)
+                .unwrap_or(f64::NAN);
             assert_eq!(search.found.0, expected);
             assert!(search.visited < 100, "{} of 1000 visited", search.visited);
         }
@@ -206,7 +235,11 @@ mod tests {
     fn nodes_hold_their_items_and_leaves_one_each() {
         for count in [0, 1, 2, 3, 17, 256] {
             // Some boxes coincide.
-            let boxes: Vec<Bounds> = scattered(count / 2 + 1).into_iter().cycle().take(count).collect();
+            let boxes: Vec<Bounds> = scattered(count / 2 + 1)
+                .into_iter()
+                .cycle()
+                .take(count)
+                .collect();
             let tree = BoxTree::of(&boxes);
             let mut items = tree.items().to_vec();
             items.sort_unstable();

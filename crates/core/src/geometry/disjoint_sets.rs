@@ -11,7 +11,9 @@ pub(crate) struct DisjointSets {
 impl DisjointSets {
     /// So many sets of one.
     pub(crate) fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
+        Self {
+            parent: (0..count as u32).collect(),
+        }
     }
 
     /// Sets as they are: each number leads to itself or a lower one of its set.
@@ -55,19 +57,34 @@ mod tests {
         let mut random = Random::new(1);
         for count in [1u32, 5, 60] {
             let pairs: Vec<[u32; 2]> = (0..count / 2)
-                .map(|_| [random.below(count as usize) as u32, random.below(count as usize) as u32])
+                .map(|_| {
+                    [
+                        random.below(count as usize) as u32,
+                        random.below(count as usize) as u32,
+                    ]
+                })
                 .collect();
             let mut sets = DisjointSets::new(count as usize);
             let mut labels: Vec<u32> = (0..count).collect();
             for &[a, b] in &pairs {
                 let (from, to) = (labels[a as usize], labels[b as usize]);
                 assert_eq!(sets.unite(a, b), from != to);
-                labels.iter_mut().filter(|label| **label == from).for_each(|label| *label = to);
+                labels
+                    .iter_mut()
+                    .filter(|label| **label == from)
+                    .for_each(|label| *label = to);
             }
-            let lowest =
-                |x: u32| labels.iter().position(|&label| label == labels[x as usize]).unwrap() as u32;
+            let lowest = |x: u32| {
+                labels
+                    .iter()
+                    .position(|&label| label == labels[x as usize])
+                    .unwrap() as u32
+            };
             assert!((0..count).all(|x| sets.root(x) == lowest(x)));
-            assert_eq!(sets.into_roots(), (0..count).map(lowest).collect::<Vec<u32>>());
+            assert_eq!(
+                sets.into_roots(),
+                (0..count).map(lowest).collect::<Vec<u32>>()
+            );
         }
     }
 }

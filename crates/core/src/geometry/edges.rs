@@ -28,22 +28,30 @@ pub(crate) fn for_each_edge(
     mut visit: impl FnMut(u32, &[EdgeSide]),
 ) -> Result<(), Cancelled> {
     let mut starts = vec![0u32; vertex_count + 1];
-    for_each_side(triangles, 0, poll, |_, lower, _| starts[lower as usize + 1] += 1)?;
+    for_each_side(triangles, 0, poll, |_, lower, _| {
+        starts[lower as usize + 1] += 1
+    })?;
     for v in 0..vertex_count {
         starts[v + 1] += starts[v];
     }
     let mut sides = vec![EdgeSide { higher: 0, side: 0 }; starts[vertex_count] as usize];
-    for_each_side(triangles, triangles.len() / 3, poll, |side, lower, higher| {
-        // Filling moves each vertex's start to its end, which is the next one's start.
-        let place = &mut starts[lower as usize];
-        sides[*place as usize] = EdgeSide { higher, side };
-        *place += 1;
-    })?;
+    for_each_side(
+        triangles,
+        triangles.len() / 3,
+        poll,
+        |side, lower, higher| {
+            // Filling moves each vertex's start to its end, which is the next one's start.
+            let place = &mut starts[lower as usize];
+            sides[*place as usize] = EdgeSide { higher, side };
+            *place += 1;
+        },
+    )?;
     let mut start = 0;
     for (v, &end) in starts[..vertex_count].iter().enumerate() {
         let own = &mut sides[start..end as usize];
         own.sort_unstable();
-        own.chunk_by(|a, b| a.higher == b.higher).for_each(|edge| visit(v as u32, edge));
+        own.chunk_by(|a, b| a.higher == b.higher)
+            .for_each(|edge| visit(v as u32, edge));
         start = end as usize;
         if v % BETWEEN_POLLS == 0 {
             poll(triangles.len() * 2 / 3 + start / 9)?;
@@ -53,7 +61,11 @@ pub(crate) fn for_each_edge(
 }
 
 /// [`for_each_edge`] where nobody waits for it.
-pub(crate) fn every_edge(triangles: &[[u32; 3]], vertex_count: usize, visit: impl FnMut(u32, &[EdgeSide])) {
+pub(crate) fn every_edge(
+    triangles: &[[u32; 3]],
+    vertex_count: usize,
+    visit: impl FnMut(u32, &[EdgeSide]),
+) {
     let done = for_each_edge(triangles, vertex_count, &mut |_| Ok(()), visit);
     debug_assert_eq!(done, Ok(()));
 }
@@ -90,18 +102,32 @@ mod tests {
     fn edges_are_those_of_a_map_and_come_in_its_order() {
         // A closed tetrahedron, one of its faces turned round; a fin on one edge; a triangle naming a vertex twice; two
         // apart that share vertex 7 alone.
-        let triangles: [[u32; 3]; 8] =
-            [[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 3, 2], [0, 1, 4], [2, 2, 3], [7, 5, 6], [9, 8, 7]];
+        let triangles: [[u32; 3]; 8] = [
+            [0, 1, 2],
+            [0, 3, 1],
+            [1, 3, 2],
+            [0, 3, 2],
+            [0, 1, 4],
+            [2, 2, 3],
+            [7, 5, 6],
+            [9, 8, 7],
+        ];
         let mut expected = BTreeMap::<(u32, u32), Vec<u32>>::new();
         for (face, t) in triangles.iter().enumerate().filter(|(face, _)| *face != 5) {
             for corner in 0..3 {
                 let (a, b) = (t[corner], t[(corner + 1) % 3]);
-                expected.entry((a.min(b), a.max(b))).or_default().push((3 * face + corner) as u32);
+                expected
+                    .entry((a.min(b), a.max(b)))
+                    .or_default()
+                    .push((3 * face + corner) as u32);
             }
         }
         let mut found = Vec::new();
         every_edge(&triangles, 10, |lower, edge| {
-            found.push(((lower, edge[0].higher), edge.iter().map(|use_| use_.side).collect::<Vec<u32>>()));
+            found.push((
+                (lower, edge[0].higher),
+                edge.iter().map(|use_| use_.side).collect::<Vec<u32>>(),
+            ));
         });
         assert_eq!(found, expected.into_iter().collect::<Vec<_>>());
     }

@@ -58,25 +58,46 @@ pub(crate) fn triangulated(
         if core::mem::replace(&mut is_inside[face.fix().index()], true) {
             continue;
         }
-        let open = inner.adjacent_edges().into_iter().filter(|edge| !edge.is_constraint_edge());
+        let open = inner
+            .adjacent_edges()
+            .into_iter()
+            .filter(|edge| !edge.is_constraint_edge());
         pending.extend(open.map(|edge| edge.rev().face()));
     }
     let inside = asking(net.inner_faces(), is_stopped).filter(|face| is_inside[face.fix().index()]);
-    Some(inside.map(|face| face.vertices().map(|vertex| order[vertex.fix().index()])).collect())
+    Some(
+        inside
+            .map(|face| face.vertices().map(|vertex| order[vertex.fix().index()]))
+            .collect(),
+    )
 }
 
 /// The numbers of points in the order in which Hilbert's curve passes them: each is inserted beside the one before, so that it is found in a few steps
 /// however the points were numbered.
 fn along_curve(points: &[[f64; 2]], is_stopped: &IsStopped<'_>) -> Vec<u32> {
-    let corner = [0, 1].map(|axis| points.iter().fold(f64::INFINITY, |low, point| low.min(point[axis])));
-    let size =
-        points.iter().flat_map(|point| [point[0] - corner[0], point[1] - corner[1]]).fold(0.0, f64::max);
+    let corner = [0, 1].map(|axis| {
+        points
+            .iter()
+            .fold(f64::INFINITY, |low, point| low.min(point[axis]))
+    });
+    let size = points
+        .iter()
+        .flat_map(|point| [point[0] - corner[0], point[1] - corner[1]])
+        .fold(0.0, f64::max);
     let scale = f64::from((1u32 << ORDER) - 1) / size;
     // Where all are at one place there is no order among them.
-    let cell = |x: f64| if scale.is_finite() { (x * scale) as u32 } else { 0 };
+    let cell = |x: f64| {
+        if scale.is_finite() {
+            (x * scale) as u32
+        } else {
+            0
+        }
+    };
     let place = |[x, y]: [f64; 2]| along_hilbert_curve([cell(x - corner[0]), cell(y - corner[1])]);
     let numbered = asking((0..).zip(points), is_stopped);
-    let mut order: Vec<(u32, u32)> = numbered.map(|(number, &point)| (place(point), number)).collect();
+    let mut order: Vec<(u32, u32)> = numbered
+        .map(|(number, &point)| (place(point), number))
+        .collect();
     sort_asking(&mut order, is_stopped);
     order.into_iter().map(|(_, number)| number).collect()
 }
@@ -141,7 +162,9 @@ mod tests {
     fn the_curve_goes_from_cell_to_cell() {
         const SIDE: u32 = 64;
         let cells = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| [x, y]));
-        let mut passed: Vec<(u32, [u32; 2])> = cells.map(|cell| (along_hilbert_curve(cell), cell)).collect();
+        let mut passed: Vec<(u32, [u32; 2])> = cells
+            .map(|cell| (along_hilbert_curve(cell), cell))
+            .collect();
         passed.sort_unstable();
         for (at, pair) in passed.windows(2).enumerate() {
             let [(before, [a, b]), (after, [c, d])] = [pair[0], pair[1]];

@@ -15,7 +15,14 @@ impl SurfaceFrame {
     /// Around what a box holds.
     pub(crate) fn of([low, high]: Bounds) -> Self {
         let size = diagonal(0.5 * low, 0.5 * high);
-        Self { middle: 0.5 * low + 0.5 * high, size: if size > 0.0 && size.is_finite() { size } else { 1.0 } }
+        Self {
+            middle: 0.5 * low + 0.5 * high,
+            size: if size > 0.0 && size.is_finite() {
+                size
+            } else {
+                1.0
+            },
+        }
     }
 
     /// A point in the frame.

@@ -25,7 +25,10 @@ const WELL_SHAPED: f64 = 1e-7;
 /// The foot on the corner-weighted point.
 #[inline]
 fn foot(weights: [f64; 3], at: DVec3) -> Foot {
-    Foot { weights, squared: at.length_squared() }
+    Foot {
+        weights,
+        squared: at.length_squared(),
+    }
 }
 
 /// The point of triangle `a`, `b`, `c` closest to the origin.
@@ -111,7 +114,10 @@ fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     if weight_a >= 0.0 && weight_b >= 0.0 && weight_c >= 0.0 && sum > 0.0 {
         let weights = [weight_a / sum, weight_b / sum, weight_c / sum];
         if weights.iter().all(|w| w.is_finite()) {
-            offer(foot(weights, a * weights[0] + b * weights[1] + c * weights[2]));
+            offer(foot(
+                weights,
+                a * weights[0] + b * weights[1] + c * weights[2],
+            ));
         }
     }
     best
@@ -121,7 +127,11 @@ fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
 fn along_segment(from: DVec3, to: DVec3) -> f64 {
     let along = to - from;
     let (numerator, denominator) = (-from.dot(along), along.length_squared());
-    if numerator > 0.0 && denominator > 0.0 { (numerator / denominator).min(1.0) } else { 0.0 }
+    if numerator > 0.0 && denominator > 0.0 {
+        (numerator / denominator).min(1.0)
+    } else {
+        0.0
+    }
 }
 /// The solid angle of a triangle as seen from a point (Van Oosterom and Strackee 1983): above 0 where its corners run clockwise
 /// from there, as those of a closed surface around the point do, whose angles add up to 4π.

@@ -121,13 +121,18 @@ impl Search<'_> {
 
     /// All that is open from `v` on is a group.
     fn close(&mut self, v: u32) {
-        let Some(first) = self.open.iter().rposition(|&u| u == v) else { return };
+        let Some(first) = self.open.iter().rposition(|&u| u == v) else {
+            return;
+        };
         let (start, number) = (self.blocks.members.len(), self.blocks.len() as u32);
         self.blocks.members.extend(self.open.drain(first..));
         self.blocks.members[start..].sort_unstable();
         for (place, &u) in (0..).zip(&self.blocks.members[start..]) {
             self.is_open[u as usize] = false;
-            (self.blocks.numbers[u as usize], self.blocks.places[u as usize]) = (number, place);
+            (
+                self.blocks.numbers[u as usize],
+                self.blocks.places[u as usize],
+            ) = (number, place);
         }
         self.blocks.starts.push(self.blocks.members.len() as u32);
     }

@@ -71,7 +71,11 @@ enum Way<'a> {
     /// For limits so far from their vertices.
     At(&'a [DVec3]),
     /// For the fairest.
-    Near { near: &'a Near<'a>, reaches: Vec<f64>, energies: BlockEnergies },
+    Near {
+        near: &'a Near<'a>,
+        reaches: Vec<f64>,
+        energies: BlockEnergies,
+    },
 }
 
 /// The system of a mesh, its lengths multiplied by `unit`.
@@ -103,7 +107,9 @@ impl<'m> ControlPoints<'m> {
         let mut first_copy: Vec<u32> = (0..mesh.vertex_count() as u32).collect();
         for group in mesh.junctions().vertices.iter() {
             let first = group.iter().copied().min().unwrap_or(0);
-            group.iter().for_each(|&copy| first_copy[copy as usize] = first);
+            group
+                .iter()
+                .for_each(|&copy| first_copy[copy as usize] = first);
         }
         let kept: HashSet<u32> = kept.iter().map(|v| first_copy[v.index()]).collect();
         let mut rows = of_first_copies(rows, &first_copy);
@@ -115,8 +121,18 @@ impl<'m> ControlPoints<'m> {
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
         let (matrix, passed_by) = (Sparse::empty(), HashSet::new());
-        let mut found =
-            Self { mesh, sharpness, first_copy, rows: None, matrix, kept, passed_by, planes, points, unit };
+        let mut found = Self {
+            mesh,
+            sharpness,
+            first_copy,
+            rows: None,
+            matrix,
+            kept,
+            passed_by,
+            planes,
+            points,
+            unit,
+        };
         found.set(rows, poll)?;
         Ok(found)
     }
@@ -142,7 +158,8 @@ impl<'m> ControlPoints<'m> {
     ) -> Result<bool, Cancelled> {
         let before = self.planes.len();
         let off = |v: u32| vector(limits[v as usize]) - vector(self.mesh.positions()[v as usize]);
-        self.planes.retain(|&v, normal| off(v).dot(*normal).abs() <= most);
+        self.planes
+            .retain(|&v, normal| off(v).dot(*normal).abs() <= most);
         if self.planes.len() == before {
             return Ok(false);
         }
@@ -171,7 +188,9 @@ impl<'m> ControlPoints<'m> {
         if self.passed_by.is_empty() {
             return Vec::new();
         }
-        let all = (0..).zip(&self.first_copy).filter(|(_, first)| self.passed_by.contains(first));
+        let all = (0..)
+            .zip(&self.first_copy)
+            .filter(|(_, first)| self.passed_by.contains(first));
         all.map(|(v, _)| VertexId(v)).collect()
     }
 
@@ -191,7 +210,11 @@ impl<'m> ControlPoints<'m> {
     }
 
     /// Solves for the control points of given limits, or of the fairest near the vertices.
-    pub(super) fn solve(&self, limits: &Limits<'_>, watch: &mut Watch<'_>) -> Result<Moved, Cancelled> {
+    pub(super) fn solve(
+        &self,
+        limits: &Limits<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Moved, Cancelled> {
         let n = self.points.len();
         let poll: &mut Poll<'_> = &mut |_| watch.poll();
         let to_vertices = parallel::map_polled(n, poll, |v| self.to_vertex(v))?;
@@ -208,8 +231,13 @@ impl<'m> ControlPoints<'m> {
         };
         let energies = matches!(way, Way::Near { .. }).then(Energies::default);
         let nowhere = vec![DVec3::ZERO; n];
-        let mut moved =
-            Moved { by: nowhere.clone(), away: nowhere, solver: Solver::Symmetric, steps: 0, energies };
+        let mut moved = Moved {
+            by: nowhere.clone(),
+            away: nowhere,
+            solver: Solver::Symmetric,
+            steps: 0,
+            energies,
+        };
         let mut done = 0;
         for (number, block) in blocks.iter().enumerate() {
             done += block.len();
@@ -223,8 +251,13 @@ impl<'m> ControlPoints<'m> {
             }
             let system = self.system_of(block, &blocks, &to_vertices, &moved.by);
             let poll: &mut Poll<'_> = &mut |_| watch.poll();
-            let found = self.solve_block((number, &blocks), (&way, system), &moved.by, goal, poll)?;
-            let Found { solution: Solution { x, steps, solver }, away, energies } = found;
+            let found =
+                self.solve_block((number, &blocks), (&way, system), &moved.by, goal, poll)?;
+            let Found {
+                solution: Solution { x, steps, solver },
+                away,
+                energies,
+            } = found;
             for ((&v, by), away) in block.iter().zip(x).zip(away) {
                 (moved.by[v as usize], moved.away[v as usize]) = (by, away / self.unit);
             }
@@ -250,19 +283,46 @@ impl<'m> ControlPoints<'m> {
         poll: &mut Poll<'_>,
     ) -> Result<Found, Cancelled> {
         let block = blocks.block(number);
-        let scaled = |away: &[DVec3]| block.iter().map(|&v| self.unit * away[v as usize]).collect();
+        let scaled = |away: &[DVec3]| {
+            block
+                .iter()
+                .map(|&v| self.unit * away[v as usize])
+                .collect()
+        };
         match way {
             Way::At(away) => {
                 let away: Vec<DVec3> = scaled(away);
-                right.iter_mut().zip(&away).for_each(|(b, &away)| *b += away);
+                right
+                    .iter_mut()
+                    .zip(&away)
+                    .for_each(|(b, &away)| *b += away);
                 let solution = system.solve(&right, vec![DVec3::ZERO; block.len()], goal, poll)?;
-                Ok(Found { solution, away, energies: Energies::default() })
+                Ok(Found {
+                    solution,
+                    away,
+                    energies: Energies::default(),
+                })
             }
-            Way::Near { near, reaches, energies } => {
+            Way::Near {
+                near,
+                reaches,
+                energies,
+            } => {
                 let energy = energies.of(number, blocks, &self.points, by);
                 let reach: Vec<f64> = block.iter().map(|&v| reaches[v as usize]).collect();
-                let bounds = Bounds { reach: &reach, nearness: near.nearness, nothing: near.nothing };
-                fairness::solve(&system, &energy, &right, (&bounds, scaled(near.from)), goal, poll)
+                let bounds = Bounds {
+                    reach: &reach,
+                    nearness: near.nearness,
+                    nothing: near.nothing,
+                };
+                fairness::solve(
+                    &system,
+                    &energy,
+                    &right,
+                    (&bounds, scaled(near.from)),
+                    goal,
+                    poll,
+                )
             }
         }
     }
@@ -291,7 +351,10 @@ impl<'m> ControlPoints<'m> {
         for &v in block {
             let is_inside = |&(u, _): &(u32, f64)| blocks.number(u) == number;
             let row = self.matrix.row(v as usize);
-            let known = row.clone().filter(|entry| !is_inside(entry)).map(|(u, w)| w * by[u as usize]);
+            let known = row
+                .clone()
+                .filter(|entry| !is_inside(entry))
+                .map(|(u, w)| w * by[u as usize]);
             right.push(away[v as usize] - known.sum::<DVec3>());
             inside.push(row.filter(is_inside).map(|(u, w)| (blocks.place(u), w)));
         }
@@ -313,13 +376,21 @@ impl<'m> ControlPoints<'m> {
     pub(super) fn position(&self, v: usize, by: DVec3) -> [f64; 3] {
         let from = self.mesh.positions()[v];
         // What stays keeps its bits.
-        if by == DVec3::ZERO { from } else { (vector(from) + by / self.unit).to_array() }
+        if by == DVec3::ZERO {
+            from
+        } else {
+            (vector(from) + by / self.unit).to_array()
+        }
     }
 }
 
 /// A power of two that brings coordinates near 1, so that no square overflows or vanishes.
 fn unit(mesh: &Mesh) -> f64 {
-    let greatest = mesh.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let greatest = mesh
+        .positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |most, x| most.max(x.abs()));
     if greatest == 0.0 {
         return 1.0;
     }
@@ -336,7 +407,11 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
             matrix.push([]);
             continue;
         }
-        matrix.push(summed(rows.row(v as usize).map(|(u, w)| (first_copy[u as usize], w)).collect()));
+        matrix.push(summed(
+            rows.row(v as usize)
+                .map(|(u, w)| (first_copy[u as usize], w))
+                .collect(),
+        ));
     }
     matrix
 }
@@ -363,9 +438,16 @@ struct BlockEnergies {
 impl BlockEnergies {
     fn new(mesh: &Mesh, first_copy: &[u32], blocks: &Blocks) -> Self {
         let rows = fairness::rows(mesh, first_copy);
-        let last = |row: u32| rows.columns(row as usize).iter().map(|&u| blocks.number(u) as usize).max();
+        let last = |row: u32| {
+            rows.columns(row as usize)
+                .iter()
+                .map(|&u| blocks.number(u) as usize)
+                .max()
+        };
         let mut starts = vec![0u32; blocks.len() + 1];
-        (0..rows.rows() as u32).filter_map(last).for_each(|block| starts[block + 1] += 1);
+        (0..rows.rows() as u32)
+            .filter_map(last)
+            .for_each(|block| starts[block + 1] += 1);
         for block in 0..blocks.len() {
             starts[block + 1] += starts[block];
         }
@@ -377,7 +459,11 @@ impl BlockEnergies {
                 next[block] += 1;
             }
         }
-        Self { rows, starts, by_block }
+        Self {
+            rows,
+            starts,
+            by_block,
+        }
     }
 
     /// The energy of a block, those before it known.
@@ -386,14 +472,24 @@ impl BlockEnergies {
         for &row in &self.by_block[self.starts[number] as usize..self.starts[number + 1] as usize] {
             let row = self.rows.row(row as usize);
             // The weights of a row sum to 0: only differences count.
-            let origin = row.clone().next().map_or(DVec3::ZERO, |(u, _)| points[u as usize]);
+            let origin = row
+                .clone()
+                .next()
+                .map_or(DVec3::ZERO, |(u, _)| points[u as usize]);
             let is_inside = |u: u32| blocks.number(u) as usize == number;
             let weighted = |(u, weight): (u32, f64)| {
-                let moved = if is_inside(u) { DVec3::ZERO } else { by[u as usize] };
+                let moved = if is_inside(u) {
+                    DVec3::ZERO
+                } else {
+                    by[u as usize]
+                };
                 weight * (points[u as usize] - origin + moved)
             };
             known.push(row.clone().map(weighted).sum());
-            inside.push(row.filter(|&(u, _)| is_inside(u)).map(|(u, w)| (blocks.place(u), w)));
+            inside.push(
+                row.filter(|&(u, _)| is_inside(u))
+                    .map(|(u, w)| (blocks.place(u), w)),
+            );
         }
         Energy::new(inside, known, blocks.block(number).len())
     }

@@ -70,8 +70,18 @@ impl Energies {
     }
 
     pub(super) fn fairness(&self) -> Fairness {
-        let share = |energy: f64| if self.through > 0.0 { energy / self.through } else { 1.0 };
-        Fairness { energy: share(self.reached), least_energy: share(self.least), steps: self.steps }
+        let share = |energy: f64| {
+            if self.through > 0.0 {
+                energy / self.through
+            } else {
+                1.0
+            }
+        };
+        Fairness {
+            energy: share(self.reached),
+            least_energy: share(self.least),
+            steps: self.steps,
+        }
     }
 }
 
@@ -88,7 +98,10 @@ pub(super) fn rows(mesh: &Mesh, first_copy: &[u32]) -> Sparse {
             VertexRule::Smooth | VertexRule::Dart => ring.collect(),
             VertexRule::Crease => {
                 let is_sharp = sharpness.spokes(vertex).map(|sharpness| sharpness > 0.0);
-                ring.zip(is_sharp).filter(|&(_, is_sharp)| is_sharp).map(|(u, _)| u).collect()
+                ring.zip(is_sharp)
+                    .filter(|&(_, is_sharp)| is_sharp)
+                    .map(|(u, _)| u)
+                    .collect()
             }
         };
         let own = (!ends.is_empty()).then_some((v, -1.0));
@@ -108,7 +121,11 @@ pub(super) struct Energy {
 impl Energy {
     pub(super) fn new(rows: Sparse, known: Vec<DVec3>, unknowns: usize) -> Self {
         let transposed = rows.transposed(unknowns);
-        Self { rows, transposed, known }
+        Self {
+            rows,
+            transposed,
+            known,
+        }
     }
 }
 
@@ -127,8 +144,12 @@ impl State {
         let mut next = self.clone();
         update(&mut next.y, poll, |i, y| *y += along * (*y - before.y[i]))?;
         update(&mut next.d, poll, |i, d| *d += along * (*d - before.d[i]))?;
-        update(&mut next.bent, poll, |i, b| *b += along * (*b - before.bent[i]))?;
-        update(&mut next.gradient, poll, |i, g| *g += along * (*g - before.gradient[i]))?;
+        update(&mut next.bent, poll, |i, b| {
+            *b += along * (*b - before.bent[i])
+        })?;
+        update(&mut next.gradient, poll, |i, g| {
+            *g += along * (*g - before.gradient[i])
+        })?;
         Ok(next)
     }
 }
@@ -186,17 +207,35 @@ impl Problem<'_> {
     fn state(&self, y: Vec<DVec3>, near: State, poll: &mut Poll<'_>) -> Result<State, Cancelled> {
         let mut right = self.right.to_vec();
         update(&mut right, poll, |i, b| *b += y[i])?;
-        let d = self.system.solve(&right, near.d, ACCURACY * self.most, poll)?.x;
+        let d = self
+            .system
+            .solve(&right, near.d, ACCURACY * self.most, poll)?
+            .x;
         let mut bent = self.energy.known.clone();
-        update(&mut bent, poll, |i, b| *b += self.energy.rows.row_times(i, &d))?;
+        update(&mut bent, poll, |i, b| {
+            *b += self.energy.rows.row_times(i, &d)
+        })?;
         let pull = self.energy.transposed.times(&bent, poll)?;
         let goal = ACCURACY * greatest(pull.len(), poll, |i| pull[i].abs().max_element())?;
-        let gradient = self.system.solve_transposed(&pull, near.gradient, goal, poll)?.x;
-        Ok(State { y, d, bent, gradient })
+        let gradient = self
+            .system
+            .solve_transposed(&pull, near.gradient, goal, poll)?
+            .x;
+        Ok(State {
+            y,
+            d,
+            bent,
+            gradient,
+        })
     }
 
     /// A step against the slope from `from` into the balls.
-    fn step(&self, from: &State, curvature: f64, poll: &mut Poll<'_>) -> Result<Vec<DVec3>, Cancelled> {
+    fn step(
+        &self,
+        from: &State,
+        curvature: f64,
+        poll: &mut Poll<'_>,
+    ) -> Result<Vec<DVec3>, Cancelled> {
         let mut y = from.y.clone();
         update(&mut y, poll, |i, y| *y -= self.slope(from, i) / curvature)?;
         self.bounds.kept(y, poll)
@@ -222,10 +261,20 @@ pub(super) fn solve(
 ) -> Result<Found, Cancelled> {
     let n = right.len();
     let most = bounds.reach.iter().copied().fold(0.0, f64::max);
-    let problem = Problem { system, energy, right, bounds, most };
+    let problem = Problem {
+        system,
+        energy,
+        right,
+        bounds,
+        most,
+    };
     let nothing = vec![DVec3::ZERO; n];
-    let origin =
-        State { y: nothing.clone(), d: nothing.clone(), bent: Vec::new(), gradient: nothing.clone() };
+    let origin = State {
+        y: nothing.clone(),
+        d: nothing.clone(),
+        bent: Vec::new(),
+        gradient: nothing.clone(),
+    };
     let mut now = problem.state(nothing, origin, poll)?;
     let through = problem.value(&now, poll)?;
     if away.iter().any(|&away| away != DVec3::ZERO) {
@@ -233,7 +282,9 @@ pub(super) fn solve(
     }
     let (mut ahead, mut momentum, mut curvature) = (now.clone(), 1.0f64, CURVATURE);
     let (mut value, mut gap, mut steps) = (problem.value(&now, poll)?, problem.gap(&now, poll)?, 0);
-    while steps < MOST_STEPS && gap > (GAP * value.min(through - value + gap)).max(bounds.nothing * through) {
+    while steps < MOST_STEPS
+        && gap > (GAP * value.min(through - value + gap)).max(bounds.nothing * through)
+    {
         steps += 1;
         let from = problem.value(&ahead, poll)?;
         let (next, next_value) = loop {
@@ -241,7 +292,8 @@ pub(super) fn solve(
             let next = problem.state(y, ahead.clone(), poll)?;
             let model = sum(n, poll, |i| {
                 let by = next.y[i] - ahead.y[i];
-                DVec3::X * (problem.slope(&ahead, i).dot(by) + 0.5 * curvature * by.length_squared())
+                DVec3::X
+                    * (problem.slope(&ahead, i).dot(by) + 0.5 * curvature * by.length_squared())
             })?;
             let next_value = problem.value(&next, poll)?;
             if next_value <= from + model.x + 1e-9 * from || curvature > 1e6 {
@@ -249,9 +301,19 @@ pub(super) fn solve(
             }
             curvature *= 2.0;
         };
-        let uphill = sum(n, poll, |i| DVec3::X * problem.slope(&ahead, i).dot(next.y[i] - now.y[i]))?;
-        let after = if uphill.x > 0.0 { 1.0 } else { 0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt()) };
-        let along = if uphill.x > 0.0 { 0.0 } else { (momentum - 1.0) / after };
+        let uphill = sum(n, poll, |i| {
+            DVec3::X * problem.slope(&ahead, i).dot(next.y[i] - now.y[i])
+        })?;
+        let after = if uphill.x > 0.0 {
+            1.0
+        } else {
+            0.5 * (1.0 + (1.0 + 4.0 * momentum * momentum).sqrt())
+        };
+        let along = if uphill.x > 0.0 {
+            0.0
+        } else {
+            (momentum - 1.0) / after
+        };
         ahead = next.beyond(&now, along, poll)?;
         (now, value, momentum) = (next, next_value, after);
         gap = problem.gap(&now, poll)?;
@@ -259,6 +321,15 @@ pub(super) fn solve(
     let mut right = right.to_vec();
     update(&mut right, poll, |i, b| *b += now.y[i])?;
     let solution = system.solve(&right, now.d, goal, poll)?;
-    let energies = Energies { through, reached: value, least: (value - gap).max(0.0), steps };
-    Ok(Found { solution, away: now.y, energies })
+    let energies = Energies {
+        through,
+        reached: value,
+        least: (value - gap).max(0.0),
+        steps,
+    };
+    Ok(Found {
+        solution,
+        away: now.y,
+        energies,
+    })
 }

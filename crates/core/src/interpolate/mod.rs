@@ -95,7 +95,9 @@ pub enum InterpolateError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// No limits that are near enough were found.
-    #[error("the limit of vertex {vertex} is at least {distance} from it, but may be at most {within}")]
+    #[error(
+        "the limit of vertex {vertex} is at least {distance} from it, but may be at most {within}"
+    )]
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,
@@ -199,8 +201,16 @@ pub(crate) fn interpolate_but(
 ) -> Result<Interpolated, InterpolateError> {
     let within = options.within;
     if !(within >= 0.0 && within.is_finite()) {
-        let (name, expected) = ("the distance of limits from vertices", "a length of at least 0");
-        return Err(MeshError::BadOption { name, value: within, expected }.into());
+        let (name, expected) = (
+            "the distance of limits from vertices",
+            "a length of at least 0",
+        );
+        return Err(MeshError::BadOption {
+            name,
+            value: within,
+            expected,
+        }
+        .into());
     }
     let mut watch = Watch::new(observer, Stage::Interpolating);
     watch.triangles(mesh.face_count());
@@ -220,20 +230,38 @@ pub(crate) fn interpolate_but(
             fairness: None,
         });
     }
-    let (nowhere, reach) = (vec![DVec3::ZERO; mesh.vertex_count()], vec![within; mesh.vertex_count()]);
-    let near =
-        Near { reach: &reach, nearness: fairness::NEARNESS, nothing: fairness::NOTHING, from: &nowhere };
-    let asked = if within > 0.0 { Limits::Near(&near) } else { Limits::At(&nowhere) };
+    let (nowhere, reach) = (
+        vec![DVec3::ZERO; mesh.vertex_count()],
+        vec![within; mesh.vertex_count()],
+    );
+    let near = Near {
+        reach: &reach,
+        nearness: fairness::NEARNESS,
+        nothing: fairness::NOTHING,
+        from: &nowhere,
+    };
+    let asked = if within > 0.0 {
+        Limits::Near(&near)
+    } else {
+        Limits::At(&nowhere)
+    };
     let mut attempt = 0;
     let (moved, control, limits) = loop {
         let moved = points.solve(&asked, &mut watch)?;
-        let positions = moved.by.iter().enumerate().map(|(v, &by)| points.position(v, by)).collect();
+        let positions = moved
+            .by
+            .iter()
+            .enumerate()
+            .map(|(v, &by)| points.position(v, by))
+            .collect();
         let control = mesh.clone().with_positions(positions)?;
         watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
         let limits = table.positions_polled(&control, &mut |done| watch.done(done))??;
         let most = within + points.rounding() + THROUGH * mesh.diagonal();
         attempt += 1;
-        if !points.lead_through(&limits, (most, attempt >= MOST_ATTEMPTS), &mut |_| watch.poll())? {
+        if !points.lead_through(&limits, (most, attempt >= MOST_ATTEMPTS), &mut |_| {
+            watch.poll()
+        })? {
             break (moved, control, limits);
         }
         watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
@@ -242,11 +270,18 @@ pub(crate) fn interpolate_but(
     let (residual, vertex) = farthest(&limits, mesh.positions(), |v, away| points.missed(v, away));
     let rounding = points.rounding();
     if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
-        return Err(InterpolateError::TooFar { vertex, distance: residual, within });
+        return Err(InterpolateError::TooFar {
+            vertex,
+            distance: residual,
+            within,
+        });
     }
-    let (displacement, most_displaced) = farthest(control.positions(), mesh.positions(), |_, away| away);
+    let (displacement, most_displaced) =
+        farthest(control.positions(), mesh.positions(), |_, away| away);
     let method = match moved.solver {
-        _ if residual > within + rounding + THROUGH * mesh.diagonal() => InterpolationMethod::LeastSquares,
+        _ if residual > within + rounding + THROUGH * mesh.diagonal() => {
+            InterpolationMethod::LeastSquares
+        }
         Solver::Symmetric => InterpolationMethod::ConjugateGradients,
         Solver::Normal => InterpolationMethod::NormalEquations,
     };
@@ -263,13 +298,28 @@ pub(crate) fn interpolate_but(
 }
 
 /// The greatest distance between points of the same number, of which a part counts, and the first of those.
-fn farthest(a: &[[f64; 3]], b: &[[f64; 3]], counts: impl Fn(usize, DVec3) -> DVec3) -> (f64, VertexId) {
+fn farthest(
+    a: &[[f64; 3]],
+    b: &[[f64; 3]],
+    counts: impl Fn(usize, DVec3) -> DVec3,
+) -> (f64, VertexId) {
     let distance = |(v, (&a, &b)): (usize, (&[f64; 3], &[f64; 3]))| {
         let away = counts(v, vector(a) - vector(b));
-        (v as u32, diagonal(away.min(DVec3::ZERO), away.max(DVec3::ZERO)))
+        (
+            v as u32,
+            diagonal(away.min(DVec3::ZERO), away.max(DVec3::ZERO)),
+        )
     };
     let most = |most: (f64, VertexId), (v, distance): (u32, f64)| {
-        if distance > most.0 { (distance, VertexId(v)) } else { most }
+        if distance > most.0 {
+            (distance, VertexId(v))
+        } else {
+            most
+        }
     };
-    a.iter().zip(b).enumerate().map(distance).fold((0.0, VertexId(0)), most)
+    a.iter()
+        .zip(b)
+        .enumerate()
+        .map(distance)
+        .fold((0.0, VertexId(0)), most)
 }

@@ -28,7 +28,11 @@ impl<'m> NearVertices<'m> {
         let table = LimitTable::new(scheme);
         let rows = table.position_rows(mesh, &mut |_| watch.poll())??;
         let points = ControlPoints::new(mesh, rows, &[], &mut |_| watch.poll())?;
-        Ok(Self { mesh, table, points })
+        Ok(Self {
+            mesh,
+            table,
+            points,
+        })
     }
 
     /// Whether the limit of a vertex can be anywhere else than at it.
@@ -46,7 +50,18 @@ impl<'m> NearVertices<'m> {
         watch: &mut Watch<'_>,
     ) -> Result<Vec<DVec3>, Cancelled> {
         watch.stage(Stage::Interpolating, Some(self.mesh.vertex_count()))?;
-        Ok(self.points.solve(&Limits::Near(&Near { reach, nearness, nothing: NOTHING, from }), watch)?.away)
+        Ok(self
+            .points
+            .solve(
+                &Limits::Near(&Near {
+                    reach,
+                    nearness,
+                    nothing: NOTHING,
+                    from,
+                }),
+                watch,
+            )?
+            .away)
     }
 
     /// The control mesh whose limits are so far `away` from the vertices.
@@ -55,15 +70,28 @@ impl<'m> NearVertices<'m> {
         away: &[DVec3],
         watch: &mut Watch<'_>,
     ) -> Result<Mesh, InterpolateError> {
-        let most = away.iter().map(|away| away.length()).fold(0.0, f64::max) + THROUGH * self.mesh.diagonal();
+        let most = away.iter().map(|away| away.length()).fold(0.0, f64::max)
+            + THROUGH * self.mesh.diagonal();
         let mut attempt = 0;
         loop {
             let moved = self.points.solve(&Limits::At(away), watch)?;
-            let positions = moved.by.iter().enumerate().map(|(v, &by)| self.points.position(v, by)).collect();
+            let positions = moved
+                .by
+                .iter()
+                .enumerate()
+                .map(|(v, &by)| self.points.position(v, by))
+                .collect();
             let control = self.mesh.clone().with_positions(positions)?;
-            let limits = self.table.positions_polled(&control, &mut |done| watch.done(done))??;
+            let limits = self
+                .table
+                .positions_polled(&control, &mut |done| watch.done(done))??;
             attempt += 1;
-            if !self.points.lead_through(&limits, (most, attempt >= MOST_ATTEMPTS), &mut |_| watch.poll())? {
+            if !self
+                .points
+                .lead_through(&limits, (most, attempt >= MOST_ATTEMPTS), &mut |_| {
+                    watch.poll()
+                })?
+            {
                 return Ok(control);
             }
         }

@@ -48,7 +48,11 @@ pub(super) fn kept_in_planes(
             if next.is_multiple_of(POLLED as usize) {
                 poll(v as usize)?;
             }
-            for &u in matrix.columns(at as usize).iter().filter(|&&u| planes.is_inside(u)) {
+            for &u in matrix
+                .columns(at as usize)
+                .iter()
+                .filter(|&&u| planes.is_inside(u))
+            {
                 // What goes on smoothly is in the plane, too, or what is beside it is not.
                 if planes.of_vertex(u).is_none() {
                     is_flat = false;
@@ -57,7 +61,9 @@ pub(super) fn kept_in_planes(
                 }
             }
         }
-        let uneven = region.into_iter().filter(|&u| is_flat && is_uneven(matrix, mesh, u));
+        let uneven = region
+            .into_iter()
+            .filter(|&u| is_flat && is_uneven(matrix, mesh, u));
         kept.extend(uneven.filter_map(|u| Some((u, planes.of_vertex(u)?))));
     }
     Ok(kept)
@@ -74,8 +80,17 @@ struct Planes<'a> {
 
 impl<'a> Planes<'a> {
     fn of(matrix: &'a Sparse, mesh: &'a Mesh, sharpness: &'a Sharpness<'a>) -> Self {
-        let greatest = mesh.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
-        Self { matrix, mesh, sharpness, most: IN_PLANE * greatest }
+        let greatest = mesh
+            .positions()
+            .as_flattened()
+            .iter()
+            .fold(0.0f64, |most, x| most.max(x.abs()));
+        Self {
+            matrix,
+            mesh,
+            sharpness,
+            most: IN_PLANE * greatest,
+        }
     }
 
     /// Whether a vertex is on no line that could close a region off.

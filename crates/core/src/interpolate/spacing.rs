@@ -34,9 +34,17 @@ pub(super) fn even(
             poll(v as usize)?;
         }
         let left = |&u: &u32| part_left(matrix, mesh, sharpness, [v, u]);
-        if is_on_line(matrix, mesh, sharpness, v) && matrix.columns(v as usize).iter().any(|u| left(u) < 1.0)
+        if is_on_line(matrix, mesh, sharpness, v)
+            && matrix.columns(v as usize).iter().any(|u| left(u) < 1.0)
         {
-            changed.push((v, matrix.columns(v as usize).iter().map(left).collect::<Vec<f64>>()));
+            changed.push((
+                v,
+                matrix
+                    .columns(v as usize)
+                    .iter()
+                    .map(left)
+                    .collect::<Vec<f64>>(),
+            ));
         }
     }
     for (v, left) in &changed {
@@ -46,7 +54,8 @@ pub(super) fn even(
             *weight *= left;
         }
         let own = matrix.columns(*v as usize).iter().position(|u| u == v);
-        own.into_iter().for_each(|own| matrix.weights_mut(*v as usize)[own] += taken);
+        own.into_iter()
+            .for_each(|own| matrix.weights_mut(*v as usize)[own] += taken);
     }
     Ok(changed.into_iter().map(|(v, _)| v).collect())
 }
@@ -62,21 +71,31 @@ fn is_on_line(matrix: &Sparse, mesh: &Mesh, sharpness: &Sharpness<'_>, v: u32) -
 fn part_left(matrix: &Sparse, mesh: &Mesh, sharpness: &Sharpness<'_>, ends: [u32; 2]) -> f64 {
     let length = length(mesh, ends);
     // At the end of a line nobody knows how long edges should be.
-    let on_line = ends.into_iter().filter(|&end| is_on_line(matrix, mesh, sharpness, end));
-    let most = MOST_UNEVEN * on_line.map(|end| shortest(matrix, mesh, end)).fold(f64::INFINITY, f64::min);
+    let on_line = ends
+        .into_iter()
+        .filter(|&end| is_on_line(matrix, mesh, sharpness, end));
+    let most = MOST_UNEVEN
+        * on_line
+            .map(|end| shortest(matrix, mesh, end))
+            .fold(f64::INFINITY, f64::min);
     if length > most { most / length } else { 1.0 }
 }
 
 /// The length of the shortest edge from a vertex to those that its limit depends on.
 fn shortest(matrix: &Sparse, mesh: &Mesh, v: u32) -> f64 {
     let others = matrix.columns(v as usize).iter().filter(|&&u| u != v);
-    others.map(|&u| length(mesh, [v, u])).fold(f64::INFINITY, f64::min)
+    others
+        .map(|&u| length(mesh, [v, u]))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// Whether the edges from a vertex to those that its limit depends on are of very different lengths.
 pub(super) fn is_uneven(matrix: &Sparse, mesh: &Mesh, v: u32) -> bool {
     let most = MOST_UNEVEN * shortest(matrix, mesh, v);
-    matrix.columns(v as usize).iter().any(|&u| length(mesh, [v, u]) > most)
+    matrix
+        .columns(v as usize)
+        .iter()
+        .any(|&u| length(mesh, [v, u]) > most)
 }
 
 fn length(mesh: &Mesh, ends: [u32; 2]) -> f64 {

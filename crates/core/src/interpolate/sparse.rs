@@ -17,14 +17,22 @@ pub(super) struct Sparse {
 
 impl From<LimitRows> for Sparse {
     fn from(rows: LimitRows) -> Self {
-        Self { starts: rows.starts, columns: rows.vertices, weights: rows.weights }
+        Self {
+            starts: rows.starts,
+            columns: rows.vertices,
+            weights: rows.weights,
+        }
     }
 }
 
 impl Sparse {
     /// A matrix without rows.
     pub(super) fn empty() -> Self {
-        Self { starts: vec![0], columns: Vec::new(), weights: Vec::new() }
+        Self {
+            starts: vec![0],
+            columns: Vec::new(),
+            weights: Vec::new(),
+        }
     }
 
     /// Adds a row.
@@ -45,7 +53,10 @@ impl Sparse {
     #[inline]
     pub(super) fn row(&self, i: usize) -> impl ExactSizeIterator<Item = (u32, f64)> + Clone + '_ {
         let row = self.starts[i]..self.starts[i + 1];
-        self.columns[row.clone()].iter().copied().zip(self.weights[row].iter().copied())
+        self.columns[row.clone()]
+            .iter()
+            .copied()
+            .zip(self.weights[row].iter().copied())
     }
 
     /// The columns of a row.
@@ -62,7 +73,9 @@ impl Sparse {
     /// The product of a row with a vector.
     #[inline]
     pub(super) fn row_times(&self, i: usize, x: &[DVec3]) -> DVec3 {
-        self.row(i).fold(DVec3::ZERO, |sum, (column, weight)| sum + weight * x[column as usize])
+        self.row(i).fold(DVec3::ZERO, |sum, (column, weight)| {
+            sum + weight * x[column as usize]
+        })
     }
 
     /// The product with a vector.
@@ -73,13 +86,18 @@ impl Sparse {
     /// The transposed matrix of one with so many columns.
     pub(super) fn transposed(&self, columns: usize) -> Self {
         let mut starts = vec![0; columns + 1];
-        self.columns.iter().for_each(|&column| starts[column as usize + 1] += 1);
+        self.columns
+            .iter()
+            .for_each(|&column| starts[column as usize + 1] += 1);
         for i in 0..columns {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut transposed =
-            Self { starts, columns: vec![0; self.columns.len()], weights: self.weights.clone() };
+        let mut transposed = Self {
+            starts,
+            columns: vec![0; self.columns.len()],
+            weights: self.weights.clone(),
+        };
         for i in 0..self.rows() {
             for (column, weight) in self.row(i) {
                 let place = next[column as usize];
@@ -119,6 +137,9 @@ pub(super) fn update(
     f: impl Fn(usize, &mut DVec3) + Sync,
 ) -> Result<(), Cancelled> {
     parallel::for_each_chunk_polled(x, PIECE, poll, |chunk, slots| {
-        slots.iter_mut().enumerate().for_each(|(i, slot)| f(chunk * PIECE + i, slot));
+        slots
+            .iter_mut()
+            .enumerate()
+            .for_each(|(i, slot)| f(chunk * PIECE + i, slot));
     })
 }

@@ -60,7 +60,11 @@ impl System {
     pub(super) fn new(matrix: Sparse) -> Self {
         let transposed = matrix.transposed(matrix.rows());
         let symmetric = Symmetric::of(&matrix, &transposed);
-        Self { matrix, transposed, symmetric }
+        Self {
+            matrix,
+            transposed,
+            symmetric,
+        }
     }
 
     /// Solves A·x = b from `x` on, until no coordinate of the residual is above `goal` or there is nothing to gain.
@@ -74,7 +78,8 @@ impl System {
         if let Some(symmetric) = &self.symmetric {
             let mut right = b.to_vec();
             update(&mut right, poll, |i, b| *b *= symmetric.scale[i])?;
-            let found = symmetric.solve(&right, x.clone(), poll, |i, r| r / symmetric.scale[i], goal)?;
+            let found =
+                symmetric.solve(&right, x.clone(), poll, |i, r| r / symmetric.scale[i], goal)?;
             if let Some(solution) = found {
                 return Ok(solution);
             }
@@ -118,7 +123,10 @@ impl Symmetric {
             if !others.clone().all(|(_, other)| is_same(other)) {
                 return None;
             }
-            let own = matrix.row(i).find(|&(j, _)| j as usize == i).map_or(0.0, |(_, own)| own);
+            let own = matrix
+                .row(i)
+                .find(|&(j, _)| j as usize == i)
+                .map_or(0.0, |(_, own)| own);
             // A diagonal that is not positive cannot be that of a positive definite matrix.
             if own <= 0.0 {
                 return None;
@@ -127,7 +135,11 @@ impl Symmetric {
             diagonal.push(own / weight);
             pattern.push(others.map(|(j, _)| (j, 1.0)));
         }
-        Some(Self { scale, diagonal, pattern })
+        Some(Self {
+            scale,
+            diagonal,
+            pattern,
+        })
     }
 
     fn row_times(&self, i: usize, x: &[DVec3]) -> DVec3 {
@@ -153,7 +165,11 @@ impl Symmetric {
         let mut rz = sum(n, poll, |i| r[i] * p[i])?;
         for steps in 0..MOST_STEPS {
             if greatest(n, poll, |i| size(i, r[i]).abs().max_element())? <= goal {
-                return Ok(Some(Solution { x, steps, solver: Solver::Symmetric }));
+                return Ok(Some(Solution {
+                    x,
+                    steps,
+                    solver: Solver::Symmetric,
+                }));
             }
             let mut q = p.clone();
             update(&mut q, poll, |i, q| *q = self.row_times(i, &p))?;
@@ -166,7 +182,9 @@ impl Symmetric {
             update(&mut r, poll, |i, r| *r -= along * q[i])?;
             let next = sum(n, poll, |i| r[i] * r[i] / self.diagonal[i])?;
             let turn = quotient(next, rz);
-            update(&mut p, poll, |i, p| *p = r[i] / self.diagonal[i] + turn * *p)?;
+            update(&mut p, poll, |i, p| {
+                *p = r[i] / self.diagonal[i] + turn * *p
+            })?;
             rz = next;
         }
         Ok(None)
@@ -203,7 +221,11 @@ fn least_squares(
         square = next;
         steps += 1;
     }
-    Ok(Solution { x, steps, solver: Solver::Normal })
+    Ok(Solution {
+        x,
+        steps,
+        solver: Solver::Normal,
+    })
 }
 
 /// The quotient of each coordinate; 0 where there is nothing to divide by, because that coordinate is solved.

@@ -64,18 +64,31 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         );
         return Err(neighbourhood.unsuitable(what));
     }
-    let Some(dominant) = sector.dominant(&modes) else { return Ok(bare) };
+    let Some(dominant) = sector.dominant(&modes) else {
+        return Ok(bare);
+    };
     let first = sector.eigenvector(dominant.first)?;
     let tangents = match dominant.second {
         None => first.iter().map(|weight| [weight.re, -weight.im]).collect(),
         Some(second) => {
             let second = sector.eigenvector(second)?;
-            first.iter().zip(&second).map(|(a, b)| [a.re, b.re]).collect()
+            first
+                .iter()
+                .zip(&second)
+                .map(|(a, b)| [a.re, b.re])
+                .collect()
         }
     };
     let plane = TangentPlane::Surface;
     let (eigenvalues, next_eigenvalue) = (dominant.moduli, dominant.next);
-    Ok(LimitStencil { tangents, plane, eigenvalues, next_eigenvalue, ..bare }.oriented())
+    Ok(LimitStencil {
+        tangents,
+        plane,
+        eigenvalues,
+        next_eigenvalue,
+        ..bare
+    }
+    .oriented())
 }
 
 /// The two dominant left eigenvectors: real and imaginary part of one mode, or two real modes.
@@ -99,8 +112,12 @@ impl<'n, 's> Sector<'n, 's> {
         let mut centre = vec![central[0]];
         for kind in 0..kinds {
             let weights = &central[first_of(kind)..first_of(kind) + k];
-            if weights.iter().any(|w| (w - weights[0]).abs() > TURN_TOLERANCE) {
-                let what = "the vertex mask of a closed ring must give all neighbours the same weight";
+            if weights
+                .iter()
+                .any(|w| (w - weights[0]).abs() > TURN_TOLERANCE)
+            {
+                let what =
+                    "the vertex mask of a closed ring must give all neighbours the same weight";
                 return Err(neighbourhood.unsuitable(what));
             }
             centre.push(weights[0]);
@@ -109,7 +126,10 @@ impl<'n, 's> Sector<'n, 's> {
         for kind in 0..kinds {
             let row = neighbourhood.row(first_of(kind))?;
             check_turned(neighbourhood, kind, &row)?;
-            let weights = row[1..].iter().enumerate().filter(|(_, weight)| **weight != 0.0);
+            let weights = row[1..]
+                .iter()
+                .enumerate()
+                .filter(|(_, weight)| **weight != 0.0);
             rows.push(weights.map(|(i, &weight)| (i / k, i % k, weight)).collect());
         }
         let root = |j: usize| {
@@ -117,7 +137,13 @@ impl<'n, 's> Sector<'n, 's> {
             Complex::new(cosine, sine)
         };
         let roots = (0..k).map(root).collect();
-        Ok(Self { neighbourhood, kinds, centre, rows, roots })
+        Ok(Self {
+            neighbourhood,
+            kinds,
+            centre,
+            rows,
+            roots,
+        })
     }
 
     fn valence(&self) -> usize {
@@ -158,22 +184,29 @@ impl<'n, 's> Sector<'n, 's> {
             // replaced by "the weights sum to 1".
             let size = 1 + self.kinds;
             let block = self.ring_block(0);
-            let system = DMatrix::from_fn(size, size, |equation, unknown| match (equation, unknown) {
-                (0, 0) => 1.0,
-                (0, _) => k,
-                (_, 0) => self.centre[equation],
-                _ => block[(unknown - 1, equation - 1)].re - f64::from(u8::from(equation == unknown)),
-            });
+            let system =
+                DMatrix::from_fn(size, size, |equation, unknown| match (equation, unknown) {
+                    (0, 0) => 1.0,
+                    (0, _) => k,
+                    (_, 0) => self.centre[equation],
+                    _ => {
+                        block[(unknown - 1, equation - 1)].re
+                            - f64::from(u8::from(equation == unknown))
+                    }
+                });
             let right = DVector::from_fn(size, |i, _| if i == 0 { 1.0 } else { 0.0 });
             let solution = system.lu().solve(&right);
-            let Some(solution) = solution.filter(|x| x.iter().all(|weight| weight.is_finite())) else {
+            let Some(solution) = solution.filter(|x| x.iter().all(|weight| weight.is_finite()))
+            else {
                 let what = "the eigenvalue 1 of the ring matrix must be simple";
                 return Err(self.neighbourhood.unsuitable(what));
             };
             weights = solution.iter().copied().collect();
         }
         let (centre, kinds) = (weights[0], &weights[1..]);
-        let all = kinds.iter().flat_map(|&weight| core::iter::repeat_n(weight, self.valence()));
+        let all = kinds
+            .iter()
+            .flat_map(|&weight| core::iter::repeat_n(weight, self.valence()));
         Ok(core::iter::once(centre).chain(all).collect())
     }
 
@@ -218,23 +251,29 @@ impl<'n, 's> Sector<'n, 's> {
         if same_modulus(moduli[1], next) || moduli[1] == 0.0 {
             return None;
         }
-        Some(Dominant { first, second, moduli, next })
+        Some(Dominant {
+            first,
+            second,
+            moduli,
+            next,
+        })
     }
 
     /// The left eigenvector of a mode over all differences, scaled to 1 at the first neighbour (or where it is
     /// greatest, should it vanish there).
     fn eigenvector(&self, mode: Mode) -> Result<Vec<Complex<f64>>, LimitError> {
-        let failed =
-            || self.neighbourhood.unsuitable("a left eigenvector of its ring matrix could not be computed");
-        let vector =
-            left_eigenvector(&self.difference_block(mode.frequency), mode.value).ok_or_else(failed)?;
+        let failed = || {
+            self.neighbourhood
+                .unsuitable("a left eigenvector of its ring matrix could not be computed")
+        };
+        let vector = left_eigenvector(&self.difference_block(mode.frequency), mode.value)
+            .ok_or_else(failed)?;
         let scale = if vector[0].norm() > 1e-9 {
             vector[0]
         } else {
-            vector
-                .iter()
-                .copied()
-                .fold(Complex::new(0.0, 0.0), |a, b| if b.norm() > a.norm() { b } else { a })
+            vector.iter().copied().fold(Complex::new(0.0, 0.0), |a, b| {
+                if b.norm() > a.norm() { b } else { a }
+            })
         };
         let k = self.valence();
         let turned = |weight: Complex<f64>| {
@@ -245,13 +284,22 @@ impl<'n, 's> Sector<'n, 's> {
     }
 }
 
-fn indexed(matrix: &mut DMatrix<Complex<f64>>) -> impl Iterator<Item = ((usize, usize), &mut Complex<f64>)> {
+fn indexed(
+    matrix: &mut DMatrix<Complex<f64>>,
+) -> impl Iterator<Item = ((usize, usize), &mut Complex<f64>)> {
     let rows = matrix.nrows();
-    matrix.iter_mut().enumerate().map(move |(i, entry)| ((i % rows, i / rows), entry))
+    matrix
+        .iter_mut()
+        .enumerate()
+        .map(move |(i, entry)| ((i % rows, i / rows), entry))
 }
 
 /// Checks on two other sectors that their rows are the first one's, turned.
-fn check_turned(neighbourhood: &Neighbourhood<'_>, kind: usize, row: &[f64]) -> Result<(), LimitError> {
+fn check_turned(
+    neighbourhood: &Neighbourhood<'_>,
+    kind: usize,
+    row: &[f64],
+) -> Result<(), LimitError> {
     let k = neighbourhood.valence();
     for turn in [1, k / 2] {
         let other = neighbourhood.row(1 + kind * k + turn)?;

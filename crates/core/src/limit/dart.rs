@@ -50,7 +50,8 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
     if !(0..n).all(|i| (0..n).all(|j| is_mirrored(i, j))) {
         return Ok(bare);
     }
-    let failed = || neighbourhood.unsuitable("the eigenvalues of its ring matrix could not be computed");
+    let failed =
+        || neighbourhood.unsuitable("the eigenvalues of its ring matrix could not be computed");
     let along = Parity::new(&differences, &mirror, 1.0).ok_or_else(failed)?;
     let across = Parity::new(&differences, &mirror, -1.0).ok_or_else(failed)?;
     let greatest = along.modulus(0).max(across.modulus(0));
@@ -67,34 +68,66 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         return Ok(bare);
     }
     let k = neighbourhood.valence();
-    let (Some(first), Some(second)) = (along.dominant(k), across.dominant(k)) else { return Ok(bare) };
-    let tangents = first.iter().zip(second.iter()).map(|(&u, &w)| [u, w]).collect();
+    let (Some(first), Some(second)) = (along.dominant(k), across.dominant(k)) else {
+        return Ok(bare);
+    };
+    let tangents = first
+        .iter()
+        .zip(second.iter())
+        .map(|(&u, &w)| [u, w])
+        .collect();
     let plane = TangentPlane::Surface;
-    Ok(LimitStencil { tangents, plane, eigenvalues: moduli, next_eigenvalue: next, ..bare }.oriented())
+    Ok(LimitStencil {
+        tangents,
+        plane,
+        eigenvalues: moduli,
+        next_eigenvalue: next,
+        ..bare
+    }
+    .oriented())
 }
 
 /// The weights of a row that are not zero, with their columns.
 fn sparse(row: &[f64]) -> Vec<(usize, f64)> {
-    row.iter().copied().enumerate().filter(|&(_, weight)| weight != 0.0).collect()
+    row.iter()
+        .copied()
+        .enumerate()
+        .filter(|&(_, weight)| weight != 0.0)
+        .collect()
 }
 
 /// Weights of the limit position. Sums of many terms may differ by their rounding from step to step for ever: the iteration has ended
 /// once what changes is no more than that and has not shrunk for some steps.
-fn position(neighbourhood: &Neighbourhood<'_>, rows: &[Vec<(usize, f64)>]) -> Result<Vec<f64>, LimitError> {
+fn position(
+    neighbourhood: &Neighbourhood<'_>,
+    rows: &[Vec<(usize, f64)>],
+) -> Result<Vec<f64>, LimitError> {
     let mut weights = vec![0.0; rows.len()];
     weights[0] = 1.0;
     let rounding = rows.len() as f64 * f64::EPSILON;
     let (mut least_change, mut stalled) = (f64::INFINITY, 0);
     for _ in 0..MOST_STEPS {
         let mut next = vec![0.0; rows.len()];
-        for (row, &weight) in rows.iter().zip(&weights).filter(|&(_, &weight)| weight != 0.0) {
-            row.iter().for_each(|&(column, entry)| next[column] += weight * entry);
+        for (row, &weight) in rows
+            .iter()
+            .zip(&weights)
+            .filter(|&(_, &weight)| weight != 0.0)
+        {
+            row.iter()
+                .for_each(|&(column, entry)| next[column] += weight * entry);
         }
         let sum: f64 = next.iter().sum();
         next.iter_mut().for_each(|weight| *weight /= sum);
-        let change = next.iter().zip(&weights).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        let change = next
+            .iter()
+            .zip(&weights)
+            .fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         weights = next;
-        stalled = if change < least_change { 0 } else { stalled + 1 };
+        stalled = if change < least_change {
+            0
+        } else {
+            stalled + 1
+        };
         least_change = least_change.min(change);
         if change <= f64::EPSILON || stalled >= STALLED && change <= rounding {
             return Ok(weights);
@@ -123,7 +156,10 @@ fn mirror(neighbourhood: &Neighbourhood<'_>) -> Vec<usize> {
     let edges = |start: usize| (0..k).map(move |j| start + (k - j) % k);
     match neighbourhood.support {
         Support::OneRing => edges(0).collect(),
-        Support::TwoRing => edges(0).chain(edges(k)).chain((0..k).map(|j| 2 * k + k - 1 - j)).collect(),
+        Support::TwoRing => edges(0)
+            .chain(edges(k))
+            .chain((0..k).map(|j| 2 * k + k - 1 - j))
+            .collect(),
     }
 }
 
@@ -142,12 +178,17 @@ impl<'d> Parity<'d> {
     /// Even functionals for `sign` 1, odd ones for −1. `None` where an iteration does not converge.
     fn new(differences: &DMatrix<f64>, mirror: &'d [usize], sign: f64) -> Option<Self> {
         let is_own = |i: usize| mirror[i] == i;
-        let points: Vec<usize> =
-            (0..mirror.len()).filter(|&i| i < mirror[i] || (is_own(i) && sign > 0.0)).collect();
+        let points: Vec<usize> = (0..mirror.len())
+            .filter(|&i| i < mirror[i] || (is_own(i) && sign > 0.0))
+            .collect();
         // What a functional with weight 1 at i, and ±1 at its image, gives at j after a step.
         let matrix = DMatrix::from_fn(points.len(), points.len(), |a, b| {
             let (i, j) = (points[a], points[b]);
-            let image = if is_own(i) { 0.0 } else { sign * differences[(mirror[i], j)] };
+            let image = if is_own(i) {
+                0.0
+            } else {
+                sign * differences[(mirror[i], j)]
+            };
             differences[(i, j)] + image
         });
         let components = components(&matrix);
@@ -157,7 +198,14 @@ impl<'d> Parity<'d> {
             modes.extend(values.into_iter().map(|value| (value, component)));
         }
         modes.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
-        Some(Self { mirror, sign, points, matrix, components, modes })
+        Some(Self {
+            mirror,
+            sign,
+            points,
+            matrix,
+            components,
+            modes,
+        })
     }
 
     fn modulus(&self, place: usize) -> f64 {
@@ -173,8 +221,11 @@ impl<'d> Parity<'d> {
             all[self.mirror[point]] = self.sign * weight;
             all[point] = weight;
         }
-        let most =
-            all.rows(0, ring).iter().copied().fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+        let most = all
+            .rows(0, ring)
+            .iter()
+            .copied()
+            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
         (most != 0.0).then(|| all / most)
     }
 }
@@ -192,19 +243,35 @@ mod tests {
             for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
                 let mut spokes = vec![0.0; k];
                 spokes[0] = f64::INFINITY;
-                let sharp = SharpRing { open: false, vertex: 0.0, spokes };
+                let sharp = SharpRing {
+                    open: false,
+                    vertex: 0.0,
+                    spokes,
+                };
                 let neighbourhood = Neighbourhood::of_sharp(scheme, sharp).unwrap();
-                let rows: Vec<_> =
-                    (0..neighbourhood.len()).map(|i| sparse(&neighbourhood.row(i).unwrap())).collect();
+                let rows: Vec<_> = (0..neighbourhood.len())
+                    .map(|i| sparse(&neighbourhood.row(i).unwrap()))
+                    .collect();
                 let weights = position(&neighbourhood, &rows).unwrap();
-                let mut numbers: Vec<f64> = (0..rows.len()).map(|i| (1.7 * (i * i) as f64).sin()).collect();
-                let found: f64 = weights.iter().zip(&numbers).map(|(weight, number)| weight * number).sum();
+                let mut numbers: Vec<f64> = (0..rows.len())
+                    .map(|i| (1.7 * (i * i) as f64).sin())
+                    .collect();
+                let found: f64 = weights
+                    .iter()
+                    .zip(&numbers)
+                    .map(|(weight, number)| weight * number)
+                    .sum();
                 for _ in 0..200 {
-                    let refined =
-                        rows.iter().map(|row| row.iter().map(|&(at, entry)| entry * numbers[at]).sum());
+                    let refined = rows
+                        .iter()
+                        .map(|row| row.iter().map(|&(at, entry)| entry * numbers[at]).sum());
                     numbers = refined.collect();
                 }
-                assert!((found - numbers[0]).abs() < 1e-13, "{k}: {found} {}", numbers[0]);
+                assert!(
+                    (found - numbers[0]).abs() < 1e-13,
+                    "{k}: {found} {}",
+                    numbers[0]
+                );
             }
         }
     }

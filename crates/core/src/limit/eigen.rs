@@ -21,7 +21,11 @@ const SINGULAR_VALUE_ACCURACY: f64 = 5.0 * f64::EPSILON;
 
 /// Eigenvalues of a real square matrix.
 pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let schur = Schur::try_new(matrix.clone(), f64::EPSILON, STEPS_PER_ROW * (matrix.nrows() + 2))?;
+    let schur = Schur::try_new(
+        matrix.clone(),
+        f64::EPSILON,
+        STEPS_PER_ROW * (matrix.nrows() + 2),
+    )?;
     Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
@@ -30,7 +34,11 @@ pub(super) fn complex_eigenvalues(matrix: &DMatrix<Complex<f64>>) -> Option<Vec<
     if matrix.nrows() == 1 {
         return Some(vec![matrix[(0, 0)]]);
     }
-    let schur = Schur::try_new(matrix.clone(), f64::EPSILON, STEPS_PER_ROW * (matrix.nrows() + 2))?;
+    let schur = Schur::try_new(
+        matrix.clone(),
+        f64::EPSILON,
+        STEPS_PER_ROW * (matrix.nrows() + 2),
+    )?;
     let (_, triangular) = schur.unpack();
     Some(triangular.diagonal().iter().copied().collect())
 }
@@ -75,7 +83,9 @@ where
     let shift = eigenvalue + T::from_real(size * 1e-11);
     let system = (matrix - DMatrix::identity(n, n) * shift).lu();
     // Starting with unequal entries: a vector with the matrix's symmetry could miss the eigenvector.
-    let mut vector = DVector::from_fn(n, |i, _| T::from_real(1.0 + 0.37 * ((i * i + i) as f64 * 0.61).sin()));
+    let mut vector = DVector::from_fn(n, |i, _| {
+        T::from_real(1.0 + 0.37 * ((i * i + i) as f64 * 0.61).sin())
+    });
     for _ in 0..4 {
         vector = system.solve(&vector)?;
         let length = vector.norm();
@@ -91,7 +101,9 @@ where
 fn solve_left(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let transposed = matrix.transpose();
     let solution = if matrix.nrows() <= SINGULAR_VALUES_UP_TO {
-        let singular = transposed.clone().try_svd(true, true, SINGULAR_VALUE_ACCURACY, 1000)?;
+        let singular = transposed
+            .clone()
+            .try_svd(true, true, SINGULAR_VALUE_ACCURACY, 1000)?;
         let cut = 1e-10 * singular.singular_values.max().max(1e-3);
         singular.solve(right, cut).ok()?
     } else {
@@ -115,11 +127,13 @@ pub(super) fn join_jordan_blocks(
     let size = matrix.norm();
     let mut joined = Vec::with_capacity(values.len());
     while let Some(value) = values.pop() {
-        let (near, far): (Vec<_>, Vec<_>) =
-            values.iter().partition(|other| (*other - value).norm() <= CLOSE * size);
+        let (near, far): (Vec<_>, Vec<_>) = values
+            .iter()
+            .partition(|other| (*other - value).norm() <= CLOSE * size);
         let mean = (near.iter().sum::<Complex<f64>>() + value) / (near.len() + 1) as f64;
         let is_real = mean.im.abs() <= 1e-12 * size;
-        let defective = !near.is_empty() && is_real && eigenspace_dimension(matrix, mean.re) == Some(1);
+        let defective =
+            !near.is_empty() && is_real && eigenspace_dimension(matrix, mean.re) == Some(1);
         if defective {
             joined.push((Complex::new(mean.re, 0.0), true));
             values = far;
@@ -139,7 +153,13 @@ pub(super) fn eigenspace_dimension(matrix: &DMatrix<f64>, eigenvalue: f64) -> Op
     }
     let shifted = matrix - DMatrix::identity(n, n) * eigenvalue;
     let singular = shifted.try_svd(false, false, SINGULAR_VALUE_ACCURACY, 1000)?;
-    Some(singular.singular_values.iter().filter(|&&s| s <= 1e-9 * size).count())
+    Some(
+        singular
+            .singular_values
+            .iter()
+            .filter(|&&s| s <= 1e-9 * size)
+            .count(),
+    )
 }
 
 /// The strongly connected components of the pattern of a square matrix, where row i depends on the columns that
@@ -165,7 +185,8 @@ pub(super) fn components(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
                 stack.push(row);
                 on_stack[row] = true;
             }
-            let next = (*column..n).find(|&c| matrix[(row, c)] != 0.0 && (order[c] == UNSEEN || on_stack[c]));
+            let next = (*column..n)
+                .find(|&c| matrix[(row, c)] != 0.0 && (order[c] == UNSEEN || on_stack[c]));
             if let Some(c) = next {
                 if order[c] == UNSEEN {
                     *column = c;
@@ -194,7 +215,9 @@ pub(super) fn components(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
 
 /// The rows `rows` and columns `columns` of a matrix.
 pub(super) fn block(matrix: &DMatrix<f64>, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-    DMatrix::from_fn(rows.len(), columns.len(), |i, j| matrix[(rows[i], columns[j])])
+    DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+        matrix[(rows[i], columns[j])]
+    })
 }
 
 /// The left eigenvector of a matrix for an eigenvalue of one of its components, continued to all components that
@@ -208,7 +231,9 @@ pub(super) fn left_vector(
     let own = &components[component];
     let mut vector = DVector::zeros(matrix.nrows());
     let start = left_eigenvector(&block(matrix, own, own), eigenvalue)?;
-    own.iter().zip(start.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+    own.iter()
+        .zip(start.iter())
+        .for_each(|(&row, &weight)| vector[row] = weight);
     // Components stand after those that they depend on: whatever this one reaches stands before it.
     for rows in components[..component].iter().rev() {
         let columns = DMatrix::from_fn(matrix.nrows(), rows.len(), |i, j| matrix[(i, rows[j])]);
@@ -216,9 +241,12 @@ pub(super) fn left_vector(
         if right.iter().all(|&entry| entry == 0.0) {
             continue;
         }
-        let system = block(matrix, rows, rows) - DMatrix::identity(rows.len(), rows.len()) * eigenvalue;
+        let system =
+            block(matrix, rows, rows) - DMatrix::identity(rows.len(), rows.len()) * eigenvalue;
         let solution = solve_left(&system, &right)?;
-        rows.iter().zip(solution.iter()).for_each(|(&row, &weight)| vector[row] = weight);
+        rows.iter()
+            .zip(solution.iter())
+            .for_each(|(&row, &weight)| vector[row] = weight);
     }
     Some(vector)
 }

@@ -21,7 +21,15 @@ pub enum LimitError {
 
 impl LimitError {
     /// The masks of `scheme` at `shape` break a condition.
-    pub(super) fn unsuitable(scheme: &dyn Scheme, shape: RingShape, what: impl Into<String>) -> Self {
-        Self::Unsuitable { scheme: scheme.name().to_owned(), shape, what: what.into() }
+    pub(super) fn unsuitable(
+        scheme: &dyn Scheme,
+        shape: RingShape,
+        what: impl Into<String>,
+    ) -> Self {
+        Self::Unsuitable {
+            scheme: scheme.name().to_owned(),
+            shape,
+            what: what.into(),
+        }
     }
 }

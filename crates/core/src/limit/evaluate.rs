@@ -110,7 +110,9 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<SidedNormals, Cancelled> {
-        self.normals_or(stencils, mesh, poll, |vertex, side| face_average(mesh, vertex, side))
+        self.normals_or(stencils, mesh, poll, |vertex, side| {
+            face_average(mesh, vertex, side)
+        })
     }
 
     /// Unit limit normals as in [`Self::sided_normals`], but zero where the limit surface has no tangent plane.
@@ -120,7 +122,9 @@ impl LimitTable<'_> {
         poll: &mut Poll<'_>,
     ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
         match Stencils::of(self, mesh, poll)? {
-            Ok(stencils) => Ok(Ok(self.normals_or(&stencils, mesh, poll, |_, _| DVec3::ZERO)?)),
+            Ok(stencils) => Ok(Ok(
+                self.normals_or(&stencils, mesh, poll, |_, _| DVec3::ZERO)?
+            )),
             Err(error) => Ok(Err(error)),
         }
     }
@@ -143,7 +147,10 @@ impl LimitTable<'_> {
         };
         let by_vertex = parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let vertex = VertexId(v as u32);
-            stencils.at(v).average(|side| normal(vertex, side)).to_array()
+            stencils
+                .at(v)
+                .average(|side| normal(vertex, side))
+                .to_array()
         });
         let mut normals = SidedNormals::new(by_vertex?);
         for (i, &vertex) in stencils.tagged.iter().enumerate() {
@@ -154,7 +161,8 @@ impl LimitTable<'_> {
             if stencil.side_count() > 1 {
                 let outgoing: Vec<HalfEdgeId> = mesh.topology().outgoing_ring(vertex).collect();
                 for side in stencil.sides() {
-                    let faces = (0..side.faces).map(|face| outgoing[(side.first + face) % outgoing.len()]);
+                    let faces =
+                        (0..side.faces).map(|face| outgoing[(side.first + face) % outgoing.len()]);
                     normals.add_side(vertex, faces, normal(vertex, &side).to_array());
                 }
             }
@@ -170,7 +178,9 @@ impl LimitTable<'_> {
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         let side = stencil.side_of(mesh, corner);
-        Ok(side.map_or(DVec3::ZERO, |side| self.side_normal(mesh, vertex, &side)).to_array())
+        Ok(side
+            .map_or(DVec3::ZERO, |side| self.side_normal(mesh, vertex, &side))
+            .to_array())
     }
 
     /// Two unit vectors that span the limit tangent plane at the vertex that `corner` leaves, on the side of its face, the
@@ -184,7 +194,9 @@ impl LimitTable<'_> {
     ) -> Result<Option<[[f64; 3]; 2]>, LimitError> {
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, sharpness, vertex)?;
-        let Some(side) = stencil.side_of(mesh, corner) else { return Ok(None) };
+        let Some(side) = stencil.side_of(mesh, corner) else {
+            return Ok(None);
+        };
         let tangents = match self.scheme().support() {
             Support::TwoRing => {
                 two_ring_tangents(mesh, vertex, &side, &Masks::on_demand(mesh, self.scheme()))
@@ -199,7 +211,8 @@ impl LimitTable<'_> {
             }
             _ => tangents,
         };
-        let units = || [turned.first, turned.second].map(|tangent| unit_or_zero(tangent).to_array());
+        let units =
+            || [turned.first, turned.second].map(|tangent| unit_or_zero(tangent).to_array());
         Ok(turned.normal().map(|_| units()))
     }
 
@@ -224,12 +237,16 @@ impl LimitTable<'_> {
     /// The scheme has no limit at the shape of its ring.
     pub fn normal(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
-        Ok(stencil.average(|side| self.side_normal(mesh, vertex, side)).to_array())
+        Ok(stencil
+            .average(|side| self.side_normal(mesh, vertex, side))
+            .to_array())
     }
 
     fn side_normal(&self, mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
         let normal = match self.scheme().support() {
-            Support::TwoRing => two_ring_normal(mesh, vertex, side, &Masks::on_demand(mesh, self.scheme())),
+            Support::TwoRing => {
+                two_ring_normal(mesh, vertex, side, &Masks::on_demand(mesh, self.scheme()))
+            }
             Support::OneRing => one_ring_normal(mesh, vertex, side),
         };
         normal.unwrap_or_else(|| face_average(mesh, vertex, side))
@@ -247,7 +264,11 @@ impl LimitTable<'_> {
         }
         let ring = sharpness.ring(vertex);
         // Two-ring stencils are for the neighbourhood after one refinement.
-        let ring = if self.scheme().support() == Support::TwoRing { ring.refined() } else { ring };
+        let ring = if self.scheme().support() == Support::TwoRing {
+            ring.refined()
+        } else {
+            ring
+        };
         Ok(Stencil::Sharp(self.sharp_stencil(&ring)?))
     }
 
@@ -259,7 +280,9 @@ impl LimitTable<'_> {
         poll: &mut Poll<'_>,
     ) -> Result<Option<RefinedMesh>, Cancelled> {
         let is_needed = needed && self.scheme().support() == Support::TwoRing;
-        is_needed.then(|| RefinedMesh::new(self.scheme(), mesh, poll)).transpose()
+        is_needed
+            .then(|| RefinedMesh::new(self.scheme(), mesh, poll))
+            .transpose()
     }
 }
 
@@ -289,18 +312,28 @@ impl Stencil {
 
     #[inline]
     fn side_count(&self) -> usize {
-        if let Self::Sharp(stencil) = self { stencil.sides.len() } else { 1 }
+        if let Self::Sharp(stencil) = self {
+            stencil.sides.len()
+        } else {
+            1
+        }
     }
 
     #[inline]
     fn side(&self, i: usize) -> Side<'_> {
         match self {
-            Self::Plain(stencil) => {
-                Side { first: 0, faces: stencil.shape.faces() as usize, tangents: &stencil.tangents }
-            }
+            Self::Plain(stencil) => Side {
+                first: 0,
+                faces: stencil.shape.faces() as usize,
+                tangents: &stencil.tangents,
+            },
             Self::Sharp(stencil) => {
                 let side = &stencil.sides[i];
-                Side { first: side.first(), faces: side.faces(), tangents: &side.tangents }
+                Side {
+                    first: side.first(),
+                    faces: side.faces(),
+                    tangents: &side.tangents,
+                }
             }
         }
     }
@@ -309,7 +342,8 @@ impl Stencil {
     pub(super) fn side_of(&self, mesh: &Mesh, corner: HalfEdgeId) -> Option<Side<'_>> {
         let (slot, topology) = (slot_of(mesh, corner), mesh.topology());
         let faces = topology.outgoing_ring(topology.origin(corner)).count();
-        self.sides().find(|side| (slot + faces - side.first) % faces < side.faces)
+        self.sides()
+            .find(|side| (slot + faces - side.first) % faces < side.faces)
     }
 
     pub(super) fn sides(&self) -> impl Iterator<Item = Side<'_>> {
@@ -347,7 +381,10 @@ impl Stencils {
         let sharpness = Sharpness::of(mesh);
         let tagged: Vec<VertexId> = sharpness.tagged_vertices().collect();
         let sharp = parallel::pieces_polled(tagged.len(), TAGGED, nowhere, |piece| {
-            tagged[piece].iter().map(|&v| table.stencil_at(mesh, &sharpness, v)).collect::<Vec<_>>()
+            tagged[piece]
+                .iter()
+                .map(|&v| table.stencil_at(mesh, &sharpness, v))
+                .collect::<Vec<_>>()
         });
         let sharp = sharp?.into_iter().flatten().collect::<Result<_, _>>();
         Ok(sharp.and_then(|sharp| Self::with_sharp(table, shapes, (tagged, sharp))))
@@ -355,16 +392,25 @@ impl Stencils {
 
     fn with_sharp(
         table: &LimitTable<'_>,
-        RingShapes { distinct, mut by_vertex }: RingShapes,
+        RingShapes {
+            distinct,
+            mut by_vertex,
+        }: RingShapes,
         (tagged, sharp): (Vec<VertexId>, Vec<Stencil>),
     ) -> Result<Self, LimitError> {
-        let plain = distinct.into_iter().map(|shape| Ok(Stencil::Plain(table.stencil(shape)?)));
+        let plain = distinct
+            .into_iter()
+            .map(|shape| Ok(Stencil::Plain(table.stencil(shape)?)));
         let mut list = plain.collect::<Result<Vec<_>, LimitError>>()?;
         for (&vertex, stencil) in tagged.iter().zip(sharp) {
             by_vertex[vertex.index()] = list.len() as u32;
             list.push(stencil);
         }
-        Ok(Self { list, by_vertex, tagged })
+        Ok(Self {
+            list,
+            by_vertex,
+            tagged,
+        })
     }
 
     #[inline]
@@ -409,7 +455,11 @@ impl Tangents {
     fn turned(&self, angle: f64) -> Self {
         let (sine, cosine) = angle.sin_cos();
         let first = cosine * self.first + sine * self.second;
-        Self { first, second: cosine * self.second - sine * self.first, ..*self }
+        Self {
+            first,
+            second: cosine * self.second - sine * self.first,
+            ..*self
+        }
     }
 
     fn normal(&self) -> Option<DVec3> {
@@ -445,13 +495,19 @@ fn point(mesh: &Mesh, vertex: VertexId) -> DVec3 {
 fn one_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> [f64; 3] {
     let ring = mesh.topology().ring(vertex).zip(&weights[1..]);
     let start = weights[0] * point(mesh, vertex);
-    ring.fold(start, |sum, (neighbour, &weight)| sum + weight * point(mesh, neighbour)).to_array()
+    ring.fold(start, |sum, (neighbour, &weight)| {
+        sum + weight * point(mesh, neighbour)
+    })
+    .to_array()
 }
 
 /// Which of the edges at its vertex a half-edge is.
 fn slot_of(mesh: &Mesh, corner: HalfEdgeId) -> usize {
     let topology = mesh.topology();
-    topology.outgoing_ring(topology.origin(corner)).position(|h| h == corner).unwrap_or(0)
+    topology
+        .outgoing_ring(topology.origin(corner))
+        .position(|h| h == corner)
+        .unwrap_or(0)
 }
 
 fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Option<DVec3> {
@@ -474,7 +530,9 @@ fn two_ring_position(
     refined: &impl Refined<Point = DVec3>,
 ) -> [f64; 3] {
     let mut sum = weights[0] * refined.moved(vertex);
-    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| sum += weights[i + 1] * point);
+    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| {
+        sum += weights[i + 1] * point
+    });
     sum.to_array()
 }
 
@@ -526,7 +584,9 @@ pub(super) fn for_each_of_two_ring<R: Refined>(
 /// The area-weighted average of the normals of a side's faces at `vertex`, of unit length; zero where it vanishes.
 fn face_average(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let (topology, centre) = (mesh.topology(), point(mesh, vertex));
-    let twice = topology.outgoing_ring(vertex).chain(topology.outgoing_ring(vertex));
+    let twice = topology
+        .outgoing_ring(vertex)
+        .chain(topology.outgoing_ring(vertex));
     let from = |v: VertexId| point(mesh, v) - centre;
     let ends = |h: HalfEdgeId| [from(topology.target(h)), from(topology.opposite(h))];
     let faces: Vec<[DVec3; 2]> = twice.skip(side.first).take(side.faces).map(ends).collect();
@@ -548,5 +608,9 @@ pub(crate) fn area_weighted_normal(faces: &[[DVec3; 2]]) -> DVec3 {
         sum += normal;
         areas += normal.length();
     }
-    if sum.length() > LEAST_SINE * areas { unit_or_zero(sum) } else { DVec3::ZERO }
+    if sum.length() > LEAST_SINE * areas {
+        unit_or_zero(sum)
+    } else {
+        DVec3::ZERO
+    }
 }

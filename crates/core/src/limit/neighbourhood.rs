@@ -51,7 +51,12 @@ impl<'s> Neighbourhood<'s> {
             );
             return Err(LimitError::unsuitable(scheme, shape, what));
         }
-        Ok(Self { scheme, shape, support: scheme.support(), sharp: SharpRing::of(shape) })
+        Ok(Self {
+            scheme,
+            shape,
+            support: scheme.support(),
+            sharp: SharpRing::of(shape),
+        })
     }
 
     /// The neighbourhood of a vertex whose edges have some sharpness.
@@ -59,8 +64,14 @@ impl<'s> Neighbourhood<'s> {
     /// # Errors
     /// As for [`Self::new`].
     pub(super) fn of_sharp(scheme: &'s dyn Scheme, sharp: SharpRing) -> Result<Self, LimitError> {
-        let shape = RingShape { open: sharp.open, ..RingShape::interior(sharp.spokes.len() as u32) };
-        Ok(Self { sharp, ..Self::new(scheme, shape)? })
+        let shape = RingShape {
+            open: sharp.open,
+            ..RingShape::interior(sharp.spokes.len() as u32)
+        };
+        Ok(Self {
+            sharp,
+            ..Self::new(scheme, shape)?
+        })
     }
 
     pub(super) fn valence(&self) -> usize {
@@ -92,13 +103,19 @@ impl<'s> Neighbourhood<'s> {
         let last = self.valence() - 1;
         self.shape.open
             && (point == 0
-                || [0, last].iter().any(|&j| point == self.ring_point(j) || point == self.beyond(j)))
+                || [0, last]
+                    .iter()
+                    .any(|&j| point == self.ring_point(j) || point == self.beyond(j)))
     }
 
     /// The ring of the vertex.
     fn central_ring(&self) -> LabelledRing<usize> {
         let neighbours = (0..self.valence()).map(|j| self.ring_point(j)).collect();
-        LabelledRing { centre: 0, neighbours, sharp: self.sharp.clone() }
+        LabelledRing {
+            centre: 0,
+            neighbours,
+            sharp: self.sharp.clone(),
+        }
     }
 
     /// The ring of P_j, and in it the slots of V, of P_{j−1} and of P_{j+1}.
@@ -109,11 +126,30 @@ impl<'s> Neighbourhood<'s> {
         let on_boundary = SharpRing::of(RingShape::boundary(4));
         if self.shape.open && j == 0 {
             let neighbours = vec![self.beyond(0), self.across(0), self.ring_point(1), 0];
-            return (LabelledRing { centre, neighbours, sharp: on_boundary }, [3, 3, 2]);
+            return (
+                LabelledRing {
+                    centre,
+                    neighbours,
+                    sharp: on_boundary,
+                },
+                [3, 3, 2],
+            );
         }
         if self.shape.open && j == k - 1 {
-            let neighbours = vec![0, self.ring_point(previous), self.across(previous), self.beyond(j)];
-            return (LabelledRing { centre, neighbours, sharp: on_boundary }, [0, 1, 0]);
+            let neighbours = vec![
+                0,
+                self.ring_point(previous),
+                self.across(previous),
+                self.beyond(j),
+            ];
+            return (
+                LabelledRing {
+                    centre,
+                    neighbours,
+                    sharp: on_boundary,
+                },
+                [0, 1, 0],
+            );
         }
         let neighbours = vec![
             0,
@@ -126,8 +162,19 @@ impl<'s> Neighbourhood<'s> {
         // A sharp edge goes on beyond its end.
         let spoke = self.sharp.spokes[j];
         let spokes = vec![spoke, 0.0, 0.0, spoke, 0.0, 0.0];
-        let sharp = SharpRing { open: false, vertex: 0.0, spokes };
-        (LabelledRing { centre, neighbours, sharp }, [0, 1, 5])
+        let sharp = SharpRing {
+            open: false,
+            vertex: 0.0,
+            spokes,
+        };
+        (
+            LabelledRing {
+                centre,
+                neighbours,
+                sharp,
+            },
+            [0, 1, 5],
+        )
     }
 
     /// Row `point` of S: the weights of that point after refinement, over all points.
@@ -160,12 +207,21 @@ impl<'s> Neighbourhood<'s> {
     pub(super) fn pulled_back(&self, weights: &[f64]) -> Result<Vec<f64>, LimitError> {
         let mut before = vec![0.0; weights.len()];
         let is_family = self.scheme.loop_family().is_some();
-        for (point, &weight) in weights.iter().enumerate().filter(|&(_, &weight)| weight != 0.0) {
+        for (point, &weight) in weights
+            .iter()
+            .enumerate()
+            .filter(|&(_, &weight)| weight != 0.0)
+        {
             if is_family && point > 0 {
                 // Rings of very many edges have no room for whole rows.
-                self.spoke_row(point - 1).into_iter().for_each(|(at, entry)| before[at] += weight * entry);
+                self.spoke_row(point - 1)
+                    .into_iter()
+                    .for_each(|(at, entry)| before[at] += weight * entry);
             } else {
-                before.iter_mut().zip(self.row(point)?).for_each(|(sum, entry)| *sum += weight * entry);
+                before
+                    .iter_mut()
+                    .zip(self.row(point)?)
+                    .for_each(|(sum, entry)| *sum += weight * entry);
             }
         }
         Ok(before)
@@ -175,7 +231,11 @@ impl<'s> Neighbourhood<'s> {
     fn spoke_row(&self, j: usize) -> [(usize, f64); 4] {
         let k = self.valence();
         let is_boundary = self.shape.open && (j == 0 || j + 1 == k);
-        let sharp = if is_boundary { 1.0 } else { self.sharp.spokes[j].clamp(0.0, 1.0) };
+        let sharp = if is_boundary {
+            1.0
+        } else {
+            self.sharp.spokes[j].clamp(0.0, 1.0)
+        };
         let (ends, beside) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
         let [at, previous, next] = [j, j + k - 1, j + 1].map(|j| self.ring_point(j));
         [(0, ends), (at, ends), (previous, beside), (next, beside)]
@@ -218,7 +278,9 @@ impl<'s> Neighbourhood<'s> {
                 )));
             }
             let at_origin = view.origin.weighted(mask.origin, &mask.origin_ring);
-            for (point, weight) in at_origin.chain(view.target.weighted(mask.target, &mask.target_ring)) {
+            for (point, weight) in
+                at_origin.chain(view.target.weighted(mask.target, &mask.target_ring))
+            {
                 self.add(&mut row, &mut outside, point, share * weight);
             }
         }
@@ -265,14 +327,26 @@ impl<'s> Neighbourhood<'s> {
 /// The masks have wrong sizes, do not sum to 1 or reach farther than the scheme's support.
 pub fn ring_matrix(scheme: &dyn Scheme, shape: RingShape) -> Result<Vec<Vec<f64>>, LimitError> {
     let neighbourhood = Neighbourhood::new(scheme, shape)?;
-    (0..neighbourhood.len()).map(|point| neighbourhood.row(point)).collect()
+    (0..neighbourhood.len())
+        .map(|point| neighbourhood.row(point))
+        .collect()
 }
 
 /// The difference matrix D (the paper's equation 6) of a ring matrix: `D[i][j] = S[i+1][j+1] − S[0][j+1]`, acting
 /// on the differences of the points to the vertex.
 pub fn difference_matrix(ring_matrix: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let Some((centre, rest)) = ring_matrix.split_first() else { return Vec::new() };
-    rest.iter().map(|row| row.iter().zip(centre).skip(1).map(|(&a, &b)| a - b).collect()).collect()
+    let Some((centre, rest)) = ring_matrix.split_first() else {
+        return Vec::new();
+    };
+    rest.iter()
+        .map(|row| {
+            row.iter()
+                .zip(centre)
+                .skip(1)
+                .map(|(&a, &b)| a - b)
+                .collect()
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -285,22 +359,35 @@ mod tests {
     fn spoke_rows_are_those_of_the_masks() {
         let sharpness = [0.0, 0.3, 1.0, 1.6, f64::INFINITY];
         for case in 0..400usize {
-            let (k, open, scheme) =
-                (3 + case % 7, case % 3 == 0, if case % 2 == 0 { &Loop } else { &LoopWarren });
+            let (k, open, scheme) = (
+                3 + case % 7,
+                case % 3 == 0,
+                if case % 2 == 0 { &Loop } else { &LoopWarren },
+            );
             let spokes = (0..k).map(|j| match case % 5 {
                 0 => 0.0,
                 _ => sharpness[(case / 5 + j * j * (1 + case % 4)) % 5],
             });
-            let mut sharp = SharpRing { open, vertex: 0.0, spokes: spokes.collect() };
+            let mut sharp = SharpRing {
+                open,
+                vertex: 0.0,
+                spokes: spokes.collect(),
+            };
             if open {
                 (sharp.spokes[0], sharp.spokes[k - 1]) = (f64::INFINITY, f64::INFINITY);
             }
             let neighbourhood = Neighbourhood::of_sharp(scheme, sharp.clone()).unwrap();
             for j in 0..k {
                 let mut row = vec![0.0; k + 1];
-                neighbourhood.spoke_row(j).into_iter().for_each(|(at, entry)| row[at] += entry);
+                neighbourhood
+                    .spoke_row(j)
+                    .into_iter()
+                    .for_each(|(at, entry)| row[at] += entry);
                 for (found, expected) in row.iter().zip(neighbourhood.row(1 + j).unwrap()) {
-                    assert!((found - expected).abs() < 1e-15, "{sharp:?}, {j}: {found} {expected}");
+                    assert!(
+                        (found - expected).abs() < 1e-15,
+                        "{sharp:?}, {j}: {found} {expected}"
+                    );
                 }
             }
         }

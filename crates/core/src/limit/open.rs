@@ -17,7 +17,9 @@
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::LimitError;
-use super::eigen::{block, components, eigenspace_dimension, eigenvalues, join_jordan_blocks, left_vector};
+use super::eigen::{
+    block, components, eigenspace_dimension, eigenvalues, join_jordan_blocks, left_vector,
+};
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 
@@ -56,23 +58,36 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         );
         return Err(neighbourhood.unsuitable(what));
     }
-    let Some((pair, plane, next)) = choose(neighbourhood, &differences, &modes) else { return Ok(bare) };
+    let Some((pair, plane, next)) = choose(neighbourhood, &differences, &modes) else {
+        return Ok(bare);
+    };
     let vector = |mode: Mode| left_vector(&differences, &components, mode.component, mode.value.re);
-    let (Some(along), Some(across)) = (vector(pair[0]), vector(pair[1])) else { return Ok(bare) };
+    let (Some(along), Some(across)) = (vector(pair[0]), vector(pair[1])) else {
+        return Ok(bare);
+    };
     let tangents = scaled(neighbourhood, along, across);
     let eigenvalues = pair.map(|mode| mode.value.norm());
-    Ok(LimitStencil { tangents, plane, eigenvalues, next_eigenvalue: next, ..bare }.oriented())
+    Ok(LimitStencil {
+        tangents,
+        plane,
+        eigenvalues,
+        next_eigenvalue: next,
+        ..bare
+    }
+    .oriented())
 }
 
 /// Weights of the limit position: the left eigenvector for 1 of the boundary's part of S.
 fn position(neighbourhood: &Neighbourhood<'_>) -> Result<Vec<f64>, LimitError> {
-    let boundary: Vec<usize> =
-        (0..neighbourhood.len()).filter(|&i| neighbourhood.is_on_boundary(i)).collect();
+    let boundary: Vec<usize> = (0..neighbourhood.len())
+        .filter(|&i| neighbourhood.is_on_boundary(i))
+        .collect();
     let mut rows = Vec::new();
     for &point in &boundary {
         let row = neighbourhood.row(point)?;
         if (0..row.len()).any(|i| row[i] != 0.0 && !neighbourhood.is_on_boundary(i)) {
-            let what = "the masks of boundary vertices and boundary edges must use boundary vertices only";
+            let what =
+                "the masks of boundary vertices and boundary edges must use boundary vertices only";
             return Err(neighbourhood.unsuitable(what));
         }
         rows.push(row);
@@ -95,10 +110,14 @@ fn position(neighbourhood: &Neighbourhood<'_>) -> Result<Vec<f64>, LimitError> {
     let right = DVector::from_fn(n, |i, _| f64::from(u8::from(i == 0)));
     match system.lu().solve(&right) {
         Some(solution) if solution.iter().all(|weight| weight.is_finite()) => {
-            boundary.iter().zip(solution.iter()).for_each(|(&point, &weight)| weights[point] = weight);
+            boundary
+                .iter()
+                .zip(solution.iter())
+                .for_each(|(&point, &weight)| weights[point] = weight);
             Ok(weights)
         }
-        _ => Err(neighbourhood.unsuitable("the eigenvalue 1 of the boundary's ring matrix must be simple")),
+        _ => Err(neighbourhood
+            .unsuitable("the eigenvalue 1 of the boundary's ring matrix must be simple")),
     }
 }
 
@@ -127,10 +146,16 @@ fn modes(
         let on_boundary = rows.iter().all(|&i| neighbourhood.is_on_boundary(i + 1));
         let own = block(differences, rows, rows);
         let Some(values) = eigenvalues(&own) else {
-            return Err(neighbourhood.unsuitable("the eigenvalues of its ring matrix could not be computed"));
+            return Err(neighbourhood
+                .unsuitable("the eigenvalues of its ring matrix could not be computed"));
         };
         let values = join_jordan_blocks(&own, values).into_iter();
-        modes.extend(values.map(|(value, defective)| Mode { value, component, on_boundary, defective }));
+        modes.extend(values.map(|(value, defective)| Mode {
+            value,
+            component,
+            on_boundary,
+            defective,
+        }));
     }
     modes.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
     Ok(modes)
@@ -142,13 +167,18 @@ fn choose(
     differences: &DMatrix<f64>,
     modes: &[Mode],
 ) -> Option<([Mode; 2], TangentPlane, f64)> {
-    let place =
-        |from: usize, on_boundary: bool| (from..modes.len()).find(|&i| modes[i].on_boundary == on_boundary);
+    let place = |from: usize, on_boundary: bool| {
+        (from..modes.len()).find(|&i| modes[i].on_boundary == on_boundary)
+    };
     let modulus = |i: Option<usize>| i.map_or(0.0, |i| modes[i].value.norm());
     let along = place(0, true)?;
     let second_on_boundary = place(along + 1, true);
     let from_boundary = neighbourhood.shape.corner || neighbourhood.valence() == 2;
-    let across = if from_boundary { second_on_boundary? } else { place(0, false)? };
+    let across = if from_boundary {
+        second_on_boundary?
+    } else {
+        place(0, false)?
+    };
     let other_across = place(across + 1, from_boundary);
     let others = (0..modes.len()).filter(|i| ![along, across].contains(i));
     let greatest_other = others.map(|i| modes[i].value.norm()).fold(0.0, f64::max);
@@ -158,13 +188,17 @@ fn choose(
         return None;
     }
     let pair = [modes[along], modes[across]];
-    let in_block = pair.iter().filter(|mode| mode.defective).map(|mode| mode.value.norm());
+    let in_block = pair
+        .iter()
+        .filter(|mode| mode.defective)
+        .map(|mode| mode.value.norm());
     let next = in_block.fold(greatest_other, f64::max);
     // A Jordan block outlasts simple eigenvalues of its own modulus.
     let outlasts = pair[1].defective
         && same_modulus(fast, greatest_other)
-        && !(0..modes.len())
-            .any(|i| i != across && modes[i].defective && same_modulus(modes[i].value.norm(), fast));
+        && !(0..modes.len()).any(|i| {
+            i != across && modes[i].defective && same_modulus(modes[i].value.norm(), fast)
+        });
     if from_boundary && draws_others_along(differences, modes, pair) {
         return Some((pair, TangentPlane::Surface, fast));
     }
@@ -173,8 +207,9 @@ fn choose(
     }
     // The boundary's own tangent and the pattern across it are still the first of their kinds: the faces along
     // the boundary approach their plane, whatever others do.
-    let ribbon =
-        !from_boundary && strict(slow, modulus(second_on_boundary)) && strict(fast, modulus(other_across));
+    let ribbon = !from_boundary
+        && strict(slow, modulus(second_on_boundary))
+        && strict(fast, modulus(other_across));
     (ribbon && strict(fast, modulus(second_on_boundary))).then_some((
         pair,
         TangentPlane::BoundaryRibbon,
@@ -189,8 +224,9 @@ fn choose(
 fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2]) -> bool {
     let value = pair[0].value;
     let is_same = |mode: &Mode| (mode.value - value).norm() <= 1e-12;
-    let no_slower =
-        |mode: &&Mode| mode.value.norm() > value.norm() || same_modulus(mode.value.norm(), value.norm());
+    let no_slower = |mode: &&Mode| {
+        mode.value.norm() > value.norm() || same_modulus(mode.value.norm(), value.norm())
+    };
     let count = modes.iter().filter(no_slower).count();
     is_same(&pair[1])
         && count > 2
@@ -199,15 +235,34 @@ fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2
 }
 
 /// Both eigenvectors in the scale that [`LimitStencil::tangent_weights`] promises.
-fn scaled(neighbourhood: &Neighbourhood<'_>, along: DVector<f64>, across: DVector<f64>) -> Vec<[f64; 2]> {
+fn scaled(
+    neighbourhood: &Neighbourhood<'_>,
+    along: DVector<f64>,
+    across: DVector<f64>,
+) -> Vec<[f64; 2]> {
     let k = neighbourhood.valence();
     let greatest = |vector: &DVector<f64>| {
         let ring = vector.rows(0, k).amax();
         if ring > 0.0 { ring } else { vector.amax() }
     };
-    let along_scale = if along[0] < 0.0 { -greatest(&along) } else { greatest(&along) };
-    let inner = if k > 2 { across.rows(1, k - 2).norm() } else { 0.0 };
-    let across_scale =
-        if inner > 1e-9 * across.norm() { inner / ((k - 1) as f64 / 2.0).sqrt() } else { greatest(&across) };
-    along.iter().zip(across.iter()).map(|(u, w)| [u / along_scale, w / across_scale]).collect()
+    let along_scale = if along[0] < 0.0 {
+        -greatest(&along)
+    } else {
+        greatest(&along)
+    };
+    let inner = if k > 2 {
+        across.rows(1, k - 2).norm()
+    } else {
+        0.0
+    };
+    let across_scale = if inner > 1e-9 * across.norm() {
+        inner / ((k - 1) as f64 / 2.0).sqrt()
+    } else {
+        greatest(&across)
+    };
+    along
+        .iter()
+        .zip(across.iter())
+        .map(|(u, w)| [u / along_scale, w / across_scale])
+        .collect()
 }

@@ -30,7 +30,11 @@ pub(super) struct RefinedMesh {
 }
 
 impl RefinedMesh {
-    pub(super) fn new(scheme: &dyn Scheme, mesh: &Mesh, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
+    pub(super) fn new(
+        scheme: &dyn Scheme,
+        mesh: &Mesh,
+        poll: &mut Poll<'_>,
+    ) -> Result<Self, Cancelled> {
         let nowhere = &mut |_| poll(0);
         let topology = mesh.topology();
         let twins = topology.raw_twins().to_vec();
@@ -39,9 +43,17 @@ impl RefinedMesh {
             masks.vertex_point(VertexId(v as u32))
         })?;
         let on_edges = parallel::map_polled(topology.half_edge_count(), nowhere, |h| {
-            if twins[h] as usize > h { masks.edge_point(HalfEdgeId(h as u32)) } else { DVec3::ZERO }
+            if twins[h] as usize > h {
+                masks.edge_point(HalfEdgeId(h as u32))
+            } else {
+                DVec3::ZERO
+            }
         })?;
-        Ok(Self { moved, on_edges, twins })
+        Ok(Self {
+            moved,
+            on_edges,
+            twins,
+        })
     }
 }
 

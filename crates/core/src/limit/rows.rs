@@ -47,7 +47,11 @@ impl LimitTable<'_> {
             }
             (lengths, entries)
         })?;
-        let mut rows = LimitRows { starts: vec![0], vertices: Vec::new(), weights: Vec::new() };
+        let mut rows = LimitRows {
+            starts: vec![0],
+            vertices: Vec::new(),
+            weights: Vec::new(),
+        };
         for (lengths, entries) in pieces {
             let mut end = rows.vertices.len();
             rows.starts.extend(lengths.into_iter().map(|length| {
@@ -55,13 +59,18 @@ impl LimitTable<'_> {
                 end
             }));
             rows.vertices.extend(entries.iter().map(|&(v, _)| v));
-            rows.weights.extend(entries.iter().map(|&(_, weight)| weight));
+            rows.weights
+                .extend(entries.iter().map(|&(_, weight)| weight));
         }
         Ok(Ok(rows))
     }
 
     /// The weights that the limit position of one vertex has on the mesh's vertices.
-    pub(crate) fn position_row(&self, mesh: &Mesh, vertex: VertexId) -> Result<Vec<(u32, f64)>, LimitError> {
+    pub(crate) fn position_row(
+        &self,
+        mesh: &Mesh,
+        vertex: VertexId,
+    ) -> Result<Vec<(u32, f64)>, LimitError> {
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(self.row(mesh, vertex, stencil.position()))
     }
@@ -75,7 +84,9 @@ impl LimitTable<'_> {
     ) -> Result<[Vec<(u32, f64)>; 2], LimitError> {
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
-        let Some(side) = stencil.side_of(mesh, corner) else { return Ok(Default::default()) };
+        let Some(side) = stencil.side_of(mesh, corner) else {
+            return Ok(Default::default());
+        };
         let tangents = side.tangents;
         if tangents.is_empty() {
             return Ok(Default::default());
@@ -83,7 +94,9 @@ impl LimitTable<'_> {
         Ok([0, 1].map(|axis| {
             let weights = || tangents.iter().map(|weights| weights[axis]);
             // Tangents are sums of differences to the vertex.
-            let all: Vec<f64> = core::iter::once(-weights().sum::<f64>()).chain(weights()).collect();
+            let all: Vec<f64> = core::iter::once(-weights().sum::<f64>())
+                .chain(weights())
+                .collect();
             self.row(mesh, vertex, &all)
         }))
     }
@@ -101,7 +114,11 @@ impl LimitTable<'_> {
 }
 
 fn one_ring_row(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Vec<(u32, f64)> {
-    let ring = mesh.topology().ring(vertex).map(|v| v.0).zip(weights[1..].iter().copied());
+    let ring = mesh
+        .topology()
+        .ring(vertex)
+        .map(|v| v.0)
+        .zip(weights[1..].iter().copied());
     let all = core::iter::once((vertex.0, weights[0])).chain(ring);
     all.filter(|&(_, weight)| weight != 0.0).collect()
 }
@@ -117,7 +134,9 @@ fn two_ring_row(
         row.extend(point.into_iter().map(|(v, share)| (v.0, weight * share)));
     };
     add(weights[0], refined.moved(vertex));
-    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| add(weights[i + 1], point));
+    for_each_of_two_ring(mesh.topology(), vertex, refined, |i, point| {
+        add(weights[i + 1], point)
+    });
     summed(row)
 }
 

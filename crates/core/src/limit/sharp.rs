@@ -92,18 +92,27 @@ fn normalised(ring: &SharpRing) -> SharpRing {
         _ => 0.0,
     };
     let last = ring.spokes.len().saturating_sub(1);
-    let spokes =
-        ring.spokes.iter().enumerate().map(|(slot, &s)| match ring.open && [0, last].contains(&slot) {
+    let spokes = ring.spokes.iter().enumerate().map(|(slot, &s)| {
+        match ring.open && [0, last].contains(&slot) {
             true => f64::INFINITY,
             false => plain(s),
-        });
-    SharpRing { open: ring.open, vertex: plain(ring.vertex), spokes: spokes.collect() }
+        }
+    });
+    SharpRing {
+        open: ring.open,
+        vertex: plain(ring.vertex),
+        spokes: spokes.collect(),
+    }
 }
 
 impl SharpKey {
     fn of(normalised: &SharpRing) -> Self {
         let spokes = normalised.spokes.iter().map(|s| s.to_bits()).collect();
-        Self { open: normalised.open, vertex: normalised.vertex.to_bits(), spokes }
+        Self {
+            open: normalised.open,
+            vertex: normalised.vertex.to_bits(),
+            spokes,
+        }
     }
 }
 
@@ -114,7 +123,9 @@ impl LimitTable<'_> {
     /// The ring has fewer than two edges, or the scheme's masks break its contract there.
     pub fn sharp_stencil(&self, ring: &SharpRing) -> Result<Arc<SharpStencil>, LimitError> {
         let ring = normalised(ring);
-        self.known_sharp(SharpKey::of(&ring), || self.analyse_sharp(ring).map(Arc::new))
+        self.known_sharp(SharpKey::of(&ring), || {
+            self.analyse_sharp(ring).map(Arc::new)
+        })
     }
 
     fn analyse_sharp(&self, ring: SharpRing) -> Result<SharpStencil, LimitError> {
@@ -129,19 +140,31 @@ impl LimitTable<'_> {
         let mut sides = Vec::new();
         for sector in lasting.sectors() {
             let stencil = self.stencil(sector.shape)?;
-            let points = Points { ring: whole.shape, support: whole.support, sector };
+            let points = Points {
+                ring: whole.shape,
+                support: whole.support,
+                sector,
+            };
             if position.is_empty() {
                 position = points.spread(stencil.position_weights(), whole.len());
                 position = pulled_back(position, &fading)?;
             }
             sides.push(points.side(&stencil, whole.len(), &fading)?);
         }
-        Ok(SharpStencil { ring, support: whole.support, position, sides })
+        Ok(SharpStencil {
+            ring,
+            support: whole.support,
+            position,
+            sides,
+        })
     }
 }
 
 /// A row of weights on the points after all refinements, as weights on the points before them.
-fn pulled_back(mut weights: Vec<f64>, fading: &[Neighbourhood<'_>]) -> Result<Vec<f64>, LimitError> {
+fn pulled_back(
+    mut weights: Vec<f64>,
+    fading: &[Neighbourhood<'_>],
+) -> Result<Vec<f64>, LimitError> {
     for neighbourhood in fading.iter().rev() {
         weights = neighbourhood.pulled_back(&weights)?;
     }
@@ -158,7 +181,10 @@ struct Points {
 impl Points {
     /// The place in the whole neighbourhood of point `i` of the sector's.
     fn whole(&self, i: usize) -> usize {
-        let (k, own) = (self.ring.valence as usize, self.sector.shape.valence as usize);
+        let (k, own) = (
+            self.ring.valence as usize,
+            self.sector.shape.valence as usize,
+        );
         if i == 0 {
             return 0;
         }
@@ -170,7 +196,10 @@ impl Points {
     /// Weights on the sector's points as weights on all.
     fn spread(&self, weights: &[f64], len: usize) -> Vec<f64> {
         let mut all = vec![0.0; len];
-        weights.iter().enumerate().for_each(|(i, &weight)| all[self.whole(i)] += weight);
+        weights
+            .iter()
+            .enumerate()
+            .for_each(|(i, &weight)| all[self.whole(i)] += weight);
         all
     }
 
@@ -181,8 +210,15 @@ impl Points {
         fading: &[Neighbourhood<'_>],
     ) -> Result<SharpSide, LimitError> {
         let (first, faces) = (self.sector.first, self.sector.shape.faces() as usize);
-        let mut side = SharpSide { first, faces, plane: stencil.tangent_plane(), tangents: Vec::new() };
-        let Some(tangents) = stencil.tangent_weights() else { return Ok(side) };
+        let mut side = SharpSide {
+            first,
+            faces,
+            plane: stencil.tangent_plane(),
+            tangents: Vec::new(),
+        };
+        let Some(tangents) = stencil.tangent_weights() else {
+            return Ok(side);
+        };
         let row = |axis: usize| {
             // On points rather than differences: the vertex has what the others lack to a sum of 0.
             let others = tangents.iter().map(|weights| weights[axis]);

@@ -15,7 +15,11 @@ pub struct SidedNormals {
 
 impl SidedNormals {
     pub(crate) fn new(by_vertex: Vec<[f64; 3]>) -> Self {
-        Self { by_vertex, is_sided: Vec::new(), sides: Vec::new() }
+        Self {
+            by_vertex,
+            is_sided: Vec::new(),
+            sides: Vec::new(),
+        }
     }
 
     /// Adds the normal of `vertex` for the faces of the given half-edges, which leave it.
@@ -40,9 +44,15 @@ impl SidedNormals {
     #[inline]
     pub fn at(&self, topology: &Topology, corner: HalfEdgeId) -> [f64; 3] {
         let v = topology.origin(corner).index();
-        let is_sided = self.is_sided.get(v / 64).is_some_and(|word| word >> (v % 64) & 1 != 0);
+        let is_sided = self
+            .is_sided
+            .get(v / 64)
+            .is_some_and(|word| word >> (v % 64) & 1 != 0);
         let side = || self.sides.binary_search_by_key(&corner, |&(h, _)| h).ok();
-        is_sided.then(side).flatten().map_or(self.by_vertex[v], |i| self.sides[i].1)
+        is_sided
+            .then(side)
+            .flatten()
+            .map_or(self.by_vertex[v], |i| self.sides[i].1)
     }
 
     /// The normals at vertices with several sides, by the half-edges that leave them.

@@ -95,9 +95,14 @@ impl LimitStencil {
     /// `W = u_i w_j − u_j w_i`; for Loop's scheme that is sin(2π(j−i)/k).
     pub fn normal_weights(&self) -> Option<Vec<f64>> {
         let tangents = self.tangent_weights()?;
-        let pair = |i: usize, j: usize| tangents[i][0] * tangents[j][1] - tangents[j][0] * tangents[i][1];
+        let pair =
+            |i: usize, j: usize| tangents[i][0] * tangents[j][1] - tangents[j][0] * tangents[i][1];
         let n = tangents.len();
-        Some((0..n).flat_map(|i| (i + 1..n).map(move |j| pair(i, j))).collect())
+        Some(
+            (0..n)
+                .flat_map(|i| (i + 1..n).map(move |j| pair(i, j)))
+                .collect(),
+        )
     }
 
     /// A stencil that has a limit position only.
@@ -117,7 +122,10 @@ impl LimitStencil {
     /// there (a fold, a double winding) they span no plane that has an outside, and are dropped.
     pub(super) fn oriented(mut self) -> Self {
         let (mut tangents, mut scale) = ([DVec3::ZERO; 2], [0.0; 2]);
-        for (point, weights) in convex_fan(self.shape, self.support).into_iter().zip(&self.tangents) {
+        for (point, weights) in convex_fan(self.shape, self.support)
+            .into_iter()
+            .zip(&self.tangents)
+        {
             for (axis, &weight) in weights.iter().enumerate() {
                 tangents[axis] += weight * point;
                 scale[axis] += weight.abs();

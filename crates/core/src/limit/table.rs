@@ -24,14 +24,20 @@ pub struct LimitTable<'s> {
 
 impl fmt::Debug for LimitTable<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LimitTable").field("scheme", &self.scheme.name()).finish_non_exhaustive()
+        f.debug_struct("LimitTable")
+            .field("scheme", &self.scheme.name())
+            .finish_non_exhaustive()
     }
 }
 
 impl<'s> LimitTable<'s> {
     /// An empty table for `scheme`; stencils are built when first asked for.
     pub fn new(scheme: &'s dyn Scheme) -> Self {
-        Self { scheme: declared(scheme), stencils: RwLock::default(), sharp: RwLock::default() }
+        Self {
+            scheme: declared(scheme),
+            stencils: RwLock::default(),
+            sharp: RwLock::default(),
+        }
     }
 
     /// The scheme.
@@ -44,7 +50,9 @@ impl<'s> LimitTable<'s> {
     /// # Errors
     /// The ring has fewer than two edges, or the scheme's masks break its contract there.
     pub fn stencil(&self, shape: RingShape) -> Result<Arc<LimitStencil>, LimitError> {
-        known(&self.stencils, shape, || analyse(self.scheme, shape).map(Arc::new))
+        known(&self.stencils, shape, || {
+            analyse(self.scheme, shape).map(Arc::new)
+        })
     }
 
     /// The stencil of a ring with sharp edges, built unless it is known.
@@ -67,7 +75,11 @@ fn known<K: Eq + Hash, S>(
         return known.clone();
     }
     let built = build();
-    all.write().unwrap_or_else(PoisonError::into_inner).entry(key).or_insert(built).clone()
+    all.write()
+        .unwrap_or_else(PoisonError::into_inner)
+        .entry(key)
+        .or_insert(built)
+        .clone()
 }
 
 fn analyse(scheme: &dyn Scheme, shape: RingShape) -> Result<LimitStencil, LimitError> {

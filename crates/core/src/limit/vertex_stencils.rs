@@ -51,7 +51,10 @@ impl LimitTable<'_> {
                     faces: side.faces,
                     tangents: side.tangents.to_vec(),
                 });
-                list.push(VertexStencil { position: stencil.position().to_vec(), sides: sides.collect() });
+                list.push(VertexStencil {
+                    position: stencil.position().to_vec(),
+                    sides: sides.collect(),
+                });
                 list.len() as u32 - 1
             })
         });

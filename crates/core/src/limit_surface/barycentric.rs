@@ -51,7 +51,11 @@ pub fn barycentric(weights: [f64; 3]) -> Result<[f64; 3], BarycentricError> {
     }
     let weights = weights.map(|weight| weight.max(0.0));
     let sum: f64 = weights.iter().sum();
-    Ok(if (sum - 1.0).abs() <= OF_DOUBLES { weights } else { weights.map(|weight| weight / sum) })
+    Ok(if (sum - 1.0).abs() <= OF_DOUBLES {
+        weights
+    } else {
+        weights.map(|weight| weight / sum)
+    })
 }
 
 #[cfg(test)]
@@ -64,12 +68,21 @@ mod tests {
             assert_eq!(barycentric([third; 3]), Ok([1.0 / 3.0; 3]));
         }
         let [a, b, c] = barycentric([0.6667, 0.3334, 0.0]).expect("a place");
-        assert!((a + b - 1.0).abs() <= f64::EPSILON && c == 0.0 && (a / b - 0.6667 / 0.3334).abs() < 1e-14);
+        assert!(
+            (a + b - 1.0).abs() <= f64::EPSILON
+                && c == 0.0
+                && (a / b - 0.6667 / 0.3334).abs() < 1e-14
+        );
     }
 
     #[test]
     fn weights_that_add_up_stay_to_the_bit() {
-        for weights in [[1.0, 0.0, 0.0], [0.5, 0.3, 0.2], [0.1, 0.2, 0.7], [1.0 / 3.0; 3]] {
+        for weights in [
+            [1.0, 0.0, 0.0],
+            [0.5, 0.3, 0.2],
+            [0.1, 0.2, 0.7],
+            [1.0 / 3.0; 3],
+        ] {
             assert_eq!(barycentric(weights), Ok(weights));
         }
     }
@@ -79,7 +92,10 @@ mod tests {
         assert_eq!(barycentric([0.25, 0.75, -1e-17]), Ok([0.25, 0.75, 0.0]));
         let [a, b, c] = barycentric([0.25, 0.75, -9e-7]).expect("a place");
         assert_eq!([a, b, c], [0.25, 0.75, 0.0]);
-        assert_eq!(barycentric([0.5, 0.51, -0.01]), Err(BarycentricError::Outside { weight: -0.01 }));
+        assert_eq!(
+            barycentric([0.5, 0.51, -0.01]),
+            Err(BarycentricError::Outside { weight: -0.01 })
+        );
     }
 
     #[test]

@@ -57,7 +57,10 @@ impl Derivatives {
 
     /// The unit directions of both first derivatives; `None` where they span no plane.
     pub fn tangents(&self) -> Option<[[f64; 3]; 2]> {
-        self.normal().map(|_| self.first.map(|first| unit_or_zero(vector(first)).to_array()))
+        self.normal().map(|_| {
+            self.first
+                .map(|first| unit_or_zero(vector(first)).to_array())
+        })
     }
 
     /// How the surface bends; `None` where the derivatives span no plane.
@@ -83,7 +86,12 @@ impl Derivatives {
         let angle = 0.5 * b.atan2(half);
         let first = angle.cos() * along + angle.sin() * across;
         let directions = [first, normal.cross(first)].map(|direction| direction.to_array());
-        Some(Curvature { gaussian, mean, principal: [mean + radius, mean - radius], directions })
+        Some(Curvature {
+            gaussian,
+            mean,
+            principal: [mean + radius, mean - radius],
+            directions,
+        })
     }
 }
 
@@ -109,7 +117,8 @@ impl LimitSurface<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn derivatives(&self, face: FaceId, barycentric: [f64; 3]) -> Option<Derivatives> {
-        (face.index() < self.mesh.face_count()).then(|| self.derivatives_on(face, &[barycentric]).pop())??
+        (face.index() < self.mesh.face_count())
+            .then(|| self.derivatives_on(face, &[barycentric]).pop())??
     }
 
     /// Two unit vectors that span the tangent plane at a corner of a control face, by the scheme's limit masks: also at irregular
@@ -153,7 +162,10 @@ impl LimitSurface<'_> {
             return vec![None; places.len()];
         }
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
-        places.iter().map(|&place| self.derivatives_over(&patch, weights_in_order(place)?)).collect()
+        places
+            .iter()
+            .map(|&place| self.derivatives_over(&patch, weights_in_order(place)?))
+            .collect()
     }
 
     fn derivatives_over(&self, patch: &Patch, mut weights: [f64; 3]) -> Option<Derivatives> {
@@ -169,7 +181,9 @@ impl LimitSurface<'_> {
                 return Some(Derivatives {
                     position: (origin + moved + piece.point(u, v)).to_array(),
                     first: piece.tangents(u, v).map(|by| (scale * by).to_array()),
-                    second: piece.second_derivatives(u, v).map(|by| (scale * scale * by).to_array()),
+                    second: piece
+                        .second_derivatives(u, v)
+                        .map(|by| (scale * scale * by).to_array()),
                 });
             }
             let nearest = nearest(weights);
@@ -190,12 +204,21 @@ impl LimitSurface<'_> {
 
 /// The corner with the greatest weight.
 fn nearest(weights: [f64; 3]) -> usize {
-    (1..3).fold(0, |most, corner| if weights[corner] > weights[most] { corner } else { most })
+    (1..3).fold(0, |most, corner| {
+        if weights[corner] > weights[most] {
+            corner
+        } else {
+            most
+        }
+    })
 }
 
 /// Weights of which the greatest is what the others leave of 1; `None` where one is below 0 or none.
 fn weights_in_order(mut weights: [f64; 3]) -> Option<[f64; 3]> {
-    if !weights.iter().all(|&weight| weight >= 0.0 && weight.is_finite()) {
+    if !weights
+        .iter()
+        .all(|&weight| weight >= 0.0 && weight.is_finite())
+    {
         return None;
     }
     let most = nearest(weights);

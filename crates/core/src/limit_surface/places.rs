@@ -30,7 +30,11 @@ impl Place {
     /// Barycentric coordinates are cut off so that they are in order.
     pub(super) fn of(at: usize, [_, u, v]: [f64; 3]) -> Self {
         let [u, v] = [u, v].map(|weight| if weight > 0.0 { weight.min(1.0) } else { 0.0 });
-        Self { at: at as u32, u, v: v.min(1.0 - u) }
+        Self {
+            at: at as u32,
+            u,
+            v: v.min(1.0 - u),
+        }
     }
 
     fn first_weight(self) -> f64 {
@@ -49,7 +53,9 @@ impl Place {
     /// The corner that is nearest.
     fn nearest(self) -> usize {
         let weights = [self.first_weight(), self.u, self.v];
-        (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0)
+        (0..3)
+            .max_by(|&a, &b| weights[a].total_cmp(&weights[b]))
+            .unwrap_or(0)
     }
 
     /// The part of four that it is in, those at the corners and the middle one.
@@ -65,7 +71,11 @@ impl Place {
         const FACTORS: [f64; PARTS] = [2.0, 2.0, 2.0, -2.0];
         const SHIFTS: [[f64; 2]; PARTS] = [[0.0, 0.0], [-1.0, 0.0], [0.0, -1.0], [1.0, 1.0]];
         let (factor, [along, across]) = (FACTORS[part], SHIFTS[part]);
-        Self { at: self.at, u: factor * self.u + along, v: factor * self.v + across }
+        Self {
+            at: self.at,
+            u: factor * self.u + along,
+            v: factor * self.v + across,
+        }
     }
 }
 
@@ -81,7 +91,9 @@ pub(super) fn parted<A: Answers>(
     middles: [A::Limit; 3],
     found: &mut A,
 ) -> [Range<usize>; PARTS] {
-    let limits = [corners[0], corners[1], corners[2], middles[0], middles[1], middles[2]];
+    let limits = [
+        corners[0], corners[1], corners[2], middles[0], middles[1], middles[2],
+    ];
     let mut counts = [0; PARTS];
     places.iter().for_each(|place| counts[place.part()] += 1);
     let mut start = 0;
@@ -104,7 +116,11 @@ pub(super) fn parted<A: Answers>(
 }
 
 /// Takes the places at the corners of a whole face, whose limits are given, out of them.
-pub(super) fn take_corners<A: Answers>(corners: [A::Limit; 3], places: &mut Vec<Place>, found: &mut A) {
+pub(super) fn take_corners<A: Answers>(
+    corners: [A::Limit; 3],
+    places: &mut Vec<Place>,
+    found: &mut A,
+) {
     places.retain(|place| {
         let corner = place.corner();
         corner.inspect(|&corner| found.is(place.at, corners[corner]));
@@ -114,7 +130,9 @@ pub(super) fn take_corners<A: Answers>(corners: [A::Limit; 3], places: &mut Vec<
 
 /// Gives up places for the nearest corners.
 pub(super) fn take_nearest<A: Answers>(corners: [A::Limit; 3], places: &[Place], found: &mut A) {
-    places.iter().for_each(|place| found.is(place.at, corners[place.nearest()]));
+    places
+        .iter()
+        .for_each(|place| found.is(place.at, corners[place.nearest()]));
 }
 
 /// What is computed of points.
@@ -144,7 +162,9 @@ pub(super) struct Coordinates<'a, const AXES: usize>(pub(super) &'a mut [[f64; A
 impl<const AXES: usize> Coordinates<'_, AXES> {
     fn some_on<const N: usize>(&mut self, piece: &[[f64; 15]; AXES], places: &[Place]) {
         let [u, v] = lanes::<N>(places);
-        let points = piece.each_ref().map(|coefficients| values_at(coefficients, &u, &v));
+        let points = piece
+            .each_ref()
+            .map(|coefficients| values_at(coefficients, &u, &v));
         for (lane, place) in places.iter().enumerate() {
             self.0[place.at as usize] = from_fn(|axis| points[axis][lane]);
         }
@@ -181,8 +201,10 @@ impl Answers for Points<'_> {
     type Limit = LimitPoint;
 
     fn is(&mut self, at: u32, point: LimitPoint) {
-        self.points[at as usize] =
-            SurfacePoint { position: point.position.to_array(), normal: point.normal.to_array() };
+        self.points[at as usize] = SurfacePoint {
+            position: point.position.to_array(),
+            normal: point.normal.to_array(),
+        };
     }
 
     fn are_on(&mut self, piece: &patch::Points, places: &[Place]) {
@@ -194,7 +216,8 @@ impl Answers for Points<'_> {
                 false => [piece.points_at(&u, &v, 3), [[0.0; HALF]; 3]],
             };
             for (lane, place) in some.iter().enumerate() {
-                let [position, normal] = [points, normals].map(|by_axis| by_axis.map(|axis| axis[lane]));
+                let [position, normal] =
+                    [points, normals].map(|by_axis| by_axis.map(|axis| axis[lane]));
                 self.points[place.at as usize] = SurfacePoint { position, normal };
             }
         }
@@ -211,19 +234,27 @@ mod tests {
     fn places_stay_where_they_are() {
         let face = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let middles = [[0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5]];
-        let limits = [face[0], face[1], face[2], middles[0], middles[1], middles[2]];
-        for (u, v) in
-            (0..=16).flat_map(|i| (0..=16 - i).map(move |j| (f64::from(i) / 16.0, f64::from(j) / 16.0)))
+        let limits = [
+            face[0], face[1], face[2], middles[0], middles[1], middles[2],
+        ];
+        for (u, v) in (0..=16)
+            .flat_map(|i| (0..=16 - i).map(move |j| (f64::from(i) / 16.0, f64::from(j) / 16.0)))
         {
             let place = Place::of(7, [1.0 - u - v, u, v]);
             let part = place.part();
             let own = place.in_part(part);
             let corners = child_corners(face, middles, part);
             assert_eq!(CORNERS[part].map(|corner| limits[corner]), corners);
-            assert!(own.u >= 0.0 && own.v >= 0.0 && own.first_weight() >= 0.0, "{place:?}: {own:?}");
+            assert!(
+                own.u >= 0.0 && own.v >= 0.0 && own.first_weight() >= 0.0,
+                "{place:?}: {own:?}"
+            );
             let weights = [own.first_weight(), own.u, own.v];
-            let there =
-                [0, 1, 2].map(|i| (0..3).map(|corner| weights[corner] * corners[corner][i]).sum::<f64>());
+            let there = [0, 1, 2].map(|i| {
+                (0..3)
+                    .map(|corner| weights[corner] * corners[corner][i])
+                    .sum::<f64>()
+            });
             assert_eq!((there, own.at), ([1.0 - u - v, u, v], 7), "{place:?}");
         }
     }

@@ -106,24 +106,40 @@ impl LimitSurface<'_> {
             return None;
         }
         // Seen from its middle, and about as large as 1, a surface keeps its digits wherever it is and however large.
-        let [low, high] = self.mesh.as_triangles().bounding_box()?.map(|corner| 0.5 * vector(corner));
+        let [low, high] = self
+            .mesh
+            .as_triangles()
+            .bounding_box()?
+            .map(|corner| 0.5 * vector(corner));
         let (middle, size) = (low + high, (high - low).max_element());
         let size = if size > 0.0 { size } else { 1.0 };
-        let positions =
-            self.mesh.positions().iter().map(|&p| ((vector(p) - middle) / size).to_array()).collect();
+        let positions = self
+            .mesh
+            .positions()
+            .iter()
+            .map(|&p| ((vector(p) - middle) / size).to_array())
+            .collect();
         let mesh = self.mesh.clone().with_positions(positions).ok()?;
         let surface = LimitSurface::without_normals(&mesh, self.rules.scheme()).ok()?;
         let blocks = parallel::pieces_of(mesh.face_count(), BLOCK, |block| {
-            block.map(|face| surface.integrated_over(FaceId(face as u32), integrand)).sum::<f64>()
+            block
+                .map(|face| surface.integrated_over(FaceId(face as u32), integrand))
+                .sum::<f64>()
         });
         let sum: f64 = blocks.into_iter().sum();
         Some((0..power).fold(sum, |sum, _| sum * size)).filter(|sum| sum.is_finite())
     }
 
     fn integrated_over(&self, face: FaceId, integrand: &impl Integrand) -> f64 {
-        let corners = self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]));
+        let corners =
+            self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]));
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
-        self.integrated_over_piece(&patch, corners, (integrand, Area.of_triangle(corners)), DEEPEST)
+        self.integrated_over_piece(
+            &patch,
+            corners,
+            (integrand, Area.of_triangle(corners)),
+            DEEPEST,
+        )
     }
 
     /// Over a piece, given its corners and the area of its face.
@@ -146,7 +162,12 @@ impl LimitSurface<'_> {
             Some(points) => integrand.of_piece(&regular(&points), whole),
             None => {
                 let corners = child_corners(corners, middles, part);
-                self.integrated_over_piece(&refined.part(part), corners, (integrand, whole), levels - 1)
+                self.integrated_over_piece(
+                    &refined.part(part),
+                    corners,
+                    (integrand, whole),
+                    levels - 1,
+                )
             }
         };
         (0..4).map(of_part).sum()
@@ -158,16 +179,24 @@ fn area(piece: &Quartic, spot: Spot, agreement: f64, divisions: u32) -> f64 {
         let [by_u, by_v] = piece.tangents(u, v);
         by_u.cross(by_v).length()
     };
-    let (coarse, fine) = (integral(&FOUR, spot, density), integral(&SIX, spot, density));
+    let (coarse, fine) = (
+        integral(&FOUR, spot, density),
+        integral(&SIX, spot, density),
+    );
     if (coarse - fine).abs() <= agreement || divisions == 0 {
         return fine;
     }
-    (0..4).map(|child| area(piece, spot.child(child), 0.25 * agreement, divisions - 1)).sum()
+    (0..4)
+        .map(|child| area(piece, spot.child(child), 0.25 * agreement, divisions - 1))
+        .sum()
 }
 
 /// The integral over a part, by a product of rules on the square that is collapsed to the triangle.
 fn integral(rule: &[(f64, f64)], spot: Spot, density: impl Fn(f64, f64) -> f64) -> f64 {
-    let nodes = || rule.iter().flat_map(|&(at, weight)| [(-at, weight), (at, weight)]);
+    let nodes = || {
+        rule.iter()
+            .flat_map(|&(at, weight)| [(-at, weight), (at, weight)])
+    };
     let mut sum = 0.0;
     for (x, of_x) in nodes() {
         let x = 0.5 + 0.5 * x;

@@ -37,15 +37,25 @@ impl LimitSurface<'_> {
     ///
     /// # Errors
     /// The scheme has no limit at the shape of some ring.
-    pub fn weights(&self, face: FaceId, barycentric: [f64; 3]) -> Result<Vec<(VertexId, f64)>, LimitError> {
-        Ok(self.weights_over(face, &[barycentric])?.pop().unwrap_or_default())
+    pub fn weights(
+        &self,
+        face: FaceId,
+        barycentric: [f64; 3],
+    ) -> Result<Vec<(VertexId, f64)>, LimitError> {
+        Ok(self
+            .weights_over(face, &[barycentric])?
+            .pop()
+            .unwrap_or_default())
     }
 
     /// [`Self::weights`] at places of many faces, in order, on all threads. Places of one face that stand together share its work.
     ///
     /// # Errors
     /// As for [`Self::weights`].
-    pub fn weights_at(&self, places: &[(FaceId, [f64; 3])]) -> Result<Vec<Vec<(VertexId, f64)>>, LimitError> {
+    pub fn weights_at(
+        &self,
+        places: &[(FaceId, [f64; 3])],
+    ) -> Result<Vec<Vec<(VertexId, f64)>>, LimitError> {
         let of_faces: Vec<&[(FaceId, [f64; 3])]> = places.chunk_by(|a, b| a.0 == b.0).collect();
         let blocks = parallel::pieces_of(of_faces.len(), BLOCK, |block| {
             let over = |face: usize| {
@@ -68,15 +78,29 @@ impl LimitSurface<'_> {
             return Ok(found);
         }
         let rings = RINGS[usize::from(!self.is_certified())];
-        let (small, sources) = submesh_of(self.mesh, &self.sharpness, &[HalfEdgeId::of(face, 0)], rings);
+        let (small, sources) = submesh_of(
+            self.mesh,
+            &self.sharpness,
+            &[HalfEdgeId::of(face, 0)],
+            rings,
+        );
         for first in (0..sources.len()).step_by(3) {
             let mut positions = vec![[0.0; 3]; sources.len()];
-            positions[first..].iter_mut().take(3).enumerate().for_each(|(axis, at)| at[axis] = 1.0);
+            positions[first..]
+                .iter_mut()
+                .take(3)
+                .enumerate()
+                .for_each(|(axis, at)| at[axis] = 1.0);
             // All positions are finite.
-            let Ok(units) = small.clone().with_positions(positions) else { continue };
+            let Ok(units) = small.clone().with_positions(positions) else {
+                continue;
+            };
             let surface = LimitSurface::by_rules(&units, self.rules.sharing())?;
             for (found, point) in found.iter_mut().zip(surface.over(FaceId(0), places)) {
-                let own = sources[first..].iter().zip(point.position).filter(|&(_, weight)| weight != 0.0);
+                let own = sources[first..]
+                    .iter()
+                    .zip(point.position)
+                    .filter(|&(_, weight)| weight != 0.0);
                 found.extend(own.map(|(&vertex, weight)| (vertex, weight)));
             }
             if let Some(error) = surface.failure() {

@@ -13,7 +13,11 @@ fn fan(count: u32, open: bool) -> Mesh {
         positions.push([(1.0 + 0.1 * f64::from(i % 3)) * cosine, sine, 0.0]);
     }
     let last = count - u32::from(open);
-    Mesh::from_triangles(positions, (0..last).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect()).unwrap()
+    Mesh::from_triangles(
+        positions,
+        (0..last).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect(),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -26,11 +30,15 @@ fn loop_points_beside_a_vertex_of_many_edges_follow_the_formulas() {
             let expected = match topology.twin(h) {
                 None => (a + b) / 2.0,
                 Some(twin) => {
-                    (a + b) * 0.375 + (at(topology.opposite(h)) + at(topology.opposite(twin))) * 0.125
+                    (a + b) * 0.375
+                        + (at(topology.opposite(h)) + at(topology.opposite(twin))) * 0.125
                 }
             };
             let point = masks.edge_point(h);
-            assert!(point.distance(expected) < 1e-14, "{h}: {point}, expected {expected}");
+            assert!(
+                point.distance(expected) < 1e-14,
+                "{h}: {point}, expected {expected}"
+            );
         }
     }
 }
@@ -38,14 +46,28 @@ fn loop_points_beside_a_vertex_of_many_edges_follow_the_formulas() {
 #[test]
 fn kept_masks_and_those_on_demand_give_the_same_points() {
     // 2500 edges with 2503 weights each are more than are kept.
-    for mesh in [fan(2500, true), fan(40, true), fan(40, false), fan(7, true), fan(3, true), fan(4, false)] {
+    for mesh in [
+        fan(2500, true),
+        fan(40, true),
+        fan(40, false),
+        fan(7, true),
+        fan(3, true),
+        fan(4, false),
+    ] {
         let kept = Masks::new(&mesh, &ModifiedButterfly);
         let on_demand = Masks::on_demand(&mesh, &ModifiedButterfly);
         let edges = mesh.topology().half_edge_count();
         assert!(
-            kept.edge_masks.iter().map(|(_, mask)| mask.origin_ring.len()).sum::<usize>() <= MOST_WEIGHTS
+            kept.edge_masks
+                .iter()
+                .map(|(_, mask)| mask.origin_ring.len())
+                .sum::<usize>()
+                <= MOST_WEIGHTS
         );
-        for h in (0..edges).step_by(1 + edges / 500).map(|h| HalfEdgeId(h as u32)) {
+        for h in (0..edges)
+            .step_by(1 + edges / 500)
+            .map(|h| HalfEdgeId(h as u32))
+        {
             assert_eq!(kept.edge_shape(h), mesh.edge_shape(h), "{h}");
             assert_eq!(kept.edge_point(h), on_demand.edge_point(h), "{h}");
         }

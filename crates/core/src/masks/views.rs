@@ -46,19 +46,38 @@ impl<L: Copy> LabelledRing<L> {
     /// `count` neighbours from slot `first` on, round and round.
     fn from(&self, first: usize, count: usize) -> Vec<L> {
         let before = &self.neighbours[..first];
-        self.neighbours[first..].iter().chain(before).copied().cycle().take(count).collect()
+        self.neighbours[first..]
+            .iter()
+            .chain(before)
+            .copied()
+            .cycle()
+            .take(count)
+            .collect()
     }
 
     fn view(&self, first: usize, shape: RingShape) -> View<L> {
         let neighbours = self.from(first, shape.valence as usize);
-        View { centre: self.centre, shape: RingShape { dart: false, ..shape }, neighbours }
+        View {
+            centre: self.centre,
+            shape: RingShape {
+                dart: false,
+                ..shape
+            },
+            neighbours,
+        }
     }
 
     /// The ring whose vertex mask applies when it is as sharp as `sharp`. The curve of a crease is the same for
     /// both sides.
     fn vertex_view(&self, sharp: &SharpRing) -> View<L> {
-        let whole = RingShape { open: self.sharp.open, ..RingShape::interior(self.neighbours.len() as u32) };
-        let first = sharp.sectors().first().map_or((0, whole), |sector| (sector.first, sector.shape));
+        let whole = RingShape {
+            open: self.sharp.open,
+            ..RingShape::interior(self.neighbours.len() as u32)
+        };
+        let first = sharp
+            .sectors()
+            .first()
+            .map_or((0, whole), |sector| (sector.first, sector.shape));
         self.view(first.0, first.1)
     }
 
@@ -73,14 +92,19 @@ impl<L: Copy> LabelledRing<L> {
                     return (self.view(slot, sector.shape), 0);
                 }
                 // Where a crease ends, the ring is cut along it; the curve has no point beyond.
-                let cut = RingShape { corner: true, ..RingShape::boundary(k as u32 + 1) };
+                let cut = RingShape {
+                    corner: true,
+                    ..RingShape::boundary(k as u32 + 1)
+                };
                 return (self.view(slot, cut), if side == Side::Left { 0 } else { k });
             }
             let here = match (is_sharp, side) {
                 (false, _) => (place + 1 < valence).then_some(place),
                 (true, Side::Left) => (place == 0).then_some(0),
                 // Both ends of a sector that goes all round are one edge.
-                (true, Side::Right) => ((sector.first + valence - 1) % k == slot).then_some(valence - 1),
+                (true, Side::Right) => {
+                    ((sector.first + valence - 1) % k == slot).then_some(valence - 1)
+                }
             };
             if let Some(here) = here {
                 return (self.view(sector.first, sector.shape), here);
@@ -107,7 +131,10 @@ pub(crate) fn vertex_views<L: Copy>(ring: &LabelledRing<L>) -> Vec<(f64, View<L>
     if now == 1.0 || ring.sharp.rule() == refined.rule() {
         return vec![(1.0, ring.vertex_view(&ring.sharp))];
     }
-    vec![(now, ring.vertex_view(&ring.sharp)), (1.0 - now, ring.vertex_view(&refined))]
+    vec![
+        (now, ring.vertex_view(&ring.sharp)),
+        (1.0 - now, ring.vertex_view(&refined)),
+    ]
 }
 
 /// The edges whose masks make up the new point on an edge, and their shares. Each end is given by its ring and the
@@ -119,7 +146,11 @@ pub(crate) fn edge_views<L: Copy>(
     (target, target_slot): (&LabelledRing<L>, usize),
 ) -> Vec<(f64, EdgeView<L>)> {
     let is_last = origin.sharp.open && origin_slot + 1 == origin.neighbours.len();
-    let sides = if is_last { [Side::Right, Side::Left] } else { [Side::Left, Side::Right] };
+    let sides = if is_last {
+        [Side::Right, Side::Left]
+    } else {
+        [Side::Left, Side::Right]
+    };
     let sharpness = origin.sharp.spokes.get(origin_slot).copied().unwrap_or(0.0);
     if sharpness > 0.0 && sharpness <= 1.0 {
         let as_sharp_as = |from: &SharpRing, to: &SharpRing| {
@@ -130,7 +161,10 @@ pub(crate) fn edge_views<L: Copy>(
         };
         let mut views = vec![(sharpness, as_sharp_as(&origin.sharp, &target.sharp))];
         if sharpness < 1.0 {
-            views.push((1.0 - sharpness, as_sharp_as(&origin.sharp.refined(), &target.sharp.refined())));
+            views.push((
+                1.0 - sharpness,
+                as_sharp_as(&origin.sharp.refined(), &target.sharp.refined()),
+            ));
         }
         return views;
     }
@@ -151,7 +185,11 @@ impl<L: Copy> EdgeView<L> {
             target: target.shape,
             target_slot: target_slot as u32,
         };
-        Self { shape, origin, target }
+        Self {
+            shape,
+            origin,
+            target,
+        }
     }
 }
 
@@ -163,6 +201,8 @@ impl<L: Copy> View<L> {
         ring: &'v [f64],
     ) -> impl Iterator<Item = (L, f64)> + use<'v, L> {
         let around = self.neighbours.iter().copied().zip(ring.iter().copied());
-        core::iter::once((self.centre, centre)).chain(around).filter(|&(_, weight)| weight != 0.0)
+        core::iter::once((self.centre, centre))
+            .chain(around)
+            .filter(|&(_, weight)| weight != 0.0)
     }
 }

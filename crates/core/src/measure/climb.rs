@@ -43,7 +43,11 @@ pub(super) fn climb(
         .into_iter()
         .map(|slot| {
             let corners = from.corners(slot);
-            Candidate { corners, best: corners[0], distance: f64::NEG_INFINITY }
+            Candidate {
+                corners,
+                best: corners[0],
+                distance: f64::NEG_INFINITY,
+            }
         })
         .collect();
     let lattice = lattice();
@@ -52,14 +56,19 @@ pub(super) fn climb(
             .iter()
             .flat_map(|candidate| {
                 let [a, b, c] = candidate.corners;
-                lattice.iter().map(move |[u, v, w]| a * *u + b * *v + c * *w)
+                lattice
+                    .iter()
+                    .map(move |[u, v, w]| a * *u + b * *v + c * *w)
             })
             .collect();
         // Each triangle is measured by itself: the next one may be far away.
         let mut distances = vec![0.0; points.len()];
         let poll = &mut |_| watch.poll();
         parallel::for_each_chunk_polled(&mut distances, lattice.len(), poll, |i, distances| {
-            to.distances(&points[i * lattice.len()..(i + 1) * lattice.len()], distances);
+            to.distances(
+                &points[i * lattice.len()..(i + 1) * lattice.len()],
+                distances,
+            );
         })?;
         for (i, candidate) in candidates.iter_mut().enumerate() {
             let own = i * lattice.len()..(i + 1) * lattice.len();
@@ -68,7 +77,9 @@ pub(super) fn climb(
                     (candidate.best, candidate.distance) = (point, distance);
                 }
             }
-            candidate.corners = candidate.corners.map(|corner| candidate.best * 0.5 + corner * 0.5);
+            candidate.corners = candidate
+                .corners
+                .map(|corner| candidate.best * 0.5 + corner * 0.5);
         }
         // Stable, so that equal ones keep their order.
         candidates.sort_by(|a, b| b.distance.total_cmp(&a.distance));
@@ -83,8 +94,9 @@ fn farthest_triangles(samples: &Samples<'_, '_>, distances: &[f64]) -> Vec<usize
     // Several of the farthest samples may be of one triangle; four times as many as triangles are looked at.
     let wanted = 4 * SCREENED;
     if farthest.len() > wanted {
-        farthest
-            .select_nth_unstable_by(wanted, |&a, &b| distances[b].total_cmp(&distances[a]).then(a.cmp(&b)));
+        farthest.select_nth_unstable_by(wanted, |&a, &b| {
+            distances[b].total_cmp(&distances[a]).then(a.cmp(&b))
+        });
         farthest.truncate(wanted);
     }
     farthest.sort_unstable_by(|&a, &b| distances[b].total_cmp(&distances[a]).then(a.cmp(&b)));
@@ -103,5 +115,7 @@ fn farthest_triangles(samples: &Samples<'_, '_>, distances: &[f64]) -> Vec<usize
 /// Weights of the lattice's points.
 fn lattice() -> Vec<[f64; 3]> {
     let step = |i: u32| f64::from(i) / f64::from(STEPS);
-    (0..=STEPS).flat_map(|i| (0..=STEPS - i).map(move |j| [step(i), step(j), step(STEPS - i - j)])).collect()
+    (0..=STEPS)
+        .flat_map(|i| (0..=STEPS - i).map(move |j| [step(i), step(j), step(STEPS - i - j)]))
+        .collect()
 }

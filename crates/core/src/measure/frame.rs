@@ -38,7 +38,11 @@ pub(super) fn exponent_above(x: f64) -> i64 {
 /// 2^`exponent`, subnormal below -1022 (the greatest numbers have no normal reciprocal).
 pub(super) fn power_of_two(exponent: i64) -> f64 {
     let exponent = exponent.clamp(-1074, 1023);
-    f64::from_bits(if exponent < -1022 { 1 << (exponent + 1074) } else { ((exponent + 1023) as u64) << 52 })
+    f64::from_bits(if exponent < -1022 {
+        1 << (exponent + 1074)
+    } else {
+        ((exponent + 1023) as u64) << 52
+    })
 }
 
 impl Frame {
@@ -49,8 +53,16 @@ impl Frame {
         // A box smaller than the rounding of its own place (a single point, above all) must not be blown up
         // until that place overflows.
         let size = half.max(centre.abs().max_element() * power_of_two(-56));
-        let scale = if size > 0.0 { power_of_two(-exponent_above(size)) } else { 1.0 };
-        Self { centre, scale, scaled_centre: centre * scale }
+        let scale = if size > 0.0 {
+            power_of_two(-exponent_above(size))
+        } else {
+            1.0
+        };
+        Self {
+            centre,
+            scale,
+            scaled_centre: centre * scale,
+        }
     }
 
     /// A point of the surface, scaled.
@@ -77,11 +89,19 @@ impl Frame {
         let scaled = p * self.scale;
         let local = scaled - self.scaled_centre;
         if local.abs().max_element() <= FAR {
-            return Located { scaled, local, pulled_in: false };
+            return Located {
+                scaled,
+                local,
+                pulled_in: false,
+            };
         }
         let half = p * 0.5 - self.centre * 0.5;
         let local = half / half.abs().max_element() * FAR;
-        Located { scaled: local + self.scaled_centre, local, pulled_in: true }
+        Located {
+            scaled: local + self.scaled_centre,
+            local,
+            pulled_in: true,
+        }
     }
 }
 
@@ -89,7 +109,11 @@ impl Frame {
 pub(super) fn distance(a: DVec3, b: DVec3) -> f64 {
     let half = a * 0.5 - b * 0.5;
     let largest = half.abs().max_element();
-    if largest > 0.0 { (half / largest).length() * largest * 2.0 } else { 0.0 }
+    if largest > 0.0 {
+        (half / largest).length() * largest * 2.0
+    } else {
+        0.0
+    }
 }
 
 #[cfg(test)]
@@ -98,13 +122,21 @@ mod tests {
 
     #[test]
     fn coordinates_end_up_within_one() {
-        for (low, high) in
-            [(0.0, 1.0), (1e300, 1.5e300), (-1e308, 1e308), (1e-310, 3e-310), (5.0, 5.0), (0.0, 0.0)]
-        {
+        for (low, high) in [
+            (0.0, 1.0),
+            (1e300, 1.5e300),
+            (-1e308, 1e308),
+            (1e-310, 3e-310),
+            (5.0, 5.0),
+            (0.0, 0.0),
+        ] {
             let frame = Frame::new(DVec3::splat(low), DVec3::splat(high));
             for end in [low, high] {
                 let local = frame.centre_point(DVec3::splat(end));
-                assert!(local.is_finite() && local.abs().max_element() <= 1.0, "{low} {high}: {local}");
+                assert!(
+                    local.is_finite() && local.abs().max_element() <= 1.0,
+                    "{low} {high}: {local}"
+                );
             }
         }
     }
@@ -120,7 +152,10 @@ mod tests {
     #[test]
     fn distance_neither_overflows_nor_vanishes() {
         for scale in [1e-200, 1.0, 1e200] {
-            let d = distance(DVec3::new(3.0, 0.0, 1.0) * scale, DVec3::new(0.0, 4.0, 1.0) * scale);
+            let d = distance(
+                DVec3::new(3.0, 0.0, 1.0) * scale,
+                DVec3::new(0.0, 4.0, 1.0) * scale,
+            );
             assert!((d / scale - 5.0).abs() < 1e-14);
         }
     }

@@ -72,7 +72,11 @@ impl Hausdorff {
 
     /// The symmetric distance in per cent of the reference's bounding-box diagonal.
     pub fn symmetric_percent(&self) -> f64 {
-        if self.reference_diagonal > 0.0 { 100.0 * (self.symmetric() / self.reference_diagonal) } else { 0.0 }
+        if self.reference_diagonal > 0.0 {
+            100.0 * (self.symmetric() / self.reference_diagonal)
+        } else {
+            0.0
+        }
     }
 }
 
@@ -122,11 +126,17 @@ pub fn hausdorff_observed(
 ) -> Result<Hausdorff, MeasureError> {
     let surface = Bvh::named(surface, "measured", observer)?;
     let reference = Bvh::named(reference, "reference", observer)?;
-    Ok(hausdorff_between_observed(&surface, &reference, options, observer)?)
+    Ok(hausdorff_between_observed(
+        &surface, &reference, options, observer,
+    )?)
 }
 
 /// [`hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
-pub fn hausdorff_between(surface: &Bvh<'_>, reference: &Bvh<'_>, options: &SamplingOptions) -> Hausdorff {
+pub fn hausdorff_between(
+    surface: &Bvh<'_>,
+    reference: &Bvh<'_>,
+    options: &SamplingOptions,
+) -> Hausdorff {
     uncancelled(|observer| hausdorff_between_observed(surface, reference, options, observer))
 }
 
@@ -167,7 +177,11 @@ fn one_sided(
     }
     // A surface without area has no samples inside; its vertices and sides then stand for it.
     let insides = samples.insides();
-    let over_the_surface = if insides.is_empty() { 0..distances.len() } else { insides };
+    let over_the_surface = if insides.is_empty() {
+        0..distances.len()
+    } else {
+        insides
+    };
     let (mean, rms) = means(&distances[over_the_surface.clone()], max);
     let mut at = samples.point(farthest);
     let climbed = climb(&samples, &distances, from, to, watch)?;
@@ -176,7 +190,15 @@ fn one_sided(
     }
     let (at, samples) = (at.to_array(), distances.len());
     let percentile_95 = percentile_95(&mut distances[over_the_surface]);
-    Ok(OneSided { max, mean, rms, percentile_95, samples, at, to: to.closest(at).point })
+    Ok(OneSided {
+        max,
+        mean,
+        rms,
+        percentile_95,
+        samples,
+        at,
+        to: to.closest(at).point,
+    })
 }
 
 /// The distances of `count` points to a surface; `collect` adds those of a range to a list. Consecutive ones should be
@@ -221,7 +243,9 @@ fn means(distances: &[f64], max: f64) -> (f64, f64) {
 
 /// The least of some distances that 95 % of them do not exceed; 0 of none. Changes their order.
 fn percentile_95(distances: &mut [f64]) -> f64 {
-    let Some(last) = (95 * distances.len()).div_ceil(100).checked_sub(1) else { return 0.0 };
+    let Some(last) = (95 * distances.len()).div_ceil(100).checked_sub(1) else {
+        return 0.0;
+    };
     *distances.select_nth_unstable_by(last, f64::total_cmp).1
 }
 
@@ -229,7 +253,10 @@ fn percentile_95(distances: &mut [f64]) -> f64 {
 ///
 /// # Errors
 /// A reference without triangles, an index out of range, a coordinate that is not finite, the points' included.
-pub fn distances_to(points: &[[f64; 3]], reference: Triangles<'_>) -> Result<Vec<f64>, MeasureError> {
+pub fn distances_to(
+    points: &[[f64; 3]],
+    reference: Triangles<'_>,
+) -> Result<Vec<f64>, MeasureError> {
     distances_to_observed(points, reference, &mut unobserved)
 }
 
@@ -244,11 +271,17 @@ pub fn distances_to_observed(
 ) -> Result<Vec<f64>, MeasureError> {
     let reference = Bvh::new_observed(reference, observer)?;
     check_finite(points, "measured")?;
-    let collect =
-        |range: Range<usize>, run: &mut Vec<DVec3>| run.extend(points[range].iter().copied().map(vector));
+    let collect = |range: Range<usize>, run: &mut Vec<DVec3>| {
+        run.extend(points[range].iter().copied().map(vector))
+    };
     let mut watch = Watch::new(observer, Stage::Sampling);
     watch.triangles(reference.surface().triangles.len());
-    Ok(measure_points(&reference, points.len(), collect, &mut watch)?)
+    Ok(measure_points(
+        &reference,
+        points.len(),
+        collect,
+        &mut watch,
+    )?)
 }
 
 #[cfg(test)]

@@ -18,8 +18,8 @@ pub use certified::{
 };
 pub(crate) use certified::{Target, Worker, certified_from_known, certified_known};
 pub use hausdorff::{
-    Hausdorff, OneSided, SamplingOptions, distances_to, distances_to_observed, hausdorff, hausdorff_between,
-    hausdorff_between_observed, hausdorff_observed,
+    Hausdorff, OneSided, SamplingOptions, distances_to, distances_to_observed, hausdorff,
+    hausdorff_between, hausdorff_between_observed, hausdorff_observed,
 };
 pub use quality::{TriangleQuality, triangle_quality};
 pub use watertight::{Watertightness, watertightness, watertightness_observed};
@@ -39,7 +39,10 @@ pub enum MeasureError {
         which: &'static str,
     },
     /// More triangles than `u32` indices can name.
-    #[error("the {which} surface has {count} triangles, at most {} can be measured", u32::MAX)]
+    #[error(
+        "the {which} surface has {count} triangles, at most {} can be measured",
+        u32::MAX
+    )]
     TooMany {
         /// Which of the two surfaces.
         which: &'static str,
@@ -47,7 +50,9 @@ pub enum MeasureError {
         count: usize,
     },
     /// A triangle names a vertex that does not exist.
-    #[error("triangle {face} of the {which} surface names vertex {vertex}, but there are {count} vertices")]
+    #[error(
+        "triangle {face} of the {which} surface names vertex {vertex}, but there are {count} vertices"
+    )]
     VertexOutOfRange {
         /// Which of the two surfaces.
         which: &'static str,
@@ -73,7 +78,9 @@ pub enum MeasureError {
         value: f64,
     },
     /// A coordinate so large that distances could not be represented.
-    #[error("the {which} surface has a coordinate of {value:e}, at most {greatest:e} can be measured")]
+    #[error(
+        "the {which} surface has a coordinate of {value:e}, at most {greatest:e} can be measured"
+    )]
     TooLarge {
         /// Which of the two surfaces.
         which: &'static str,
@@ -94,13 +101,24 @@ fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError
         return Err(MeasureError::Empty { which });
     }
     if surface.triangles.len() > u32::MAX as usize {
-        return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
+        return Err(MeasureError::TooMany {
+            which,
+            count: surface.triangles.len(),
+        });
     }
     let count = surface.positions.len();
     let out_of_range = |face: usize| surface.triangles[face].iter().any(|&v| v as usize >= count);
     if let Some(face) = parallel::first(surface.triangles.len(), out_of_range) {
-        let vertex = surface.triangles[face].into_iter().find(|&v| v as usize >= count).unwrap_or_default();
-        return Err(MeasureError::VertexOutOfRange { which, face, vertex, count });
+        let vertex = surface.triangles[face]
+            .into_iter()
+            .find(|&v| v as usize >= count)
+            .unwrap_or_default();
+        return Err(MeasureError::VertexOutOfRange {
+            which,
+            face,
+            vertex,
+            count,
+        });
     }
     check_finite(surface.positions, which)
 }
@@ -109,8 +127,16 @@ fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError
 fn check_finite(points: &[[f64; 3]], which: &'static str) -> Result<(), MeasureError> {
     let not_finite = |vertex: usize| !points[vertex].iter().all(|x| x.is_finite());
     if let Some(vertex) = parallel::first(points.len(), not_finite) {
-        let axis = points[vertex].iter().position(|x| !x.is_finite()).unwrap_or_default();
-        return Err(MeasureError::NotFinite { which, vertex, axis, value: points[vertex][axis] });
+        let axis = points[vertex]
+            .iter()
+            .position(|x| !x.is_finite())
+            .unwrap_or_default();
+        return Err(MeasureError::NotFinite {
+            which,
+            vertex,
+            axis,
+            value: points[vertex][axis],
+        });
     }
     Ok(())
 }

@@ -33,12 +33,18 @@ pub fn triangle_quality(surface: Triangles<'_>) -> TriangleQuality {
         }
         piece
     });
-    let total = pieces.iter().fold(Tally::EMPTY, |total, piece| total.join(piece));
+    let total = pieces
+        .iter()
+        .fold(Tally::EMPTY, |total, piece| total.join(piece));
     let count = surface.triangles.len();
     TriangleQuality {
         min_angle_degrees: total.least.map_or(0.0, |(angle, _)| angle),
         worst_face: total.least.map(|(_, face)| face as u32),
-        mean_min_angle_degrees: if count > 0 { total.sum / count as f64 } else { 0.0 },
+        mean_min_angle_degrees: if count > 0 {
+            total.sum / count as f64
+        } else {
+            0.0
+        },
         histogram: total.histogram,
     }
 }
@@ -51,7 +57,11 @@ struct Tally {
 }
 
 impl Tally {
-    const EMPTY: Self = Self { sum: 0.0, least: None, histogram: [0; 12] };
+    const EMPTY: Self = Self {
+        sum: 0.0,
+        least: None,
+        histogram: [0; 12],
+    };
 
     fn add(&mut self, angle: f64, face: usize) {
         self.sum += angle;
@@ -69,13 +79,18 @@ impl Tally {
             (a, b) => a.or(b),
         };
         let histogram = core::array::from_fn(|bin| self.histogram[bin] + later.histogram[bin]);
-        Self { sum: self.sum + later.sum, least, histogram }
+        Self {
+            sum: self.sum + later.sum,
+            least,
+            histogram,
+        }
     }
 }
 
 /// The corners of a triangle, if they exist.
 fn corners(surface: Triangles<'_>, face: usize) -> Option<[DVec3; 3]> {
-    let [a, b, c] = surface.triangles[face].map(|v| surface.positions.get(v as usize).copied().map(vector));
+    let [a, b, c] =
+        surface.triangles[face].map(|v| surface.positions.get(v as usize).copied().map(vector));
     Some([a?, b?, c?])
 }
 
@@ -86,7 +101,9 @@ fn least_angle_degrees(corners: Option<[DVec3; 3]>) -> f64 {
     };
     // Halves cannot overflow, and sides brought to unit size neither vanish nor overflow in products.
     let sides = [b * 0.5 - a * 0.5, c * 0.5 - b * 0.5, a * 0.5 - c * 0.5];
-    let size = sides.iter().fold(0.0f64, |size, side| size.max(side.abs().max_element()));
+    let size = sides
+        .iter()
+        .fold(0.0f64, |size, side| size.max(side.abs().max_element()));
     if size == 0.0 {
         return 0.0;
     }
@@ -96,7 +113,11 @@ fn least_angle_degrees(corners: Option<[DVec3; 3]>) -> f64 {
     }
     // The least angle lies opposite the shortest side, between the other two. The arc tangent keeps its digits where
     // the arc cosine has none left.
-    let (ab_ab, bc_bc, ca_ca) = (ab.length_squared(), bc.length_squared(), ca.length_squared());
+    let (ab_ab, bc_bc, ca_ca) = (
+        ab.length_squared(),
+        bc.length_squared(),
+        ca.length_squared(),
+    );
     let (u, v) = if ab_ab <= bc_bc && ab_ab <= ca_ca {
         (-bc, ca)
     } else if bc_bc <= ca_ca {
@@ -112,7 +133,10 @@ mod tests {
     use super::*;
 
     fn quality_of(corners: [[f64; 3]; 3]) -> TriangleQuality {
-        triangle_quality(Triangles { positions: &corners, triangles: &[[0, 1, 2]] })
+        triangle_quality(Triangles {
+            positions: &corners,
+            triangles: &[[0, 1, 2]],
+        })
     }
 
     #[test]
@@ -121,7 +145,10 @@ mod tests {
         let cases = [
             ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, height, 0.0]], 60.0),
             ([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], 45.0),
-            ([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3f64.sqrt()]], 30.0),
+            (
+                [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3f64.sqrt()]],
+                30.0,
+            ),
         ];
         for (corners, angle) in cases {
             for scale in [1e-300, 1e-3, 1.0, 1e300] {
@@ -129,9 +156,16 @@ mod tests {
                     let mut turned = corners.map(|p| p.map(|x| x * scale));
                     turned.rotate_left(turn);
                     let quality = quality_of(turned);
-                    assert!((quality.min_angle_degrees - angle).abs() < 1e-10, "{corners:?} {scale}");
+                    assert!(
+                        (quality.min_angle_degrees - angle).abs() < 1e-10,
+                        "{corners:?} {scale}"
+                    );
                     assert_eq!(quality.worst_face, Some(0));
-                    let bin = if angle == 60.0 { 11 } else { (angle + 1e-9) as usize / 5 };
+                    let bin = if angle == 60.0 {
+                        11
+                    } else {
+                        (angle + 1e-9) as usize / 5
+                    };
                     let near = quality.histogram[bin] + quality.histogram[bin.saturating_sub(1)];
                     assert_eq!(near, 1, "{:?}", quality.histogram);
                 }
@@ -144,9 +178,13 @@ mod tests {
         // A needle of height h over a base of 1: its angle at the base is atan(2 h).
         for exponent in [-3, -8, -15, -100] {
             let height = 10f64.powi(exponent);
-            let angle = quality_of([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, height, 0.0]]).min_angle_degrees;
+            let angle = quality_of([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, height, 0.0]])
+                .min_angle_degrees;
             let expected = (2.0 * height).atan().to_degrees();
-            assert!((angle / expected - 1.0).abs() < 1e-12, "{height}: {angle} against {expected}");
+            assert!(
+                (angle / expected - 1.0).abs() < 1e-12,
+                "{height}: {angle} against {expected}"
+            );
         }
     }
 
@@ -163,13 +201,21 @@ mod tests {
             assert_eq!(quality.min_angle_degrees, 0.0, "{corners:?}");
             assert_eq!(quality.histogram[0], 1);
         }
-        let missing = triangle_quality(Triangles { positions: &[[0.0; 3]], triangles: &[[0, 1, 2]] });
+        let missing = triangle_quality(Triangles {
+            positions: &[[0.0; 3]],
+            triangles: &[[0, 1, 2]],
+        });
         assert_eq!(missing.min_angle_degrees, 0.0);
     }
 
     #[test]
     fn mean_and_worst_of_several() {
-        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 3f64.sqrt()]];
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 3f64.sqrt()],
+        ];
         let quality = triangle_quality(Triangles {
             positions: &positions,
             triangles: &[[0, 1, 2], [0, 1, 3], [0, 2, 3]],
@@ -182,8 +228,14 @@ mod tests {
 
     #[test]
     fn nothing_gives_nothing() {
-        let quality = triangle_quality(Triangles { positions: &[], triangles: &[] });
+        let quality = triangle_quality(Triangles {
+            positions: &[],
+            triangles: &[],
+        });
         assert_eq!(quality.worst_face, None);
-        assert_eq!((quality.min_angle_degrees, quality.mean_min_angle_degrees), (0.0, 0.0));
+        assert_eq!(
+            (quality.min_angle_degrees, quality.mean_min_angle_degrees),
+            (0.0, 0.0)
+        );
     }
 }

@@ -70,16 +70,28 @@ impl<'s, 'a> Samples<'s, 'a> {
     /// About `wanted` samples; all vertices in use are among them.
     pub(super) fn new(surface: &'s Bvh<'a>, wanted: usize) -> Self {
         let vertices = vertices_in_order(surface);
-        let rest = wanted.saturating_sub(vertices.len()).max(wanted / LEAST_SHARE).max(1);
+        let rest = wanted
+            .saturating_sub(vertices.len())
+            .max(wanted / LEAST_SHARE)
+            .max(1);
         let [lengths, areas] = weights_before(surface);
         let sides = Spread::new(rest / SIDE_SHARE, lengths, perimeter);
         let insides = Spread::new(rest - rest / SIDE_SHARE, areas, area);
-        Self { surface, vertices, sides, insides }
+        Self {
+            surface,
+            vertices,
+            sides,
+            insides,
+        }
     }
 
     /// The vertices in use alone.
     pub(super) fn of_vertices(surface: &'s Bvh<'a>) -> Self {
-        let none = |weight| Spread { count: 0, before: Vec::new(), weight };
+        let none = |weight| Spread {
+            count: 0,
+            before: Vec::new(),
+            weight,
+        };
         Self {
             surface,
             vertices: vertices_in_order(surface),
@@ -113,18 +125,31 @@ impl<'s, 'a> Samples<'s, 'a> {
             f(vector(surface.positions[v as usize]));
         }
         let first_side = self.vertices.len();
-        self.sides.visit(self.surface, part(first_side, self.sides.count), |side| {
-            f(along_sides(self.surface.corners(side.slot), side.scaled, side.into));
-        });
+        self.sides
+            .visit(self.surface, part(first_side, self.sides.count), |side| {
+                f(along_sides(
+                    self.surface.corners(side.slot),
+                    side.scaled,
+                    side.into,
+                ));
+            });
         let first_inside = first_side + self.sides.count;
-        self.insides.visit(self.surface, part(first_inside, self.insides.count), |inside| {
-            let [a, b, c] = self.surface.corners(inside.slot);
-            let k = inside.number;
-            let [u, v] = R2.map(|step| (0.5 + step * k as f64).fract());
-            // The half of the unit square beyond the diagonal is folded back onto the triangle.
-            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-            f(a * (1.0 - u - v) + b * u + c * v);
-        });
+        self.insides.visit(
+            self.surface,
+            part(first_inside, self.insides.count),
+            |inside| {
+                let [a, b, c] = self.surface.corners(inside.slot);
+                let k = inside.number;
+                let [u, v] = R2.map(|step| (0.5 + step * k as f64).fract());
+                // The half of the unit square beyond the diagonal is folded back onto the triangle.
+                let (u, v) = if u + v > 1.0 {
+                    (1.0 - u, 1.0 - v)
+                } else {
+                    (u, v)
+                };
+                f(a * (1.0 - u - v) + b * u + c * v);
+            },
+        );
     }
 
     /// One sample.
@@ -170,7 +195,11 @@ fn vertices_in_order(surface: &Bvh<'_>) -> Vec<u32> {
 fn along_sides([a, b, c]: [DVec3; 3], scaled: [DVec3; 3], into: f64) -> DVec3 {
     let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| scaled[from].distance(scaled[to]));
     let between = |from: DVec3, to: DVec3, into: f64, length: f64| {
-        let t = if length > 0.0 { (into / length).clamp(0.0, 1.0) } else { 0.0 };
+        let t = if length > 0.0 {
+            (into / length).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         from * (1.0 - t) + to * t
     };
     if into < ab {
@@ -209,7 +238,11 @@ fn weights_before(surface: &Bvh<'_>) -> [Vec<f64>; 2] {
 impl Spread {
     fn new(count: usize, before: Vec<f64>, weight: fn([DVec3; 3]) -> f64) -> Self {
         let total = before[before.len() - 1];
-        Self { count: if total > 0.0 { count } else { 0 }, before, weight }
+        Self {
+            count: if total > 0.0 { count } else { 0 },
+            before,
+            weight,
+        }
     }
 
     /// Calls `f` with each point of `range` in turn.
@@ -220,7 +253,10 @@ impl Spread {
         let total = self.before[self.before.len() - 1];
         let faces = surface.surface().triangles.len();
         let target = |k: usize| (k as f64 + 0.5) / self.count as f64 * total;
-        let mut piece = self.before.partition_point(|&sum| sum <= target(range.start)).saturating_sub(1);
+        let mut piece = self
+            .before
+            .partition_point(|&sum| sum <= target(range.start))
+            .saturating_sub(1);
         let mut slot = piece * PIECE;
         let mut sum = self.before[piece];
         let mut corners = surface.scaled_corners(slot);
@@ -242,7 +278,12 @@ impl Spread {
                 corners = surface.scaled_corners(slot);
                 weight = (self.weight)(corners);
             }
-            f(Spot { number: k, slot, scaled: corners, into: (target - sum).clamp(0.0, weight) });
+            f(Spot {
+                number: k,
+                slot,
+                scaled: corners,
+                into: (target - sum).clamp(0.0, weight),
+            });
         }
     }
 }

@@ -64,7 +64,14 @@ pub fn watertightness_observed(
     // Indices far beyond the number of corners must not make lists as long as the greatest of them.
     let (triangles, names) = if greatest / 8 > 3 * surface.triangles.len() {
         let place = |v: &u32| vertices.binary_search(v).unwrap_or_default() as u32;
-        (surface.triangles.iter().map(|t| t.each_ref().map(place)).collect(), Some(&vertices))
+        (
+            surface
+                .triangles
+                .iter()
+                .map(|t| t.each_ref().map(place))
+                .collect(),
+            Some(&vertices),
+        )
     } else {
         (Cow::Borrowed(surface.triangles), None)
     };
@@ -72,21 +79,34 @@ pub fn watertightness_observed(
     let mut sets = DisjointSets::new(triangles.len());
     let degenerate_faces = triangles.iter().filter(|t| is_degenerate(t)).count();
     let faces = triangles.len() - degenerate_faces;
-    let [mut non_manifold_edges, mut inconsistent_edges, mut edges, mut components] = [0, 0, 0, faces];
+    let [
+        mut non_manifold_edges,
+        mut inconsistent_edges,
+        mut edges,
+        mut components,
+    ] = [0, 0, 0, faces];
     let mut boundary = Vec::new();
     let origins = triangles.as_flattened();
     let vertex_count = names.map_or(greatest, Vec::len);
-    for_each_edge(&triangles, vertex_count, &mut |done| watch.done(done), |lower, edge| {
-        edges += 1;
-        for pair in edge.windows(2) {
-            components -= usize::from(sets.unite(pair[0].side / 3, pair[1].side / 3));
-        }
-        match edge {
-            [side] => boundary.push([name(lower), name(side.higher)]),
-            [a, b] => inconsistent_edges += usize::from(origins[a.side as usize] == origins[b.side as usize]),
-            _ => non_manifold_edges += 1,
-        }
-    })?;
+    for_each_edge(
+        &triangles,
+        vertex_count,
+        &mut |done| watch.done(done),
+        |lower, edge| {
+            edges += 1;
+            for pair in edge.windows(2) {
+                components -= usize::from(sets.unite(pair[0].side / 3, pair[1].side / 3));
+            }
+            match edge {
+                [side] => boundary.push([name(lower), name(side.higher)]),
+                [a, b] => {
+                    inconsistent_edges +=
+                        usize::from(origins[a.side as usize] == origins[b.side as usize])
+                }
+                _ => non_manifold_edges += 1,
+            }
+        },
+    )?;
     Ok(Watertightness {
         boundary_edges: boundary.len(),
         non_manifold_edges,
@@ -105,7 +125,13 @@ fn is_degenerate([a, b, c]: &[u32; 3]) -> bool {
 
 /// The vertices of faces, each once, ascending.
 fn used_vertices(triangles: &[[u32; 3]]) -> Vec<u32> {
-    let faces = || triangles.iter().filter(|corners| !is_degenerate(corners)).flatten().copied();
+    let faces = || {
+        triangles
+            .iter()
+            .filter(|corners| !is_degenerate(corners))
+            .flatten()
+            .copied()
+    };
     let greatest = faces().max().map_or(0, |v| v as usize + 1);
     // Indices far beyond the number of corners must not make the list of flags as long as the greatest of them.
     if greatest / 8 > 3 * triangles.len() {

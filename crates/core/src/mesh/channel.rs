@@ -169,7 +169,9 @@ pub enum ChannelError {
         arity: usize,
     },
     /// The result's triangles do not know where on the control faces they are.
-    #[error("{why}: channels are carried by triangles that each come from one control face, with origins")]
+    #[error(
+        "{why}: channels are carried by triangles that each come from one control face, with origins"
+    )]
     Unknown {
         /// Why not.
         why: &'static str,
@@ -198,7 +200,10 @@ pub struct Trace {
 impl Trace {
     /// By corner of the mesh, the vertex of the soup that it was made of.
     pub fn vertices(&self, soup: &PolygonSoup) -> Vec<u32> {
-        self.corners.iter().map(|&corner| soup.faces.corner(corner as usize)).collect()
+        self.corners
+            .iter()
+            .map(|&corner| soup.faces.corner(corner as usize))
+            .collect()
     }
 }
 
@@ -231,7 +236,10 @@ impl Channel {
 
     /// The same, interpolated in another way.
     pub fn interpolated(self, interpolation: Interpolation) -> Self {
-        Self { interpolation, ..self }
+        Self {
+            interpolation,
+            ..self
+        }
     }
 
     /// How many values the table has.
@@ -241,9 +249,14 @@ impl Channel {
 
     /// The value of an element of the domain; nothing if there is none.
     pub fn value(&self, element: usize) -> &[f64] {
-        let index = self.indices.get(element).map_or(usize::MAX, |&index| index as usize);
+        let index = self
+            .indices
+            .get(element)
+            .map_or(usize::MAX, |&index| index as usize);
         let start = index.saturating_mul(self.arity);
-        self.values.get(start..start.saturating_add(self.arity)).unwrap_or_default()
+        self.values
+            .get(start..start.saturating_add(self.arity))
+            .unwrap_or_default()
     }
 
     /// Whether all elements have one value.
@@ -268,10 +281,19 @@ impl Channel {
         };
         let name = || self.name.clone();
         if self.indices.len() != expected {
-            return Err(ChannelError::Count { name: name(), count: self.indices.len(), expected, elements });
+            return Err(ChannelError::Count {
+                name: name(),
+                count: self.indices.len(),
+                expected,
+                elements,
+            });
         }
-        let error =
-            |value, what: String| ChannelError::Value { name: name(), value, what, arity: self.arity };
+        let error = |value, what: String| ChannelError::Value {
+            name: name(),
+            value,
+            what,
+            arity: self.arity,
+        };
         if self.arity == 0 || !self.values.len().is_multiple_of(self.arity) {
             let left = self.values.len().checked_rem(self.arity).unwrap_or(0);
             return Err(error(self.value_count(), format!("{left} numbers")));
@@ -280,10 +302,17 @@ impl Channel {
             return Err(error(at / self.arity, self.values[at].to_string()));
         }
         let count = self.value_count();
-        match self.indices.iter().position(|&index| index as usize >= count) {
-            Some(element) => {
-                Err(ChannelError::Index { name: name(), element, index: self.indices[element], count })
-            }
+        match self
+            .indices
+            .iter()
+            .position(|&index| index as usize >= count)
+        {
+            Some(element) => Err(ChannelError::Index {
+                name: name(),
+                element,
+                index: self.indices[element],
+                count,
+            }),
             None => Ok(()),
         }
     }
@@ -293,19 +322,47 @@ impl Channel {
     ///
     /// # Errors
     /// The channel does not fit the soup.
-    pub fn on_mesh(&self, soup: &PolygonSoup, mesh: &Mesh, trace: &Trace) -> Result<Self, ChannelError> {
-        self.check(soup.positions.len(), soup.faces.corner_count(), soup.faces.len())?;
+    pub fn on_mesh(
+        &self,
+        soup: &PolygonSoup,
+        mesh: &Mesh,
+        trace: &Trace,
+    ) -> Result<Self, ChannelError> {
+        self.check(
+            soup.positions.len(),
+            soup.faces.corner_count(),
+            soup.faces.len(),
+        )?;
         let element = |corner: u32| match self.domain {
             Domain::Vertex => soup.faces.corner(corner as usize) as usize,
             _ => corner as usize,
         };
         if self.domain == Domain::Face {
-            let indices = trace.faces.iter().map(|&face| self.indices[face as usize]).collect();
-            return Ok(Self { indices, ..self.clone() });
+            let indices = trace
+                .faces
+                .iter()
+                .map(|&face| self.indices[face as usize])
+                .collect();
+            return Ok(Self {
+                indices,
+                ..self.clone()
+            });
         }
-        let indices = trace.corners.iter().map(|&corner| self.indices[element(corner)]).collect();
-        let carried = Self { indices, domain: Domain::Corner, ..self.clone() };
-        Ok(if self.semantic == Semantic::Label { carried } else { carried.joined(mesh) })
+        let indices = trace
+            .corners
+            .iter()
+            .map(|&corner| self.indices[element(corner)])
+            .collect();
+        let carried = Self {
+            indices,
+            domain: Domain::Corner,
+            ..self.clone()
+        };
+        Ok(if self.semantic == Semantic::Label {
+            carried
+        } else {
+            carried.joined(mesh)
+        })
     }
 
     /// The same with one value where corners at a vertex have equal ones.
@@ -319,7 +376,10 @@ impl Channel {
                 let value = self.value(corner.index());
                 let same = met.iter().copied().find(|&index| {
                     let start = index as usize * self.arity;
-                    values[start..start + self.arity].iter().zip(value).all(|(a, b): (&f64, &f64)| a == b)
+                    values[start..start + self.arity]
+                        .iter()
+                        .zip(value)
+                        .all(|(a, b): (&f64, &f64)| a == b)
                 });
                 indices[corner.index()] = same.unwrap_or_else(|| {
                     let index = (values.len() / self.arity) as u32;
@@ -329,7 +389,11 @@ impl Channel {
                 });
             }
         }
-        Self { values, indices, ..self }
+        Self {
+            values,
+            indices,
+            ..self
+        }
     }
 
     /// The channel of a mesh as one of the mesh whose faces are parts of that one's: linear inside the faces that were divided.
@@ -339,16 +403,26 @@ impl Channel {
         }
         let faces = mesh.face_count() as u32;
         if self.domain == Domain::Face {
-            let indices = (0..faces).map(|face| self.indices[parts.whole(face) as usize]).collect();
-            return Self { indices, ..self.clone() };
+            let indices = (0..faces)
+                .map(|face| self.indices[parts.whole(face) as usize])
+                .collect();
+            return Self {
+                indices,
+                ..self.clone()
+            };
         }
-        let mut found = Self { indices: Vec::with_capacity(3 * faces as usize), ..self.clone() };
+        let mut found = Self {
+            indices: Vec::with_capacity(3 * faces as usize),
+            ..self.clone()
+        };
         for face in 0..faces {
             for corner in 0..3 {
                 let unit = core::array::from_fn(|i| if i == corner { 1.0 } else { 0.0 });
                 let (whole, weights) = parts.on_whole(face, unit);
                 let own = |k: usize| self.indices[3 * whole as usize + k];
-                let nearest = (0..3).max_by(|&a, &b| weights[a].total_cmp(&weights[b])).unwrap_or(0);
+                let nearest = (0..3)
+                    .max_by(|&a, &b| weights[a].total_cmp(&weights[b]))
+                    .unwrap_or(0);
                 if weights[nearest] == 1.0 || self.semantic == Semantic::Label {
                     found.indices.push(own(nearest));
                     continue;
@@ -356,12 +430,18 @@ impl Channel {
                 let index = found.value_count() as u32;
                 for i in 0..self.arity {
                     let number = |k: usize| self.values[own(k) as usize * self.arity + i];
-                    found.values.push((0..3).map(|k| weights[k] * number(k)).sum());
+                    found
+                        .values
+                        .push((0..3).map(|k| weights[k] * number(k)).sum());
                 }
                 found.indices.push(index);
             }
         }
-        if self.semantic == Semantic::Label { found } else { found.joined(mesh) }
+        if self.semantic == Semantic::Label {
+            found
+        } else {
+            found.joined(mesh)
+        }
     }
 
     /// Whether the values at both ends of an edge are the same on both sides, for a channel of corners; the half-edge's twin is `twin`.

@@ -10,7 +10,9 @@ use core::ops::Range;
 use std::collections::BTreeMap;
 
 use super::face_parts::{Cut, divided};
-use super::{CreaseTag, FaceParts, Finding, Mesh, MeshError, Sector, SharpRing, Sharpness, VertexRule};
+use super::{
+    CreaseTag, FaceParts, Finding, Mesh, MeshError, Sector, SharpRing, Sharpness, VertexRule,
+};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::ring::INFINITELY_SHARP;
 use crate::vector::{DVec3, unit_or_zero, vector};
@@ -77,7 +79,8 @@ impl Mesh {
         corners.sort_unstable();
         corners.dedup();
         let mut reaching: BTreeMap<VertexId, usize> = BTreeMap::new();
-        ribs.keys().for_each(|&h| *reaching.entry(topology.target(h)).or_default() += 1);
+        ribs.keys()
+            .for_each(|&h| *reaching.entry(topology.target(h)).or_default() += 1);
         let may_reach = |end: VertexId| match sharpness.rule(end) {
             VertexRule::Corner => true,
             VertexRule::Smooth => reaching.get(&end) == Some(&1),
@@ -86,25 +89,41 @@ impl Mesh {
         let (mut cuts, mut creases, mut edges) = (Vec::new(), Vec::new(), 0);
         for (&h, rib) in &ribs {
             let [corner, end] = topology.ends(h);
-            let Some(twin) = topology.twin(h) else { continue };
+            let Some(twin) = topology.twin(h) else {
+                continue;
+            };
             let is_both = ribs.contains_key(&twin);
             if is_both && twin < h {
                 continue;
             }
             edges += 1;
-            let end = if is_both || rib.is_flat && may_reach(end) && is_flat_beyond(&self, &sharpness, twin) {
+            let end = if is_both
+                || rib.is_flat && may_reach(end) && is_flat_beyond(&self, &sharpness, twin)
+            {
                 end.0
             } else {
-                cuts.push(Cut { edge: h, position: rib.middle.to_array() });
+                cuts.push(Cut {
+                    edge: h,
+                    position: rib.middle.to_array(),
+                });
                 (self.vertex_count() + cuts.len() - 1) as u32
             };
-            creases.push(CreaseTag { vertices: [corner.0, end], sharpness: rib.sharpness });
+            creases.push(CreaseTag {
+                vertices: [corner.0, end],
+                sharpness: rib.sharpness,
+            });
         }
         let (mut mesh, parts) = divided(&self, &cuts)?;
         mesh.tags.creases.extend(creases);
         mesh.tags = core::mem::take(&mut mesh.tags).joined(&mesh.topology, &mesh.junctions);
-        let mut found = ConcaveCorners { edges, parts, ..ConcaveCorners::default() };
-        corners.into_iter().for_each(|corner| found.corners.add(corner));
+        let mut found = ConcaveCorners {
+            edges,
+            parts,
+            ..ConcaveCorners::default()
+        };
+        corners
+            .into_iter()
+            .for_each(|corner| found.corners.add(corner));
         Ok((mesh, found))
     }
 }
@@ -127,7 +146,11 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
         if ring.rule() != VertexRule::Corner {
             continue;
         }
-        for sector in sharpness.sectors(corner).iter().filter(|sector| sector.shape.open) {
+        for sector in sharpness
+            .sectors(corner)
+            .iter()
+            .filter(|sector| sector.shape.open)
+        {
             let fan = Fan::of(mesh, corner, sector);
             if !fan.is_wide() {
                 continue;
@@ -141,8 +164,16 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
             };
             let dividing = fan.dividing(is_straight);
             let lasts = lasting(&ring).min(fan.bounds(sharpness));
-            let lasts = if lasts >= INFINITELY_SHARP { f64::INFINITY } else { lasts };
-            let rib = |edge: usize| Rib { sharpness: lasts, is_flat, middle: fan.middle(edge) };
+            let lasts = if lasts >= INFINITELY_SHARP {
+                f64::INFINITY
+            } else {
+                lasts
+            };
+            let rib = |edge: usize| Rib {
+                sharpness: lasts,
+                is_flat,
+                middle: fan.middle(edge),
+            };
             ribs.extend(dividing.iter().map(|&edge| (fan.outgoing[edge], rib(edge))));
         }
     }
@@ -178,7 +209,12 @@ impl Fan {
             a.cross(b).length().atan2(a.dot(b))
         };
         let angles = spokes.windows(2).map(angle).collect();
-        Self { corner: at, outgoing: sector.outgoing(topology).collect(), spokes, angles }
+        Self {
+            corner: at,
+            outgoing: sector.outgoing(topology).collect(),
+            spokes,
+            angles,
+        }
     }
 
     fn is_wide(&self) -> bool {
@@ -188,11 +224,13 @@ impl Fan {
     /// The edges that divide the sector, ascending: all those that are straight, and where a part between them is still
     /// too wide the one nearest to its bisector, and so on.
     fn dividing(&self, is_straight: impl Fn(HalfEdgeId) -> bool) -> Vec<usize> {
-        let mut dividing: Vec<usize> =
-            (1..self.angles.len()).filter(|&edge| is_straight(self.outgoing[edge])).collect();
+        let mut dividing: Vec<usize> = (1..self.angles.len())
+            .filter(|&edge| is_straight(self.outgoing[edge]))
+            .collect();
         let ends = dividing.iter().copied().chain([self.angles.len()]);
         let starts = [0].into_iter().chain(dividing.iter().copied());
-        let mut parts: Vec<Range<usize>> = starts.zip(ends).map(|(start, end)| start..end).collect();
+        let mut parts: Vec<Range<usize>> =
+            starts.zip(ends).map(|(start, end)| start..end).collect();
         while let Some(part) = parts.pop() {
             let angle: f64 = self.angles[part.clone()].iter().sum();
             if angle < WIDEST || part.len() < 2 {
@@ -218,7 +256,9 @@ impl Fan {
 
     /// The lesser sharpness of the two edges that bound the sector.
     fn bounds(&self, sharpness: &Sharpness<'_>) -> f64 {
-        let [Some(&first), Some(&last)] = [self.outgoing.first(), self.outgoing.last()] else { return 0.0 };
+        let [Some(&first), Some(&last)] = [self.outgoing.first(), self.outgoing.last()] else {
+            return 0.0;
+        };
         sharpness.edge(first).min(sharpness.edge(last.previous()))
     }
 
@@ -245,14 +285,25 @@ const FARTHEST_SINE: f64 = 0.26;
 
 /// Whether the faces of half-edges are in one plane, those without area left aside.
 fn is_flat(mesh: &Mesh, half_edges: impl Iterator<Item = HalfEdgeId>) -> bool {
-    let normals: Vec<DVec3> = half_edges.map(|h| mesh.unit_face_normal(h.face().index())).collect();
+    let normals: Vec<DVec3> = half_edges
+        .map(|h| mesh.unit_face_normal(h.face().index()))
+        .collect();
     let mean = unit_or_zero(normals.iter().sum());
-    normals.iter().all(|normal| normal.cross(mean).length() < FLAT && normal.dot(mean) >= 0.0)
+    normals
+        .iter()
+        .all(|normal| normal.cross(mean).length() < FLAT && normal.dot(mean) >= 0.0)
 }
 
 /// Whether all faces at the vertex that a smooth edge's half-edge leaves, in the sector of that edge, are in one plane.
 fn is_flat_beyond(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> bool {
     let sectors = sharpness.sectors(mesh.topology().origin(h));
-    let has = |sector: &&Sector| sector.outgoing(mesh.topology()).any(|outgoing| outgoing == h);
-    sectors.iter().find(has).is_some_and(|sector| is_flat(mesh, sector.outgoing(mesh.topology())))
+    let has = |sector: &&Sector| {
+        sector
+            .outgoing(mesh.topology())
+            .any(|outgoing| outgoing == h)
+    };
+    sectors
+        .iter()
+        .find(has)
+        .is_some_and(|sector| is_flat(mesh, sector.outgoing(mesh.topology())))
 }

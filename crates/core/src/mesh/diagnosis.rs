@@ -101,7 +101,13 @@ const fn wording(
     repair: &'static str,
     place: &'static str,
 ) -> Wording {
-    Wording { name, defect, nouns, repair, place }
+    Wording {
+        name,
+        defect,
+        nouns,
+        repair,
+        place,
+    }
 }
 
 /// In the order of the struct's fields.
@@ -109,32 +115,50 @@ const WORDINGS: [Wording; 14] = [
     wording(
         "polygons",
         false,
-        ["face with more than three corners", "faces with more than three corners"],
+        [
+            "face with more than three corners",
+            "faces with more than three corners",
+        ],
         "cut into triangles",
         "face",
     ),
     wording(
         "welded_vertices",
         false,
-        ["vertex at the place of another", "vertices at the place of another"],
+        [
+            "vertex at the place of another",
+            "vertices at the place of another",
+        ],
         "merged",
         "vertex",
     ),
     wording(
         "collapsed_faces",
         true,
-        ["face with fewer than three different corners", "faces with fewer than three different corners"],
+        [
+            "face with fewer than three different corners",
+            "faces with fewer than three different corners",
+        ],
         "left out",
         "face",
     ),
     wording(
         "twisted_polygons",
         false,
-        ["polygon that crosses itself", "polygons that cross themselves"],
+        [
+            "polygon that crosses itself",
+            "polygons that cross themselves",
+        ],
         "cut into triangles as well as may be",
         "face",
     ),
-    wording("zero_area_faces", true, ["face without area", "faces without area"], "removed", "face"),
+    wording(
+        "zero_area_faces",
+        true,
+        ["face without area", "faces without area"],
+        "removed",
+        "face",
+    ),
     wording(
         "repeated_faces",
         true,
@@ -142,18 +166,30 @@ const WORDINGS: [Wording; 14] = [
         "left out",
         "face",
     ),
-    wording("isolated_vertices", true, ["vertex in no face", "vertices in no face"], "left out", "vertex"),
+    wording(
+        "isolated_vertices",
+        true,
+        ["vertex in no face", "vertices in no face"],
+        "left out",
+        "vertex",
+    ),
     wording(
         "flipped_faces",
         true,
-        ["face turned against its neighbours", "faces turned against their neighbours"],
+        [
+            "face turned against its neighbours",
+            "faces turned against their neighbours",
+        ],
         "turned round",
         "face",
     ),
     wording(
         "inside_out_components",
         true,
-        ["closed component that is inside out", "closed components that are inside out"],
+        [
+            "closed component that is inside out",
+            "closed components that are inside out",
+        ],
         "turned round",
         "face",
     ),
@@ -170,21 +206,30 @@ const WORDINGS: [Wording; 14] = [
     wording(
         "non_manifold_edges",
         true,
-        ["edge with more than two faces", "edges with more than two faces"],
+        [
+            "edge with more than two faces",
+            "edges with more than two faces",
+        ],
         "cut into sheets",
         "lower vertex",
     ),
     wording(
         "bow_tie_vertices",
         true,
-        ["vertex where sheets touch at a point", "vertices where sheets touch at a point"],
+        [
+            "vertex where sheets touch at a point",
+            "vertices where sheets touch at a point",
+        ],
         "cut into one vertex a sheet",
         "vertex",
     ),
     wording(
         "dropped_tags",
         true,
-        ["crease or corner tag of nothing in the mesh", "crease or corner tags of nothing in the mesh"],
+        [
+            "crease or corner tag of nothing in the mesh",
+            "crease or corner tags of nothing in the mesh",
+        ],
         "left out",
         "tag",
     ),
@@ -219,13 +264,19 @@ impl Diagnosis {
 
     /// All findings with their names (those of the fields), in a fixed order, empty ones included.
     pub fn findings(&self) -> impl Iterator<Item = (&'static str, &Finding)> {
-        WORDINGS.iter().zip(self.in_order()).map(|(wording, finding)| (wording.name, finding))
+        WORDINGS
+            .iter()
+            .zip(self.in_order())
+            .map(|(wording, finding)| (wording.name, finding))
     }
 
     /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld vertices. This is what
     /// [`strict`](super::BuildOptions::strict) asks for.
     pub fn is_clean(&self) -> bool {
-        WORDINGS.iter().zip(self.in_order()).all(|(wording, finding)| !wording.defect || finding.is_empty())
+        WORDINGS
+            .iter()
+            .zip(self.in_order())
+            .all(|(wording, finding)| !wording.defect || finding.is_empty())
     }
 
     /// A line for each kind of defect that was found, and what was done about it.
@@ -240,13 +291,17 @@ impl Diagnosis {
 
     /// The defects in one line, for errors.
     pub(crate) fn defects(&self) -> String {
-        self.told(true, |wording, finding| wording.found(finding, "")).join("; ")
+        self.told(true, |wording, finding| wording.found(finding, ""))
+            .join("; ")
     }
 
     fn told(&self, defects: bool, tell: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
         let all = WORDINGS.iter().zip(self.in_order());
-        let found = all.filter(|(wording, finding)| wording.defect == defects && !finding.is_empty());
-        found.map(|(wording, finding)| tell(wording, finding)).collect()
+        let found =
+            all.filter(|(wording, finding)| wording.defect == defects && !finding.is_empty());
+        found
+            .map(|(wording, finding)| tell(wording, finding))
+            .collect()
     }
 }
 
@@ -259,7 +314,12 @@ impl Wording {
     /// The same with other words, or none, before the places.
     fn found(&self, finding: &Finding, words: &str) -> String {
         let noun = self.nouns[usize::from(finding.count != 1)];
-        let mut places = finding.first.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+        let mut places = finding
+            .first
+            .iter()
+            .map(u32::to_string)
+            .collect::<Vec<_>>()
+            .join(", ");
         if finding.count > finding.first.len() {
             places.push_str(", …");
         }

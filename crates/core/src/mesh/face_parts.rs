@@ -42,31 +42,56 @@ impl FaceParts {
 
     /// A point of a face, by its barycentric coordinates, on the whole face.
     pub fn on_whole(&self, face: u32, barycentric: [f64; 3]) -> (u32, [f64; 3]) {
-        let Some(part) = self.part(face) else { return (face, barycentric) };
-        let coordinate = |i: usize| (0..3).map(|corner| barycentric[corner] * part.corners[corner][i]).sum();
+        let Some(part) = self.part(face) else {
+            return (face, barycentric);
+        };
+        let coordinate = |i: usize| {
+            (0..3)
+                .map(|corner| barycentric[corner] * part.corners[corner][i])
+                .sum()
+        };
         (part.whole, core::array::from_fn(coordinate))
     }
 
     /// Of a mesh all of whose faces are parts: of which face each is one, and where its corners are in that.
     pub(crate) fn of_all(parts: impl Iterator<Item = (u32, [[f64; 3]; 3])>) -> Self {
-        let part = |(face, (whole, corners))| Part { face, whole, corners };
-        Self { parts: (0..).zip(parts).map(part).collect() }
+        let part = |(face, (whole, corners))| Part {
+            face,
+            whole,
+            corners,
+        };
+        Self {
+            parts: (0..).zip(parts).map(part).collect(),
+        }
     }
 
     /// The same faces as parts of those that were divided before.
     pub fn after(&self, before: &Self) -> Self {
         let of_first = |part: &Part| {
-            let corners = part.corners.map(|corner| before.on_whole(part.whole, corner).1);
-            Part { whole: before.whole(part.whole), corners, ..*part }
+            let corners = part
+                .corners
+                .map(|corner| before.on_whole(part.whole, corner).1);
+            Part {
+                whole: before.whole(part.whole),
+                corners,
+                ..*part
+            }
         };
-        let left = before.parts.iter().filter(|part| self.part(part.face).is_none()).copied();
+        let left = before
+            .parts
+            .iter()
+            .filter(|part| self.part(part.face).is_none())
+            .copied();
         let mut parts: Vec<Part> = self.parts.iter().map(of_first).chain(left).collect();
         parts.sort_unstable_by_key(|part| part.face);
         Self { parts }
     }
 
     fn part(&self, face: u32) -> Option<&Part> {
-        self.parts.binary_search_by_key(&face, |part| part.face).ok().map(|place| &self.parts[place])
+        self.parts
+            .binary_search_by_key(&face, |part| part.face)
+            .ok()
+            .map(|place| &self.parts[place])
     }
 }
 
@@ -95,7 +120,10 @@ pub(super) fn divided(mesh: &Mesh, cuts: &[Cut]) -> Result<(Mesh, FaceParts), Me
     for cut in cuts {
         let middle = positions.len() as u32;
         positions.push(cut.position);
-        for h in [Some(cut.edge), topology.twin(cut.edge)].into_iter().flatten() {
+        for h in [Some(cut.edge), topology.twin(cut.edge)]
+            .into_iter()
+            .flatten()
+        {
             on_sides.entry(h.face().0).or_default()[h.corner()] = Some(middle);
         }
         middles.insert(sorted(topology.ends(cut.edge).map(|v| v.0)), middle);
@@ -108,9 +136,12 @@ pub(super) fn divided(mesh: &Mesh, cuts: &[Cut]) -> Result<(Mesh, FaceParts), Me
         let corners = triangles[face as usize];
         let inside = inside(on_sides);
         let hub = positions.len() as u32;
-        let mut at: DVec3 = (0..3).map(|i| inside[i] * vector(mesh.positions()[corners[i] as usize])).sum();
+        let mut at: DVec3 = (0..3)
+            .map(|i| inside[i] * vector(mesh.positions()[corners[i] as usize]))
+            .sum();
         for (side, middle) in on_sides.iter().enumerate() {
-            let ends = [side, (side + 1) % 3].map(|i| vector(mesh.positions()[corners[i] as usize]));
+            let ends =
+                [side, (side + 1) % 3].map(|i| vector(mesh.positions()[corners[i] as usize]));
             if let &Some(middle) = middle {
                 at += 0.5 * (vector(positions[middle as usize]) - 0.5 * (ends[0] + ends[1]));
             }
@@ -118,14 +149,22 @@ pub(super) fn divided(mesh: &Mesh, cuts: &[Cut]) -> Result<(Mesh, FaceParts), Me
         positions.push(at.to_array());
         let mut add = |from: (u32, [f64; 3]), to: (u32, [f64; 3])| {
             let is_first = parts.last().is_none_or(|last: &Part| last.whole != face);
-            let number = if is_first { face } else { triangles.len() as u32 };
+            let number = if is_first {
+                face
+            } else {
+                triangles.len() as u32
+            };
             let triangle = [from.0, to.0, hub];
             if is_first {
                 triangles[face as usize] = triangle;
             } else {
                 triangles.push(triangle);
             }
-            parts.push(Part { face: number, whole: face, corners: [from.1, to.1, inside] });
+            parts.push(Part {
+                face: number,
+                whole: face,
+                corners: [from.1, to.1, inside],
+            });
             number
         };
         for (side, &middle) in on_sides.iter().enumerate() {
@@ -146,11 +185,22 @@ pub(super) fn divided(mesh: &Mesh, cuts: &[Cut]) -> Result<(Mesh, FaceParts), Me
     parts.sort_unstable_by_key(|part| part.face);
     super::check_finite(&positions)?;
     let mut tags = mesh.tags().clone();
-    tags.creases = mesh.tags().creases.iter().flat_map(|tag| halves(tag, &middles)).flatten().collect();
+    tags.creases = mesh
+        .tags()
+        .creases
+        .iter()
+        .flat_map(|tag| halves(tag, &middles))
+        .flatten()
+        .collect();
     let mut junctions = mesh.junctions().clone();
-    junctions.edges.rename(|h| moved.get(&h).copied().unwrap_or(h));
+    junctions
+        .edges
+        .rename(|h| moved.get(&h).copied().unwrap_or(h));
     let topology = Topology::from_triangles(triangles, positions.len())?;
-    Ok((Mesh::from_parts(topology, positions, tags, junctions), FaceParts { parts }))
+    Ok((
+        Mesh::from_parts(topology, positions, tags, junctions),
+        FaceParts { parts },
+    ))
 }
 
 /// The barycentric coordinates of the point inside a face around which it is divided: near the sides that are divided.
@@ -164,7 +214,9 @@ fn inside(on_sides: &[Option<u32>; 3]) -> [f64; 3] {
 fn halves(tag: &CreaseTag, middles: &BTreeMap<[u32; 2], u32>) -> [Option<CreaseTag>; 2] {
     let [a, b] = tag.vertices;
     match middles.get(&sorted([a, b])) {
-        Some(&middle) => [[a, middle], [middle, b]].map(|vertices| Some(CreaseTag { vertices, ..*tag })),
+        Some(&middle) => {
+            [[a, middle], [middle, b]].map(|vertices| Some(CreaseTag { vertices, ..*tag }))
+        }
         None => [Some(*tag), None],
     }
 }

@@ -50,7 +50,10 @@ impl Mesh {
 
     /// The mesh with corners that never fade at these vertices; the tags that it has stay.
     pub fn with_corners(mut self, vertices: &[VertexId]) -> Self {
-        let corners = vertices.iter().map(|v| CornerTag { vertex: v.0, sharpness: f64::INFINITY });
+        let corners = vertices.iter().map(|v| CornerTag {
+            vertex: v.0,
+            sharpness: f64::INFINITY,
+        });
         self.tags.add_corners(corners);
         self.tags = self.tags.joined(&self.topology, &self.junctions);
         self
@@ -68,8 +71,12 @@ impl Mesh {
     /// The mesh with creases that never fade along these edges; the tags that it has stay.
     pub fn with_creases(mut self, edges: &[HalfEdgeId]) -> Self {
         let ends = edges.iter().map(|&h| self.topology.ends(h).map(|v| v.0));
-        let creases: Vec<CreaseTag> =
-            ends.map(|vertices| CreaseTag { vertices, sharpness: f64::INFINITY }).collect();
+        let creases: Vec<CreaseTag> = ends
+            .map(|vertices| CreaseTag {
+                vertices,
+                sharpness: f64::INFINITY,
+            })
+            .collect();
         self.tags.creases.extend(creases);
         self.tags = self.tags.joined(&self.topology, &self.junctions);
         self
@@ -86,14 +93,26 @@ impl Mesh {
     pub fn creases_above(&self, angle: f64) -> Result<CreasesAbove, MeshError> {
         if !(0.0..=core::f64::consts::PI).contains(&angle) {
             let (name, expected) = ("the crease angle", "radians from 0 to π");
-            return Err(MeshError::BadOption { name, value: angle, expected });
+            return Err(MeshError::BadOption {
+                name,
+                value: angle,
+                expected,
+            });
         }
         let normals = parallel::map(self.face_count(), |face| self.unit_face_normal(face));
-        let others = self.tags.creases.iter().filter(|tag| tag.sharpness > 0.0).map(|tag| tag.vertices);
+        let others = self
+            .tags
+            .creases
+            .iter()
+            .filter(|tag| tag.sharpness > 0.0)
+            .map(|tag| tag.vertices);
         let all = SharpEdges::above(angle, (&self.topology, &self.positions, &normals), others);
         let count = all.edges().count();
         let edges: Vec<HalfEdgeId> = all.without_needles(angle).edges().collect();
-        Ok(CreasesAbove { along_needles: count - edges.len(), edges })
+        Ok(CreasesAbove {
+            along_needles: count - edges.len(),
+            edges,
+        })
     }
 }
 

@@ -40,12 +40,16 @@ impl Groups {
 
     /// Replaces each member.
     pub(crate) fn rename(&mut self, name: impl Fn(u32) -> u32) {
-        self.members.iter_mut().for_each(|member| *member = name(*member));
+        self.members
+            .iter_mut()
+            .for_each(|member| *member = name(*member));
     }
 
     /// The groups, in the order they were added.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        self.starts.windows(2).map(|w| &self.members[w[0] as usize..w[1] as usize])
+        self.starts
+            .windows(2)
+            .map(|w| &self.members[w[0] as usize..w[1] as usize])
     }
 }
 
@@ -67,16 +71,25 @@ impl Junctions {
     /// For each vertex that is a copy, the first of its group.
     pub(crate) fn first_copies(&self) -> HashMap<u32, u32> {
         let groups = self.vertices.iter();
-        groups.flat_map(|group| group.iter().map(|&v| (v, group[0]))).collect()
+        groups
+            .flat_map(|group| group.iter().map(|&v| (v, group[0])))
+            .collect()
     }
 
     /// Checks that copies stand at equal positions and that grouped half-edges are boundaries with the same ends.
-    pub(crate) fn validate(&self, topology: &Topology, positions: &[[f64; 3]]) -> Result<(), MeshError> {
+    pub(crate) fn validate(
+        &self,
+        topology: &Topology,
+        positions: &[[f64; 3]],
+    ) -> Result<(), MeshError> {
         let broken = |place: String, what| Err(MeshError::Broken { place, what });
         for group in self.vertices.iter() {
             for &v in group {
                 if v as usize >= positions.len() {
-                    return broken(format!("vertex {v}"), "a junction names a vertex of the mesh");
+                    return broken(
+                        format!("vertex {v}"),
+                        "a junction names a vertex of the mesh",
+                    );
                 }
                 if positions[v as usize] != positions[group[0] as usize] {
                     return broken(
@@ -90,7 +103,10 @@ impl Junctions {
             let mut first: Option<[[f64; 3]; 2]> = None;
             for &h in group {
                 if h as usize >= topology.half_edge_count() {
-                    return broken(format!("half-edge {h}"), "a junction names a half-edge of the mesh");
+                    return broken(
+                        format!("half-edge {h}"),
+                        "a junction names a half-edge of the mesh",
+                    );
                 }
                 let h = HalfEdgeId(h);
                 if topology.twin(h).is_some() {

@@ -22,7 +22,9 @@ mod topology;
 pub(crate) use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
 pub use build::{BuildOptions, Weld, weld_within};
-pub use channel::{Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace};
+pub use channel::{
+    Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace,
+};
 pub use collinear::are_on_one_line;
 pub use concave::ConcaveCorners;
 pub use diagnosis::{Diagnosis, Finding};
@@ -160,16 +162,20 @@ impl<'a> Triangles<'a> {
     /// Least and greatest coordinates over all positions; `None` without positions.
     pub fn bounding_box(&self) -> Option<[[f64; 3]; 2]> {
         let first = vector(*self.positions.first()?);
-        let (low, high) = self.positions.iter().fold((first, first), |(low, high), &p| {
-            let p = vector(p);
-            (low.min(p), high.max(p))
-        });
+        let (low, high) = self
+            .positions
+            .iter()
+            .fold((first, first), |(low, high), &p| {
+                let p = vector(p);
+                (low.min(p), high.max(p))
+            });
         Some([low.to_array(), high.to_array()])
     }
 
     /// Length of the bounding box's diagonal; 0 without positions.
     pub fn diagonal(&self) -> f64 {
-        self.bounding_box().map_or(0.0, |[low, high]| diagonal(vector(low), vector(high)))
+        self.bounding_box()
+            .map_or(0.0, |[low, high]| diagonal(vector(low), vector(high)))
     }
 }
 
@@ -188,10 +194,18 @@ impl Mesh {
     /// # Errors
     /// Names the first element that breaks a condition: an index out of range, a coordinate that is not
     /// finite, an edge used twice in one direction, a vertex with several fans or none.
-    pub fn from_triangles(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+    pub fn from_triangles(
+        positions: Vec<[f64; 3]>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
         check_finite(&positions)?;
         let topology = Topology::from_triangles(triangles, positions.len())?;
-        Ok(Self { topology, positions, tags: Tags::default(), junctions: Junctions::default() })
+        Ok(Self {
+            topology,
+            positions,
+            tags: Tags::default(),
+            junctions: Junctions::default(),
+        })
     }
 
     /// A mesh from whatever a file held: polygons are triangulated, equal positions welded, defects repaired
@@ -200,7 +214,10 @@ impl Mesh {
     /// # Errors
     /// Bad indices, coordinates that are not finite, nothing left to refine, or any repair under
     /// [`BuildOptions::strict`].
-    pub fn from_soup(soup: &PolygonSoup, options: &BuildOptions) -> Result<(Self, Diagnosis), MeshError> {
+    pub fn from_soup(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+    ) -> Result<(Self, Diagnosis), MeshError> {
         build::build(soup, options).map(|(mesh, diagnosis, _)| (mesh, diagnosis))
     }
 
@@ -223,7 +240,12 @@ impl Mesh {
         junctions: Junctions,
     ) -> Self {
         debug_assert_eq!(topology.vertex_count(), positions.len());
-        Self { topology, positions, tags, junctions }
+        Self {
+            topology,
+            positions,
+            tags,
+            junctions,
+        }
     }
 
     /// Connectivity.
@@ -273,7 +295,10 @@ impl Mesh {
         tags.check(&self.topology)?;
         let cut = self.junctions.vertices.iter().flatten().copied();
         let fixed: Vec<u32> = cut.filter(|&v| self.tags.is_corner(VertexId(v))).collect();
-        tags.add_corners(fixed.into_iter().map(|vertex| CornerTag { vertex, sharpness: f64::INFINITY }));
+        tags.add_corners(fixed.into_iter().map(|vertex| CornerTag {
+            vertex,
+            sharpness: f64::INFINITY,
+        }));
         self.tags = tags.joined(&self.topology, &self.junctions);
         Ok(self)
     }
@@ -289,7 +314,11 @@ impl Mesh {
         let firsts = self.junctions.first_copies();
         let first = |v: VertexId| firsts.get(&v.0).copied().unwrap_or(v.0);
         let paired = self.junctions.edges.iter().map(|copies| {
-            let origins = || copies.iter().map(|&h| first(self.topology.origin(HalfEdgeId(h))));
+            let origins = || {
+                copies
+                    .iter()
+                    .map(|&h| first(self.topology.origin(HalfEdgeId(h))))
+            };
             let from = origins().next();
             let along = origins().filter(|&origin| Some(origin) == from).count();
             2 * along.min(copies.len() - along)
@@ -323,7 +352,10 @@ impl Mesh {
     /// Positions and triangles alone.
     #[inline]
     pub fn as_triangles(&self) -> Triangles<'_> {
-        Triangles { positions: &self.positions, triangles: self.topology.triangles() }
+        Triangles {
+            positions: &self.positions,
+            triangles: self.topology.triangles(),
+        }
     }
 
     /// Length of the bounding box's diagonal.
@@ -336,7 +368,12 @@ impl Mesh {
     #[inline]
     pub fn ring_shape(&self, vertex: VertexId) -> RingShape {
         let (valence, open) = self.topology.valence_and_openness(vertex);
-        RingShape { valence, open, corner: self.tags.is_corner(vertex), dart: false }
+        RingShape {
+            valence,
+            open,
+            corner: self.tags.is_corner(vertex),
+            dart: false,
+        }
     }
 
     /// The shapes of the rings at both ends of `edge`, and where it stands in them.
@@ -347,9 +384,17 @@ impl Mesh {
             if !shape.open {
                 return 0;
             }
-            self.topology.ring(at).position(|u| u == other).map_or(0, |slot| slot as u32)
+            self.topology
+                .ring(at)
+                .position(|u| u == other)
+                .map_or(0, |slot| slot as u32)
         };
-        EdgeShape { origin, origin_slot: slot(from, origin, to), target, target_slot: slot(to, target, from) }
+        EdgeShape {
+            origin,
+            origin_slot: slot(from, origin, to),
+            target,
+            target_slot: slot(to, target, from),
+        }
     }
 
     /// Twice the area of `face` times its unit normal.
@@ -401,7 +446,11 @@ pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
         None => Ok(()),
         Some(vertex) => {
             let axis = bad_axis(&positions[vertex]).unwrap_or(0);
-            Err(MeshError::NotFinite { vertex, axis, value: positions[vertex][axis] })
+            Err(MeshError::NotFinite {
+                vertex,
+                axis,
+                value: positions[vertex][axis],
+            })
         }
     }
 }
@@ -415,5 +464,9 @@ pub(crate) fn check_size(mesh: &Mesh) -> Result<(), MeshError> {
     if SAFE_DIAGONALS.contains(&value) {
         return Ok(());
     }
-    Err(MeshError::BadOption { name: "the diagonal of the control mesh", value, expected: "1e-70 to 1e70" })
+    Err(MeshError::BadOption {
+        name: "the diagonal of the control mesh",
+        value,
+        expected: "1e-70 to 1e70",
+    })
 }

@@ -37,9 +37,17 @@ impl<'a> SharpEdges<'a> {
         others: impl Iterator<Item = [u32; 2]>,
     ) -> Self {
         let mut counts = vec![0; positions.len()];
-        others.flatten().for_each(|vertex| counts[vertex as usize] += 1);
+        others
+            .flatten()
+            .for_each(|vertex| counts[vertex as usize] += 1);
         let is_sharp = vec![false; 3 * topology.face_count()];
-        let mut found = Self { topology, positions, normals, is_sharp, counts };
+        let mut found = Self {
+            topology,
+            positions,
+            normals,
+            is_sharp,
+            counts,
+        };
         for h in topology.half_edges() {
             if let Some(twin) = topology.twin(h).filter(|&twin| h < twin)
                 && found.turn(h, twin) > angle
@@ -56,7 +64,9 @@ impl<'a> SharpEdges<'a> {
         // Taken from the end: in ascending order.
         pending.reverse();
         while let Some(vertex) = pending.pop() {
-            let Some([after, before]) = self.needle(vertex) else { continue };
+            let Some([after, before]) = self.needle(vertex) else {
+                continue;
+            };
             let [Some(beyond), Some(other)] = [after, before].map(|h| self.topology.twin(h)) else {
                 continue;
             };
@@ -75,7 +85,10 @@ impl<'a> SharpEdges<'a> {
     /// The edges, once each.
     pub(super) fn edges(&self) -> impl Iterator<Item = HalfEdgeId> + '_ {
         let is_first = |h: &HalfEdgeId| self.topology.twin(*h).is_some_and(|twin| *h < twin);
-        self.topology.half_edges().filter(|h| self.is_sharp[h.index()]).filter(is_first)
+        self.topology
+            .half_edges()
+            .filter(|h| self.is_sharp[h.index()])
+            .filter(is_first)
     }
 
     /// The half-edges of the triangle that leave a vertex and come to it, if they are all its sharp edges and it is a needle's tip.
@@ -84,7 +97,8 @@ impl<'a> SharpEdges<'a> {
             return None;
         }
         let mut leaving = self.topology.outgoing_ring(vertex);
-        let after = leaving.find(|h| self.is_sharp[h.index()] && self.is_sharp[h.previous().index()])?;
+        let after =
+            leaving.find(|h| self.is_sharp[h.index()] && self.is_sharp[h.previous().index()])?;
         let at = |v: VertexId| vector(self.positions[v.index()]);
         let [tip, first] = self.topology.ends(after).map(at);
         let last = at(self.topology.origin(after.previous()));
@@ -93,7 +107,10 @@ impl<'a> SharpEdges<'a> {
     }
 
     fn turn(&self, a: HalfEdgeId, b: HalfEdgeId) -> f64 {
-        turn(self.normals[a.face().index()], self.normals[b.face().index()])
+        turn(
+            self.normals[a.face().index()],
+            self.normals[b.face().index()],
+        )
     }
 
     fn set(&mut self, h: HalfEdgeId, is_sharp: bool) {
@@ -102,7 +119,11 @@ impl<'a> SharpEdges<'a> {
         }
         for vertex in self.topology.ends(h) {
             let count = &mut self.counts[vertex.index()];
-            *count = if is_sharp { *count + 1 } else { count.saturating_sub(1) };
+            *count = if is_sharp {
+                *count + 1
+            } else {
+                count.saturating_sub(1)
+            };
         }
     }
 }

@@ -25,7 +25,9 @@ impl RingShapes {
     /// [`Self::of`] that can be cancelled.
     pub(crate) fn polled(mesh: &Mesh, poll: &mut Poll<'_>) -> Result<Self, Cancelled> {
         let shapes = parallel::pieces_polled(mesh.vertex_count(), PIECE, poll, |piece| {
-            piece.map(|v| mesh.ring_shape(VertexId(v as u32))).collect::<Vec<_>>()
+            piece
+                .map(|v| mesh.ring_shape(VertexId(v as u32)))
+                .collect::<Vec<_>>()
         });
         let shapes = shapes?.concat();
         let distinct = parallel::pieces_polled(shapes.len(), PIECE, poll, |piece| {
@@ -37,7 +39,10 @@ impl RingShapes {
         let distinct = sorted_once(distinct?.concat());
         let place = |v: usize| distinct.binary_search(&shapes[v]).unwrap_or(0) as u32;
         let by_vertex = parallel::map_polled(shapes.len(), poll, place)?;
-        Ok(Self { distinct, by_vertex })
+        Ok(Self {
+            distinct,
+            by_vertex,
+        })
     }
 
     /// The shape of a vertex's ring.

@@ -20,17 +20,29 @@ pub struct Sector {
 
 impl Sector {
     /// The half-edges that leave the vertex, counter-clockwise: one for each face of the sector.
-    pub fn outgoing<'t>(&self, topology: &'t Topology) -> impl Iterator<Item = HalfEdgeId> + use<'t> {
+    pub fn outgoing<'t>(
+        &self,
+        topology: &'t Topology,
+    ) -> impl Iterator<Item = HalfEdgeId> + use<'t> {
         let next = |h: &HalfEdgeId| topology.twin(h.previous());
         core::iter::successors(Some(self.first), next).take(self.shape.faces() as usize)
     }
 
     /// The vertices at the other ends of the sector's edges, counter-clockwise: as many as the valence of its shape.
-    pub fn neighbours<'t>(&self, topology: &'t Topology) -> impl Iterator<Item = VertexId> + use<'t> {
+    pub fn neighbours<'t>(
+        &self,
+        topology: &'t Topology,
+    ) -> impl Iterator<Item = VertexId> + use<'t> {
         let faces = self.shape.faces() as usize;
-        let last = self.shape.open.then(|| self.outgoing(topology).nth(faces - 1)).flatten();
+        let last = self
+            .shape
+            .open
+            .then(|| self.outgoing(topology).nth(faces - 1))
+            .flatten();
         let last = last.map(|h| topology.opposite(h));
-        self.outgoing(topology).map(|h| topology.target(h)).chain(last)
+        self.outgoing(topology)
+            .map(|h| topology.target(h))
+            .chain(last)
     }
 }
 
@@ -55,14 +67,19 @@ impl<'m> Sharpness<'m> {
         let mut half_edges = Vec::with_capacity(2 * tags.creases.len());
         for tag in tags.creases.iter().filter(|tag| tag.sharpness > 0.0) {
             let [a, b] = tag.vertices.map(VertexId);
-            let sides = topology.edge_between(a, b).and_then(|h| Some([h, topology.twin(h)?]));
+            let sides = topology
+                .edge_between(a, b)
+                .and_then(|h| Some([h, topology.twin(h)?]));
             half_edges.extend(sides.into_iter().flatten().map(|h| (h, tag.sharpness)));
         }
         // Of several tags on one edge the sharpest counts.
-        half_edges.sort_unstable_by(|a: &(HalfEdgeId, f64), b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        half_edges
+            .sort_unstable_by(|a: &(HalfEdgeId, f64), b| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)));
         half_edges.dedup_by_key(|&mut (h, _)| h);
         let sharp = tags.corners.iter().filter(|tag| tag.sharpness > 0.0);
-        let vertices = sharp.map(|tag| (VertexId(tag.vertex), tag.sharpness)).collect();
+        let vertices = sharp
+            .map(|tag| (VertexId(tag.vertex), tag.sharpness))
+            .collect();
         Self::new(topology, half_edges, vertices)
     }
 
@@ -91,13 +108,27 @@ impl<'m> Sharpness<'m> {
                 before += bits.count_ones();
             }
         }
-        Self { topology, tagged, half_edges, sharp, vertices }
+        Self {
+            topology,
+            tagged,
+            half_edges,
+            sharp,
+            vertices,
+        }
     }
 
     /// What is left after so many levels of refinement that only what never fades is still sharp.
     pub fn lasting(&self) -> Self {
-        let half_edges = self.half_edges.iter().copied().filter(|&(_, s)| s >= INFINITELY_SHARP);
-        let vertices = self.vertices.iter().copied().filter(|&(_, s)| s >= INFINITELY_SHARP);
+        let half_edges = self
+            .half_edges
+            .iter()
+            .copied()
+            .filter(|&(_, s)| s >= INFINITELY_SHARP);
+        let vertices = self
+            .vertices
+            .iter()
+            .copied()
+            .filter(|&(_, s)| s >= INFINITELY_SHARP);
         Self::new(self.topology, half_edges.collect(), vertices.collect())
     }
 
@@ -108,28 +139,42 @@ impl<'m> Sharpness<'m> {
 
     /// Whether something sharp that will fade is left.
     pub fn fades(&self) -> bool {
-        let mut all = self.half_edges.iter().map(|&(_, s)| s).chain(self.vertices.iter().map(|&(_, s)| s));
+        let mut all = self
+            .half_edges
+            .iter()
+            .map(|&(_, s)| s)
+            .chain(self.vertices.iter().map(|&(_, s)| s));
         all.any(|s| s < INFINITELY_SHARP)
     }
 
     /// Levels of refinement after which nothing fades any more.
     pub(crate) fn fading_levels(&self) -> usize {
-        let all = self.half_edges.iter().map(|&(_, s)| s).chain(self.vertices.iter().map(|&(_, s)| s));
-        all.filter(|&s| s < INFINITELY_SHARP).fold(0.0, f64::max).ceil() as usize
+        let all = self
+            .half_edges
+            .iter()
+            .map(|&(_, s)| s)
+            .chain(self.vertices.iter().map(|&(_, s)| s));
+        all.filter(|&s| s < INFINITELY_SHARP)
+            .fold(0.0, f64::max)
+            .ceil() as usize
     }
 
     /// Whether an interior edge at `vertex` is sharp, or the vertex itself by its tag: whether it may follow other
     /// rules than its ring alone says.
     #[inline]
     pub fn is_tagged(&self, vertex: VertexId) -> bool {
-        self.tagged.get(vertex.index() / 64).is_some_and(|word| word >> (vertex.index() % 64) & 1 != 0)
+        self.tagged
+            .get(vertex.index() / 64)
+            .is_some_and(|word| word >> (vertex.index() % 64) & 1 != 0)
     }
 
     /// The vertices for which [`Self::is_tagged`] holds, ascending.
     pub fn tagged_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         let vertices = (0..self.topology.vertex_count() as u32).map(VertexId);
         let none = self.is_empty();
-        vertices.take_while(move |_| !none).filter(|&v| self.is_tagged(v))
+        vertices
+            .take_while(move |_| !none)
+            .filter(|&v| self.is_tagged(v))
     }
 
     /// The sharpness of the edge of `h`: infinite on a boundary, 0 where it is smooth.
@@ -138,7 +183,9 @@ impl<'m> Sharpness<'m> {
         if self.topology.twin(h).is_none() {
             return f64::INFINITY;
         }
-        let Some(&(bits, before)) = self.sharp.get(h.index() / 64) else { return 0.0 };
+        let Some(&(bits, before)) = self.sharp.get(h.index() / 64) else {
+            return 0.0;
+        };
         let at = 1u64 << (h.index() % 64);
         if bits & at == 0 {
             return 0.0;
@@ -152,19 +199,28 @@ impl<'m> Sharpness<'m> {
         if !self.is_tagged(vertex) {
             return 0.0;
         }
-        self.vertices.binary_search_by_key(&vertex, |&(v, _)| v).map_or(0.0, |i| self.vertices[i].1)
+        self.vertices
+            .binary_search_by_key(&vertex, |&(v, _)| v)
+            .map_or(0.0, |i| self.vertices[i].1)
     }
 
     /// The sharpness of the edges at `vertex`, in ring order; the last edge of an open ring included.
     pub fn spokes(&self, vertex: VertexId) -> impl Iterator<Item = f64> + '_ {
         let boundary = self.topology.is_boundary(vertex).then_some(f64::INFINITY);
-        self.topology.outgoing_ring(vertex).map(|h| self.edge(h)).chain(boundary)
+        self.topology
+            .outgoing_ring(vertex)
+            .map(|h| self.edge(h))
+            .chain(boundary)
     }
 
     /// The ring of `vertex` with the sharpness of its edges.
     pub fn ring(&self, vertex: VertexId) -> SharpRing {
         let open = self.topology.is_boundary(vertex);
-        SharpRing { open, vertex: self.vertex(vertex), spokes: self.spokes(vertex).collect() }
+        SharpRing {
+            open,
+            vertex: self.vertex(vertex),
+            spokes: self.spokes(vertex).collect(),
+        }
     }
 
     /// The rule that `vertex` follows, as sharp as everything is now.
@@ -182,7 +238,10 @@ impl<'m> Sharpness<'m> {
         let mut outgoing = self.topology.outgoing_ring(vertex).enumerate();
         let place = |sector: &RingSector| {
             let (_, first) = outgoing.find(|&(slot, _)| slot == sector.first)?;
-            Some(Sector { first, shape: sector.shape })
+            Some(Sector {
+                first,
+                shape: sector.shape,
+            })
         };
         sectors.iter().filter_map(place).collect()
     }

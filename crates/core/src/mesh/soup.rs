@@ -12,7 +12,10 @@ pub struct PolygonFaces {
 
 impl Default for PolygonFaces {
     fn default() -> Self {
-        Self { starts: vec![0], corners: Vec::new() }
+        Self {
+            starts: vec![0],
+            corners: Vec::new(),
+        }
     }
 }
 
@@ -21,7 +24,10 @@ impl PolygonFaces {
     pub fn with_capacity(faces: usize, corners: usize) -> Self {
         let mut starts = Vec::with_capacity(faces + 1);
         starts.push(0);
-        Self { starts, corners: Vec::with_capacity(corners) }
+        Self {
+            starts,
+            corners: Vec::with_capacity(corners),
+        }
     }
 
     /// Adds a polygon with the given vertex indices, counter-clockwise seen from outside.
@@ -62,7 +68,9 @@ impl PolygonFaces {
 
     /// All polygons in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[u32]> {
-        self.starts.windows(2).map(|w| &self.corners[w[0] as usize..w[1] as usize])
+        self.starts
+            .windows(2)
+            .map(|w| &self.corners[w[0] as usize..w[1] as usize])
     }
 }
 

@@ -47,12 +47,15 @@ impl SplitSurface {
                     continue;
                 }
                 let is_own = |&copy: &u32| {
-                    vector(split.normals[copy as usize]).distance_squared(vector(own)) <= ALIKE * ALIKE
+                    vector(split.normals[copy as usize]).distance_squared(vector(own))
+                        <= ALIKE * ALIKE
                 };
                 if is_own(&vertex) {
                     continue;
                 }
-                let known = copies.get(&vertex).and_then(|copies| copies.iter().copied().find(is_own));
+                let known = copies
+                    .get(&vertex)
+                    .and_then(|copies| copies.iter().copied().find(is_own));
                 let copy = known.unwrap_or_else(|| {
                     let copy = split.positions.len() as u32;
                     split.positions.push(mesh.positions()[vertex as usize]);
@@ -75,7 +78,10 @@ impl SplitSurface {
         let mut at_corners = vec![[0.0; 3]; topology.half_edge_count()];
         let mut fill = |corners: &mut dyn Iterator<Item = HalfEdgeId>| {
             let corners: Vec<HalfEdgeId> = corners.collect();
-            let sum: DVec3 = corners.iter().map(|h| mesh.face_normal_vector(h.face().index())).sum();
+            let sum: DVec3 = corners
+                .iter()
+                .map(|h| mesh.face_normal_vector(h.face().index()))
+                .sum();
             let normal = unit_or_zero(sum).to_array();
             corners.iter().for_each(|h| at_corners[h.index()] = normal);
         };
@@ -93,7 +99,10 @@ impl SplitSurface {
 
     /// Positions and triangles alone.
     pub fn as_triangles(&self) -> Triangles<'_> {
-        Triangles { positions: &self.positions, triangles: &self.triangles }
+        Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        }
     }
 }
 
@@ -103,12 +112,24 @@ mod tests {
     use crate::mesh::{PolygonFaces, PolygonSoup};
 
     fn cube() -> Mesh {
-        let positions: Vec<[f64; 3]> =
-            (0..8u32).map(|i| [0, 1, 2].map(|axis| f64::from(i >> axis & 1))).collect();
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let positions: Vec<[f64; 3]> = (0..8u32)
+            .map(|i| [0, 1, 2].map(|axis| f64::from(i >> axis & 1)))
+            .collect();
+        let faces = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
         let mut polygons = PolygonFaces::default();
         faces.iter().for_each(|face| polygons.push(face));
-        let soup = PolygonSoup { positions, faces: polygons, ..PolygonSoup::default() };
+        let soup = PolygonSoup {
+            positions,
+            faces: polygons,
+            ..PolygonSoup::default()
+        };
         Mesh::from_soup(&soup, &Default::default()).unwrap().0
     }
 
@@ -131,7 +152,10 @@ mod tests {
                 assert!(vector(split.normals[copy as usize]).distance(own) < 1e-12);
                 let source = split.sources[copy as usize];
                 assert_eq!(source, creased.triangles()[face][corner]);
-                assert_eq!(split.positions[copy as usize], creased.positions()[source as usize]);
+                assert_eq!(
+                    split.positions[copy as usize],
+                    creased.positions()[source as usize]
+                );
             }
         }
         assert!((0..8).all(|vertex| split.sources[vertex] == vertex as u32));
@@ -141,7 +165,10 @@ mod tests {
     #[test]
     fn darts_have_one_normal() {
         let mut tags = crate::mesh::Tags::default();
-        tags.creases.push(crate::mesh::CreaseTag { vertices: [0, 1], sharpness: f64::INFINITY });
+        tags.creases.push(crate::mesh::CreaseTag {
+            vertices: [0, 1],
+            sharpness: f64::INFINITY,
+        });
         let mesh = cube().with_tags(tags).unwrap();
         assert_eq!(SplitSurface::by_faces(&mesh).positions.len(), 8);
     }

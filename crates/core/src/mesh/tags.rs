@@ -56,8 +56,11 @@ impl Tags {
     /// Adds corners; where a vertex has one already, the sharper counts.
     pub(crate) fn add_corners(&mut self, corners: impl IntoIterator<Item = CornerTag>) {
         self.corners.extend(corners);
-        self.corners
-            .sort_unstable_by(|a, b| a.vertex.cmp(&b.vertex).then(b.sharpness.total_cmp(&a.sharpness)));
+        self.corners.sort_unstable_by(|a, b| {
+            a.vertex
+                .cmp(&b.vertex)
+                .then(b.sharpness.total_cmp(&a.sharpness))
+        });
         self.corners.dedup_by_key(|tag| tag.vertex);
     }
 
@@ -73,19 +76,39 @@ impl Tags {
             let most = sharpest.entry(vertex).or_insert(0.0);
             *most = most.max(sharpness);
         };
-        self.corners.iter().for_each(|tag| sharpen(tag.vertex, tag.sharpness));
+        self.corners
+            .iter()
+            .for_each(|tag| sharpen(tag.vertex, tag.sharpness));
         for tag in self.creases.iter().filter(|tag| tag.sharpness > 0.0) {
             let [a, b] = tag.vertices.map(VertexId);
-            let is_inside = topology.edge_between(a, b).is_some_and(|h| topology.twin(h).is_some());
+            let is_inside = topology
+                .edge_between(a, b)
+                .is_some_and(|h| topology.twin(h).is_some());
             if is_inside {
                 // By then the last fraction of the edge has faded, whose share differs from sheet to sheet.
-                tag.vertices.iter().for_each(|&v| sharpen(v, tag.sharpness.ceil() + 1.0));
+                tag.vertices
+                    .iter()
+                    .for_each(|&v| sharpen(v, tag.sharpness.ceil() + 1.0));
             }
         }
-        let most = |group: &[u32]| group.iter().filter_map(|v| sharpest.get(v)).copied().fold(0.0, f64::max);
-        let corners = junctions.vertices.iter().map(|group| (group, most(group))).filter(|&(_, s)| s > 0.0);
+        let most = |group: &[u32]| {
+            group
+                .iter()
+                .filter_map(|v| sharpest.get(v))
+                .copied()
+                .fold(0.0, f64::max)
+        };
+        let corners = junctions
+            .vertices
+            .iter()
+            .map(|group| (group, most(group)))
+            .filter(|&(_, s)| s > 0.0);
         let corners: Vec<CornerTag> = corners
-            .flat_map(|(group, sharpness)| group.iter().map(move |&vertex| CornerTag { vertex, sharpness }))
+            .flat_map(|(group, sharpness)| {
+                group
+                    .iter()
+                    .map(move |&vertex| CornerTag { vertex, sharpness })
+            })
             .collect();
         self.add_corners(corners);
         self
@@ -111,7 +134,10 @@ impl Tags {
             }
             if tag.sharpness.is_nan() || tag.sharpness < 0.0 {
                 return broken(
-                    format!("corner tag of vertex {} with sharpness {}", tag.vertex, tag.sharpness),
+                    format!(
+                        "corner tag of vertex {} with sharpness {}",
+                        tag.vertex, tag.sharpness
+                    ),
                     "a sharpness is a number of at least 0",
                 );
             }
@@ -119,7 +145,8 @@ impl Tags {
         for tag in &self.creases {
             let [a, b] = tag.vertices;
             let exists = |v: u32| (v as usize) < topology.vertex_count();
-            if !exists(a) || !exists(b) || topology.edge_between(VertexId(a), VertexId(b)).is_none() {
+            if !exists(a) || !exists(b) || topology.edge_between(VertexId(a), VertexId(b)).is_none()
+            {
                 return broken(
                     format!("crease tag from vertex {a} to vertex {b}"),
                     "a crease tag names an edge of the mesh",
@@ -127,7 +154,10 @@ impl Tags {
             }
             if tag.sharpness.is_nan() || tag.sharpness < 0.0 {
                 return broken(
-                    format!("crease tag from vertex {a} to vertex {b} with sharpness {}", tag.sharpness),
+                    format!(
+                        "crease tag from vertex {a} to vertex {b} with sharpness {}",
+                        tag.sharpness
+                    ),
                     "a sharpness is a number of at least 0",
                 );
             }

@@ -30,18 +30,33 @@ impl Topology {
     ///
     /// # Errors
     /// As for [`super::Mesh::from_triangles`], but for positions.
-    pub fn from_triangles(triangles: Vec<[u32; 3]>, vertex_count: usize) -> Result<Self, MeshError> {
+    pub fn from_triangles(
+        triangles: Vec<[u32; 3]>,
+        vertex_count: usize,
+    ) -> Result<Self, MeshError> {
         check_indices(&triangles, vertex_count)?;
         let twins = match_twins(&triangles, vertex_count)?;
         let outgoing = outgoing_half_edges(&triangles, &twins, vertex_count);
-        let topology = Self { triangles, twins, outgoing };
+        let topology = Self {
+            triangles,
+            twins,
+            outgoing,
+        };
         topology.check_fans()?;
         Ok(topology)
     }
 
     /// The parts as they are; the caller vouches for the invariants.
-    pub(crate) fn from_parts(triangles: Vec<[u32; 3]>, twins: Vec<u32>, outgoing: Vec<u32>) -> Self {
-        Self { triangles, twins, outgoing }
+    pub(crate) fn from_parts(
+        triangles: Vec<[u32; 3]>,
+        twins: Vec<u32>,
+        outgoing: Vec<u32>,
+    ) -> Self {
+        Self {
+            triangles,
+            twins,
+            outgoing,
+        }
     }
 
     /// Number of vertices.
@@ -64,7 +79,9 @@ impl Topology {
 
     /// Number of edges: a pair of twins counts once.
     pub fn edge_count(&self) -> usize {
-        self.half_edges().filter(|&h| self.twin(h).is_none_or(|twin| h < twin)).count()
+        self.half_edges()
+            .filter(|&h| self.twin(h).is_none_or(|twin| h < twin))
+            .count()
     }
 
     /// All half-edges, in order.
@@ -141,12 +158,20 @@ impl Topology {
     #[inline]
     pub fn ring(&self, vertex: VertexId) -> RingNeighbours<'_> {
         let first = self.outgoing(vertex);
-        RingNeighbours { topology: self, first: first.0, next: first.0, last: NONE }
+        RingNeighbours {
+            topology: self,
+            first: first.0,
+            next: first.0,
+            last: NONE,
+        }
     }
 
     /// The outgoing half-edges of `vertex`, counter-clockwise: one for each face.
     #[inline]
-    pub fn outgoing_ring(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
+    pub fn outgoing_ring(
+        &self,
+        vertex: VertexId,
+    ) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
         self.outgoing_from(self.outgoing(vertex))
     }
 
@@ -156,7 +181,9 @@ impl Topology {
         &self,
         first: HalfEdgeId,
     ) -> impl Iterator<Item = HalfEdgeId> + Clone + use<'_> {
-        core::iter::successors(Some(first), move |h| self.twin(h.previous()).filter(|&next| next != first))
+        core::iter::successors(Some(first), move |h| {
+            self.twin(h.previous()).filter(|&next| next != first)
+        })
     }
 
     /// The number of edges at `vertex` and whether its ring is open.
@@ -191,7 +218,10 @@ impl Topology {
     /// Number of half-edges without a twin.
     pub fn boundary_edge_count(&self) -> usize {
         let open = |half_edges: Range<usize>| {
-            self.twins[half_edges].iter().map(|&twin| usize::from(twin == NONE)).sum::<usize>()
+            self.twins[half_edges]
+                .iter()
+                .map(|&twin| usize::from(twin == NONE))
+                .sum::<usize>()
         };
         parallel::pieces(self.twins.len(), open).into_iter().sum()
     }
@@ -204,7 +234,10 @@ impl Topology {
         check_indices(&self.triangles, self.vertex_count())?;
         let broken = |place: String, what| Err(MeshError::Broken { place, what });
         if self.twins.len() != 3 * self.triangles.len() {
-            return broken(format!("{} twins", self.twins.len()), "each face has three half-edges");
+            return broken(
+                format!("{} twins", self.twins.len()),
+                "each face has three half-edges",
+            );
         }
         for h in self.half_edges() {
             let twin = self.twins[h.index()];
@@ -219,7 +252,10 @@ impl Topology {
                 return broken(h.to_string(), "twins are mutual");
             }
             if self.origin(h) != self.target(twin) || self.target(h) != self.origin(twin) {
-                return broken(h.to_string(), "twins run along one edge in opposite directions");
+                return broken(
+                    h.to_string(),
+                    "twins run along one edge in opposite directions",
+                );
             }
         }
         for v in self.vertices() {
@@ -255,7 +291,10 @@ impl Topology {
             let limit = faces[v.index()] as usize + 1;
             let met = self.outgoing_ring(v).take(limit).count();
             if met != faces[v.index()] as usize {
-                return Err(MeshError::BowTie { vertex: v.index(), fans: self.count_fans(v) });
+                return Err(MeshError::BowTie {
+                    vertex: v.index(),
+                    fans: self.count_fans(v),
+                });
             }
         }
         Ok(())
@@ -263,7 +302,10 @@ impl Topology {
 
     /// Number of separate fans of faces at `vertex`.
     fn count_fans(&self, vertex: VertexId) -> usize {
-        let at_vertex: Vec<HalfEdgeId> = self.half_edges().filter(|&h| self.origin(h) == vertex).collect();
+        let at_vertex: Vec<HalfEdgeId> = self
+            .half_edges()
+            .filter(|&h| self.origin(h) == vertex)
+            .collect();
         let mut met = vec![false; at_vertex.len()];
         let mut fans = 0;
         for i in 0..at_vertex.len() {
@@ -276,7 +318,10 @@ impl Topology {
                 let h = at_vertex[j];
                 let neighbours = [self.twin(h.previous()), self.twin(h).map(HalfEdgeId::next)];
                 // The half-edges were collected in ascending order.
-                let places = neighbours.into_iter().flatten().map(|n| at_vertex.binary_search(&n));
+                let places = neighbours
+                    .into_iter()
+                    .flatten()
+                    .map(|n| at_vertex.binary_search(&n));
                 pending.extend(places.flatten());
             }
         }
@@ -316,23 +361,41 @@ impl Iterator for RingNeighbours<'_> {
 
 fn check_indices(triangles: &[[u32; 3]], vertex_count: usize) -> Result<(), MeshError> {
     if triangles.len() > MAX_FACES {
-        return Err(MeshError::TooMany { what: "faces", count: triangles.len(), limit: MAX_FACES });
+        return Err(MeshError::TooMany {
+            what: "faces",
+            count: triangles.len(),
+            limit: MAX_FACES,
+        });
     }
     if vertex_count > NONE as usize {
         let limit = NONE as usize;
-        return Err(MeshError::TooMany { what: "vertices", count: vertex_count, limit });
+        return Err(MeshError::TooMany {
+            what: "vertices",
+            count: vertex_count,
+            limit,
+        });
     }
     for (face, &[a, b, c]) in triangles.iter().enumerate() {
         for v in [a, b, c] {
             if v as usize >= vertex_count {
-                return Err(MeshError::VertexOutOfRange { face, vertex: u64::from(v), count: vertex_count });
+                return Err(MeshError::VertexOutOfRange {
+                    face,
+                    vertex: u64::from(v),
+                    count: vertex_count,
+                });
             }
         }
         if a == b || a == c {
-            return Err(MeshError::RepeatedCorner { face, vertex: a as usize });
+            return Err(MeshError::RepeatedCorner {
+                face,
+                vertex: a as usize,
+            });
         }
         if b == c {
-            return Err(MeshError::RepeatedCorner { face, vertex: b as usize });
+            return Err(MeshError::RepeatedCorner {
+                face,
+                vertex: b as usize,
+            });
         }
     }
     Ok(())
@@ -370,7 +433,11 @@ fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, 
 }
 
 /// One outgoing half-edge a vertex, the boundary one where there is one; [`NONE`] for isolated vertices.
-pub(crate) fn outgoing_half_edges(triangles: &[[u32; 3]], twins: &[u32], vertex_count: usize) -> Vec<u32> {
+pub(crate) fn outgoing_half_edges(
+    triangles: &[[u32; 3]],
+    twins: &[u32],
+    vertex_count: usize,
+) -> Vec<u32> {
     uncancelled(|_| outgoing_half_edges_polled(triangles, twins, vertex_count, &mut |_| Ok(())))
 }
 

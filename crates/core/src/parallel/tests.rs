@@ -5,7 +5,11 @@ use super::*;
 /// Pools of these many threads; without the feature all do the same.
 fn with_threads<R: Send>(threads: usize, run: impl FnOnce() -> R + Send) -> R {
     #[cfg(feature = "parallel")]
-    return rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run);
+    return rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap()
+        .install(run);
     #[cfg(not(feature = "parallel"))]
     {
         let _ = threads;
@@ -30,7 +34,10 @@ fn polled_loops_give_what_plain_ones_give_for_any_number_of_threads() {
                 let summed = pieces_polled(n, 7, go, |range| range.map(work).collect::<Vec<f64>>());
                 assert_eq!(summed.unwrap().concat(), pieces);
                 for_each_chunk_polled(&mut chunks, 100, go, |i, chunk| {
-                    chunk.iter_mut().enumerate().for_each(|(j, slot)| *slot = work(100 * i + j));
+                    chunk
+                        .iter_mut()
+                        .enumerate()
+                        .for_each(|(j, slot)| *slot = work(100 * i + j));
                 })
                 .unwrap();
                 assert_eq!(chunks, plain);
@@ -49,13 +56,19 @@ fn the_calling_thread_polls_after_each_of_its_blocks() {
             let (mut calls, mut last) = (0, 0);
             let poll = &mut |done: usize| {
                 assert_eq!(std::thread::current().id(), caller);
-                assert!(own.swap(0, Ordering::Relaxed) <= 1, "two blocks between two calls");
+                assert!(
+                    own.swap(0, Ordering::Relaxed) <= 1,
+                    "two blocks between two calls"
+                );
                 assert!(done >= last);
                 (calls, last) = (calls + 1, done);
                 Ok(())
             };
             pieces_polled(10_000, 10, poll, |range| {
-                own.fetch_add(usize::from(std::thread::current().id() == caller), Ordering::Relaxed);
+                own.fetch_add(
+                    usize::from(std::thread::current().id() == caller),
+                    Ordering::Relaxed,
+                );
                 range.map(work).sum::<f64>()
             })
             .unwrap();
@@ -113,11 +126,16 @@ fn long_blocks_are_polled_for_and_stopped() {
 #[test]
 fn what_is_sorted_in_parts_is_sorted() {
     for n in [0, 1, 40_000, 200_001] {
-        let mut items: Vec<usize> = (0..n).map(|i: usize| i.wrapping_mul(0x9E37_79B9_7F4A_7C15)).collect();
+        let mut items: Vec<usize> = (0..n)
+            .map(|i: usize| i.wrapping_mul(0x9E37_79B9_7F4A_7C15))
+            .collect();
         let mut plain = items.clone();
         plain.sort_unstable();
         for threads in [1, 3] {
-            with_threads(threads, || sort_polled(&mut items, &mut |_| Ok(()), usize::cmp)).unwrap();
+            with_threads(threads, || {
+                sort_polled(&mut items, &mut |_| Ok(()), usize::cmp)
+            })
+            .unwrap();
             assert_eq!(items, plain);
             items.reverse();
         }
@@ -130,10 +148,19 @@ fn defaults_are_the_same_for_any_number_of_threads() {
     // So many are touched by several, one less is not.
     let many = (1usize << 18).div_ceil(size_of::<[u32; 3]>());
     for threads in [1, 3] {
-        for (length, room) in [(0, 5), (many - 1, 0), (many, many), (9 * many + 7, 12 * many)] {
+        for (length, room) in [
+            (0, 5),
+            (many - 1, 0),
+            (many, many),
+            (9 * many + 7, 12 * many),
+        ] {
             let array: Vec<[u32; 3]> = with_threads(threads, || defaults_with_room(length, room));
             assert_eq!(array, vec![[0; 3]; length], "{threads}");
-            assert!(array.capacity() >= room.max(length), "{threads}: {}", array.capacity());
+            assert!(
+                array.capacity() >= room.max(length),
+                "{threads}: {}",
+                array.capacity()
+            );
         }
     }
 }

@@ -32,16 +32,27 @@ struct Side {
 
 /// Whether most of the length of edges whose degrees are within some `degrees` is between facets of round things. Where other facets
 /// are finer, those were meant to be seen.
-pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bend], degrees: RangeInclusive<usize>) -> bool {
+pub(super) fn are_of_round_things(
+    mesh: &Mesh,
+    bends: &[Bend],
+    degrees: RangeInclusive<usize>,
+) -> bool {
     let facets = Facets::of(mesh, bends);
-    let (coarse, others): (Vec<&Bend>, Vec<&Bend>) =
-        bends.iter().partition(|bend| degrees.contains(&(bend.degrees as usize)));
+    let (coarse, others): (Vec<&Bend>, Vec<&Bend>) = bends
+        .iter()
+        .partition(|bend| degrees.contains(&(bend.degrees as usize)));
     let rows = facets.rows(&coarse);
     let mut is_coarse = vec![false; mesh.face_count()];
-    coarse.iter().flat_map(|bend| facets.beside(bend)).for_each(|facet| is_coarse[facet as usize] = true);
+    coarse
+        .iter()
+        .flat_map(|bend| facets.beside(bend))
+        .for_each(|facet| is_coarse[facet as usize] = true);
     let is_finer = |bend: &Bend| {
         (FLAT..*degrees.start() as f64).contains(&bend.degrees)
-            && !facets.beside(bend).iter().any(|&facet| is_coarse[facet as usize])
+            && !facets
+                .beside(bend)
+                .iter()
+                .any(|&facet| is_coarse[facet as usize])
     };
     let all = length(&coarse, |_| true);
     2.0 * length(&coarse, |bend| facets.is_of_row(bend, &rows)) > all
@@ -50,7 +61,11 @@ pub(super) fn are_of_round_things(mesh: &Mesh, bends: &[Bend], degrees: RangeInc
 
 /// The length of those edges that are as asked.
 fn length(bends: &[&Bend], is_own: impl Fn(&Bend) -> bool) -> f64 {
-    bends.iter().filter(|bend| is_own(bend)).map(|bend| bend.length).sum()
+    bends
+        .iter()
+        .filter(|bend| is_own(bend))
+        .map(|bend| bend.length)
+        .sum()
 }
 
 /// Faces in one plane that hang together.
@@ -84,14 +99,22 @@ impl Facets {
     fn sides(&self, bend: &Bend) -> Option<[Side; 2]> {
         let [a, b] = self.beside(bend);
         let [own, other] = [a, b].map(|facet| self.areas[facet as usize]);
-        let side =
-            |facet, other| Side { facet, is_concave: bend.is_concave, degrees: bend.degrees as u32, other };
+        let side = |facet, other| Side {
+            facet,
+            is_concave: bend.is_concave,
+            degrees: bend.degrees as u32,
+            other,
+        };
         (own <= SAME_AREA * other && other <= SAME_AREA * own).then(|| [side(a, b), side(b, a)])
     }
 
     /// All sides of some edges, in order.
     fn rows(&self, bends: &[&Bend]) -> Vec<Side> {
-        let mut rows: Vec<Side> = bends.iter().filter_map(|bend| self.sides(bend)).flatten().collect();
+        let mut rows: Vec<Side> = bends
+            .iter()
+            .filter_map(|bend| self.sides(bend))
+            .flatten()
+            .collect();
         rows.sort_unstable();
         rows.dedup();
         rows
@@ -99,7 +122,8 @@ impl Facets {
 
     /// Whether the facets at an edge each meet a third one alike.
     fn is_of_row(&self, bend: &Bend, rows: &[Side]) -> bool {
-        self.sides(bend).is_some_and(|sides| sides.into_iter().all(|side| side.goes_on(rows)))
+        self.sides(bend)
+            .is_some_and(|sides| sides.into_iter().all(|side| side.goes_on(rows)))
     }
 }
 
@@ -107,12 +131,18 @@ impl Side {
     /// Whether the facet meets another one at about the same angle.
     fn goes_on(self, rows: &[Side]) -> bool {
         let off = (SAME_ANGLE * f64::from(self.degrees)).round() as u32;
-        let least = Self { degrees: self.degrees.saturating_sub(off), other: 0, ..self };
+        let least = Self {
+            degrees: self.degrees.saturating_sub(off),
+            other: 0,
+            ..self
+        };
         let is_alike = |side: &&Self| {
             (side.facet, side.is_concave) == (self.facet, self.is_concave)
                 && side.degrees <= self.degrees + off
         };
-        let mut alike = rows[rows.partition_point(|side| *side < least)..].iter().take_while(is_alike);
+        let mut alike = rows[rows.partition_point(|side| *side < least)..]
+            .iter()
+            .take_while(is_alike);
         alike.any(|side| side.other != self.other)
     }
 }

@@ -97,7 +97,9 @@ impl Look {
             return Self::Smooth;
         }
         let gap = lengths.gap(SEEN);
-        if gap.is_some_and(|gap| lengths.all >= LEAST_SMOOTH * (lengths.all - lengths.beyond(gap.begin))) {
+        if gap.is_some_and(|gap| {
+            lengths.all >= LEAST_SMOOTH * (lengths.all - lengths.beyond(gap.begin))
+        }) {
             return Self::Cage;
         }
         let is_round = || are_of_round_things(mesh, &bends, COARSE);
@@ -111,13 +113,17 @@ impl Look {
             _ => gap.map(|gap| lengths.angle(gap)),
         };
         let is_rough = gap.is_none_or(|gap| gap.end < NEARLY_SQUARE);
-        degrees.map_or(Self::Smooth, |degrees| Self::of_edges_beyond(degrees, is_rough, mesh))
+        degrees.map_or(Self::Smooth, |degrees| {
+            Self::of_edges_beyond(degrees, is_rough, mesh)
+        })
     }
 
     /// A part with the edges beyond an angle, unless these are no lines or lead up and down stairs: of voxels, or of the facets at 35° and
     /// more that marching cubes make of these, where edges that are not nearly square look sharp.
     fn of_edges_beyond(degrees: f64, is_rough: bool, mesh: &Mesh) -> Self {
-        let Ok(part) = Part::at_angle(degrees, mesh) else { return Self::Smooth };
+        let Ok(part) = Part::at_angle(degrees, mesh) else {
+            return Self::Smooth;
+        };
         let edges = &part.creases.edges;
         let lines = Lines::of(mesh, edges);
         if LOOSE_ENDS * lines.loose_ends() > edges.len() || edges.is_empty() {
@@ -167,10 +173,21 @@ fn bends(mesh: &Mesh) -> Vec<Bend> {
     let bend = |edge: HalfEdgeId| {
         let twin = topology.twin(edge).filter(|twin| edge < *twin)?;
         let [m, n] = [edge, twin].map(|h| normals[h.face().index()]);
-        let [a, b] = topology.ends(edge).map(|v| vector(mesh.positions()[v.index()]));
-        let (degrees, length) = (m.cross(n).length().atan2(m.dot(n)).to_degrees(), (b - a).length());
+        let [a, b] = topology
+            .ends(edge)
+            .map(|v| vector(mesh.positions()[v.index()]));
+        let (degrees, length) = (
+            m.cross(n).length().atan2(m.dot(n)).to_degrees(),
+            (b - a).length(),
+        );
         let is_one = m != DVec3::ZERO && n != DVec3::ZERO && length <= longest;
-        is_one.then(|| Bend { edge, twin, degrees, is_concave: is_concave(mesh, edge), length })
+        is_one.then(|| Bend {
+            edge,
+            twin,
+            degrees,
+            is_concave: is_concave(mesh, edge),
+            length,
+        })
     };
     topology.half_edges().filter_map(bend).collect()
 }
@@ -184,12 +201,17 @@ struct Lengths {
 impl Lengths {
     fn of(bends: &[Bend]) -> Self {
         let mut by_degree = [0.0; 181];
-        bends.iter().for_each(|bend| by_degree[(bend.degrees as usize).min(180)] += bend.length);
+        bends
+            .iter()
+            .for_each(|bend| by_degree[(bend.degrees as usize).min(180)] += bend.length);
         Self::new(by_degree)
     }
 
     fn new(by_degree: [f64; 181]) -> Self {
-        Self { all: by_degree.iter().sum(), by_degree }
+        Self {
+            all: by_degree.iter().sum(),
+            by_degree,
+        }
     }
 
     fn beyond(&self, degrees: usize) -> f64 {
@@ -214,7 +236,10 @@ impl Lengths {
     /// The widest gap between smooth edges and sharp ones, which are at one of some angles and beyond.
     fn widest(&self, sharp: RangeInclusive<usize>, least: usize, one_in: f64) -> Option<Gap> {
         let gaps = sharp.filter(|&end| self.beyond(end) * FEW > self.all);
-        let gaps = gaps.map(|end| Gap { begin: self.begin(end, one_in), end });
+        let gaps = gaps.map(|end| Gap {
+            begin: self.begin(end, one_in),
+            end,
+        });
         gaps.filter(|gap| gap.begin <= ROUND && gap.end >= gap.begin + least)
             .max_by_key(|gap| (gap.end - gap.begin, gap.end))
     }
@@ -231,7 +256,8 @@ impl Lengths {
 
     /// The gap between the edges of fine facets and those at which coarse ones might meet.
     fn lower_gap(&self) -> Option<Gap> {
-        self.widest(COARSE, LOWER_GAP, WITHIN).filter(|gap| gap.begin <= *COARSE.start())
+        self.widest(COARSE, LOWER_GAP, WITHIN)
+            .filter(|gap| gap.begin <= *COARSE.start())
     }
 
     /// Whether much is flat and much is sharp.
@@ -247,7 +273,11 @@ impl Lengths {
         // To five degrees, as a person would say it.
         let middle = (gap.begin + gap.end) as f64 / 2.0;
         let round = 5.0 * (middle / 5.0).round();
-        if (gap.begin as f64..gap.end as f64).contains(&round) { round } else { middle }
+        if (gap.begin as f64..gap.end as f64).contains(&round) {
+            round
+        } else {
+            middle
+        }
     }
 }
 
@@ -255,10 +285,19 @@ impl Lengths {
 fn middle_distance(positions: &[[f64; 3]]) -> f64 {
     let median = |mut values: Vec<f64>| {
         let middle = values.len() / 2;
-        if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
+        if values.is_empty() {
+            0.0
+        } else {
+            *values.select_nth_unstable_by(middle, f64::total_cmp).1
+        }
     };
     let centre = vector([0, 1, 2].map(|axis| median(positions.iter().map(|p| p[axis]).collect())));
-    median(positions.iter().map(|&p| (vector(p) - centre).length()).collect())
+    median(
+        positions
+            .iter()
+            .map(|&p| (vector(p) - centre).length())
+            .collect(),
+    )
 }
 
 /// How sharp edges meet.
@@ -273,7 +312,10 @@ impl<'m> Lines<'m> {
         let mut counts = vec![[0; 2]; mesh.vertex_count()];
         for &h in edges {
             let is_concave = usize::from(is_concave(mesh, h));
-            mesh.topology().ends(h).iter().for_each(|v| counts[v.index()][is_concave] += 1);
+            mesh.topology()
+                .ends(h)
+                .iter()
+                .for_each(|v| counts[v.index()][is_concave] += 1);
         }
         Self { mesh, counts }
     }
@@ -281,14 +323,26 @@ impl<'m> Lines<'m> {
     /// Ends of sharp edges inside the mesh where no other goes on.
     fn loose_ends(&self) -> usize {
         let is_inside = |v: usize| !self.mesh.topology().is_boundary(VertexId(v as u32));
-        let alone = self.counts.iter().enumerate().filter(|&(_, [up, down])| up + down == 1);
+        let alone = self
+            .counts
+            .iter()
+            .enumerate()
+            .filter(|&(_, [up, down])| up + down == 1);
         alone.filter(|&(v, _)| is_inside(v)).count()
     }
 
     /// Whether there are more than a few corners at which at least four sharp edges meet, both convex and concave ones.
     fn have_saddles(&self) -> bool {
-        let corners = self.counts.iter().filter(|[up, down]| up + down > 2).count();
-        let saddles = self.counts.iter().filter(|&&[up, down]| up + down > 3 && up > 0 && down > 0).count();
+        let corners = self
+            .counts
+            .iter()
+            .filter(|[up, down]| up + down > 2)
+            .count();
+        let saddles = self
+            .counts
+            .iter()
+            .filter(|&&[up, down]| up + down > 3 && up > 0 && down > 0)
+            .count();
         saddles > 0 && saddles * SADDLES >= corners
     }
 }
@@ -297,8 +351,9 @@ impl<'m> Lines<'m> {
 fn is_concave(mesh: &Mesh, h: HalfEdgeId) -> bool {
     let topology = mesh.topology();
     let at = |v: VertexId| vector(mesh.positions()[v.index()]);
-    let beyond =
-        topology.twin(h).map_or(DVec3::ZERO, |twin| at(topology.opposite(twin)) - at(topology.origin(h)));
+    let beyond = topology.twin(h).map_or(DVec3::ZERO, |twin| {
+        at(topology.opposite(twin)) - at(topology.origin(h))
+    });
     beyond.dot(mesh.scaled_face_normal(h.face().index())) > 0.0
 }
 

@@ -29,12 +29,17 @@ impl Part {
     pub fn at_angle(degrees: f64, mesh: &Mesh) -> Result<Self, MeshError> {
         let creases = mesh.creases_above(degrees.to_radians())?;
         let tips = tips(mesh, &creases.edges, degrees.to_radians());
-        Ok(Self { degrees, creases, tips })
+        Ok(Self {
+            degrees,
+            creases,
+            tips,
+        })
     }
 
     /// The mesh with creases along the sharp edges and corners at the tips; the tags that it has stay.
     pub fn on(&self, mesh: Mesh) -> Mesh {
-        mesh.with_creases(&self.creases.edges).with_corners(&self.tips)
+        mesh.with_creases(&self.creases.edges)
+            .with_corners(&self.tips)
     }
 }
 
@@ -45,7 +50,10 @@ fn tips(mesh: &Mesh, sharp: &[HalfEdgeId], angle: f64) -> Vec<VertexId> {
     let mut is_sharp = vec![false; topology.half_edge_count()];
     for &h in sharp {
         is_sharp[h.index()] = true;
-        topology.twin(h).into_iter().for_each(|twin| is_sharp[twin.index()] = true);
+        topology
+            .twin(h)
+            .into_iter()
+            .for_each(|twin| is_sharp[twin.index()] = true);
     }
     let between = |m: DVec3, n: DVec3| m.cross(n).length().atan2(m.dot(n));
     let normal = |h: HalfEdgeId| normals[h.face().index()];
@@ -55,9 +63,13 @@ fn tips(mesh: &Mesh, sharp: &[HalfEdgeId], angle: f64) -> Vec<VertexId> {
             return false;
         }
         let common: DVec3 = spokes().map(normal).sum();
-        let lean = spokes().map(|h| between(normal(h), common)).fold(0.0, f64::max);
+        let lean = spokes()
+            .map(|h| between(normal(h), common))
+            .fold(0.0, f64::max);
         // The edges across from the vertex, with the faces beyond them.
-        let across = spokes().map(HalfEdgeId::next).filter(|h| !is_sharp[h.index()]);
+        let across = spokes()
+            .map(HalfEdgeId::next)
+            .filter(|h| !is_sharp[h.index()]);
         let bends = across.filter_map(|h| Some(between(normal(h), normal(topology.twin(h)?))));
         2.0 * lean > angle && bends.fold(0.0, f64::max) < STRAIGHT * lean
     };

@@ -12,7 +12,8 @@ use crate::mesh::{Mesh, Sharpness};
 use crate::parallel;
 use crate::progress::{Observer, unobserved};
 use crate::refine::{
-    ExactOptions, RefineError, UniformOptions, UniformTriangles, exact_observed, uniform_triangles_observed,
+    ExactOptions, RefineError, UniformOptions, UniformTriangles, exact_observed,
+    uniform_triangles_observed,
 };
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
@@ -87,7 +88,10 @@ pub fn interpolate_unfolded_observed(
     observer: &mut Observer<'_>,
 ) -> Result<Unfolded, UnfoldedError> {
     let options = InterpolateOptions::default();
-    let mut kept = Kept { mesh, is_kept: vec![false; mesh.vertex_count()] };
+    let mut kept = Kept {
+        mesh,
+        is_kept: vec![false; mesh.vertex_count()],
+    };
     let is_flat = flat_within_rims(mesh);
     let mut folded = vec![false; mesh.face_count()];
     let mut anyway = None;
@@ -105,9 +109,14 @@ pub fn interpolate_unfolded_observed(
             folding = turned_over(&interpolated.mesh, scheme, observer)?;
         }
         if folding.is_empty() || attempt == MOST_ATTEMPTS {
-            return Ok(Unfolded { interpolated, folded: regions(mesh, &folded) });
+            return Ok(Unfolded {
+                interpolated,
+                folded: regions(mesh, &folded),
+            });
         }
-        folding.iter().for_each(|&face| folded[face as usize] = true);
+        folding
+            .iter()
+            .for_each(|&face| folded[face as usize] = true);
         attempt += 1;
         match attempt {
             MOST_ATTEMPTS => kept.add_components(&folding),
@@ -124,8 +133,13 @@ fn flat_within_rims(mesh: &Mesh) -> Vec<bool> {
     let mut regions = DisjointSets::new(mesh.face_count());
     // Smooth edges at which faces meet at an angle are no rims.
     let mut bent = Vec::new();
-    for h in topology.half_edges().filter(|&h| sharpness.edge(h) < f64::INFINITY) {
-        let Some(twin) = topology.twin(h) else { continue };
+    for h in topology
+        .half_edges()
+        .filter(|&h| sharpness.edge(h) < f64::INFINITY)
+    {
+        let Some(twin) = topology.twin(h) else {
+            continue;
+        };
         let [m, n] = [h, twin].map(|h| normals[h.face().index()]);
         match m.cross(n).length() <= ALIKE && m.dot(n) > 0.0 {
             true => _ = regions.unite(h.face().0, twin.face().0),
@@ -137,18 +151,33 @@ fn flat_within_rims(mesh: &Mesh) -> Vec<bool> {
     let mut largest = regions.clone();
     for (face, &region) in regions.iter().enumerate() {
         let known = &mut largest[region as usize];
-        *known = if area(face) > area(*known as usize) { face as u32 } else { *known };
+        *known = if area(face) > area(*known as usize) {
+            face as u32
+        } else {
+            *known
+        };
     }
-    let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    let size = mesh
+        .positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |size, x| size.max(x.abs()));
     let mut is_flat = vec![true; mesh.face_count()];
-    bent.into_iter().for_each(|face| is_flat[regions[face as usize] as usize] = false);
+    bent.into_iter()
+        .for_each(|face| is_flat[regions[face as usize] as usize] = false);
     for (face, &region) in regions.iter().enumerate() {
         let plane = largest[region as usize] as usize;
         let [from, ..] = mesh.as_triangles().corners(plane).map(vector);
-        let off = mesh.as_triangles().corners(face).map(|p| normals[plane].dot(vector(p) - from).abs());
+        let off = mesh
+            .as_triangles()
+            .corners(face)
+            .map(|p| normals[plane].dot(vector(p) - from).abs());
         is_flat[region as usize] &= off.into_iter().all(|off| off <= IN_PLANE * size);
     }
-    regions.iter().map(|&region| is_flat[region as usize]).collect()
+    regions
+        .iter()
+        .map(|&region| is_flat[region as usize])
+        .collect()
 }
 
 /// The control faces of triangles that are turned over after all in a finely refined surface, where flat regions are what their rims enclose.
@@ -157,7 +186,9 @@ fn turned_over(
     scheme: &dyn Scheme,
     observer: &mut Observer<'_>,
 ) -> Result<Vec<u32>, RefineError> {
-    let options = ExactOptions::default().tolerance(TOLERANCE * control.diagonal()).unfold(true);
+    let options = ExactOptions::default()
+        .tolerance(TOLERANCE * control.diagonal())
+        .unfold(true);
     let refined = exact_observed(control, scheme, &options, observer)?;
     let mut faces: Vec<u32> = refined
         .turned_over()
@@ -188,9 +219,14 @@ fn faces_folding(
     scheme: &dyn Scheme,
     observer: &mut Observer<'_>,
 ) -> Result<Vec<u32>, RefineError> {
-    let levels = (1..=LEVELS).rev().find(|levels| mesh.face_count() << (2 * levels) <= MOST_TRIANGLES);
+    let levels = (1..=LEVELS)
+        .rev()
+        .find(|levels| mesh.face_count() << (2 * levels) <= MOST_TRIANGLES);
     let levels = levels.unwrap_or(1);
-    let options = UniformOptions::default().levels(levels).limit(true).normals(true);
+    let options = UniformOptions::default()
+        .levels(levels)
+        .limit(true)
+        .normals(true);
     let surface = uniform_triangles_observed(control, scheme, &options, observer)?;
     let parts = 1 << (2 * surface.levels);
     let turns_over = |face: usize| {
@@ -198,7 +234,11 @@ fn faces_folding(
         (parts * face..parts * (face + 1)).any(|part| is_turned_over(&surface, part, outwards))
     };
     let found = parallel::map(mesh.face_count(), turns_over);
-    Ok((0..).zip(found).filter(|&(_, folds)| folds).map(|(face, _)| face).collect())
+    Ok((0..)
+        .zip(found)
+        .filter(|&(_, folds)| folds)
+        .map(|(face, _)| face)
+        .collect())
 }
 
 /// Whether a triangle looks away from its share of the normal of the face that it is over, or from its own limit normals.
@@ -208,11 +248,13 @@ fn is_turned_over(surface: &UniformTriangles, triangle: usize, outwards: DVec3) 
     let least = -ROUNDING * outwards.length();
     let normal = |corner: usize| {
         let sides = &surface.sides;
-        let side = sides.binary_search_by_key(&((3 * triangle + corner) as u32), |&(corner, _)| corner);
+        let side =
+            sides.binary_search_by_key(&((3 * triangle + corner) as u32), |&(corner, _)| corner);
         let vertex = surface.triangles[triangle][corner] as usize;
         vector(side.map_or(surface.normals[vertex], |place| sides[place].1))
     };
-    own.dot(outwards) < least * outwards.length() || (0..3).any(|corner| own.dot(normal(corner)) < least)
+    own.dot(outwards) < least * outwards.length()
+        || (0..3).any(|corner| own.dot(normal(corner)) < least)
 }
 
 /// Vertices that keep their place.
@@ -223,17 +265,26 @@ struct Kept<'m> {
 
 impl Kept<'_> {
     fn vertices(&self) -> Vec<VertexId> {
-        (0..).zip(&self.is_kept).filter(|&(_, &is_kept)| is_kept).map(|(v, _)| VertexId(v)).collect()
+        (0..)
+            .zip(&self.is_kept)
+            .filter(|&(_, &is_kept)| is_kept)
+            .map(|(v, _)| VertexId(v))
+            .collect()
     }
 
     /// The vertices of faces; of faces that had no others before, all around these, too.
     fn add(&mut self, faces: &[u32]) {
         let corners = |face: &u32| self.mesh.triangles()[*face as usize].map(VertexId);
         let is_kept = |v: &VertexId| self.is_kept[v.index()];
-        let settled = faces.iter().filter(|face| corners(face).iter().all(is_kept)).flat_map(corners);
+        let settled = faces
+            .iter()
+            .filter(|face| corners(face).iter().all(is_kept))
+            .flat_map(corners);
         let around = settled.flat_map(|v| self.mesh.topology().ring(v));
         let added: Vec<VertexId> = faces.iter().flat_map(corners).chain(around).collect();
-        added.into_iter().for_each(|v| self.is_kept[v.index()] = true);
+        added
+            .into_iter()
+            .for_each(|v| self.is_kept[v.index()] = true);
     }
 
     /// All vertices of the components that faces belong to.
@@ -248,7 +299,10 @@ impl Kept<'_> {
         for &face in faces {
             is_own[roots[self.mesh.triangles()[face as usize][0] as usize] as usize] = true;
         }
-        self.is_kept.iter_mut().zip(&roots).for_each(|(kept, &root)| *kept |= is_own[root as usize]);
+        self.is_kept
+            .iter_mut()
+            .zip(&roots)
+            .for_each(|(kept, &root)| *kept |= is_own[root as usize]);
     }
 }
 
@@ -264,15 +318,22 @@ fn regions(mesh: &Mesh, is_own: &[bool]) -> Vec<FoldedRegion> {
     }
     let mut by_root = std::collections::BTreeMap::<u32, Vec<u32>>::new();
     faces().for_each(|face| {
-        by_root.entry(vertices.root(triangles[face as usize][0])).or_default().push(face);
+        by_root
+            .entry(vertices.root(triangles[face as usize][0]))
+            .or_default()
+            .push(face);
     });
     let region = |faces: Vec<u32>| {
         let corners = faces.iter().flat_map(|&face| triangles[face as usize]);
         let points = corners.map(|v| vector(mesh.positions()[v as usize]));
-        let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), point| {
-            (low.min(point), high.max(point))
-        });
-        FoldedRegion { faces, bounding_box: [low.to_array(), high.to_array()] }
+        let (low, high) = points.fold(
+            (DVec3::INFINITY, DVec3::NEG_INFINITY),
+            |(low, high), point| (low.min(point), high.max(point)),
+        );
+        FoldedRegion {
+            faces,
+            bounding_box: [low.to_array(), high.to_array()],
+        }
     };
     let mut all: Vec<FoldedRegion> = by_root.into_values().map(region).collect();
     all.sort_by_key(|region| std::cmp::Reverse(region.faces.len()));

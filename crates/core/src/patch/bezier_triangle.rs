@@ -68,7 +68,11 @@ impl<V: Blend> BezierTriangle<V> {
     pub(crate) fn halves(&self, edge: usize) -> [Self; 2] {
         let mut halves = [[V::default(); 15]; 2];
         let [first, second] = &mut halves;
-        self.halved(edge, |at, point| first[at] = point, |at, point| second[at] = point);
+        self.halved(
+            edge,
+            |at, point| first[at] = point,
+            |at, point| second[at] = point,
+        );
         halves.map(Self)
     }
 
@@ -84,7 +88,12 @@ impl<V: Blend> BezierTriangle<V> {
     }
 
     #[inline]
-    fn halved(&self, edge: usize, mut first: impl FnMut(usize, V), mut second: impl FnMut(usize, V)) {
+    fn halved(
+        &self,
+        edge: usize,
+        mut first: impl FnMut(usize, V),
+        mut second: impl FnMut(usize, V),
+    ) {
         let turned = &TURNED[edge];
         for &(start, degree) in &ROWS {
             let mut row = [V::default(); 5];
@@ -174,7 +183,10 @@ mod tests {
                 there[kept] += weights[lost] / 2.0;
                 there[lost] = weights[lost] / 2.0;
                 let found = point(&halves[half], weights);
-                assert!(found.distance(point(&whole, there)) < 1e-14, "edge {edge}, half {half}");
+                assert!(
+                    found.distance(point(&whole, there)) < 1e-14,
+                    "edge {edge}, half {half}"
+                );
             }
         }
     }

@@ -25,13 +25,19 @@ const fn place<const N: usize>(rows: &[(i32, i32); N], x: i32, y: i32) -> u8 {
         before += rows[row].1 - rows[row].0 + 1;
         row += 1;
     }
-    assert!(row < N && rows[row].0 <= x && x <= rows[row].1, "the point is one of the array");
+    assert!(
+        row < N && rows[row].0 <= x && x <= rows[row].1,
+        "the point is one of the array"
+    );
     (before + x - rows[row].0) as u8
 }
 
 /// The face's corners among the twelve.
-pub(crate) const CORNERS: [usize; 3] =
-    [place(&ROWS, 0, 0) as usize, place(&ROWS, 1, 0) as usize, place(&ROWS, 0, 1) as usize];
+pub(crate) const CORNERS: [usize; 3] = [
+    place(&ROWS, 0, 0) as usize,
+    place(&ROWS, 1, 0) as usize,
+    place(&ROWS, 0, 1) as usize,
+];
 
 /// The neighbours of each corner, counter-clockwise, starting with the next corner.
 pub(crate) const RINGS: [[u8; 6]; 3] = {
@@ -90,8 +96,11 @@ pub(super) const EDGE_POINTS: [(u8, [u8; 2], [u8; 2]); 15] = {
 };
 
 /// The corners among the eighteen.
-pub(super) const REFINED_CORNERS: [u8; 3] =
-    [place(&REFINED_ROWS, 0, 0), place(&REFINED_ROWS, 2, 0), place(&REFINED_ROWS, 0, 2)];
+pub(super) const REFINED_CORNERS: [u8; 3] = [
+    place(&REFINED_ROWS, 0, 0),
+    place(&REFINED_ROWS, 2, 0),
+    place(&REFINED_ROWS, 0, 2),
+];
 
 /// The twelve points of each part among the eighteen. Parts 0 to 2 keep the corner of their number, and each of
 /// their corners stands towards the face's; corner `i` of part 3, in the middle, is the new point opposite
@@ -126,7 +135,11 @@ pub(super) const MIDDLES: [(u8, [u8; 6]); 3] = {
         middles[edge].0 = place(&REFINED_ROWS, x, y);
         let mut slot = 0;
         while slot < 6 {
-            middles[edge].1[slot] = place(&REFINED_ROWS, x + NEIGHBOURS[slot].0, y + NEIGHBOURS[slot].1);
+            middles[edge].1[slot] = place(
+                &REFINED_ROWS,
+                x + NEIGHBOURS[slot].0,
+                y + NEIGHBOURS[slot].1,
+            );
             slot += 1;
         }
         edge += 1;
@@ -158,7 +171,10 @@ impl Refined {
     #[inline]
     pub(crate) fn part(&self, part: usize) -> Points {
         let mut points = [DVec3::ZERO; 12];
-        points.iter_mut().zip(&PARTS[part]).for_each(|(point, &at)| *point = self.0[at as usize]);
+        points
+            .iter_mut()
+            .zip(&PARTS[part])
+            .for_each(|(point, &at)| *point = self.0[at as usize]);
         points
     }
 
@@ -167,7 +183,10 @@ impl Refined {
     pub(crate) fn middle(&self, edge: usize) -> (DVec3, [DVec3; 6]) {
         let (at, ring) = &MIDDLES[edge];
         let mut around = [DVec3::ZERO; 6];
-        around.iter_mut().zip(ring).for_each(|(point, &at)| *point = self.0[at as usize]);
+        around
+            .iter_mut()
+            .zip(ring)
+            .for_each(|(point, &at)| *point = self.0[at as usize]);
         (self.0[*at as usize], around)
     }
 }
@@ -180,7 +199,11 @@ fn ring_sum(points: &Points, ring: &[u8; 6]) -> DVec3 {
 
 /// The twelve points from the corners and their rings, of each of which we are told where the next corner stands in it.
 #[inline]
-pub(crate) fn assemble<T: Copy>(corners: [T; 3], rings: [&[T; 6]; 3], turns: [usize; 3]) -> [T; 12] {
+pub(crate) fn assemble<T: Copy>(
+    corners: [T; 3],
+    rings: [&[T; 6]; 3],
+    turns: [usize; 3],
+) -> [T; 12] {
     let mut points = [corners[0]; 12];
     for corner in 0..3 {
         for slot in 0..6 {
@@ -245,9 +268,15 @@ mod tests {
     fn assembling_undoes_taking_rings() {
         let points = plane();
         let rings = RINGS.map(|ring| ring.map(|at| points[at as usize]));
-        assert_eq!(assemble(CORNERS.map(|at| points[at]), rings.each_ref(), [0; 3]), points);
+        assert_eq!(
+            assemble(CORNERS.map(|at| points[at]), rings.each_ref(), [0; 3]),
+            points
+        );
         let turned = rings.map(|[a, b, c, d, e, f]| [e, f, a, b, c, d]);
-        assert_eq!(assemble(CORNERS.map(|at| points[at]), turned.each_ref(), [2; 3]), points);
+        assert_eq!(
+            assemble(CORNERS.map(|at| points[at]), turned.each_ref(), [2; 3]),
+            points
+        );
         for (corner, ring) in rings.iter().enumerate() {
             assert_eq!(ring[0], points[CORNERS[(corner + 1) % 3]]);
             assert_eq!(ring[1], points[CORNERS[(corner + 2) % 3]]);

@@ -58,15 +58,25 @@ impl Characteristic {
             corner: 0,
             at: DVec3::ZERO,
             ring: (0..valence).map(|j| power(j as f64)).collect(),
-            outer: [rotated(between, -1.0), past, between, rotated(past, 1.0), rotated(between, 1.0)],
+            outer: [
+                rotated(between, -1.0),
+                past,
+                between,
+                rotated(past, 1.0),
+                rotated(between, 1.0),
+            ],
         };
         // The vertex stays at 0 whatever its weights are.
         let refined = control.refined(0.0);
-        let [first, second, middle] = [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
+        let [first, second, middle] =
+            [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
         let (mut least_jacobian, mut steepest) = (f64::INFINITY, DVec3::ZERO);
         for net in [&first, &second, &middle] {
             let tangents = tangents(net);
-            steepest = tangents.as_flattened().iter().fold(steepest, |most, by| most.max(by.abs()));
+            steepest = tangents
+                .as_flattened()
+                .iter()
+                .fold(steepest, |most, by| most.max(by.abs()));
             let jacobian = cross_products(&tangents).into_iter().map(|normal| normal.z);
             least_jacobian = jacobian.fold(least_jacobian, f64::min);
         }
@@ -75,10 +85,17 @@ impl Characteristic {
         let sector = |nets: &[&BezierTriangle], rim: Vec<DVec3>, start: DVec3, end: DVec3| {
             let points: Vec<DVec3> = nets.iter().flat_map(|net| net.0).collect();
             let along = |direction: DVec3| {
-                let on_line = points.iter().filter(|p| direction.cross(**p).length() < ON_LINE);
+                let on_line = points
+                    .iter()
+                    .filter(|p| direction.cross(**p).length() < ON_LINE);
                 on_line.map(|p| p.dot(direction)).fold(0.0, f64::max) * direction
             };
-            MapSector { start: along(start), end: along(end), rim, hull: hull(&points) }
+            MapSector {
+                start: along(start),
+                end: along(end),
+                rim,
+                hull: hull(&points),
+            }
         };
         let sectors = [
             sector(
@@ -87,11 +104,27 @@ impl Characteristic {
                 directions[0],
                 directions[2],
             ),
-            sector(&[&first, &middle.half(1, true)], rim(&first).to_vec(), directions[0], directions[1]),
-            sector(&[&middle.half(1, false), &second], rim(&second).to_vec(), directions[1], directions[2]),
+            sector(
+                &[&first, &middle.half(1, true)],
+                rim(&first).to_vec(),
+                directions[0],
+                directions[1],
+            ),
+            sector(
+                &[&middle.half(1, false), &second],
+                rim(&second).to_vec(),
+                directions[1],
+                directions[2],
+            ),
         ];
         let outer_share = outer_share(valence);
-        Self { control, sectors, outer_share, least_jacobian, steepest: [steepest.x, steepest.y] }
+        Self {
+            control,
+            sectors,
+            outer_share,
+            least_jacobian,
+            steepest: [steepest.x, steepest.y],
+        }
     }
 }
 
@@ -100,10 +133,18 @@ impl Characteristic {
 /// whatever the weights of the vertex are, as all of its ring are 0.
 fn outer_share(valence: usize) -> f64 {
     let ring = (0..valence).map(|_| DVec3::ZERO).collect();
-    let weights = ExtraordinaryPatch { corner: 0, at: DVec3::ZERO, ring, outer: [DVec3::X; 5] };
+    let weights = ExtraordinaryPatch {
+        corner: 0,
+        at: DVec3::ZERO,
+        ring,
+        outer: [DVec3::X; 5],
+    };
     let refined = weights.refined(0.0);
     let nets = [1, 2, 3].map(|part| BezierTriangle::of(&refined.regular(part)));
-    let points = nets.iter().flat_map(|net| net.0).chain(refined.own().points());
+    let points = nets
+        .iter()
+        .flat_map(|net| net.0)
+        .chain(refined.own().points());
     ROUNDED_UP * points.map(|point| point.x).fold(0.0, f64::max)
 }
 
@@ -146,16 +187,24 @@ mod tests {
         for valence in 3..40 {
             let map = Characteristic::of(valence);
             let eigenvalue = 0.375 + 0.25 * (core::f64::consts::TAU / valence as f64).cos();
-            let Patch::Extraordinary(refined) = map.control.refined(0.0).part(0) else { panic!() };
+            let Patch::Extraordinary(refined) = map.control.refined(0.0).part(0) else {
+                panic!()
+            };
             for (fine, coarse) in refined.points().zip(map.control.points()) {
-                assert!(fine.distance(eigenvalue * coarse) < 1e-13, "valence {valence}");
+                assert!(
+                    fine.distance(eigenvalue * coarse) < 1e-13,
+                    "valence {valence}"
+                );
             }
         }
     }
 
     /// Whether a point lies in the hull of 0 and the corners, which go round it.
     fn holds(sector: &MapSector, point: DVec3) -> bool {
-        let corners: Vec<DVec3> = [DVec3::ZERO].into_iter().chain(sector.hull.iter().copied()).collect();
+        let corners: Vec<DVec3> = [DVec3::ZERO]
+            .into_iter()
+            .chain(sector.hull.iter().copied())
+            .collect();
         let n = corners.len();
         let mut turned = corners.clone();
         // The chain starts at the least point; 0 may stand anywhere in it.
@@ -174,19 +223,28 @@ mod tests {
         for valence in (3..32).filter(|&valence| valence != 6) {
             let share = Characteristic::of(valence).outer_share;
             let ring = (0..valence).map(|_| DVec3::ZERO).collect();
-            let weights = ExtraordinaryPatch { corner: 0, at: DVec3::ZERO, ring, outer: [DVec3::X; 5] };
+            let weights = ExtraordinaryPatch {
+                corner: 0,
+                at: DVec3::ZERO,
+                ring,
+                outer: [DVec3::X; 5],
+            };
             let mut pieces = vec![Patch::Extraordinary(Box::new(weights))];
             let mut greatest = 0.0f64;
             for _ in 0..5 {
                 let mut next = Vec::new();
                 for piece in &pieces {
                     let refined = piece.refined(&rules);
-                    (0..3).for_each(|edge| greatest = greatest.max(refined.middle(edge).position.x));
+                    (0..3)
+                        .for_each(|edge| greatest = greatest.max(refined.middle(edge).position.x));
                     next.extend((0..4).map(|part| refined.part(part)));
                 }
                 pieces = next;
             }
-            assert!(greatest <= share && greatest > 0.8 * share, "valence {valence}: {greatest} {share}");
+            assert!(
+                greatest <= share && greatest > 0.8 * share,
+                "valence {valence}: {greatest} {share}"
+            );
         }
     }
 
@@ -206,7 +264,9 @@ mod tests {
                         assert!(first || second, "valence {valence}");
                     }
                 }
-                let Patch::Extraordinary(next) = refined.part(0) else { panic!() };
+                let Patch::Extraordinary(next) = refined.part(0) else {
+                    panic!()
+                };
                 patch = *next;
             }
             // Edges and bisectors run straight, and the outer ends are the farthest points.
@@ -215,7 +275,11 @@ mod tests {
             assert!(first.end.distance(second.start) < 1e-12);
             assert!(first.end.length() > 0.1 && first.start.y == 0.0);
             assert!(whole.hull.len() < 16, "{}", whole.hull.len());
-            assert!(map.least_jacobian > 0.0, "valence {valence}: {}", map.least_jacobian);
+            assert!(
+                map.least_jacobian > 0.0,
+                "valence {valence}: {}",
+                map.least_jacobian
+            );
         }
     }
 }

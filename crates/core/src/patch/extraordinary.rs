@@ -31,7 +31,9 @@ pub(crate) struct RefinedExtraordinary<V = DVec3> {
 impl<V: Blend> ExtraordinaryPatch<V> {
     /// All points.
     pub(crate) fn points(&self) -> impl Iterator<Item = V> + '_ {
-        core::iter::once(self.at).chain(self.ring.iter().copied()).chain(self.outer)
+        core::iter::once(self.at)
+            .chain(self.ring.iter().copied())
+            .chain(self.outer)
     }
 
     /// What becomes of the points by itself.
@@ -46,14 +48,22 @@ impl<V: Blend> ExtraordinaryPatch<V> {
 
     /// The points after one refinement; `beta` is the weight of each neighbour of the irregular vertex.
     pub(crate) fn refined(&self, beta: f64) -> RefinedExtraordinary<V> {
-        let sum = self.ring.iter().fold(V::default(), |sum, &point| sum + point);
+        let sum = self
+            .ring
+            .iter()
+            .fold(V::default(), |sum, &point| sum + point);
         self.refined_to(self.at * (1.0 - self.ring.len() as f64 * beta) + sum * beta)
     }
 
     /// The points after one refinement that takes the irregular vertex to `moved`.
     pub(super) fn refined_to(&self, moved: V) -> RefinedExtraordinary<V> {
         let edge = |a: V, b: V, c: V, d: V| (a + b) * 0.375 + (c + d) * 0.125;
-        let Self { corner, at, ref ring, outer: [before, past_first, between, past_second, after] } = *self;
+        let Self {
+            corner,
+            at,
+            ref ring,
+            outer: [before, past_first, between, past_second, after],
+        } = *self;
         let valence = ring.len();
         let (last, first, second, third) = (ring[valence - 1], ring[0], ring[1], ring[2 % valence]);
         let mut edges = Neighbours::from_elem(V::default(), valence);
@@ -63,8 +73,9 @@ impl<V: Blend> ExtraordinaryPatch<V> {
             edges[slot] = edge(at, ring[slot], previous, next);
             previous = ring[slot];
         }
-        let vertex =
-            |at: V, [a, b, c, d, e, f]: [V; 6]| at * 0.625 + (V::default() + a + b + c + d + e + f) * 0.0625;
+        let vertex = |at: V, [a, b, c, d, e, f]: [V; 6]| {
+            at * 0.625 + (V::default() + a + b + c + d + e + f) * 0.0625
+        };
         let outer = [
             edge(last, first, at, before),
             vertex(first, [at, last, before, past_first, between, second]),
@@ -90,7 +101,15 @@ impl<V: Blend> ExtraordinaryPatch<V> {
             edge(second, past_second, between, after),
             edge(second, after, past_second, third),
         ];
-        RefinedExtraordinary { own: Self { corner, at: moved, ring: edges, outer }, near }
+        RefinedExtraordinary {
+            own: Self {
+                corner,
+                at: moved,
+                ring: edges,
+                outer,
+            },
+            near,
+        }
     }
 }
 
@@ -106,7 +125,10 @@ impl ExtraordinaryPatch {
     /// Moves all so that the irregular vertex is at the origin, and gives where it was.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         let from = core::mem::take(&mut self.at);
-        self.ring.iter_mut().chain(&mut self.outer).for_each(|point| *point -= from);
+        self.ring
+            .iter_mut()
+            .chain(&mut self.outer)
+            .for_each(|point| *point -= from);
         from
     }
 }
@@ -135,7 +157,11 @@ impl<V: Blend> RefinedExtraordinary<V> {
     /// The number of a part as it counts from the irregular corner.
     #[inline]
     fn local(&self, part: usize) -> usize {
-        if part == 3 { 3 } else { (part + 3 - self.own.corner) % 3 }
+        if part == 3 {
+            3
+        } else {
+            (part + 3 - self.own.corner) % 3
+        }
     }
 
     /// The points of one of the parts, if it is regular.
@@ -155,7 +181,10 @@ impl<V: Blend> RefinedExtraordinary<V> {
     pub(crate) fn regular(&self, local: usize) -> [V; 12] {
         let mut points = [V::default(); 12];
         let list = &near::PARTS[self.own.corner % 3][(local - 1) % 3];
-        points.iter_mut().zip(list).for_each(|(point, &at)| *point = self.near(at));
+        points
+            .iter_mut()
+            .zip(list)
+            .for_each(|(point, &at)| *point = self.near(at));
         points
     }
 
@@ -176,7 +205,10 @@ impl<V: Blend> RefinedExtraordinary<V> {
     pub(crate) fn middle(&self, edge: usize) -> (V, [V; 6]) {
         let (at, ring) = &near::MIDDLES[(edge + 3 - self.own.corner) % 3];
         let mut around = [V::default(); 6];
-        around.iter_mut().zip(ring).for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
+        around
+            .iter_mut()
+            .zip(ring)
+            .for_each(|(point, &at)| *point = self.near[usize::from(at) % 16]);
         (self.near[usize::from(*at) % 16], around)
     }
 }
@@ -208,8 +240,11 @@ mod near {
     const OF_SECOND: [u8; 6] = [ON_SECOND, BETWEEN, BEYOND[3], BEYOND[4], BEYOND[5], AFTER];
 
     /// The new vertices on the edges, numbered from the irregular corner, and their rings.
-    pub(super) const MIDDLES: [(u8, [u8; 6]); 3] =
-        [(ON_FIRST, AROUND_FIRST), (BETWEEN, AROUND_BETWEEN), (ON_SECOND, AROUND_SECOND)];
+    pub(super) const MIDDLES: [(u8, [u8; 6]); 3] = [
+        (ON_FIRST, AROUND_FIRST),
+        (BETWEEN, AROUND_BETWEEN),
+        (ON_SECOND, AROUND_SECOND),
+    ];
 
     /// The twelve points of the regular parts: by the face's irregular corner, and the part as it is numbered from there.
     pub(super) const PARTS: [[[u8; 12]; 3]; 3] = {
@@ -224,12 +259,20 @@ mod near {
                 ),
                 assembled(
                     [ON_SECOND, BETWEEN, SECOND],
-                    [turned(AROUND_SECOND, 1), turned(AROUND_BETWEEN, 3), OF_SECOND],
+                    [
+                        turned(AROUND_SECOND, 1),
+                        turned(AROUND_BETWEEN, 3),
+                        OF_SECOND,
+                    ],
                     corner,
                 ),
                 assembled(
                     [BETWEEN, ON_SECOND, ON_FIRST],
-                    [turned(AROUND_BETWEEN, 4), AROUND_SECOND, turned(AROUND_FIRST, 2)],
+                    [
+                        turned(AROUND_BETWEEN, 4),
+                        AROUND_SECOND,
+                        turned(AROUND_FIRST, 2),
+                    ],
                     corner,
                 ),
             ];
@@ -302,8 +345,14 @@ mod tests {
         };
         let mut sectors = [
             smooth(at, ring.clone()),
-            smooth(ring[0], smallvec![ring[1], at, ring[k - 1], before, past_first, between]),
-            smooth(ring[1], smallvec![at, ring[0], between, past_second, after, ring[2]]),
+            smooth(
+                ring[0],
+                smallvec![ring[1], at, ring[k - 1], before, past_first, between],
+            ),
+            smooth(
+                ring[1],
+                smallvec![at, ring[0], between, past_second, after, ring[2]],
+            ),
         ];
         sectors.rotate_right(corner);
         SectorPatch(sectors)
@@ -327,13 +376,19 @@ mod tests {
                     assert!(
                         matches!(Patch::of(sectors.clone()), Patch::Extraordinary(found) if *found == patch)
                     );
-                    let (expected, found) = (sectors.refined(&rules), patch.refined(rules.beta(valence)));
+                    let (expected, found) =
+                        (sectors.refined(&rules), patch.refined(rules.beta(valence)));
                     let near = |a: DVec3, b: DVec3| {
-                        assert!(a.distance(b) < 1e-14, "valence {valence}, corner {corner}, level {level}")
+                        assert!(
+                            a.distance(b) < 1e-14,
+                            "valence {valence}, corner {corner}, level {level}"
+                        )
                     };
                     for part in 0..4 {
                         match (Patch::of(expected.part(part)), found.part(part)) {
-                            (Patch::Regular(a), Patch::Regular(b)) => (0..12).for_each(|i| near(a[i], b[i])),
+                            (Patch::Regular(a), Patch::Regular(b)) => {
+                                (0..12).for_each(|i| near(a[i], b[i]))
+                            }
                             (Patch::Extraordinary(a), Patch::Extraordinary(b)) => {
                                 assert_eq!((part, a.corner), (corner, corner));
                                 a.points().zip(b.points()).for_each(|(a, b)| near(a, b));
@@ -350,7 +405,9 @@ mod tests {
                         ring.rotate_left(start);
                         (0..6).for_each(|i| near(ring[i], around[i]));
                     }
-                    let Patch::Extraordinary(next) = found.part(corner) else { panic!() };
+                    let Patch::Extraordinary(next) = found.part(corner) else {
+                        panic!()
+                    };
                     patch = *next;
                 }
             }

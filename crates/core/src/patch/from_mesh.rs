@@ -29,10 +29,12 @@ pub(crate) fn root_patch(
         return Patch::Regular(points);
     }
     match fades(mesh, sharpness, large, corners) {
-        true => SemiSharpPatch::of(corners.map(|h| match large.whole(mesh.topology().origin(h)) {
-            Some(ring) => ring.near(h),
-            None => SemiSharpVertex::of(mesh, sharpness, h),
-        })),
+        true => SemiSharpPatch::of(
+            corners.map(|h| match large.whole(mesh.topology().origin(h)) {
+                Some(ring) => ring.near(h),
+                None => SemiSharpVertex::of(mesh, sharpness, h),
+            }),
+        ),
         false => patch_of(mesh, sharpness, large, corners),
     }
 }
@@ -50,7 +52,10 @@ fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> 
         targets.next().is_none().then_some(ring)
     };
     let vertices = corners.map(|h| topology.origin(h));
-    if vertices.into_iter().any(|vertex| sharpness.is_tagged(vertex) || topology.is_boundary(vertex)) {
+    if vertices
+        .into_iter()
+        .any(|vertex| sharpness.is_tagged(vertex) || topology.is_boundary(vertex))
+    {
         return None;
     }
     let [a, b, c] = corners;
@@ -75,7 +80,12 @@ pub(super) fn fades(
 }
 
 /// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
-fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, corners: [HalfEdgeId; 3]) -> Patch {
+fn patch_of(
+    mesh: &Mesh,
+    sharpness: &Sharpness<'_>,
+    large: &LargeRings,
+    corners: [HalfEdgeId; 3],
+) -> Patch {
     let near = |h: HalfEdgeId| {
         let vertex = mesh.topology().origin(h);
         match sharpness.is_tagged(vertex) {
@@ -83,9 +93,9 @@ fn patch_of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, corners:
             false => large.sector(mesh, h),
         }
     };
-    Patch::of(SectorPatch(
-        corners.map(|corner| near(corner).unwrap_or_else(|| sector(mesh, sharpness, corner))),
-    ))
+    Patch::of(SectorPatch(corners.map(|corner| {
+        near(corner).unwrap_or_else(|| sector(mesh, sharpness, corner))
+    })))
 }
 
 /// The sector of the origin of `h`, on the side of the face of `h`.
@@ -94,7 +104,10 @@ fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector
     let at = |v: VertexId| vector(mesh.positions()[v.index()]);
     let sector = sector_of(topology, sharpness, h);
     let neighbours: Neighbours = sector.neighbours(topology).map(at).collect();
-    let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0);
+    let slot = sector
+        .outgoing(topology)
+        .position(|other| other == h)
+        .unwrap_or(0);
     VertexSector {
         at: at(topology.origin(h)),
         neighbours,
@@ -111,12 +124,20 @@ pub(crate) fn sector_of(topology: &Topology, sharpness: &Sharpness<'_>, h: HalfE
     if !sharpness.is_tagged(vertex) {
         // A closed ring has no beginning of its own.
         let first = if open { topology.outgoing(vertex) } else { h };
-        let shape = RingShape { open, ..RingShape::interior(valence) };
+        let shape = RingShape {
+            open,
+            ..RingShape::interior(valence)
+        };
         return Sector { first, shape };
     }
     let sectors = sharpness.sectors(vertex);
-    let own = sectors.iter().find(|sector| sector.outgoing(topology).any(|other| other == h));
-    own.copied().unwrap_or(Sector { first: h, shape: RingShape::interior(valence) })
+    let own = sectors
+        .iter()
+        .find(|sector| sector.outgoing(topology).any(|other| other == h));
+    own.copied().unwrap_or(Sector {
+        first: h,
+        shape: RingShape::interior(valence),
+    })
 }
 
 #[cfg(test)]
@@ -128,7 +149,15 @@ mod tests {
     #[test]
     fn regular_faces_are_those_whose_sectors_are() {
         let (mut regular_faces, mut others) = (0, 0);
-        for name in ["tetrahedron", "icosphere", "torus", "sheet", "head", "cup", "shoe"] {
+        for name in [
+            "tetrahedron",
+            "icosphere",
+            "torus",
+            "sheet",
+            "head",
+            "cup",
+            "shoe",
+        ] {
             let mesh = stirred(name, 4);
             let (topology, sharpness) = (mesh.topology(), Sharpness::of(&mesh));
             let large = LargeRings::of(&mesh);
@@ -145,9 +174,16 @@ mod tests {
                     _ => None,
                 };
                 assert_eq!(found, expected, "{name}, face {face}");
-                *(if found.is_some() { &mut regular_faces } else { &mut others }) += 1;
+                *(if found.is_some() {
+                    &mut regular_faces
+                } else {
+                    &mut others
+                }) += 1;
             }
         }
-        assert!(regular_faces > 1000 && others > 100, "{regular_faces}, {others}");
+        assert!(
+            regular_faces > 1000 && others > 100,
+            "{regular_faces}, {others}"
+        );
     }
 }

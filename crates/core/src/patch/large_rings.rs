@@ -49,15 +49,23 @@ impl LargeRings {
         }
         let levels = sharpness.fading_levels();
         // Where something fades, it may do so beside any of them.
-        for (vertex, ring) in large.0.iter_mut().filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v)) {
-            ring.whole = WholeRing::of(mesh, sharpness, (*vertex, levels), rules, poll)?.map(Arc::new);
+        for (vertex, ring) in large
+            .0
+            .iter_mut()
+            .filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v))
+        {
+            ring.whole =
+                WholeRing::of(mesh, sharpness, (*vertex, levels), rules, poll)?.map(Arc::new);
         }
         Ok(large)
     }
 
     /// What becomes of the ring of a vertex, if it is one of them and tags count.
     pub(super) fn whole(&self, vertex: VertexId) -> Option<&Arc<WholeRing>> {
-        let number = self.0.binary_search_by_key(&vertex, |&(vertex, _)| vertex).ok()?;
+        let number = self
+            .0
+            .binary_search_by_key(&vertex, |&(vertex, _)| vertex)
+            .ok()?;
         self.0[number].1.whole.as_ref()
     }
 
@@ -65,9 +73,18 @@ impl LargeRings {
     pub(crate) fn of(mesh: &Mesh) -> Self {
         let topology = mesh.topology();
         let mut faces = vec![0u32; mesh.vertex_count()];
-        mesh.triangles().as_flattened().iter().for_each(|&v| faces[v as usize] += 1);
-        let large = topology.vertices().filter(|v| faces[v.index()] as usize > LARGEST_RING);
-        Self(large.map(|vertex| (vertex, Ring::of(mesh, vertex))).collect())
+        mesh.triangles()
+            .as_flattened()
+            .iter()
+            .for_each(|&v| faces[v as usize] += 1);
+        let large = topology
+            .vertices()
+            .filter(|v| faces[v.index()] as usize > LARGEST_RING);
+        Self(
+            large
+                .map(|vertex| (vertex, Ring::of(mesh, vertex)))
+                .collect(),
+        )
     }
 
     /// The sector of the origin of `h` on the side of its face, if it is one of them.
@@ -76,28 +93,50 @@ impl LargeRings {
         let at = |v: VertexId| vector(mesh.positions()[v.index()]);
         let neighbours: Neighbours = near.neighbours.into_iter().map(at).collect();
         let (centre, slot, far) = (near.centre, near.slot, near.far);
-        Some(VertexSector { at: at(mesh.topology().origin(h)), neighbours, centre, slot, far })
+        Some(VertexSector {
+            at: at(mesh.topology().origin(h)),
+            neighbours,
+            centre,
+            slot,
+            far,
+        })
     }
 
     /// What [`Self::sector`] is made of.
     pub(super) fn near(&self, topology: &Topology, h: HalfEdgeId) -> Option<Near> {
         let vertex = topology.origin(h);
-        let number = self.0.binary_search_by_key(&vertex, |&(vertex, _)| vertex).ok()?;
+        let number = self
+            .0
+            .binary_search_by_key(&vertex, |&(vertex, _)| vertex)
+            .ok()?;
         let ring = &self.0[number].1;
         // The neighbour after the face's next corner is there too.
         let after = KEPT / 2;
         let forward = core::iter::successors(Some(h), |h| topology.twin(h.previous()));
         let on = forward.take(after).map(|h| topology.opposite(h));
-        let back = core::iter::successors(Some(h), |&h| topology.twin(h).map(HalfEdgeId::next)).skip(1);
-        let before: Vec<VertexId> = back.take(KEPT - after - 1).map(|h| topology.target(h)).collect();
+        let back =
+            core::iter::successors(Some(h), |&h| topology.twin(h).map(HalfEdgeId::next)).skip(1);
+        let before: Vec<VertexId> = back
+            .take(KEPT - after - 1)
+            .map(|h| topology.target(h))
+            .collect();
         let mut neighbours = Vec::with_capacity(KEPT + 2);
         let Some([first, last]) = ring.ends else {
             neighbours.push(topology.target(h));
             neighbours.extend(on);
             neighbours.extend(before.into_iter().rev());
-            let far = Far::Mean { valence: ring.valence, mean: ring.mean };
+            let far = Far::Mean {
+                valence: ring.valence,
+                mean: ring.mean,
+            };
             let centre = Centre::Smooth { sharp: None };
-            return Some(Near { neighbours, centre, slot: 0, far, number });
+            return Some(Near {
+                neighbours,
+                centre,
+                slot: 0,
+                far,
+                number,
+            });
         };
         let after_first = before.len() + 1 == KEPT - after;
         neighbours.extend(after_first.then_some(first));
@@ -107,8 +146,17 @@ impl LargeRings {
         neighbours.extend(on);
         let before_last = neighbours.len() - slot == after + 1;
         neighbours.extend(before_last.then_some(last));
-        let far = Far::Ends { after_first, before_last };
-        Some(Near { neighbours, centre: Centre::Crease, slot, far, number })
+        let far = Far::Ends {
+            after_first,
+            before_last,
+        };
+        Some(Near {
+            neighbours,
+            centre: Centre::Crease,
+            slot,
+            far,
+            number,
+        })
     }
 
     /// The vertices, in the order of their numbers.
@@ -135,10 +183,21 @@ pub(super) struct Near {
 impl Ring {
     fn of(mesh: &Mesh, vertex: VertexId) -> Self {
         let ring: Vec<VertexId> = mesh.topology().ring(vertex).collect();
-        let sum: DVec3 = ring.iter().map(|v| vector(mesh.positions()[v.index()])).sum();
-        let ends = ring.first().zip(ring.last()).filter(|_| mesh.topology().is_boundary(vertex));
+        let sum: DVec3 = ring
+            .iter()
+            .map(|v| vector(mesh.positions()[v.index()]))
+            .sum();
+        let ends = ring
+            .first()
+            .zip(ring.last())
+            .filter(|_| mesh.topology().is_boundary(vertex));
         let ends = ends.map(|(&a, &b)| [a, b]);
-        Self { valence: ring.len(), mean: sum / ring.len() as f64, ends, whole: None }
+        Self {
+            valence: ring.len(),
+            mean: sum / ring.len() as f64,
+            ends,
+            whole: None,
+        }
     }
 }
 
@@ -152,14 +211,26 @@ pub(super) mod tests {
     /// A fan of so many faces around vertex 0, closed or not, over an uneven rim with a second fan around it.
     pub(in crate::patch) fn fan(faces: usize, is_closed: bool) -> Mesh {
         let rim = if is_closed { faces } else { faces + 1 };
-        let turn = if is_closed { core::f64::consts::TAU } else { 3.0 };
+        let turn = if is_closed {
+            core::f64::consts::TAU
+        } else {
+            3.0
+        };
         let point = |i: usize, radius: f64| {
             let angle = turn * i as f64 / faces as f64;
             let radius = radius * (1.0 + 0.2 * (7.0 * angle).sin());
-            [radius * angle.cos(), radius * angle.sin(), 0.3 * (3.0 * angle + radius).sin()]
+            [
+                radius * angle.cos(),
+                radius * angle.sin(),
+                0.3 * (3.0 * angle + radius).sin(),
+            ]
         };
         let mut positions = vec![[0.1, -0.1, 0.4]];
-        positions.extend((0..rim).map(|i| point(i, 1.0)).chain((0..rim).map(|i| point(i, 1.5))));
+        positions.extend(
+            (0..rim)
+                .map(|i| point(i, 1.0))
+                .chain((0..rim).map(|i| point(i, 1.5))),
+        );
         let mut triangles = Vec::new();
         for i in 0..faces {
             let [a, b] = [i, (i + 1) % rim].map(|i| 1 + i as u32);
@@ -170,7 +241,12 @@ pub(super) mod tests {
     }
 
     /// The limits of the middles of all edges some levels down, in the same order for the same face.
-    pub(in crate::patch) fn limits(patch: &Patch, rules: &Rules<'_>, levels: usize, found: &mut Vec<DVec3>) {
+    pub(in crate::patch) fn limits(
+        patch: &Patch,
+        rules: &Rules<'_>,
+        levels: usize,
+        found: &mut Vec<DVec3>,
+    ) {
         let refined = patch.refined(rules);
         (0..3).for_each(|edge| found.push(refined.middle(edge).position));
         if levels > 0 {
@@ -193,10 +269,21 @@ pub(super) mod tests {
             let mesh = fan(faces, is_closed);
             let (sharpness, large) = (Sharpness::of(&mesh), LargeRings::of(&mesh));
             assert_eq!(large.0.len(), 1);
-            for face in [0, 1, 2, KEPT / 2 - 1, KEPT / 2, KEPT / 2 + 1, faces / 2, faces - 2, faces - 1] {
+            for face in [
+                0,
+                1,
+                2,
+                KEPT / 2 - 1,
+                KEPT / 2,
+                KEPT / 2 + 1,
+                faces / 2,
+                faces - 2,
+                faces - 1,
+            ] {
                 let [near, whole] = [&large, &LargeRings::default()].map(|large| {
                     let mut found = Vec::new();
-                    let patch = root_patch(&mesh, &sharpness, large, FaceId(3 * face as u32), &rules);
+                    let patch =
+                        root_patch(&mesh, &sharpness, large, FaceId(3 * face as u32), &rules);
                     if faces == 500 {
                         let mut points = 0;
                         patch.for_each_hull_point(|_| points += 1);
@@ -213,7 +300,10 @@ pub(super) mod tests {
                     found
                 });
                 for (a, b) in near.iter().zip(&whole) {
-                    assert!(a.distance(*b) < 1e-12, "{faces} {is_closed} {face}: {a} {b}");
+                    assert!(
+                        a.distance(*b) < 1e-12,
+                        "{faces} {is_closed} {face}: {a} {b}"
+                    );
                 }
             }
         }

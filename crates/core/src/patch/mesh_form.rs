@@ -98,7 +98,11 @@ fn first_of_part(part: usize) -> HalfEdgeId {
 
 impl MeshForm {
     fn new(mesh: Mesh) -> Self {
-        Self { mesh, step: OnceLock::new(), samples: Default::default() }
+        Self {
+            mesh,
+            step: OnceLock::new(),
+            samples: Default::default(),
+        }
     }
 
     /// The limits of all vertices so many levels below, the corners left out.
@@ -107,7 +111,9 @@ impl MeshForm {
         let found = match known.get() {
             Some(found) => found,
             None => {
-                let found = self.step(rules).samples(self.mesh.vertex_count(), levels, rules);
+                let found = self
+                    .step(rules)
+                    .samples(self.mesh.vertex_count(), levels, rules);
                 known.get_or_init(|| found)
             }
         };
@@ -139,18 +145,42 @@ impl Step {
             None => masks.vertex_weights(*source),
             Some(edge) => masks.edge_weights(edges[edge]),
         };
-        let row = |source| summed(row(source).into_iter().map(|(v, weight)| (v.0, weight)).collect());
+        let row = |source| {
+            summed(
+                row(source)
+                    .into_iter()
+                    .map(|(v, weight)| (v.0, weight))
+                    .collect(),
+            )
+        };
         let rows = sources.iter().map(row).collect();
         let middles = [0, 1, 2].map(|edge| {
             let corner = middle_corner(edge);
-            let position = rules.table().position_row(&mesh, mesh.topology().origin(corner))?;
-            Ok(Middle { position, tangents: rules.table().tangent_rows(&mesh, corner)? })
+            let position = rules
+                .table()
+                .position_row(&mesh, mesh.topology().origin(corner))?;
+            Ok(Middle {
+                position,
+                tangents: rules.table().tangent_rows(&mesh, corner)?,
+            })
         });
         let parts = [0, 1, 2, 3].map(|part| {
-            let (own, points) = surroundings(&mesh, &Sharpness::of(&mesh), HalfEdgeId::of(FaceId(part), 0));
-            Part { form: Arc::downgrade(&rules.forms().part(own)), points }
+            let (own, points) = surroundings(
+                &mesh,
+                &Sharpness::of(&mesh),
+                HalfEdgeId::of(FaceId(part), 0),
+            );
+            Part {
+                form: Arc::downgrade(&rules.forms().part(own)),
+                points,
+            }
         });
-        Self { mesh, rows, middles, parts }
+        Self {
+            mesh,
+            rows,
+            middles,
+            parts,
+        }
     }
 
     /// The points after the step.
@@ -165,23 +195,34 @@ impl Step {
         after: &[DVec3],
         rules: &Rules<'_>,
     ) -> (Arc<MeshForm>, Vec<DVec3>) {
-        let points = self.parts[part].points.iter().map(|v| after[v.index()]).collect();
+        let points = self.parts[part]
+            .points
+            .iter()
+            .map(|v| after[v.index()])
+            .collect();
         (self.form_of_part(part, rules), points)
     }
 
     fn form_of_part(&self, part: usize, rules: &Rules<'_>) -> Arc<MeshForm> {
         self.parts[part].form.upgrade().unwrap_or_else(|| {
             let first = HalfEdgeId::of(FaceId(part as u32), 0);
-            rules.forms().part(surroundings(&self.mesh, &Sharpness::of(&self.mesh), first).0)
+            rules
+                .forms()
+                .part(surroundings(&self.mesh, &Sharpness::of(&self.mesh), first).0)
         })
     }
 
     /// The limits of all vertices so many levels below the face before the step, which has `before` points.
-    fn samples(&self, before: usize, levels: usize, rules: &Rules<'_>) -> Result<Samples, LimitError> {
+    fn samples(
+        &self,
+        before: usize,
+        levels: usize,
+        rules: &Rules<'_>,
+    ) -> Result<Samples, LimitError> {
         let unit = 1 << levels;
         let corners: [Place; 3] = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
-        let middles =
-            [0, 1, 2].map(|edge| [0, 1, 2].map(|i| (corners[edge][i] + corners[(edge + 1) % 3][i]) / 2));
+        let middles = [0, 1, 2]
+            .map(|edge| [0, 1, 2].map(|i| (corners[edge][i] + corners[(edge + 1) % 3][i]) / 2));
         let mut samples = Samples::new();
         for (&place, middle) in middles.iter().zip(&self.middles) {
             let row = &middle.as_ref().map_err(Clone::clone)?.position;
@@ -191,11 +232,14 @@ impl Step {
         for part in parts {
             let corners = child_corners(corners, middles, part);
             for (place, weights) in self.form_of_part(part, rules).samples(levels - 1, rules)? {
-                let place =
-                    [0, 1, 2].map(|i| (0..3).map(|c| 2 * place[c] * corners[c][i]).sum::<i32>() / unit);
+                let place = [0, 1, 2]
+                    .map(|i| (0..3).map(|c| 2 * place[c] * corners[c][i]).sum::<i32>() / unit);
                 if samples.iter().all(|&(known, _)| known != place) {
                     let points = self.parts[part].points.iter().map(|v| v.0);
-                    samples.push((place, self.by_points_before(before, points.zip(weights.iter().copied()))));
+                    samples.push((
+                        place,
+                        self.by_points_before(before, points.zip(weights.iter().copied())),
+                    ));
                 }
             }
         }
@@ -206,14 +250,19 @@ impl Step {
     fn by_points_before(&self, before: usize, after: impl Iterator<Item = (u32, f64)>) -> Vec<f64> {
         let mut weights = vec![0.0; before];
         for (point, weight) in after {
-            self.rows[point as usize].iter().for_each(|&(v, share)| weights[v as usize] += weight * share);
+            self.rows[point as usize]
+                .iter()
+                .for_each(|&(v, share)| weights[v as usize] += weight * share);
         }
         weights
     }
 
     /// The limit position of the new vertex on an edge of the face.
     pub(super) fn middle(&self, edge: usize, after: &[DVec3]) -> Result<DVec3, LimitError> {
-        self.middles[edge].as_ref().map(|middle| sum(&middle.position, after)).map_err(Clone::clone)
+        self.middles[edge]
+            .as_ref()
+            .map(|middle| sum(&middle.position, after))
+            .map_err(Clone::clone)
     }
 
     /// The limit normal of the new vertex on an edge of the face, on the face's side.
@@ -245,8 +294,11 @@ fn middle_corner(edge: usize) -> HalfEdgeId {
 
 /// The unit normal of the plane that two tangents at a point span, where it is clear that they do.
 fn clear_normal(at: DVec3, tangents: &[Row; 2], points: &[DVec3]) -> Option<DVec3> {
-    let size =
-        |row: &Row| row.iter().map(|&(v, _)| points[v as usize].distance_squared(at)).fold(0.0, f64::max);
+    let size = |row: &Row| {
+        row.iter()
+            .map(|&(v, _)| points[v as usize].distance_squared(at))
+            .fold(0.0, f64::max)
+    };
     let [first, second] = tangents.each_ref().map(|row| sum(row, points));
     let squares = [first.length_squared(), second.length_squared()];
     let least = CLEAR * CLEAR * tangents.iter().map(size).fold(0.0, f64::max);
@@ -259,7 +311,9 @@ fn clear_normal(at: DVec3, tangents: &[Row; 2], points: &[DVec3]) -> Option<DVec
 }
 
 fn sum(row: &Row, points: &[DVec3]) -> DVec3 {
-    row.iter().fold(DVec3::ZERO, |sum, &(v, weight)| sum + weight * points[v as usize])
+    row.iter().fold(DVec3::ZERO, |sum, &(v, weight)| {
+        sum + weight * points[v as usize]
+    })
 }
 
 /// The forms of one scheme.
@@ -280,7 +334,12 @@ impl Forms {
     /// The form that is kept, or a new one, which is kept where there are fewer than `most`.
     fn known(&self, mesh: Mesh, most: usize) -> Arc<MeshForm> {
         let key = FormKey::of(&mesh);
-        if let Some(known) = self.0.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
+        if let Some(known) = self
+            .0
+            .read()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get(&key)
+        {
             return Arc::clone(known);
         }
         let form = Arc::new(MeshForm::new(mesh));
@@ -308,8 +367,16 @@ impl FormKey {
         Self {
             triangles: mesh.triangles().to_vec(),
             twins: mesh.topology().raw_twins().to_vec(),
-            creases: tags.creases.iter().map(|tag| (tag.vertices, tag.sharpness.to_bits())).collect(),
-            corners: tags.corners.iter().map(|tag| (tag.vertex, tag.sharpness.to_bits())).collect(),
+            creases: tags
+                .creases
+                .iter()
+                .map(|tag| (tag.vertices, tag.sharpness.to_bits()))
+                .collect(),
+            corners: tags
+                .corners
+                .iter()
+                .map(|tag| (tag.vertex, tag.sharpness.to_bits()))
+                .collect(),
         }
     }
 }
@@ -333,26 +400,42 @@ mod tests {
             return vec![[0, 1, 2].map(|corner| piece.control_point(corner))];
         }
         let refined = piece.refined(rules);
-        (0..4).flat_map(|part| parts(&refined.part(part), levels - 1, rules)).collect()
+        (0..4)
+            .flat_map(|part| parts(&refined.part(part), levels - 1, rules))
+            .collect()
     }
 
     /// Whatever is shared between faces, their parts are those of uniform refinement.
     #[test]
     fn steps_are_those_of_uniform_refinement() {
         for name in ["cup", "sheet", "tetrahedron"] {
-            let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
-            let vertices = mesh.topology().ends(HalfEdgeId::of(FaceId(1), 2)).map(|v| v.0);
-            let creases = vec![CreaseTag { vertices, sharpness: 1.4 }];
-            let corners = vec![CornerTag { vertex: vertices[0], sharpness: 2.5 }];
+            let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+                .unwrap()
+                .0;
+            let vertices = mesh
+                .topology()
+                .ends(HalfEdgeId::of(FaceId(1), 2))
+                .map(|v| v.0);
+            let creases = vec![CreaseTag {
+                vertices,
+                sharpness: 1.4,
+            }];
+            let corners = vec![CornerTag {
+                vertex: vertices[0],
+                sharpness: 2.5,
+            }];
             let mesh = mesh.with_tags(Tags { creases, corners }).unwrap();
             let near = |a: &[DVec3; 3], b: &[DVec3; 3]| {
-                let turned =
-                    |turn: usize| (0..3).all(|i| a[i].distance(b[(i + turn) % 3]) < 1e-13 * mesh.diagonal());
+                let turned = |turn: usize| {
+                    (0..3).all(|i| a[i].distance(b[(i + turn) % 3]) < 1e-13 * mesh.diagonal())
+                };
                 (0..3).any(turned)
             };
             for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
                 let rules = Rules::of(scheme);
-                let fine = uniform(&mesh, scheme, &UniformOptions::default().levels(LEVELS)).unwrap().mesh;
+                let fine = uniform(&mesh, scheme, &UniformOptions::default().levels(LEVELS))
+                    .unwrap()
+                    .mesh;
                 let sharpness = Sharpness::of(&mesh);
                 for face in mesh.topology().faces().take(60) {
                     let piece = Patch::Mesh(MeshPatch::of(&mesh, &sharpness, face, &rules));
@@ -374,7 +457,9 @@ mod tests {
     #[test]
     fn samples_are_limits_of_uniform_refinement() {
         for name in ["cup", "sheet", "tetrahedron"] {
-            let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+            let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+                .unwrap()
+                .0;
             let (scheme, sharpness) = (ModifiedButterfly, Sharpness::of(&mesh));
             let rules = Rules::of(&scheme);
             let fine = limit_reference(&mesh, &scheme, SAMPLED_LEVELS).unwrap();
@@ -383,7 +468,8 @@ mod tests {
                 let from = face.index() << (2 * SAMPLED_LEVELS);
                 for part in from..from + (1 << (2 * SAMPLED_LEVELS)) {
                     for corner in fine.as_triangles().corners(part).map(vector) {
-                        found.retain(|&(_, point)| point.distance(corner) > 1e-12 * mesh.diagonal());
+                        found
+                            .retain(|&(_, point)| point.distance(corner) > 1e-12 * mesh.diagonal());
                     }
                 }
                 assert!(found.is_empty(), "{name}: {found:?} of {face:?}");
@@ -394,12 +480,22 @@ mod tests {
     /// Forms are kept once for all faces, and only so many.
     #[test]
     fn parts_of_regular_surroundings_share_a_form() {
-        let mesh = Mesh::from_soup(&models::find("torus").unwrap().soup(), &Default::default()).unwrap().0;
+        let mesh = Mesh::from_soup(&models::find("torus").unwrap().soup(), &Default::default())
+            .unwrap()
+            .0;
         let rules = Rules::of(&ModifiedButterfly);
         for face in mesh.topology().faces() {
-            parts(&Patch::Mesh(MeshPatch::of(&mesh, &Sharpness::of(&mesh), face, &rules)), 2, &rules);
+            parts(
+                &Patch::Mesh(MeshPatch::of(&mesh, &Sharpness::of(&mesh), face, &rules)),
+                2,
+                &rules,
+            );
         }
         let forms = rules.forms().0.read().unwrap().len();
-        assert!(forms < mesh.face_count() / 4, "{forms} of {}", mesh.face_count());
+        assert!(
+            forms < mesh.face_count() / 4,
+            "{forms} of {}",
+            mesh.face_count()
+        );
     }
 }

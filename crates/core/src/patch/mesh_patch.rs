@@ -22,10 +22,21 @@ pub(crate) struct MeshPatch {
 
 impl MeshPatch {
     /// The piece over a face of a mesh.
-    pub(crate) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, face: FaceId, rules: &Rules<'_>) -> Self {
+    pub(crate) fn of(
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        face: FaceId,
+        rules: &Rules<'_>,
+    ) -> Self {
         let (small, sources) = surroundings(mesh, sharpness, HalfEdgeId::of(face, 0));
-        let points = sources.iter().map(|v| vector(mesh.positions()[v.index()])).collect();
-        Self { form: rules.forms().root(small), points }
+        let points = sources
+            .iter()
+            .map(|v| vector(mesh.positions()[v.index()]))
+            .collect();
+        Self {
+            form: rules.forms().root(small),
+            points,
+        }
     }
 
     fn corners(&self) -> [VertexId; 3] {
@@ -40,16 +51,28 @@ impl MeshPatch {
     /// The corners and their neighbours; some more than once.
     pub(crate) fn points(&self) -> impl Iterator<Item = DVec3> + '_ {
         let topology = self.form.mesh.topology();
-        let around = self.corners().into_iter().flat_map(|v| core::iter::once(v).chain(topology.ring(v)));
+        let around = self
+            .corners()
+            .into_iter()
+            .flat_map(|v| core::iter::once(v).chain(topology.ring(v)));
         around.map(|v| self.points[v.index()])
     }
 
     /// The limits of all vertices [`SAMPLED_LEVELS`] below, the corners left out, and where they stand; none after a failure, which
     /// the rules keep.
     pub(crate) fn samples(&self, rules: &Rules<'_>) -> Vec<(Place, DVec3)> {
-        let limit = |weights: &[f64]| weights.iter().zip(&self.points).map(|(&w, &point)| w * point).sum();
+        let limit = |weights: &[f64]| {
+            weights
+                .iter()
+                .zip(&self.points)
+                .map(|(&w, &point)| w * point)
+                .sum()
+        };
         match self.form.samples(SAMPLED_LEVELS, rules) {
-            Ok(samples) => samples.iter().map(|(place, weights)| (*place, limit(weights))).collect(),
+            Ok(samples) => samples
+                .iter()
+                .map(|(place, weights)| (*place, limit(weights)))
+                .collect(),
             Err(why) => {
                 rules.fail(why);
                 Vec::new()
@@ -60,7 +83,11 @@ impl MeshPatch {
     /// The piece refined once.
     pub(crate) fn refined<'a>(&self, rules: &'a Rules<'a>) -> RefinedMeshPatch<'a> {
         let points = self.form.step(rules).points(&self.points);
-        RefinedMeshPatch { form: Arc::clone(&self.form), points, rules }
+        RefinedMeshPatch {
+            form: Arc::clone(&self.form),
+            points,
+            rules,
+        }
     }
 }
 
@@ -76,7 +103,10 @@ pub(crate) struct RefinedMeshPatch<'a> {
 impl RefinedMeshPatch<'_> {
     /// A part; numbered as [`super::box_spline::Refined::part`] does.
     pub(crate) fn part(&self, part: usize) -> Patch {
-        let (form, points) = self.form.step(self.rules).part(part, &self.points, self.rules);
+        let (form, points) = self
+            .form
+            .step(self.rules)
+            .part(part, &self.points, self.rules);
         Patch::Mesh(MeshPatch { form, points })
     }
 
@@ -84,10 +114,16 @@ impl RefinedMeshPatch<'_> {
     /// rules keep.
     pub(crate) fn middle<L: Limit>(&self, edge: usize) -> L {
         let step = self.form.step(self.rules);
-        let position = step.middle(edge, &self.points).map_err(|why| self.rules.fail(why));
+        let position = step
+            .middle(edge, &self.points)
+            .map_err(|why| self.rules.fail(why));
         L::of(position.unwrap_or_default(), || {
             let normal = step.middle_normal(edge, &self.points, self.rules.table());
-            vector(normal.map_err(|why| self.rules.fail(why)).unwrap_or_default())
+            vector(
+                normal
+                    .map_err(|why| self.rules.fail(why))
+                    .unwrap_or_default(),
+            )
         })
     }
 }

@@ -86,11 +86,17 @@ impl Limit for LimitPoint {
         let [a, b, c, d, e, f] = *ring;
         let along = (a - d) + 0.5 * ((b - e) + (f - c));
         let across = SINE * ((b - e) + (c - f));
-        Self { position: DVec3::regular(at, ring), normal: unit_or_zero(along.cross(across)) }
+        Self {
+            position: DVec3::regular(at, ring),
+            normal: unit_or_zero(along.cross(across)),
+        }
     }
 
     fn of(position: DVec3, normal: impl FnOnce() -> DVec3) -> Self {
-        Self { position, normal: normal() }
+        Self {
+            position,
+            normal: normal(),
+        }
     }
 }
 
@@ -268,7 +274,9 @@ impl RefinedPatch<'_> {
     #[inline]
     pub(crate) fn extraordinary(&self, part: usize) -> Option<Cow<'_, ExtraordinaryPatch>> {
         match self {
-            Self::Extraordinary(refined) if !refined.is_regular(part) => Some(Cow::Borrowed(refined.own())),
+            Self::Extraordinary(refined) if !refined.is_regular(part) => {
+                Some(Cow::Borrowed(refined.own()))
+            }
             Self::Sectors(refined) => {
                 let is_small = |piece: &ExtraordinaryPatch| piece.ring.len() <= LARGEST_RING;
                 refined.extraordinary(part).filter(is_small).map(Cow::Owned)

@@ -52,7 +52,11 @@ pub(crate) const fn place(n: usize, j: usize, k: usize) -> usize {
 }
 
 const fn factorial(n: usize) -> f64 {
-    if n == 0 { 1.0 } else { n as f64 * factorial(n - 1) }
+    if n == 0 {
+        1.0
+    } else {
+        n as f64 * factorial(n - 1)
+    }
 }
 
 /// `n!/(i! j! k!)` by place.
@@ -62,7 +66,8 @@ pub(crate) const fn multinomials<const SIZE: usize>(n: usize) -> [f64; SIZE] {
     while k <= n {
         let mut j = 0;
         while j + k <= n {
-            all[place(n, j, k)] = factorial(n) / (factorial(n - j - k) * factorial(j) * factorial(k));
+            all[place(n, j, k)] =
+                factorial(n) / (factorial(n - j - k) * factorial(j) * factorial(k));
             j += 1;
         }
         k += 1;

@@ -45,12 +45,20 @@ impl PolePatch {
         let half = KEPT / 2;
         // One more follows the face than goes before it.
         whole.ring.drain(half + 1..valence - (half - 1));
-        Self { near: whole, valence, mean }
+        Self {
+            near: whole,
+            valence,
+            mean,
+        }
     }
 
     /// The piece of which only as much of the ring is there as is kept, given the number of all neighbours and their mean.
     pub(super) fn near(near: ExtraordinaryPatch, valence: usize, mean: DVec3) -> Self {
-        Self { near, valence, mean }
+        Self {
+            near,
+            valence,
+            mean,
+        }
     }
 
     pub(crate) fn valence(&self) -> usize {
@@ -84,7 +92,11 @@ impl PolePatch {
         let shares = self.valence as f64 * beta;
         let at = (1.0 - shares) * self.near.at + shares * self.mean;
         let mean = 0.375 * self.near.at + 0.625 * self.mean;
-        RefinedPole { near: self.near.refined_to(at), valence: self.valence, mean }
+        RefinedPole {
+            near: self.near.refined_to(at),
+            valence: self.valence,
+            mean,
+        }
     }
 }
 
@@ -99,9 +111,11 @@ impl RefinedPole {
     /// One of the four parts, numbered like the face's corners; 3 is the middle one.
     pub(crate) fn part(&self, part: usize) -> Patch {
         match self.near.part(part) {
-            Patch::Extraordinary(near) => {
-                Patch::Pole(Box::new(PolePatch { near: *near, valence: self.valence, mean: self.mean }))
-            }
+            Patch::Extraordinary(near) => Patch::Pole(Box::new(PolePatch {
+                near: *near,
+                valence: self.valence,
+                mean: self.mean,
+            })),
             regular => regular,
         }
     }
@@ -129,7 +143,8 @@ mod tests {
     use crate::scheme::Loop;
 
     fn arbitrary(count: usize) -> Vec<DVec3> {
-        let point = |t: f64| DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin());
+        let point =
+            |t: f64| DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin());
         (0..count).map(|i| point(i as f64)).collect()
     }
 
@@ -146,8 +161,12 @@ mod tests {
             let points = arbitrary(valence + 6);
             let outer = core::array::from_fn(|i| points[valence + 1 + i]);
             let ring = points[1..=valence].to_vec();
-            let mut whole =
-                ExtraordinaryPatch { corner: valence % 3, at: points[0], ring: ring.into(), outer };
+            let mut whole = ExtraordinaryPatch {
+                corner: valence % 3,
+                at: points[0],
+                ring: ring.into(),
+                outer,
+            };
             let mut pole = PolePatch::of(whole.clone());
             assert_eq!(pole.near.ring.len(), KEPT);
             for level in 0..4 * BEYOND {
@@ -160,14 +179,19 @@ mod tests {
                     (0..6).for_each(|i| near(ring[i], around[i], &what));
                 }
                 for part in (0..4).filter(|&part| part != whole.corner) {
-                    let (Patch::Regular(a), Patch::Regular(b)) = (expected.part(part), found.part(part))
+                    let (Patch::Regular(a), Patch::Regular(b)) =
+                        (expected.part(part), found.part(part))
                     else {
                         panic!("{what}");
                     };
                     (0..12).for_each(|i| near(a[i], b[i], &what));
                 }
-                let Patch::Extraordinary(next) = expected.part(whole.corner) else { panic!("{what}") };
-                let Patch::Pole(next_pole) = found.part(pole.near.corner) else { panic!("{what}") };
+                let Patch::Extraordinary(next) = expected.part(whole.corner) else {
+                    panic!("{what}")
+                };
+                let Patch::Pole(next_pole) = found.part(pole.near.corner) else {
+                    panic!("{what}")
+                };
                 (whole, pole) = (*next, *next_pole);
                 let mean = whole.ring.iter().sum::<DVec3>() / valence as f64;
                 near(mean, pole.mean, &what);

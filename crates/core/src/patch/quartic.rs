@@ -21,7 +21,9 @@ const LANES: usize = 8;
 const HALF: usize = LANES / 2;
 
 /// `4!/(p! k! (4−p−k)!)` in the order of the coefficients.
-const MULTINOMIAL: [f64; 15] = [1.0, 4.0, 6.0, 4.0, 1.0, 4.0, 12.0, 12.0, 4.0, 6.0, 12.0, 6.0, 4.0, 4.0, 1.0];
+const MULTINOMIAL: [f64; 15] = [
+    1.0, 4.0, 6.0, 4.0, 1.0, 4.0, 12.0, 12.0, 4.0, 6.0, 12.0, 6.0, 4.0, 4.0, 1.0,
+];
 
 /// Rounding leaves no more of a cross product that is zero than this, where the greatest coefficient is 1 and the
 /// piece stands at the origin: either tangent is some twenty terms of up to four times that, each off by 1e-16.
@@ -51,12 +53,24 @@ impl Quartic {
     #[inline]
     pub(crate) fn with_scale(coefficients: [DVec3; 15]) -> Self {
         let others = coefficients[1..].iter();
-        let size = others.fold(DVec3::ZERO, |most, a| most.max(a.abs())).max_element();
-        let tangent_scale = if SAFE_SIZES.contains(&size) { 1.0 } else { reciprocal_power(size) };
+        let size = others
+            .fold(DVec3::ZERO, |most, a| most.max(a.abs()))
+            .max_element();
+        let tangent_scale = if SAFE_SIZES.contains(&size) {
+            1.0
+        } else {
+            reciprocal_power(size)
+        };
         let scaled = tangent_scale * size;
         // Coordinates far from the origin have fewer digits to spare for differences.
-        let least = CROSS_ROUNDING * scaled * (scaled + tangent_scale * coefficients[0].abs().max_element());
-        Self { coefficients: by_axis(&coefficients), tangent_scale, least_square: least * least }
+        let least = CROSS_ROUNDING
+            * scaled
+            * (scaled + tangent_scale * coefficients[0].abs().max_element());
+        Self {
+            coefficients: by_axis(&coefficients),
+            tangent_scale,
+            least_square: least * least,
+        }
     }
 
     /// The coefficients, in the order of [`Self::with_scale`].
@@ -69,7 +83,11 @@ impl Quartic {
     pub(crate) fn powers(&self) -> ([DVec3; 3], [DVec3; 4], [DVec3; 5]) {
         let [x, y, z] = &self.coefficients;
         let a = |i: usize| DVec3::new(x[i], y[i], z[i]);
-        ([a(9), a(6), a(2)], [a(12), a(10), a(7), a(3)], [a(14), a(13), a(11), a(8), a(4)])
+        (
+            [a(9), a(6), a(2)],
+            [a(12), a(10), a(7), a(3)],
+            [a(14), a(13), a(11), a(8), a(4)],
+        )
     }
 
     /// The point at (u, v).
@@ -110,7 +128,9 @@ impl Quartic {
             }
             by_columns(&mut rows, sum);
             let places = (0..5).flat_map(|k| (0..5 - k).map(move |p| (p, k)));
-            net.iter_mut().zip(places).for_each(|(point, (p, k))| point[axis] = rows[p][k]);
+            net.iter_mut()
+                .zip(places)
+                .for_each(|(point, (p, k))| point[axis] = rows[p][k]);
         }
         BezierTriangle(net)
     }
@@ -129,8 +149,11 @@ impl Quartic {
     pub(crate) fn second_derivatives(&self, u: f64, v: f64) -> [DVec3; 3] {
         let [mut by_uu, mut by_uv, mut by_vv] = [DVec3::ZERO; 3];
         for (axis, a) in self.coefficients.iter().enumerate() {
-            let e =
-                [(12.0 * a[4] * v + 6.0 * a[3]) * v + 2.0 * a[2], 6.0 * a[8] * v + 2.0 * a[7], 2.0 * a[11]];
+            let e = [
+                (12.0 * a[4] * v + 6.0 * a[3]) * v + 2.0 * a[2],
+                6.0 * a[8] * v + 2.0 * a[7],
+                2.0 * a[11],
+            ];
             by_uu[axis] = horner(&second_derivative(&positions(a, v)), u);
             by_uv[axis] = horner(&derivative::<4, 3>(&slopes(a, v)), u);
             by_vv[axis] = horner(&e, u);
@@ -185,7 +208,12 @@ impl Quartic {
 
     /// The first `axes` coordinates of the points at several places (u, v), by axis: to the bit what rows give there.
     #[inline]
-    pub(crate) fn points_at<const N: usize>(&self, u: &[f64; N], v: &[f64; N], axes: usize) -> [[f64; N]; 3] {
+    pub(crate) fn points_at<const N: usize>(
+        &self,
+        u: &[f64; N],
+        v: &[f64; N],
+        axes: usize,
+    ) -> [[f64; N]; 3] {
         let mut points = [[0.0; N]; 3];
         for (points, a) in points.iter_mut().zip(&self.coefficients).take(axes) {
             *points = values_at(a, u, v);
@@ -232,9 +260,16 @@ impl Quartic {
             tangents[1][axis] = slopes(&self.coefficients[axis], v);
         }
         if self.tangent_scale != 1.0 {
-            tangents.as_flattened_mut().as_flattened_mut().iter_mut().for_each(|a| *a *= self.tangent_scale);
+            tangents
+                .as_flattened_mut()
+                .as_flattened_mut()
+                .iter_mut()
+                .for_each(|a| *a *= self.tangent_scale);
         }
-        NormalRow { tangents, least_square: self.least_square }
+        NormalRow {
+            tangents,
+            least_square: self.least_square,
+        }
     }
 }
 
@@ -242,7 +277,9 @@ impl Quartic {
 #[inline]
 pub(crate) fn coefficients<V: Blend>(net: &BezierTriangle<V>, first: usize) -> [V; 15] {
     let mut b = net.0;
-    b.iter_mut().zip(&TURNED[first]).for_each(|(b, &at)| *b = net.0[at]);
+    b.iter_mut()
+        .zip(&TURNED[first])
+        .for_each(|(b, &at)| *b = net.0[at]);
     let d0 = differences([b[0], b[1], b[2], b[3], b[4]]);
     let d1 = differences([b[5], b[6], b[7], b[8]]);
     let d2 = differences([b[9], b[10], b[11]]);
@@ -251,8 +288,12 @@ pub(crate) fn coefficients<V: Blend>(net: &BezierTriangle<V>, first: usize) -> [
     let [a10, a11, a12, a13] = differences([d0[1], d1[1], d2[1], d3[1]]);
     let [a20, a21, a22] = differences([d0[2], d1[2], d2[2]]);
     let [a30, a31] = differences([d0[3], d1[3]]);
-    let mut all = [a00, a01, a02, a03, a04, a10, a11, a12, a13, a20, a21, a22, a30, a31, d0[4]];
-    all.iter_mut().zip(MULTINOMIAL).for_each(|(a, factor)| *a = *a * factor);
+    let mut all = [
+        a00, a01, a02, a03, a04, a10, a11, a12, a13, a20, a21, a22, a30, a31, d0[4],
+    ];
+    all.iter_mut()
+        .zip(MULTINOMIAL)
+        .for_each(|(a, factor)| *a = *a * factor);
     all
 }
 
@@ -295,9 +336,15 @@ fn sum(differences: &mut [f64]) {
 fn by_columns(rows: &mut [[f64; 5]; 5], change: impl Fn(&mut [f64])) {
     for k in 0..5 {
         let mut column = [0.0; 5];
-        column.iter_mut().zip(rows.iter()).for_each(|(value, row)| *value = row[k]);
+        column
+            .iter_mut()
+            .zip(rows.iter())
+            .for_each(|(value, row)| *value = row[k]);
         change(&mut column[..5 - k]);
-        rows.iter_mut().zip(column).take(5 - k).for_each(|(row, value)| row[k] = value);
+        rows.iter_mut()
+            .zip(column)
+            .take(5 - k)
+            .for_each(|(row, value)| row[k] = value);
     }
 }
 
@@ -381,7 +428,11 @@ pub(crate) fn normals<const N: usize>(
         let y = s[2][l] * t[0][l] - s[0][l] * t[2][l];
         let z = s[0][l] * t[1][l] - s[1][l] * t[0][l];
         let square = x * x + y * y + z * z;
-        let factor = if square > least_square { 1.0 / square.sqrt() } else { 0.0 };
+        let factor = if square > least_square {
+            1.0 / square.sqrt()
+        } else {
+            0.0
+        };
         (normals[0][l], normals[1][l], normals[2][l]) = (x * factor, y * factor, z * factor);
     }
     normals
@@ -421,7 +472,11 @@ fn chunk_at<const N: usize>(row: &impl Row, start: f64, step: f64, first: f64) -
 /// A polynomial by its coefficients of powers, from the lowest.
 #[inline]
 fn horner<const N: usize>(c: &[f64; N], t: f64) -> f64 {
-    c.iter().rev().copied().reduce(|sum, c| sum * t + c).unwrap_or_default()
+    c.iter()
+        .rev()
+        .copied()
+        .reduce(|sum, c| sum * t + c)
+        .unwrap_or_default()
 }
 
 /// The coefficients of a polynomial's derivative.

@@ -38,7 +38,11 @@ impl<'s> Rules<'s> {
             Some(family) => family.scheme(),
             None => scheme,
         };
-        let kept = |k| family.filter(|_| k >= 2).map_or(0.0, |family| family.beta(k as u32));
+        let kept = |k| {
+            family
+                .filter(|_| k >= 2)
+                .map_or(0.0, |family| family.beta(k as u32))
+        };
         Self {
             scheme,
             family,
@@ -55,8 +59,19 @@ impl<'s> Rules<'s> {
 
     /// The same rules for another surface: what is found for one is known to both, and each has its own failures.
     pub(crate) fn sharing(&self) -> Self {
-        let Self { scheme, family, betas, .. } = *self;
-        Self { scheme, family, betas, found: Arc::clone(&self.found), failure: OnceLock::new() }
+        let Self {
+            scheme,
+            family,
+            betas,
+            ..
+        } = *self;
+        Self {
+            scheme,
+            family,
+            betas,
+            found: Arc::clone(&self.found),
+            failure: OnceLock::new(),
+        }
     }
 
     /// The scheme whose masks count.
@@ -106,14 +121,22 @@ impl<'s> Rules<'s> {
 impl Rules<'_> {
     /// The characteristic map of a valence; `None` for those that are not kept.
     pub(crate) fn characteristic(&self, valence: usize) -> Option<&Characteristic> {
-        let kept = self.found.characteristics.get(valence).filter(|_| valence >= 3)?;
+        let kept = self
+            .found
+            .characteristics
+            .get(valence)
+            .filter(|_| valence >= 3)?;
         Some(kept.get_or_init(|| Characteristic::of(valence)))
     }
 
     /// How much what stands beside the characteristic map of a valence can grow ([`settling::growth`]); `None` where that is not known.
     pub(crate) fn settling(&self, valence: usize) -> Option<f64> {
         let map = self.characteristic(valence)?;
-        *self.found.settling.get(valence)?.get_or_init(|| settling::growth(map, self.beta(valence)))
+        *self
+            .found
+            .settling
+            .get(valence)?
+            .get_or_init(|| settling::growth(map, self.beta(valence)))
     }
 }
 

@@ -31,10 +31,18 @@ impl Centre {
     /// What becomes of the centre of a sector with that shape, whose first edge is sharp where any is.
     pub(super) fn of(shape: RingShape) -> Self {
         match (shape.corner, shape.open) {
-            (true, true) => Self::Corner { open: true, sharp: None },
+            (true, true) => Self::Corner {
+                open: true,
+                sharp: None,
+            },
             (false, true) => Self::Crease,
-            (true, false) => Self::Corner { open: false, sharp: shape.dart.then_some(0) },
-            (false, false) => Self::Smooth { sharp: shape.dart.then_some(0) },
+            (true, false) => Self::Corner {
+                open: false,
+                sharp: shape.dart.then_some(0),
+            },
+            (false, false) => Self::Smooth {
+                sharp: shape.dart.then_some(0),
+            },
         }
     }
 }
@@ -53,7 +61,10 @@ pub(crate) enum Far {
     },
     /// In an open sector those after the first are left out, or those before the last, or both: the ends are all that
     /// counts of what is far.
-    Ends { after_first: bool, before_last: bool },
+    Ends {
+        after_first: bool,
+        before_last: bool,
+    },
 }
 
 /// A vertex with its neighbours, counter-clockwise, on the side of one of its faces.
@@ -71,7 +82,10 @@ pub(crate) struct VertexSector {
 impl VertexSector {
     /// Whether the sector ends at two sharp or boundary edges.
     pub(crate) fn is_open(&self) -> bool {
-        matches!(self.centre, Centre::Crease | Centre::Corner { open: true, .. })
+        matches!(
+            self.centre,
+            Centre::Crease | Centre::Corner { open: true, .. }
+        )
     }
 
     /// The neighbour `offset` slots on from the face's next corner.
@@ -92,7 +106,8 @@ impl VertexSector {
         match self.centre {
             Centre::Corner { .. } => self.at,
             Centre::Crease => {
-                0.75 * self.at + 0.125 * (self.neighbours[0] + self.neighbours[self.neighbours.len() - 1])
+                0.75 * self.at
+                    + 0.125 * (self.neighbours[0] + self.neighbours[self.neighbours.len() - 1])
             }
             Centre::Smooth { .. } => {
                 let (valence, sum) = match self.far {
@@ -162,12 +177,19 @@ impl SectorPatch {
     pub(crate) fn regular(&self) -> Option<Points> {
         let [a, b, c] = &self.0;
         let rings = [a.regular_ring()?, b.regular_ring()?, c.regular_ring()?];
-        Some(box_spline::assemble([a.at, b.at, c.at], rings.each_ref(), [0; 3]))
+        Some(box_spline::assemble(
+            [a.at, b.at, c.at],
+            rings.each_ref(),
+            [0; 3],
+        ))
     }
 
     /// The face as that of one irregular vertex inside the surface, if the other two corners are regular.
     pub(crate) fn extraordinary(&self) -> Option<(ExtraordinaryPatch, Far)> {
-        let corner = self.0.iter().position(|sector| sector.regular_ring().is_none())?;
+        let corner = self
+            .0
+            .iter()
+            .position(|sector| sector.regular_ring().is_none())?;
         let [sector, first, second] = [0, 1, 2].map(|i| &self.0[(corner + i) % 3]);
         if sector.centre != (Centre::Smooth { sharp: None }) || sector.neighbours.len() < 3 {
             return None;
@@ -177,7 +199,15 @@ impl SectorPatch {
         let mut ring = sector.neighbours.clone();
         ring.rotate_left(sector.slot);
         let outer = [before, past_first, between, past_second, after];
-        Some((ExtraordinaryPatch { corner, at: sector.at, ring, outer }, sector.far))
+        Some((
+            ExtraordinaryPatch {
+                corner,
+                at: sector.at,
+                ring,
+                outer,
+            },
+            sector.far,
+        ))
     }
 
     /// All points, corners first; some more than once.
@@ -187,7 +217,9 @@ impl SectorPatch {
                 Far::Mean { mean, .. } => Some(mean),
                 _ => None,
             };
-            core::iter::once(sector.at).chain(sector.neighbours.iter().copied()).chain(mean)
+            core::iter::once(sector.at)
+                .chain(sector.neighbours.iter().copied())
+                .chain(mean)
         })
     }
 
@@ -196,7 +228,10 @@ impl SectorPatch {
         let from = self.0[0].at;
         for sector in &mut self.0 {
             sector.at -= from;
-            sector.neighbours.iter_mut().for_each(|point| *point -= from);
+            sector
+                .neighbours
+                .iter_mut()
+                .for_each(|point| *point -= from);
             if let Far::Mean { mean, .. } = &mut sector.far {
                 *mean -= from;
             }
@@ -208,9 +243,17 @@ impl SectorPatch {
     pub(crate) fn refined(&self, rules: &Rules) -> RefinedSectors<'_> {
         let moved = [0, 1, 2].map(|corner| self.0[corner].moved(rules));
         let (edge_points, rings) = (Default::default(), [[DVec3::ZERO; 6]; 3]);
-        let mut refined = RefinedSectors { sectors: self, moved, edge_points, rings, is_crease: [false; 3] };
+        let mut refined = RefinedSectors {
+            sectors: self,
+            moved,
+            edge_points,
+            rings,
+            is_crease: [false; 3],
+        };
         let points = refined.edge_points.iter_mut();
-        points.zip(&self.0).for_each(|(points, sector)| sector.add_edge_points(points));
+        points
+            .zip(&self.0)
+            .for_each(|(points, sector)| sector.add_edge_points(points));
         for edge in 0..3 {
             let beyond = refined.beyond(edge);
             refined.is_crease[edge] = beyond.is_none();
@@ -248,13 +291,21 @@ impl RefinedSectors<'_> {
         if from.is_sharp(from.slot) || to.is_sharp(to.neighbour(1)) {
             return None;
         }
-        Some([self.edge_points[edge][from.neighbour(-1)], self.edge_points[next][to.neighbour(2)]])
+        Some([
+            self.edge_points[edge][from.neighbour(-1)],
+            self.edge_points[next][to.neighbour(2)],
+        ])
     }
 
     /// Those over the face, from the edge's end to its start.
     fn before_middle(&self, edge: usize) -> [DVec3; 4] {
         let (next, last) = ((edge + 1) % 3, (edge + 2) % 3);
-        [self.moved[next], self.middle(next), self.middle(last), self.moved[edge]]
+        [
+            self.moved[next],
+            self.middle(next),
+            self.middle(last),
+            self.moved[edge],
+        ]
     }
 
     /// The sector of the new point on the edge from corner `edge`, with the face that starts at neighbour `slot`.
@@ -264,7 +315,13 @@ impl RefinedSectors<'_> {
             false => (6, Centre::Smooth { sharp: None }),
         };
         let neighbours = Neighbours::from_slice(&self.rings[edge][..count]);
-        VertexSector { at: self.middle(edge), neighbours, centre, slot, far: Far::Kept }
+        VertexSector {
+            at: self.middle(edge),
+            neighbours,
+            centre,
+            slot,
+            far: Far::Kept,
+        }
     }
 
     /// The new point on the edge from corner `edge` and its six neighbours: new points are always regular.
@@ -279,7 +336,9 @@ impl RefinedSectors<'_> {
         }
         match self.extraordinary(part) {
             Some(piece) => Patch::of_extraordinary(piece),
-            None if self.sectors.0[part].far == Far::Kept => Patch::Sectors(Box::new(self.part(part))),
+            None if self.sectors.0[part].far == Far::Kept => {
+                Patch::Sectors(Box::new(self.part(part)))
+            }
             None => Patch::of(self.part(part)),
         }
     }
@@ -294,7 +353,12 @@ impl RefinedSectors<'_> {
         let mut ring = Neighbours::from_slice(&own[old.slot..]);
         ring.extend_from_slice(&own[..old.slot]);
         let outer = [on_next[5], on_next[0], on_next[1], on_last[3], on_last[4]];
-        Some(ExtraordinaryPatch { corner: part, at: self.moved[part], ring, outer })
+        Some(ExtraordinaryPatch {
+            corner: part,
+            at: self.moved[part],
+            ring,
+            outer,
+        })
     }
 
     /// The points of a part, if it is regular.
@@ -302,10 +366,20 @@ impl RefinedSectors<'_> {
         let Self { rings, moved, .. } = self;
         if part == 3 {
             let corners = [1, 2, 0].map(|edge| self.middle(edge));
-            return Some(box_spline::assemble(corners, [&rings[1], &rings[2], &rings[0]], [1; 3]));
+            return Some(box_spline::assemble(
+                corners,
+                [&rings[1], &rings[2], &rings[0]],
+                [1; 3],
+            ));
         }
         let (old, last) = (&self.sectors.0[part], (part + 2) % 3);
-        let own = &regular_ring(old.far, old.centre, moved[part], &self.edge_points[part], old.slot)?;
+        let own = &regular_ring(
+            old.far,
+            old.centre,
+            moved[part],
+            &self.edge_points[part],
+            old.slot,
+        )?;
         let mut corners = [moved[part], self.middle(part), self.middle(last)];
         let (mut own_rings, mut turns) = ([own, &rings[part], &rings[last]], [0, 2, 0]);
         corners.rotate_right(part);
@@ -332,7 +406,10 @@ impl RefinedSectors<'_> {
             centre: old.centre,
             slot: old.slot,
             far: match old.far {
-                Far::Mean { valence, mean } => Far::Mean { valence, mean: 0.375 * old.at + 0.625 * mean },
+                Far::Mean { valence, mean } => Far::Mean {
+                    valence,
+                    mean: 0.375 * old.at + 0.625 * mean,
+                },
                 far => far,
             },
         };
@@ -363,24 +440,42 @@ mod tests {
             Centre::Smooth { sharp: None },
             Centre::Smooth { sharp: Some(1) },
             Centre::Crease,
-            Centre::Corner { open: true, sharp: None },
+            Centre::Corner {
+                open: true,
+                sharp: None,
+            },
         ];
         let mut regular = 0;
         for case in 0..2000 {
-            let kind =
-                |corner: usize| if case % 3 == 0 { case / 3 / 5usize.pow(corner as u32) % 5 } else { 0 };
+            let kind = |corner: usize| {
+                if case % 3 == 0 {
+                    case / 3 / 5usize.pow(corner as u32) % 5
+                } else {
+                    0
+                }
+            };
             let sectors = SectorPatch([0, 1, 2].map(|corner| {
                 let count = 3 + (case / 7usize.pow(corner as u32)) % 7;
                 let centre = centres[kind(corner) % 4];
                 let is_open = matches!(centre, Centre::Crease | Centre::Corner { .. });
                 let slot = case % (count - usize::from(is_open));
                 let neighbours = (0..count).map(|_| point()).collect();
-                VertexSector { at: point(), neighbours, centre, slot, far: Far::Kept }
+                VertexSector {
+                    at: point(),
+                    neighbours,
+                    centre,
+                    slot,
+                    far: Far::Kept,
+                }
             }));
             let refined = sectors.refined(&rules);
             for part in 0..4 {
                 let expected = Patch::of(refined.part(part));
-                assert_eq!(format!("{:?}", refined.piece(part)), format!("{expected:?}"), "{case}, {part}");
+                assert_eq!(
+                    format!("{:?}", refined.piece(part)),
+                    format!("{expected:?}"),
+                    "{case}, {part}"
+                );
                 let points = refined.points(part).map(|points| format!("{points:?}"));
                 let expected = match expected {
                     Patch::Regular(points) => Some(format!("{points:?}")),

@@ -46,7 +46,10 @@ impl SemiSharpVertex {
             at: at(vertex),
             neighbours: topology.ring(vertex).map(at).collect(),
             sharp: sharpness.ring(vertex),
-            slot: topology.outgoing_ring(vertex).position(|other| other == h).unwrap_or(0),
+            slot: topology
+                .outgoing_ring(vertex)
+                .position(|other| other == h)
+                .unwrap_or(0),
             whole: None,
         }
     }
@@ -57,12 +60,16 @@ impl SemiSharpVertex {
     }
 
     fn fades(&self) -> bool {
-        self.whole.as_ref().map_or_else(|| self.sharp.fading() > 0.0, PartOfRing::fades)
+        self.whole
+            .as_ref()
+            .map_or_else(|| self.sharp.fading() > 0.0, PartOfRing::fades)
     }
 
     /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
     fn fades_first(&self) -> f64 {
-        self.whole.as_ref().map_or_else(|| self.sharp.fades_first(), PartOfRing::fades_first)
+        self.whole
+            .as_ref()
+            .map_or_else(|| self.sharp.fades_first(), PartOfRing::fades_first)
     }
 
     /// Where the centre moves by the rules of a ring as sharp as `sharp`.
@@ -76,7 +83,8 @@ impl SemiSharpVertex {
             VertexRule::Smooth | VertexRule::Dart => {
                 let valence = self.neighbours.len();
                 let beta = rules.beta(valence);
-                (1.0 - valence as f64 * beta) * self.at + beta * self.neighbours.iter().sum::<DVec3>()
+                (1.0 - valence as f64 * beta) * self.at
+                    + beta * self.neighbours.iter().sum::<DVec3>()
             }
         }
     }
@@ -111,8 +119,12 @@ impl SemiSharpVertex {
         let sharp = self.sharp.refined();
         let whole = self.whole.as_ref().map(PartOfRing::refined);
         Self {
-            at: whole.as_ref().map_or_else(|| self.moved(&sharp, rules), PartOfRing::at),
-            neighbours: (0..self.neighbours.len()).map(|slot| self.edge_point(slot)).collect(),
+            at: whole
+                .as_ref()
+                .map_or_else(|| self.moved(&sharp, rules), PartOfRing::at),
+            neighbours: (0..self.neighbours.len())
+                .map(|slot| self.edge_point(slot))
+                .collect(),
             sharp,
             slot: self.slot,
             whole,
@@ -127,7 +139,9 @@ impl SemiSharpVertex {
         let count = self.neighbours.len();
         let place = |first: usize| (self.slot + count - first) % count;
         let sectors = self.sharp.sectors();
-        let own = sectors.iter().find(|sector| place(sector.first) < sector.shape.faces() as usize);
+        let own = sectors
+            .iter()
+            .find(|sector| place(sector.first) < sector.shape.faces() as usize);
         let Some(own) = own else {
             let centre = Centre::Smooth { sharp: None };
             return VertexSector {
@@ -138,7 +152,8 @@ impl SemiSharpVertex {
                 far: Far::Kept,
             };
         };
-        let around = (0..own.shape.valence as usize).map(|i| self.neighbours[(own.first + i) % count]);
+        let around =
+            (0..own.shape.valence as usize).map(|i| self.neighbours[(own.first + i) % count]);
         VertexSector {
             at: self.at,
             neighbours: around.collect(),
@@ -196,7 +211,10 @@ impl SemiSharpPatch {
             Self::Rings(corners) => corners.iter().for_each(|corner| {
                 visit(corner.at);
                 corner.neighbours.iter().for_each(|&point| visit(point));
-                corner.whole.iter().for_each(|whole| whole.for_each_point(corner.slot, &mut visit));
+                corner
+                    .whole
+                    .iter()
+                    .for_each(|whole| whole.for_each_point(corner.slot, &mut visit));
             }),
         }
     }
@@ -225,12 +243,18 @@ impl SemiSharpPatch {
 
 /// [`SemiSharpPatch::lasting_twin`] of the face with those corners.
 fn rings_twin(corners: &[SemiSharpVertex; 3], rules: &Rules<'_>) -> Option<(Patch, f64)> {
-    let fades = corners.iter().map(SemiSharpVertex::fades_first).fold(INFINITELY_SHARP, f64::min);
+    let fades = corners
+        .iter()
+        .map(SemiSharpVertex::fades_first)
+        .fold(INFINITELY_SHARP, f64::min);
     let mut gaps = Gaps::new(fades);
     for corner in corners.iter().filter(|corner| corner.fades()) {
         gaps.add(corner, rules)?;
     }
-    Some((Patch::of(SectorPatch(corners.each_ref().map(SemiSharpVertex::sector))), gaps.apart()))
+    Some((
+        Patch::of(SectorPatch(corners.each_ref().map(SemiSharpVertex::sector))),
+        gaps.apart(),
+    ))
 }
 
 /// The points around the four parts of a semi-sharp face.
@@ -285,12 +309,35 @@ impl RefinedRings<'_> {
         let sharpness = before.sharp.spokes[before.slot];
         let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
         if sharpness >= INFINITELY_SHARP {
-            let sharp = SharpRing { open: true, vertex, spokes: vec![along, 0.0, 0.0, along] };
-            return SemiSharpVertex { at, neighbours: near.to_vec(), sharp, slot, whole: None };
+            let sharp = SharpRing {
+                open: true,
+                vertex,
+                spokes: vec![along, 0.0, 0.0, along],
+            };
+            return SemiSharpVertex {
+                at,
+                neighbours: near.to_vec(),
+                sharp,
+                slot,
+                whole: None,
+            };
         }
-        let beyond = [from.neighbours[from.neighbour(-1)], to.neighbours[to.neighbour(2)]];
-        let sharp = SharpRing { open: false, vertex, spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0] };
-        SemiSharpVertex { at, neighbours: [near.as_slice(), &beyond].concat(), sharp, slot, whole: None }
+        let beyond = [
+            from.neighbours[from.neighbour(-1)],
+            to.neighbours[to.neighbour(2)],
+        ];
+        let sharp = SharpRing {
+            open: false,
+            vertex,
+            spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0],
+        };
+        SemiSharpVertex {
+            at,
+            neighbours: [near.as_slice(), &beyond].concat(),
+            sharp,
+            slot,
+            whole: None,
+        }
     }
 
     fn part(&self, part: usize) -> Patch {
@@ -298,7 +345,10 @@ impl RefinedRings<'_> {
         if part == 3 {
             return SemiSharpPatch::of([1, 2, 0].map(|edge| self.middle_vertex(edge, 1)));
         }
-        let (on_next, on_last) = (self.middle_vertex(part, 2), self.middle_vertex((part + 2) % 3, 0));
+        let (on_next, on_last) = (
+            self.middle_vertex(part, 2),
+            self.middle_vertex((part + 2) % 3, 0),
+        );
         let mut corners = [self.corners[part].clone(), on_next, on_last];
         corners.rotate_right(part);
         SemiSharpPatch::of(corners)

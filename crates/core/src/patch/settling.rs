@@ -43,7 +43,13 @@ pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {
             let patch = patch_of(&points);
             let [limit, t1, t2] = settled(&patch, beta);
             let left = |(point, at): (DVec3, DVec3)| point - (limit + at.x * t1 + at.y * t2);
-            patch_of(&patch.points().zip(map.control.points()).map(left).collect::<Vec<_>>())
+            patch_of(
+                &patch
+                    .points()
+                    .zip(map.control.points())
+                    .map(left)
+                    .collect::<Vec<_>>(),
+            )
         })
         .collect();
     let (mut greatest, mut scale) = (0.0f64, 1.0);
@@ -53,7 +59,8 @@ pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {
             let sum = |(row, point): (&mut f64, DVec3)| *row += point.abs().element_sum();
             of_points.iter_mut().zip(column.points()).for_each(sum);
             let refined = column.refined(beta);
-            let differences = [1, 2, 3].map(|part| tangents(&BezierTriangle::of(&refined.regular(part))));
+            let differences =
+                [1, 2, 3].map(|part| tangents(&BezierTriangle::of(&refined.regular(part))));
             let differences = differences.as_flattened().as_flattened().iter().copied();
             of_differences.iter_mut().zip(differences).for_each(sum);
         }
@@ -84,7 +91,11 @@ pub(crate) fn settled(patch: &ExtraordinaryPatch, beta: f64) -> [DVec3; 3] {
         along += cosine * from;
         across += sine * from;
     }
-    [patch.at + share * sum, 2.0 / valence * along, 2.0 / valence * across]
+    [
+        patch.at + share * sum,
+        2.0 / valence * along,
+        2.0 / valence * across,
+    ]
 }
 
 /// The points of a patch at its first corner, in their order.
@@ -92,7 +103,12 @@ fn patch_of(points: &[DVec3]) -> ExtraordinaryPatch {
     let ring: Neighbours = points[1..points.len() - 5].iter().copied().collect();
     let mut outer = [DVec3::ZERO; 5];
     outer.copy_from_slice(&points[points.len() - 5..]);
-    ExtraordinaryPatch { corner: 0, at: points[0], ring, outer }
+    ExtraordinaryPatch {
+        corner: 0,
+        at: points[0],
+        ring,
+        outer,
+    }
 }
 
 #[cfg(test)]
@@ -120,7 +136,8 @@ mod tests {
             let [limit, t1, t2] = settled(&patch, beta);
             let left = |patch: &ExtraordinaryPatch, scale: f64| {
                 let pairs = patch.points().zip(map.control.points());
-                let lengths = pairs.map(|(p, at)| (p - limit - scale * (at.x * t1 + at.y * t2)).length());
+                let lengths =
+                    pairs.map(|(p, at)| (p - limit - scale * (at.x * t1 + at.y * t2)).length());
                 lengths.fold(0.0, f64::max)
             };
             let (first, mut scale) = (left(&patch, 1.0), 1.0);
@@ -132,9 +149,14 @@ mod tests {
                 let [of_map, own] = nets.map(|nets| nets.as_flattened().concat());
                 for (of_map, own) in of_map.into_iter().zip(own) {
                     let beside = own / scale - of_map.x * t1 - of_map.y * t2;
-                    assert!(beside.length() <= growth * first + 1e-9, "{valence}, level {level}");
+                    assert!(
+                        beside.length() <= growth * first + 1e-9,
+                        "{valence}, level {level}"
+                    );
                 }
-                let Patch::Extraordinary(next) = refined.part(0) else { panic!() };
+                let Patch::Extraordinary(next) = refined.part(0) else {
+                    panic!()
+                };
                 (patch, scale) = (*next, scale * eigenvalue);
             }
             assert!(left(&patch, scale) / scale < first, "{valence}");

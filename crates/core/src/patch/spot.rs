@@ -9,7 +9,11 @@ pub(crate) struct Spot {
 }
 
 impl Spot {
-    pub(crate) const WHOLE: Self = Self { u: 0.0, v: 0.0, size: 1.0 };
+    pub(crate) const WHOLE: Self = Self {
+        u: 0.0,
+        v: 0.0,
+        size: 1.0,
+    };
 
     /// One of its four parts, as [`super::RefinedPatch`] numbers them.
     #[inline]
@@ -18,9 +22,21 @@ impl Spot {
         let half = 0.5 * size;
         match child {
             0 => Self { u, v, size: half },
-            1 => Self { u: u + half, v, size: half },
-            2 => Self { u, v: v + half, size: half },
-            _ => Self { u: u + half, v: v + half, size: -half },
+            1 => Self {
+                u: u + half,
+                v,
+                size: half,
+            },
+            2 => Self {
+                u,
+                v: v + half,
+                size: half,
+            },
+            _ => Self {
+                u: u + half,
+                v: v + half,
+                size: -half,
+            },
         }
     }
 
@@ -28,13 +44,25 @@ impl Spot {
     #[inline]
     pub(crate) fn leaf(self, depth: u32, i: usize, j: usize) -> Self {
         let size = self.size / f64::from(1u32 << depth);
-        Self { u: self.u + size * i as f64, v: self.v + size * j as f64, size }
+        Self {
+            u: self.u + size * i as f64,
+            v: self.v + size * j as f64,
+            size,
+        }
     }
 
     /// The part `depth` levels below in column i and row j, upright or on its head.
     pub(crate) fn row(self, depth: u32, i: usize, j: usize, is_headlong: bool) -> Self {
         let Self { u, v, size } = self.leaf(depth, i, j);
-        if is_headlong { Self { u: u + size, v: v + size, size: -size } } else { Self { u, v, size } }
+        if is_headlong {
+            Self {
+                u: u + size,
+                v: v + size,
+                size: -size,
+            }
+        } else {
+            Self { u, v, size }
+        }
     }
 
     pub(crate) fn corners(self) -> [[f64; 2]; 3] {

@@ -13,7 +13,12 @@ use crate::ring::faded;
 
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
-pub(crate) fn submesh(mesh: &Mesh, sharpness: &Sharpness<'_>, seeds: &[HalfEdgeId], rings: usize) -> Mesh {
+pub(crate) fn submesh(
+    mesh: &Mesh,
+    sharpness: &Sharpness<'_>,
+    seeds: &[HalfEdgeId],
+    rings: usize,
+) -> Mesh {
     submesh_of(mesh, sharpness, seeds, rings).0
 }
 
@@ -26,38 +31,63 @@ pub(crate) fn submesh_of(
 ) -> (Mesh, Vec<VertexId>) {
     let cut = Cut::around(mesh.topology(), seeds, rings);
     let count = 3 * cut.firsts.len() as u32;
-    let twins: Vec<u32> =
-        (0..count).map(|h| cut.topology.twin(cut.source(h)).map_or(NONE, |twin| cut.place(twin))).collect();
+    let twins: Vec<u32> = (0..count)
+        .map(|h| {
+            cut.topology
+                .twin(cut.source(h))
+                .map_or(NONE, |twin| cut.place(twin))
+        })
+        .collect();
     let (triangles, sources) = cut.vertices(&twins);
-    let corners = (0..).zip(&sources).map(|(vertex, &source)| (vertex, sharpness.vertex(source)));
+    let corners = (0..)
+        .zip(&sources)
+        .map(|(vertex, &source)| (vertex, sharpness.vertex(source)));
     let corners = corners.filter(|&(_, sharpness)| sharpness > 0.0);
     let tags = Tags {
         creases: cut.creases(sharpness, &triangles, &twins),
-        corners: corners.map(|(vertex, sharpness)| CornerTag { vertex, sharpness }).collect(),
+        corners: corners
+            .map(|(vertex, sharpness)| CornerTag { vertex, sharpness })
+            .collect(),
     };
-    let positions = sources.iter().map(|source| mesh.positions()[source.index()]).collect();
+    let positions = sources
+        .iter()
+        .map(|source| mesh.positions()[source.index()])
+        .collect();
     let outgoing = outgoing_half_edges(&triangles, &twins, sources.len());
     let topology = Topology::from_parts(triangles, twins, outgoing);
-    (Mesh::from_parts(topology, positions, tags, Junctions::default()), sources)
+    (
+        Mesh::from_parts(topology, positions, tags, Junctions::default()),
+        sources,
+    )
 }
 
 /// The connectivity of a small mesh after one step of uniform refinement, the half-edges on which its new vertices stand, and its tags. Face `i`
 /// becomes the faces from `4i` on, those at its corners and then the middle one, which starts at the new vertex on the first edge.
 pub(super) fn quartered(mesh: &Mesh) -> (Topology, Vec<HalfEdgeId>, Tags) {
     let topology = mesh.topology();
-    let edges: Vec<HalfEdgeId> =
-        topology.half_edges().filter(|&h| topology.twin(h).is_none_or(|twin| h < twin)).collect();
+    let edges: Vec<HalfEdgeId> = topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin))
+        .collect();
     let mut on_edge = vec![NONE; topology.half_edge_count()];
     for (vertex, &h) in (mesh.vertex_count() as u32..).zip(&edges) {
         on_edge[h.index()] = vertex;
-        topology.twin(h).into_iter().for_each(|twin| on_edge[twin.index()] = vertex);
+        topology
+            .twin(h)
+            .into_iter()
+            .for_each(|twin| on_edge[twin.index()] = vertex);
     }
     let on = |face: usize, edge: usize| on_edge[3 * face + edge];
     let quartered = |(face, &[a, b, c]): (usize, &[u32; 3])| {
         let [d, e, f] = [0, 1, 2].map(|edge| on(face, edge));
         [[a, d, f], [b, e, d], [c, f, e], [d, e, f]]
     };
-    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().enumerate().flat_map(quartered).collect();
+    let triangles: Vec<[u32; 3]> = mesh
+        .triangles()
+        .iter()
+        .enumerate()
+        .flat_map(quartered)
+        .collect();
     // The halves of a half-edge, by the face at each of its ends.
     let halves = |h: HalfEdgeId| {
         let (face, edge) = (4 * h.face().0, h.corner() as u32);
@@ -76,21 +106,44 @@ pub(super) fn quartered(mesh: &Mesh) -> (Topology, Vec<HalfEdgeId>, Tags) {
     }
     let tags = refined_tags(mesh, &on_edge);
     let outgoing = outgoing_half_edges(&triangles, &twins, mesh.vertex_count() + edges.len());
-    (Topology::from_parts(triangles, twins, outgoing), edges, tags)
+    (
+        Topology::from_parts(triangles, twins, outgoing),
+        edges,
+        tags,
+    )
 }
 
 /// The tags of a mesh after a step, given the new vertex on each half-edge.
 fn refined_tags(mesh: &Mesh, on_edge: &[u32]) -> Tags {
     let left = |sharpness: f64| Some(faded(sharpness)).filter(|&left| left > 0.0);
-    let creases = mesh.tags().creases.iter().flat_map(|&CreaseTag { vertices: [a, b], sharpness }| {
-        let middle = mesh.topology().edge_between(VertexId(a), VertexId(b)).map(|h| on_edge[h.index()]);
-        let halves = middle.zip(left(sharpness)).map(|(middle, sharpness)| {
-            [[a, middle], [middle, b]].map(|vertices| CreaseTag { vertices, sharpness })
-        });
-        halves.into_iter().flatten()
-    });
-    let corner = |tag: &CornerTag| Some(CornerTag { sharpness: left(tag.sharpness)?, ..*tag });
-    Tags { creases: creases.collect(), corners: mesh.tags().corners.iter().filter_map(corner).collect() }
+    let creases = mesh.tags().creases.iter().flat_map(
+        |&CreaseTag {
+             vertices: [a, b],
+             sharpness,
+         }| {
+            let middle = mesh
+                .topology()
+                .edge_between(VertexId(a), VertexId(b))
+                .map(|h| on_edge[h.index()]);
+            let halves = middle.zip(left(sharpness)).map(|(middle, sharpness)| {
+                [[a, middle], [middle, b]].map(|vertices| CreaseTag {
+                    vertices,
+                    sharpness,
+                })
+            });
+            halves.into_iter().flatten()
+        },
+    );
+    let corner = |tag: &CornerTag| {
+        Some(CornerTag {
+            sharpness: left(tag.sharpness)?,
+            ..*tag
+        })
+    };
+    Tags {
+        creases: creases.collect(),
+        corners: mesh.tags().corners.iter().filter_map(corner).collect(),
+    }
 }
 
 /// The faces that are cut out.
@@ -105,8 +158,15 @@ struct Cut<'m> {
 impl<'m> Cut<'m> {
     /// The numbering follows from the seeds and from what is around them, not from how the mesh is numbered.
     fn around(topology: &'m Topology, seeds: &[HalfEdgeId], rings: usize) -> Self {
-        let places = (0..).zip(seeds).map(|(place, seed)| (seed.face(), place)).collect();
-        let mut cut = Self { topology, firsts: seeds.to_vec(), places };
+        let places = (0..)
+            .zip(seeds)
+            .map(|(place, seed)| (seed.face(), place))
+            .collect();
+        let mut cut = Self {
+            topology,
+            firsts: seeds.to_vec(),
+            places,
+        };
         let (mut met, mut from) = (HashSet::new(), 0);
         for _ in 0..rings {
             let end = cut.firsts.len();
@@ -115,8 +175,14 @@ impl<'m> Cut<'m> {
                 let vertex = topology.origin(own);
                 if met.insert(vertex) {
                     let is_boundary = topology.is_boundary(vertex);
-                    let first = if is_boundary { topology.outgoing(vertex) } else { own };
-                    topology.outgoing_from(first).for_each(|around| cut.add(around));
+                    let first = if is_boundary {
+                        topology.outgoing(vertex)
+                    } else {
+                        own
+                    };
+                    topology
+                        .outgoing_from(first)
+                        .for_each(|around| cut.add(around));
                 }
             }
             from = end;
@@ -172,11 +238,18 @@ impl<'m> Cut<'m> {
                 twin => HalfEdgeId(twin).next().0,
             });
         }
-        let triangles = corners.chunks_exact(3).map(|face| [face[0], face[1], face[2]]);
+        let triangles = corners
+            .chunks_exact(3)
+            .map(|face| [face[0], face[1], face[2]]);
         (triangles.collect(), sources)
     }
 
-    fn creases(&self, sharpness: &Sharpness<'_>, triangles: &[[u32; 3]], twins: &[u32]) -> Vec<CreaseTag> {
+    fn creases(
+        &self,
+        sharpness: &Sharpness<'_>,
+        triangles: &[[u32; 3]],
+        twins: &[u32],
+    ) -> Vec<CreaseTag> {
         if sharpness.is_empty() {
             return Vec::new();
         }
@@ -196,7 +269,9 @@ mod tests {
     use crate::models;
 
     fn model(name: &str) -> Mesh {
-        Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+        Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+            .unwrap()
+            .0
     }
 
     /// Crops are meshes, and rings that lie inside are as they were.
@@ -204,10 +279,22 @@ mod tests {
     fn rings_inside_are_kept() {
         for name in ["cup", "sheet", "spike", "tetrahedron", "head"] {
             let mesh = model(name);
-            let tags =
-                Tags { creases: vec![CreaseTag { vertices: [0, 1], sharpness: 2.0 }], corners: vec![] };
-            let tagged = mesh.topology().edge_between(VertexId(0), VertexId(1)).is_some();
-            let mesh = if tagged { mesh.with_tags(tags).unwrap() } else { mesh };
+            let tags = Tags {
+                creases: vec![CreaseTag {
+                    vertices: [0, 1],
+                    sharpness: 2.0,
+                }],
+                corners: vec![],
+            };
+            let tagged = mesh
+                .topology()
+                .edge_between(VertexId(0), VertexId(1))
+                .is_some();
+            let mesh = if tagged {
+                mesh.with_tags(tags).unwrap()
+            } else {
+                mesh
+            };
             let sharpness = Sharpness::of(&mesh);
             for rings in [1, 2] {
                 for face in mesh.topology().faces().step_by(7) {
@@ -216,9 +303,12 @@ mod tests {
                     small.validate().unwrap();
                     let small_sharpness = Sharpness::of(&small);
                     for corner in 0..3 {
+                        let (old, new) = (
+                            HalfEdgeId::of(face, (corner + 1) % 3),
+                            HalfEdgeId::of(FaceId(0), corner),
+                        );
                         let (old, new) =
-                            (HalfEdgeId::of(face, (corner + 1) % 3), HalfEdgeId::of(FaceId(0), corner));
-                        let (old, new) = (mesh.topology().origin(old), small.topology().origin(new));
+                            (mesh.topology().origin(old), small.topology().origin(new));
                         assert_eq!(mesh.ring_shape(old), small.ring_shape(new), "{name}");
                         let at = |mesh: &Mesh, v| {
                             let ring = mesh.topology().ring(v).map(|u| mesh.positions()[u.index()]);
@@ -228,7 +318,11 @@ mod tests {
                         };
                         assert_eq!(at(&mesh, old), at(&small, new), "{name}");
                         let edges = |sharpness: &Sharpness<'_>, v| sharpness.spokes(v).sum::<f64>();
-                        assert_eq!(edges(&sharpness, old), edges(&small_sharpness, new), "{name}");
+                        assert_eq!(
+                            edges(&sharpness, old),
+                            edges(&small_sharpness, new),
+                            "{name}"
+                        );
                     }
                 }
             }

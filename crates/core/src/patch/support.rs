@@ -33,7 +33,12 @@ struct Corner {
 
 impl Support {
     /// That of a face of `mesh`, whose large rings are `large`. Of the three turns the one with the least key is taken.
-    pub(crate) fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, face: FaceId) -> Self {
+    pub(crate) fn of(
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        large: &LargeRings,
+        face: FaceId,
+    ) -> Self {
         let half_edges = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
         let corners = match fades(mesh, sharpness, large, half_edges) {
             true => half_edges.map(|h| Corner::fading(mesh, sharpness, h)),
@@ -41,19 +46,36 @@ impl Support {
         };
         let turns = [0, 1, 2].map(|turn| Self::turned(&corners, turn));
         let [first, second, third] = turns;
-        let least = if second.key < first.key { second } else { first };
+        let least = if second.key < first.key {
+            second
+        } else {
+            first
+        };
         if third.key < least.key { third } else { least }
     }
 
     fn turned(corners: &[Corner; 3], turn: usize) -> Self {
         let mut numbered = Numbered::default();
         let corners = [0, 1, 2].map(|i| &corners[(turn + i) % 3]);
-        let mut key: Vec<u32> = corners.iter().flat_map(|corner| corner.role.iter().copied()).collect();
-        corners.iter().for_each(|corner| key.push(numbered.number(corner.points[0])));
+        let mut key: Vec<u32> = corners
+            .iter()
+            .flat_map(|corner| corner.role.iter().copied())
+            .collect();
+        corners
+            .iter()
+            .for_each(|corner| key.push(numbered.number(corner.points[0])));
         for corner in corners {
-            key.extend(corner.points[1..].iter().map(|&point| numbered.number(point)));
+            key.extend(
+                corner.points[1..]
+                    .iter()
+                    .map(|&point| numbered.number(point)),
+            );
         }
-        Self { turn, key, points: numbered.points }
+        Self {
+            turn,
+            key,
+            points: numbered.points,
+        }
     }
 }
 
@@ -69,7 +91,11 @@ impl Numbered {
     fn number(&mut self, point: u32) -> u32 {
         let count = self.points.len();
         let known = match count <= FEW {
-            true => self.points.iter().position(|&known| known == point).map(|at| at as u32),
+            true => self
+                .points
+                .iter()
+                .position(|&known| known == point)
+                .map(|at| at as u32),
             false => {
                 if self.numbers.is_empty() {
                     self.numbers = self.points.iter().copied().zip(0..).collect();
@@ -93,11 +119,28 @@ impl Corner {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let ring = sharpness.ring(vertex);
-        let slot = topology.outgoing_ring(vertex).position(|other| other == h).unwrap_or(0);
-        let mut role = vec![FADES, u32::from(ring.open), slot as u32, ring.spokes.len() as u32];
+        let slot = topology
+            .outgoing_ring(vertex)
+            .position(|other| other == h)
+            .unwrap_or(0);
+        let mut role = vec![
+            FADES,
+            u32::from(ring.open),
+            slot as u32,
+            ring.spokes.len() as u32,
+        ];
         let sharp = ring.spokes.iter().chain([&ring.vertex]);
-        role.extend(sharp.flat_map(|sharp| [sharp.to_bits() as u32, (sharp.to_bits() >> 32) as u32]));
-        Self { points: [vertex].into_iter().chain(topology.ring(vertex)).map(|v| v.0).collect(), role }
+        role.extend(
+            sharp.flat_map(|sharp| [sharp.to_bits() as u32, (sharp.to_bits() >> 32) as u32]),
+        );
+        Self {
+            points: [vertex]
+                .into_iter()
+                .chain(topology.ring(vertex))
+                .map(|v| v.0)
+                .collect(),
+            role,
+        }
     }
 
     /// Any other corner: the sector on the face's side, as pieces are made of it.
@@ -110,27 +153,42 @@ impl Corner {
             points.extend(near.neighbours.iter().map(|v| v.0));
             let (far, valence) = match near.far {
                 Far::Mean { valence, .. } => (1, valence as u32),
-                Far::Ends { after_first, before_last } => {
-                    (2 + u32::from(after_first) + 2 * u32::from(before_last), 0)
-                }
+                Far::Ends {
+                    after_first,
+                    before_last,
+                } => (2 + u32::from(after_first) + 2 * u32::from(before_last), 0),
                 Far::Kept => (0, 0),
             };
             if far == 1 {
                 points.push((mesh.vertex_count() + near.number) as u32);
             }
-            let role = vec![NEAR, far, valence, near.slot as u32, near.neighbours.len() as u32];
+            let role = vec![
+                NEAR,
+                far,
+                valence,
+                near.slot as u32,
+                near.neighbours.len() as u32,
+            ];
             return Self { points, role };
         }
         let sector = sector_of(topology, sharpness, h);
         let neighbours: Vec<VertexId> = sector.neighbours(topology).collect();
-        let slot = sector.outgoing(topology).position(|other| other == h).unwrap_or(0) as u32;
+        let slot = sector
+            .outgoing(topology)
+            .position(|other| other == h)
+            .unwrap_or(0) as u32;
         let centre = match Centre::of(sector.shape) {
             Centre::Smooth { sharp } => [0, sharp.map_or(0, |slot| 1 + slot as u32)],
             Centre::Crease => [1, 0],
-            Centre::Corner { open, sharp } => [2 + u32::from(open), sharp.map_or(0, |slot| 1 + slot as u32)],
+            Centre::Corner { open, sharp } => {
+                [2 + u32::from(open), sharp.map_or(0, |slot| 1 + slot as u32)]
+            }
         };
         points.extend(neighbours.iter().map(|v| v.0));
-        Self { points, role: vec![WHOLE, centre[0], centre[1], slot, neighbours.len() as u32] }
+        Self {
+            points,
+            role: vec![WHOLE, centre[0], centre[1], slot, neighbours.len() as u32],
+        }
     }
 }
 

@@ -27,14 +27,16 @@ pub(super) struct Convexity {
 impl Convexity {
     /// Of a net that stands about the origin.
     pub(super) fn of(net: &BezierTriangle) -> Self {
-        let [by_u, by_v] = tangents(net).map(|quarter| scaled::<3, CUBIC>(quarter.map(|by| 4.0 * by)));
+        let [by_u, by_v] =
+            tangents(net).map(|quarter| scaled::<3, CUBIC>(quarter.map(|by| 4.0 * by)));
         let second = second(&net.0);
         let mut products = [[0.0; SEXTIC]; 3];
         add_product(&mut products[0], (3, &by_u), (3, &by_u));
         add_product(&mut products[1], (3, &by_u), (3, &by_v));
         add_product(&mut products[2], (3, &by_v), (3, &by_v));
         // The mean over the piece is that of the coefficients.
-        let [e, f, g] = products.map(|product| unscaled(product).iter().sum::<f64>() / SEXTIC as f64);
+        let [e, f, g] =
+            products.map(|product| unscaled(product).iter().sum::<f64>() / SEXTIC as f64);
         let factors = orthonormal(e, f, g);
         let whole = scaled::<4, 15>(net.0);
         for (products, second) in products.iter_mut().zip(&second) {
@@ -44,19 +46,29 @@ impl Convexity {
         let [uu, uv, vv] = &products;
         let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
         for ((&uu, &uv), &vv) in uu.iter().zip(uv).zip(vv) {
-            ends.iter_mut().zip(turned(factors, [uu, uv, vv])).for_each(|([low, high], value)| {
-                (*low, *high) = (low.min(value), high.max(value));
-            });
+            ends.iter_mut()
+                .zip(turned(factors, [uu, uv, vv]))
+                .for_each(|([low, high], value)| {
+                    (*low, *high) = (low.min(value), high.max(value));
+                });
         }
         let [uu, uv, vv] = &second;
         let mut boxes = [NO_BOUNDS; 3];
         for ((&uu, &uv), &vv) in uu.iter().zip(uv).zip(vv) {
-            let by_axis: [[f64; 3]; 3] = from_fn(|axis| turned(factors, [uu[axis], uv[axis], vv[axis]]));
+            let by_axis: [[f64; 3]; 3] =
+                from_fn(|axis| turned(factors, [uu[axis], uv[axis], vv[axis]]));
             for (entry, bounds) in boxes.iter_mut().enumerate() {
-                *bounds = grown(*bounds, DVec3::from_array(from_fn(|axis| by_axis[axis][entry])));
+                *bounds = grown(
+                    *bounds,
+                    DVec3::from_array(from_fn(|axis| by_axis[axis][entry])),
+                );
             }
         }
-        Self { products: ends, second: boxes, factors }
+        Self {
+            products: ends,
+            second: boxes,
+            factors,
+        }
     }
 
     /// A bound from below on the eigenvalues of the second derivatives of half the squared distance from a point, all over the piece, in
@@ -74,9 +86,19 @@ impl Convexity {
 
     /// A bound from below on half the squared distance all over the piece, given that at a place, its derivatives there, and
     /// [`Self::least_eigenvalue`].
-    pub(super) fn bound(&self, value: f64, at: [f64; 2], gradient: [f64; 2], eigenvalue: f64) -> f64 {
-        let ways = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[u, v]: [f64; 2]| [u - at[0], v - at[1]]);
-        let fall = ways.iter().map(|[u, v]| -u * gradient[0] - v * gradient[1]).fold(0.0, f64::max);
+    pub(super) fn bound(
+        &self,
+        value: f64,
+        at: [f64; 2],
+        gradient: [f64; 2],
+        eigenvalue: f64,
+    ) -> f64 {
+        let ways =
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[u, v]: [f64; 2]| [u - at[0], v - at[1]]);
+        let fall = ways
+            .iter()
+            .map(|[u, v]| -u * gradient[0] - v * gradient[1])
+            .fold(0.0, f64::max);
         let [p, r, s] = self.factors;
         if eigenvalue > 0.0 {
             let turned = [p * gradient[0], r * gradient[0] + s * gradient[1]];
@@ -101,7 +123,11 @@ fn orthonormal(e: f64, f: f64, g: f64) -> [f64; 3] {
 
 /// Second derivatives in the parameters that the factors lead to.
 fn turned([p, r, s]: [f64; 3], [uu, uv, vv]: [f64; 3]) -> [f64; 3] {
-    [p * p * uu, p * (r * uu + s * uv), r * r * uu + 2.0 * r * s * uv + s * s * vv]
+    [
+        p * p * uu,
+        p * (r * uu + s * uv),
+        r * r * uu + 2.0 * r * s * uv + s * s * vv,
+    ]
 }
 
 /// The nets of the second derivatives of a quartic: degree 2.
@@ -122,13 +148,17 @@ fn second(net: &[DVec3; 15]) -> [[DVec3; 6]; 3] {
 /// A net times its multinomial coefficients: products of such are sums.
 fn scaled<const DEGREE: usize, const SIZE: usize>(mut net: [DVec3; SIZE]) -> [DVec3; SIZE] {
     let weights = const { &multinomials::<SIZE>(DEGREE) };
-    net.iter_mut().zip(weights).for_each(|(point, &weight)| *point *= weight);
+    net.iter_mut()
+        .zip(weights)
+        .for_each(|(point, &weight)| *point *= weight);
     net
 }
 
 fn unscaled(mut net: [f64; SEXTIC]) -> [f64; SEXTIC] {
     let weights = const { &multinomials::<SEXTIC>(6) };
-    net.iter_mut().zip(weights).for_each(|(value, weight)| *value /= weight);
+    net.iter_mut()
+        .zip(weights)
+        .for_each(|(value, weight)| *value /= weight);
     net
 }
 
@@ -139,7 +169,10 @@ fn add_product(net: &mut [f64; SEXTIC], (m, a): (usize, &[DVec3]), (n, b): (usiz
             let own = a[place(m, ja, ka)];
             let others = &b[place(n, 0, kb)..=place(n, n - kb, kb)];
             let first = place(6, ja, ka + kb);
-            net[first..].iter_mut().zip(others).for_each(|(sum, other)| *sum += own.dot(*other));
+            net[first..]
+                .iter_mut()
+                .zip(others)
+                .for_each(|(sum, other)| *sum += own.dot(*other));
         }
     }
 }
@@ -150,19 +183,24 @@ mod tests {
     use crate::patch::Quartic;
 
     fn bent(height: f64) -> BezierTriangle {
-        let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (0.25 * f64::from(j), 0.25 * f64::from(k))));
+        let places = (0..5)
+            .flat_map(|k| (0..5 - k).map(move |j| (0.25 * f64::from(j), 0.25 * f64::from(k))));
         let points: Vec<DVec3> = places
             .map(|(u, v)| {
                 let (x, y) = (u + 0.5 * v - 0.5, 0.866 * v - 0.289);
-                DVec3::new(x + 0.1 * y * y, y, height * (x * x + y * y - 0.6 * x * x * y))
+                DVec3::new(
+                    x + 0.1 * y * y,
+                    y,
+                    height * (x * x + y * y - 0.6 * x * x * y),
+                )
             })
             .collect();
         BezierTriangle(from_fn(|i| points[i]))
     }
 
     fn places() -> impl Iterator<Item = [f64; 2]> {
-        let steps =
-            (0..=12).flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0)));
+        let steps = (0..=12)
+            .flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0)));
         steps.map(|(u, v)| [u, v])
     }
 
@@ -184,21 +222,38 @@ mod tests {
                     let away = quartic.point(from[0], from[1]) - point;
                     let gradient = quartic.tangents(from[0], from[1]).map(|by| away.dot(by));
                     let bound = convexity.bound(half(from), from, gradient, eigenvalue);
-                    assert!(bound <= least + 1e-12, "height {height}, point {point}: {bound} and {least}");
+                    assert!(
+                        bound <= least + 1e-12,
+                        "height {height}, point {point}: {bound} and {least}"
+                    );
                 }
                 // Where f is least nothing is far below it: a bound that says nothing would not do.
-                let nearest = places().min_by(|a, b| half(*a).total_cmp(&half(*b))).unwrap_or_default();
+                let nearest = places()
+                    .min_by(|a, b| half(*a).total_cmp(&half(*b)))
+                    .unwrap_or_default();
                 let away = quartic.point(nearest[0], nearest[1]) - point;
-                let gradient = quartic.tangents(nearest[0], nearest[1]).map(|by| away.dot(by));
+                let gradient = quartic
+                    .tangents(nearest[0], nearest[1])
+                    .map(|by| away.dot(by));
                 let bound = convexity.bound(least, nearest, gradient, eigenvalue);
                 assert!(
                     eigenvalue < 0.5 || bound > least - 0.1,
                     "height {height}, point {point}: {bound} and {least}"
                 );
                 for [u, v] in places().map(|[u, v]| [0.02 + 0.94 * u, 0.02 + 0.94 * v]) {
-                    for [du, dv] in [[1e-3, 0.0], [0.0, 1e-3], [1e-3, -1e-3], [1e-3, 1e-3], [2e-3, -1e-3]] {
-                        let difference = half([u + du, v + dv]) + half([u - du, v - dv]) - 2.0 * half([u, v]);
-                        assert!(eigenvalue <= 0.0 || difference > -1e-12, "height {height}, point {point}");
+                    for [du, dv] in [
+                        [1e-3, 0.0],
+                        [0.0, 1e-3],
+                        [1e-3, -1e-3],
+                        [1e-3, 1e-3],
+                        [2e-3, -1e-3],
+                    ] {
+                        let difference =
+                            half([u + du, v + dv]) + half([u - du, v - dv]) - 2.0 * half([u, v]);
+                        assert!(
+                            eigenvalue <= 0.0 || difference > -1e-12,
+                            "height {height}, point {point}"
+                        );
                     }
                 }
             }

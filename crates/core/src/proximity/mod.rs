@@ -53,7 +53,9 @@ pub enum ProximityError {
     #[error(transparent)]
     Limit(#[from] crate::limit::LimitError),
     /// An open surface has no inside.
-    #[error("the surface has no inside: the edge from vertex {from} to vertex {to} is on its boundary")]
+    #[error(
+        "the surface has no inside: the edge from vertex {from} to vertex {to} is on its boundary"
+    )]
     Open {
         /// Where the first boundary edge begins.
         from: u32,
@@ -164,10 +166,15 @@ impl<'a> Proximity<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Self, ProximityError> {
         if !surface.is_certified() {
-            return Err(ProximityError::Scheme { name: surface.scheme().name().to_owned() });
+            return Err(ProximityError::Scheme {
+                name: surface.scheme().name().to_owned(),
+            });
         }
         let mesh = surface.control();
-        let bounds = mesh.as_triangles().bounding_box().ok_or(ProximityError::Empty)?;
+        let bounds = mesh
+            .as_triangles()
+            .bounding_box()
+            .ok_or(ProximityError::Empty)?;
         if mesh.face_count() == 0 {
             return Err(ProximityError::Empty);
         }
@@ -176,8 +183,11 @@ impl<'a> Proximity<'a> {
         watch.triangles(mesh.face_count());
         watch.stage(Stage::Indexing, Some(mesh.face_count()))?;
         let is_kept = mesh.face_count() <= MOST_KEPT;
-        let made =
-            parallel::pieces_polled(mesh.face_count(), FACES, &mut |done| watch.done(done), |block| {
+        let made = parallel::pieces_polled(
+            mesh.face_count(),
+            FACES,
+            &mut |done| watch.done(done),
+            |block| {
                 let face = |face: usize| {
                     let face = FaceId(face as u32);
                     match is_kept {
@@ -189,7 +199,8 @@ impl<'a> Proximity<'a> {
                     }
                 };
                 block.map(face).collect::<Vec<_>>()
-            })?;
+            },
+        )?;
         let (boxes, faces): (Vec<_>, Vec<_>) = made.into_iter().flatten().unzip();
         if let Some(error) = surface.failure() {
             return Err(error.clone().into());
@@ -197,7 +208,13 @@ impl<'a> Proximity<'a> {
         let tree = BoxTree::of(&boxes);
         watch.poll()?;
         let chains = Chains::of(surface, &frame, &tree);
-        Ok(Self { surface, frame, tree, faces: faces.into_iter().flatten().collect(), chains })
+        Ok(Self {
+            surface,
+            frame,
+            tree,
+            faces: faces.into_iter().flatten().collect(),
+            chains,
+        })
     }
 
     /// The surface.
@@ -213,7 +230,11 @@ impl<'a> Proximity<'a> {
     ///
     /// # Errors
     /// A point or the tolerance is not finite, or the tolerance is not above 0.
-    pub fn closest(&self, points: &[[f64; 3]], tolerance: f64) -> Result<Vec<Closest>, ProximityError> {
+    pub fn closest(
+        &self,
+        points: &[[f64; 3]],
+        tolerance: f64,
+    ) -> Result<Vec<Closest>, ProximityError> {
         self.closest_observed(points, tolerance, &mut unobserved)
     }
 
@@ -235,13 +256,23 @@ impl<'a> Proximity<'a> {
         watch.stage(Stage::Sampling, Some(points.len()))?;
         let tolerance = self.frame.length_inside(tolerance).max(LEAST_TOLERANCE);
         let poll = &mut |done| watch.done(done);
-        let found = parallel::long_pieces_polled(points.len(), POINTS, poll, |block, is_stopped| {
-            let mut query = Query::new(self, tolerance, is_stopped);
-            points[block].iter().map(|&point| query.closest(point)).collect::<Vec<_>>()
-        })?;
+        let found =
+            parallel::long_pieces_polled(points.len(), POINTS, poll, |block, is_stopped| {
+                let mut query = Query::new(self, tolerance, is_stopped);
+                points[block]
+                    .iter()
+                    .map(|&point| query.closest(point))
+                    .collect::<Vec<_>>()
+            })?;
         let found = found.concat();
-        match found.iter().position(|closest| !closest.distance.is_finite()) {
-            Some(index) => Err(ProximityError::TooFar { index, point: points[index] }),
+        match found
+            .iter()
+            .position(|closest| !closest.distance.is_finite())
+        {
+            Some(index) => Err(ProximityError::TooFar {
+                index,
+                point: points[index],
+            }),
             None => Ok(found),
         }
     }
@@ -273,10 +304,12 @@ impl<'a> Proximity<'a> {
     /// # Errors
     /// As for [`Self::winding_number`].
     pub fn memberships(&self, points: &[[f64; 3]]) -> Result<Vec<Membership>, ProximityError> {
-        uncancelled(|observer| match self.memberships_observed(points, observer) {
-            Err(ProximityError::Cancelled(cancelled)) => Err(cancelled),
-            other => Ok(other),
-        })
+        uncancelled(
+            |observer| match self.memberships_observed(points, observer) {
+                Err(ProximityError::Cancelled(cancelled)) => Err(cancelled),
+                other => Ok(other),
+            },
+        )
     }
 
     /// [`Self::memberships`], telling an observer how it goes on.
@@ -294,7 +327,10 @@ impl<'a> Proximity<'a> {
         watch.stage(Stage::Sampling, Some(points.len()))?;
         let poll = &mut |done| watch.done(done);
         let found = parallel::pieces_polled(points.len(), POINTS, poll, |block| {
-            points[block].iter().map(|&point| self.membership(point)).collect::<Result<Vec<_>, _>>()
+            points[block]
+                .iter()
+                .map(|&point| self.membership(point))
+                .collect::<Result<Vec<_>, _>>()
         })?;
         let found: Result<Vec<Vec<Membership>>, ProximityError> = found.into_iter().collect();
         Ok(found?.concat())
@@ -310,8 +346,14 @@ impl<'a> Proximity<'a> {
 }
 
 fn check(points: &[[f64; 3]]) -> Result<(), ProximityError> {
-    match points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
-        Some(index) => Err(ProximityError::NotFinite { index, point: points[index] }),
+    match points
+        .iter()
+        .position(|point| !point.iter().all(|x| x.is_finite()))
+    {
+        Some(index) => Err(ProximityError::NotFinite {
+            index,
+            point: points[index],
+        }),
         None => Ok(()),
     }
 }

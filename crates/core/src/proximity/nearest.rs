@@ -53,7 +53,12 @@ struct Best {
     weights: [f64; 3],
 }
 
-const NOTHING: Best = Best { distance: f64::INFINITY, point: DVec3::ZERO, face: 0, weights: [1.0, 0.0, 0.0] };
+const NOTHING: Best = Best {
+    distance: f64::INFINITY,
+    point: DVec3::ZERO,
+    face: 0,
+    weights: [1.0, 0.0, 0.0],
+};
 
 /// Something that is no nearer than its bound.
 struct Waiting {
@@ -75,7 +80,10 @@ enum What {
 impl Ord for Waiting {
     /// The one with the least bound is the greatest, as heaps want it; among equals what waits shortest, which is smallest.
     fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound).then(self.number.cmp(&other.number))
+        other
+            .bound
+            .total_cmp(&self.bound)
+            .then(self.number.cmp(&other.number))
     }
 }
 
@@ -94,7 +102,11 @@ impl PartialEq for Waiting {
 impl Eq for Waiting {}
 
 impl<'q> Query<'q> {
-    pub(super) fn new(proximity: &'q Proximity<'q>, tolerance: f64, is_stopped: &'q IsStopped<'q>) -> Self {
+    pub(super) fn new(
+        proximity: &'q Proximity<'q>,
+        tolerance: f64,
+        is_stopped: &'q IsStopped<'q>,
+    ) -> Self {
         let (waiting, left) = (BinaryHeap::new(), BETWEEN_QUESTIONS);
         Self {
             proximity,
@@ -111,7 +123,8 @@ impl<'q> Query<'q> {
     /// What it finds is of no use once it was stopped.
     pub(super) fn closest(&mut self, point: [f64; 3]) -> Closest {
         let frame = &self.proximity.frame;
-        (self.from, self.best, self.passed_over) = (frame.inside(vector(point)), NOTHING, f64::INFINITY);
+        (self.from, self.best, self.passed_over) =
+            (frame.inside(vector(point)), NOTHING, f64::INFINITY);
         let mut number = 0;
         self.waiting.clear();
         self.wait(&mut number, 0.0, What::Node(0));
@@ -124,7 +137,11 @@ impl<'q> Query<'q> {
                 What::Node(node) => self.open(node, &mut number),
                 What::Kept(face, at, is_of_triangle) => {
                     let piece = &self.proximity.faces[face as usize].pieces[at as usize];
-                    let own = if is_of_triangle { bound } else { self.bound(piece) };
+                    let own = if is_of_triangle {
+                        bound
+                    } else {
+                        self.bound(piece)
+                    };
                     if own > bound && self.waiting.peek().is_some_and(|next| next.bound < own) {
                         self.wait(&mut number, own, What::Kept(face, at, true));
                     } else {
@@ -162,7 +179,11 @@ impl<'q> Query<'q> {
 
     fn wait(&mut self, number: &mut u32, bound: f64, what: What) {
         *number = number.wrapping_add(1);
-        self.waiting.push(Waiting { bound, number: *number, what });
+        self.waiting.push(Waiting {
+            bound,
+            number: *number,
+            what,
+        });
     }
 
     /// Looks into a node of the tree.
@@ -188,7 +209,9 @@ impl<'q> Query<'q> {
                 }
             }
             None => {
-                for piece in FacePieces::of(proximity.surface, &proximity.frame, FaceId(face)).pieces {
+                for piece in
+                    FacePieces::of(proximity.surface, &proximity.frame, FaceId(face)).pieces
+                {
                     let bound = self.bound(&piece);
                     self.wait(number, bound, What::Own(Box::new(piece), face));
                 }
@@ -217,14 +240,20 @@ impl<'q> Query<'q> {
                 }
             }
             Form::Irregular(_) => {
-                for (corner, at) in piece.corners.into_iter().zip([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) {
+                for (corner, at) in
+                    piece
+                        .corners
+                        .into_iter()
+                        .zip([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+                {
                     self.offer(corner.distance(self.from), corner, (piece.spot, face), at);
                 }
             }
         }
         let bound = self.bound(piece);
-        let size =
-            (piece.corners[1] - piece.corners[0]).abs().max((piece.corners[2] - piece.corners[0]).abs());
+        let size = (piece.corners[1] - piece.corners[0])
+            .abs()
+            .max((piece.corners[2] - piece.corners[0]).abs());
         if bound >= self.limit() || size.max_element() < SPECK {
             return self.pass_over(bound);
         }
@@ -239,19 +268,39 @@ impl<'q> Query<'q> {
     }
 
     /// Takes a point if it is nearer than any before, and tells whether it is.
-    fn offer(&mut self, distance: f64, point: DVec3, (spot, face): (Spot, u32), at: [f64; 2]) -> bool {
+    fn offer(
+        &mut self,
+        distance: f64,
+        point: DVec3,
+        (spot, face): (Spot, u32),
+        at: [f64; 2],
+    ) -> bool {
         let is_nearer = distance < self.best.distance;
         if is_nearer {
-            self.best = Best { distance, point, face, weights: spot.weights(at) };
+            self.best = Best {
+                distance,
+                point,
+                face,
+                weights: spot.weights(at),
+            };
         }
         is_nearer
     }
 
     /// Newton's method on a regular piece, from a place; gives a bound for all of the piece that need not be looked at any more. A point that
     /// is the nearest so far is followed to where it is nearest, which moves it by far more than its distance shows.
-    fn descend(&mut self, piece: &RegularPiece, mut at: [f64; 2], over: (Spot, u32)) -> Option<f64> {
+    fn descend(
+        &mut self,
+        piece: &RegularPiece,
+        mut at: [f64; 2],
+        over: (Spot, u32),
+    ) -> Option<f64> {
         let from = self.from - piece.origin;
-        let made = if piece.convexity.is_none() { Some(piece.convexity()) } else { None };
+        let made = if piece.convexity.is_none() {
+            Some(piece.convexity())
+        } else {
+            None
+        };
         let convexity = piece.convexity.as_ref().or(made.as_ref())?;
         let eigenvalue = convexity.least_eigenvalue(from);
         let mut decided = None;
@@ -264,7 +313,11 @@ impl<'q> Query<'q> {
             let gradient = [away.dot(by_u), away.dot(by_v)];
             let lower = convexity.bound(0.5 * away.length_squared(), at, gradient, eigenvalue);
             // What is no number is no bound.
-            let lower = if lower > 0.0 { (2.0 * lower).sqrt() } else { 0.0 };
+            let lower = if lower > 0.0 {
+                (2.0 * lower).sqrt()
+            } else {
+                0.0
+            };
             if lower >= self.limit() {
                 decided = Some(lower);
             }
@@ -274,7 +327,10 @@ impl<'q> Query<'q> {
             {
                 return decided;
             }
-            let [uu, uv, vv] = piece.quartic.second_derivatives(u, v).map(|second| away.dot(second));
+            let [uu, uv, vv] = piece
+                .quartic
+                .second_derivatives(u, v)
+                .map(|second| away.dot(second));
             let first = [by_u.dot(by_u), by_u.dot(by_v), by_v.dot(by_v)];
             let whole = [first[0] + uu, first[1] + uv, first[2] + vv];
             let hessian = if is_definite(whole) { whole } else { first };
@@ -306,18 +362,25 @@ fn least(at: [f64; 2], gradient: [f64; 2], hessian: [f64; 3]) -> Option<[f64; 2]
     if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
         return Some([u, v]);
     }
-    const EDGES: [([f64; 2], [f64; 2]); 3] =
-        [([0.0, 0.0], [1.0, 0.0]), ([0.0, 0.0], [0.0, 1.0]), ([1.0, 0.0], [-1.0, 1.0])];
+    const EDGES: [([f64; 2], [f64; 2]); 3] = [
+        ([0.0, 0.0], [1.0, 0.0]),
+        ([0.0, 0.0], [0.0, 1.0]),
+        ([1.0, 0.0], [-1.0, 1.0]),
+    ];
     let mut best = (f64::INFINITY, at);
     for (start, [eu, ev]) in EDGES {
         let d = [start[0] - at[0], start[1] - at[1]];
-        let by = [uu * d[0] + uv * d[1] + gradient[0], uv * d[0] + vv * d[1] + gradient[1]];
+        let by = [
+            uu * d[0] + uv * d[1] + gradient[0],
+            uv * d[0] + vv * d[1] + gradient[1],
+        ];
         let bend = uu * eu * eu + 2.0 * uv * eu * ev + vv * ev * ev;
         let along = (-(by[0] * eu + by[1] * ev) / bend).clamp(0.0, 1.0);
         let there = [start[0] + along * eu, start[1] + along * ev];
         let [du, dv] = [there[0] - at[0], there[1] - at[1]];
-        let value =
-            gradient[0] * du + gradient[1] * dv + 0.5 * (uu * du * du + 2.0 * uv * du * dv + vv * dv * dv);
+        let value = gradient[0] * du
+            + gradient[1] * dv
+            + 0.5 * (uu * du * du + 2.0 * uv * du * dv + vv * dv * dv);
         if value < best.0 {
             best = (value, there);
         }

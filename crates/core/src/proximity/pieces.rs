@@ -66,12 +66,20 @@ impl Piece {
         let net = BezierTriangle(net.0.map(|point| point - origin));
         let own = corners.map(|corner| corner - origin);
         let (bounds, height) = hull(net.0.into_iter(), own);
-        let piece = RegularPiece { origin, quartic: Quartic::of(&net, 0), convexity: None };
+        let piece = RegularPiece {
+            origin,
+            quartic: Quartic::of(&net, 0),
+            convexity: None,
+        };
         Self {
             bounds: bounds.map(|corner| corner + origin),
             corners,
             height,
-            deviation: net.off_flat().map(DVec3::length_squared).fold(0.0, f64::max).sqrt(),
+            deviation: net
+                .off_flat()
+                .map(DVec3::length_squared)
+                .fold(0.0, f64::max)
+                .sqrt(),
             spot,
             form: Form::Regular(Box::new(piece)),
         }
@@ -84,13 +92,25 @@ impl Piece {
         let mut points = Vec::new();
         patch.for_each_hull_point(|point| points.push(frame.inside(point)));
         let (bounds, height) = hull(points.iter().copied(), corners);
-        let spans = points.iter().flat_map(|point| corners.map(|corner| point.distance(corner)));
+        let spans = points
+            .iter()
+            .flat_map(|point| corners.map(|corner| point.distance(corner)));
         let deviation = spans.fold(0.0, f64::max);
-        Self { bounds, corners, height, deviation, spot, form: Form::Irregular(Box::new(patch)) }
+        Self {
+            bounds,
+            corners,
+            height,
+            deviation,
+            spot,
+            form: Form::Irregular(Box::new(patch)),
+        }
     }
 
     fn of_points(frame: &SurfaceFrame, points: &patch::Points, spot: Spot) -> Self {
-        Self::of_net(&BezierTriangle::of(&points.map(|point| frame.inside(point))), spot)
+        Self::of_net(
+            &BezierTriangle::of(&points.map(|point| frame.inside(point))),
+            spot,
+        )
     }
 
     /// The pieces over its four parts.
@@ -98,7 +118,11 @@ impl Piece {
         match &self.form {
             Form::Regular(regular) => [0, 1, 2, 3].map(|part| {
                 let Spot { u, v, size } = Spot::WHOLE.child(part);
-                let net = regular.quartic.net([u, v], size).0.map(|point| point + regular.origin);
+                let net = regular
+                    .quartic
+                    .net([u, v], size)
+                    .0
+                    .map(|point| point + regular.origin);
                 Self::of_net(&BezierTriangle(net), self.spot.child(part))
             }),
             Form::Irregular(patch) => {
@@ -143,7 +167,10 @@ fn hull(points: impl Iterator<Item = DVec3>, [a, b, c]: [DVec3; 3]) -> (Bounds, 
     let (mut bounds, mut squared) = ([a, b, c].into_iter().fold(NO_BOUNDS, grown), 0.0);
     for point in points {
         bounds = grown(bounds, point);
-        squared = f64::max(squared, closest_to_origin(a - point, b - point, c - point).squared);
+        squared = f64::max(
+            squared,
+            closest_to_origin(a - point, b - point, c - point).squared,
+        );
     }
     (bounds, squared.sqrt())
 }
@@ -159,7 +186,10 @@ pub(super) struct FacePieces {
 
 impl FacePieces {
     pub(super) fn of(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: FaceId) -> Self {
-        let mut found = Self { pieces: Vec::new(), closing: Vec::new() };
+        let mut found = Self {
+            pieces: Vec::new(),
+            closing: Vec::new(),
+        };
         found.append(whole(surface, frame, face), (frame, surface.rules()), 0);
         found
     }
@@ -186,7 +216,13 @@ impl FacePieces {
 pub(super) fn closing(piece: &Piece, parts: &[Piece; 4]) -> [[DVec3; 3]; 3] {
     // Corner i of the middle part is on the edge opposite corner i.
     let middle = parts[3].corners;
-    [0, 1, 2].map(|edge| [piece.corners[edge], piece.corners[(edge + 1) % 3], middle[(edge + 2) % 3]])
+    [0, 1, 2].map(|edge| {
+        [
+            piece.corners[edge],
+            piece.corners[(edge + 1) % 3],
+            middle[(edge + 2) % 3],
+        ]
+    })
 }
 
 /// All of the surface over a face.
@@ -203,5 +239,8 @@ pub(super) fn bounds(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: Fac
 }
 
 fn joined(pieces: &[Piece]) -> Bounds {
-    pieces.iter().flat_map(|piece| piece.bounds).fold(NO_BOUNDS, grown)
+    pieces
+        .iter()
+        .flat_map(|piece| piece.bounds)
+        .fold(NO_BOUNDS, grown)
 }

@@ -21,7 +21,11 @@ use crate::vector::{DVec3, vector};
 const ON_CLOSING: f64 = 1e-12;
 
 /// How they are moved, one after the other: far less than what counts as near.
-const MOVES: [[f64; 3]; 3] = [[0.0; 3], [3.1e-11, 5.3e-11, 7.9e-11], [-6.7e-11, 2.3e-11, -4.1e-11]];
+const MOVES: [[f64; 3]; 3] = [
+    [0.0; 3],
+    [3.1e-11, 5.3e-11, 7.9e-11],
+    [-6.7e-11, 2.3e-11, -4.1e-11],
+];
 
 /// The rims of the tree's nodes.
 #[derive(Clone, Debug)]
@@ -54,7 +58,10 @@ impl Chains {
             return Err(ProximityError::Open { from, to });
         }
         let mut places = vec![0; tree.items().len()];
-        tree.items().iter().zip(0..).for_each(|(&face, place)| places[face as usize] = place);
+        tree.items()
+            .iter()
+            .zip(0..)
+            .for_each(|(&face, place)| places[face as usize] = place);
         let (mut edges, mut starts) = (Vec::new(), vec![0]);
         for node in tree.nodes() {
             let range = node.range();
@@ -68,8 +75,16 @@ impl Chains {
             }
             starts.push(edges.len());
         }
-        let corners = surface.corner_limits().iter().map(|&corner| frame.inside(vector(corner))).collect();
-        Ok(Self { corners, edges, starts })
+        let corners = surface
+            .corner_limits()
+            .iter()
+            .map(|&corner| frame.inside(vector(corner)))
+            .collect();
+        Ok(Self {
+            corners,
+            edges,
+            starts,
+        })
     }
 
     /// `None` where a point of the frame is too near to the surface to say.
@@ -79,7 +94,10 @@ impl Chains {
                 Ok(angle) => {
                     let turns = angle / (4.0 * PI);
                     // Anything else than a whole number is rounding: the chain is closed.
-                    return (turns - turns.round()).abs().le(&0.1).then_some(turns.round() as i32);
+                    return (turns - turns.round())
+                        .abs()
+                        .le(&0.1)
+                        .then_some(turns.round() as i32);
                 }
                 Err(Doubt::Near) => return None,
                 Err(Doubt::OnClosing) => {}
@@ -100,7 +118,10 @@ impl Chains {
             } else {
                 let face = tree.items()[node.range().start];
                 sum += proximity.with_pieces(face, |found| {
-                    let of_pieces = found.pieces.iter().map(|piece| of_piece(proximity, piece, from));
+                    let of_pieces = found
+                        .pieces
+                        .iter()
+                        .map(|piece| of_piece(proximity, piece, from));
                     of_pieces
                         .chain(found.closing.iter().map(|gap| of_closing(*gap, from)))
                         .sum::<Result<f64, _>>()
@@ -113,8 +134,12 @@ impl Chains {
     /// The solid angle of a cone over the rim of a node.
     fn of_cone(&self, node: usize, tip: DVec3, from: DVec3) -> f64 {
         let edges = &self.edges[self.starts[node]..self.starts[node + 1]];
-        let of_edge =
-            |&[a, b]: &[u32; 2]| solid_angle([tip, self.corners[a as usize], self.corners[b as usize]], from);
+        let of_edge = |&[a, b]: &[u32; 2]| {
+            solid_angle(
+                [tip, self.corners[a as usize], self.corners[b as usize]],
+                from,
+            )
+        };
         edges.iter().map(of_edge).sum()
     }
 }
@@ -131,11 +156,19 @@ fn of_piece(proximity: &Proximity<'_>, piece: &Piece, from: DVec3) -> Result<f64
     }
     let parts = piece.parts(&proximity.frame, proximity.surface.rules());
     let gaps = closing(piece, &parts).map(|gap| of_closing(gap, from));
-    parts.iter().map(|part| of_piece(proximity, part, from)).chain(gaps).sum()
+    parts
+        .iter()
+        .map(|part| of_piece(proximity, part, from))
+        .chain(gaps)
+        .sum()
 }
 
 fn of_closing(corners: [DVec3; 3], from: DVec3) -> Result<f64, Doubt> {
     let [a, b, c] = corners.map(|corner| corner - from);
     let is_on = closest_to_origin(a, b, c).squared <= ON_CLOSING * ON_CLOSING;
-    if is_on { Err(Doubt::OnClosing) } else { Ok(solid_angle(corners, from)) }
+    if is_on {
+        Err(Doubt::OnClosing)
+    } else {
+        Ok(solid_angle(corners, from))
+    }
 }

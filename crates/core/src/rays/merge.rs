@@ -13,7 +13,9 @@ pub(super) fn merged(mut found: Vec<Found>, triangles: &[[u32; 3]], tolerance: f
     // The last of those that were taken together counts on: what is grazed is a chain of pieces.
     let mut last: Vec<Found> = Vec::with_capacity(found.len());
     for one in found {
-        let near = last.iter().rposition(|other| is_one(other, &one, triangles, tolerance));
+        let near = last
+            .iter()
+            .rposition(|other| is_one(other, &one, triangles, tolerance));
         match near {
             Some(at) => last[at] = one,
             None => {
@@ -27,7 +29,11 @@ pub(super) fn merged(mut found: Vec<Found>, triangles: &[[u32; 3]], tolerance: f
 
 fn is_one(a: &Found, b: &Found, triangles: &[[u32; 3]], tolerance: f64) -> bool {
     // Pieces that are grazed are up to ten times as large as the tolerance.
-    let reach = if a.crossing == Crossing::Grazing { 20.0 * tolerance } else { tolerance };
+    let reach = if a.crossing == Crossing::Grazing {
+        20.0 * tolerance
+    } else {
+        tolerance
+    };
     a.crossing == b.crossing
         && b.depth - a.depth <= reach
         && (a.crossing == Crossing::Grazing || is_adjacent(a, b, triangles))
@@ -42,7 +48,10 @@ fn is_adjacent(a: &Found, b: &Found, triangles: &[[u32; 3]]) -> bool {
     // The weight of each of one's corners is that of the same vertex in the other.
     let is_same = |own: &[u32; 3], weights: &[f64; 3], other: &[u32; 3], others: &[f64; 3]| {
         own.iter().zip(weights).all(|(vertex, weight)| {
-            let there = other.iter().position(|v| v == vertex).map_or(0.0, |at| others[at]);
+            let there = other
+                .iter()
+                .position(|v| v == vertex)
+                .map_or(0.0, |at| others[at]);
             (weight - there).abs() <= SAME
         })
     };

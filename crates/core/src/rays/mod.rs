@@ -52,7 +52,11 @@ pub struct RayOptions {
 
 impl Default for RayOptions {
     fn default() -> Self {
-        Self { from: 0.0, to: f64::INFINITY, tolerance: None }
+        Self {
+            from: 0.0,
+            to: f64::INFINITY,
+            tolerance: None,
+        }
     }
 }
 
@@ -64,7 +68,10 @@ impl RayOptions {
 
     /// Sets [`Self::tolerance`].
     pub fn tolerance(self, tolerance: f64) -> Self {
-        Self { tolerance: Some(tolerance), ..self }
+        Self {
+            tolerance: Some(tolerance),
+            ..self
+        }
     }
 }
 
@@ -159,28 +166,44 @@ impl<'a> RayCaster<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Self, RayError> {
         if !surface.rules().is_certified() {
-            return Err(RayError::Scheme { name: surface.rules().scheme().name().to_owned() });
+            return Err(RayError::Scheme {
+                name: surface.rules().scheme().name().to_owned(),
+            });
         }
         let mesh = surface.control();
-        let frame = SurfaceFrame::of(mesh.positions().iter().map(|&p| vector(p)).fold(NO_BOUNDS, grown));
+        let frame = SurfaceFrame::of(
+            mesh.positions()
+                .iter()
+                .map(|&p| vector(p))
+                .fold(NO_BOUNDS, grown),
+        );
         let faces = mesh.face_count();
         let of_faces = |face: usize| pieces::pieces(surface, &frame, FaceId(face as u32), faces);
         let watch = SharedWatch::new(observer, Stage::Indexing);
         watch.triangles(faces);
         watch.stage(Stage::Indexing, Some(faces))?;
-        let blocks = watch.pieces(faces, BLOCK, |block| block.flat_map(of_faces).collect::<Vec<_>>())?;
+        let blocks = watch.pieces(faces, BLOCK, |block| {
+            block.flat_map(of_faces).collect::<Vec<_>>()
+        })?;
         watch.done(faces)?;
         let (boxes, pieces): (Vec<Bounds>, Vec<Piece>) = blocks.into_iter().flatten().unzip();
         if let Some(why) = surface.failure() {
             return Err(why.clone().into());
         }
-        Ok(Self { surface, frame, tree: BoxTree::of(&boxes), pieces })
+        Ok(Self {
+            surface,
+            frame,
+            tree: BoxTree::of(&boxes),
+            pieces,
+        })
     }
 
     /// All points where a ray meets the surface, in their order along it. None is missed; what lies on an edge or a vertex is told once.
     /// Rays without a direction, or that are not finite, meet nothing.
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Vec<Hit> {
-        let Some((search, tolerance)) = self.searched(ray, options, false) else { return Vec::new() };
+        let Some((search, tolerance)) = self.searched(ray, options, false) else {
+            return Vec::new();
+        };
         let frame = search.frame;
         let found = merge::merged(search.found, self.surface.control().triangles(), tolerance);
         found.iter().map(|found| self.hit(found, &frame)).collect()
@@ -190,7 +213,11 @@ impl<'a> RayCaster<'a> {
     pub fn first(&self, ray: &Ray, options: &RayOptions) -> Option<Hit> {
         let (search, _) = self.searched(ray, options, true)?;
         let least = |a: &&Found, b: &&Found| a.depth.total_cmp(&b.depth).then(a.face.cmp(&b.face));
-        search.found.iter().min_by(least).map(|found| self.hit(found, &search.frame))
+        search
+            .found
+            .iter()
+            .min_by(least)
+            .map(|found| self.hit(found, &search.frame))
     }
 
     /// [`Self::first`] of many rays, in order, on all threads.
@@ -241,8 +268,9 @@ impl<'a> RayCaster<'a> {
         let watch = SharedWatch::new(observer, Stage::Casting);
         watch.triangles(self.surface.control().face_count());
         watch.stage(Stage::Casting, Some(rays.len()))?;
-        let blocks =
-            watch.pieces(rays.len(), BLOCK, |block| rays[block].iter().map(&of).collect::<Vec<_>>())?;
+        let blocks = watch.pieces(rays.len(), BLOCK, |block| {
+            rays[block].iter().map(&of).collect::<Vec<_>>()
+        })?;
         watch.done(rays.len())?;
         Ok(blocks)
     }
@@ -254,8 +282,14 @@ impl<'a> RayCaster<'a> {
         is_first_enough: bool,
     ) -> Option<(RaySearch<'_>, f64)> {
         let frame = RayFrame::of(ray, &self.frame)?;
-        let asked = options.tolerance.map_or(TOLERANCE, |tolerance| self.frame.length_inside(tolerance));
-        let tolerance = if asked > LEAST_TOLERANCE { asked } else { LEAST_TOLERANCE };
+        let asked = options
+            .tolerance
+            .map_or(TOLERANCE, |tolerance| self.frame.length_inside(tolerance));
+        let tolerance = if asked > LEAST_TOLERANCE {
+            asked
+        } else {
+            LEAST_TOLERANCE
+        };
         let of = (self.surface, &self.frame, &self.pieces[..]);
         let mut search = RaySearch::new(of, frame, options, tolerance, is_first_enough);
         self.tree.search(&mut search);
@@ -297,7 +331,9 @@ mod tests {
     /// How many pieces rays look at; what is printed stands in docs/paper.md.
     #[test]
     fn rays_look_at_few_pieces() {
-        let soup = crate::models::find("head").map(|model| model.soup()).unwrap_or_default();
+        let soup = crate::models::find("head")
+            .map(|model| model.soup())
+            .unwrap_or_default();
         let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let rays = RayCaster::new(&surface).unwrap();
@@ -305,12 +341,19 @@ mod tests {
         let count = 500;
         for _ in 0..count {
             let origin = (rays.frame.size * random.vector() + rays.frame.middle).to_array();
-            let ray = Ray { origin, direction: random.vector().to_array() };
+            let ray = Ray {
+                origin,
+                direction: random.vector().to_array(),
+            };
             let all = RayOptions::default().between(f64::NEG_INFINITY, f64::INFINITY);
             let (search, _) = rays.searched(&ray, &all, false).unwrap();
             (pieces, hits) = (pieces + search.looked_at, hits + search.found.len());
         }
-        println!("{:.1} pieces a line, {:.2} hits", pieces as f64 / count as f64, hits as f64 / count as f64);
+        println!(
+            "{:.1} pieces a line, {:.2} hits",
+            pieces as f64 / count as f64,
+            hits as f64 / count as f64
+        );
         assert!(hits > count / 4 && pieces < 40 * count, "{pieces} {hits}");
     }
 }

@@ -41,7 +41,10 @@ pub(super) enum Form {
 pub(super) fn control_corner(spot: Spot) -> [f64; 2] {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let is_control = |at: &[f64; 2]| spot.weights(*at).contains(&1.0);
-    corners.into_iter().find(is_control).unwrap_or([1.0 / 3.0; 2])
+    corners
+        .into_iter()
+        .find(is_control)
+        .unwrap_or([1.0 / 3.0; 2])
 }
 
 /// The pieces over a face of a mesh with so many, and their boxes.
@@ -54,7 +57,13 @@ pub(super) fn pieces(
     let levels = if faces > MOST_DIVIDED { 0 } else { KEPT_LEVELS };
     let (sheet, rules) = surface.sheet(face);
     let mut found = Vec::new();
-    append(&mut found, (frame, rules), (face.0, Spot::WHOLE), sheet.patch, levels);
+    append(
+        &mut found,
+        (frame, rules),
+        (face.0, Spot::WHOLE),
+        sheet.patch,
+        levels,
+    );
     found
 }
 
@@ -71,7 +80,10 @@ fn append(
     match patch {
         Patch::Regular(points) => {
             let points = points.map(|point| frame.inside(point));
-            let bounds = BezierTriangle::of(&points).0.into_iter().fold(NO_BOUNDS, grown);
+            let bounds = BezierTriangle::of(&points)
+                .0
+                .into_iter()
+                .fold(NO_BOUNDS, grown);
             found.push((with_margin(bounds), piece(Form::Regular(Box::new(points)))));
         }
         patch if levels == 0 => {
@@ -82,7 +94,13 @@ fn append(
         patch => {
             let refined = patch.refined(rules);
             for own in 0..4 {
-                append(found, (frame, rules), (face, spot.child(own)), refined.part(own), levels - 1);
+                append(
+                    found,
+                    (frame, rules),
+                    (face, spot.child(own)),
+                    refined.part(own),
+                    levels - 1,
+                );
             }
         }
     }

@@ -22,7 +22,10 @@ const OUTSIDE: f64 = 1e-9;
 
 /// Whether a line in the plane has all points of a net on one side, and the origin on the other. Lines along the axes and the
 /// diagonals are tried, and along the sides of a triangle.
-pub(super) fn is_beside(points: impl Iterator<Item = DVec3> + Clone, corners: Option<[DVec3; 3]>) -> bool {
+pub(super) fn is_beside(
+    points: impl Iterator<Item = DVec3> + Clone,
+    corners: Option<[DVec3; 3]>,
+) -> bool {
     let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for p in points.clone() {
         for (way, along) in [p.x, p.y, p.x + p.y, p.x - p.y].into_iter().enumerate() {
@@ -38,8 +41,9 @@ pub(super) fn is_beside(points: impl Iterator<Item = DVec3> + Clone, corners: Op
         let across = DVec3::new(b.y - a.y, a.x - b.x, 0.0);
         let rounding = 4.0 * ROUNDING * across.abs().max_element();
         let along = points.clone().map(|p| p.x * across.x + p.y * across.y);
-        let (low, high) =
-            along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
         low > rounding || high < -rounding
     })
 }
@@ -60,7 +64,9 @@ pub(super) enum Projection {
 pub(super) fn projection(net: &BezierTriangle) -> Projection {
     let [along, across] = tangents(net);
     let greatest = |net: &[DVec3; 10]| {
-        net.iter().map(|by| by.x.abs().max(by.y.abs()).max(by.z.abs())).fold(0.0, f64::max)
+        net.iter()
+            .map(|by| by.x.abs().max(by.y.abs()).max(by.z.abs()))
+            .fold(0.0, f64::max)
     };
     let rounding = PRODUCT_ROUNDING * greatest(&along) * greatest(&across) + ROUNDING * ROUNDING;
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -111,7 +117,11 @@ pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
             let v = v.min(1.0 - u);
             let depth = quartic.point(u, v).z;
             // The ray runs along z: normals against it are those of the front.
-            return inside.then_some(Meeting { at: [u, v], depth, is_front: jacobian < 0.0 });
+            return inside.then_some(Meeting {
+                at: [u, v],
+                depth,
+                is_front: jacobian < 0.0,
+            });
         }
         // Far outside the polynomial says nothing of the piece.
         if !(-1.0..=2.0).contains(&u) || !(-1.0..=2.0).contains(&v) {
@@ -125,7 +135,10 @@ pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
 fn on_triangle([a, b, c]: [DVec3; 3]) -> Option<[f64; 2]> {
     let (ab, ac) = (b - a, c - a);
     let area = ab.x * ac.y - ab.y * ac.x;
-    let (u, v) = ((a.y * ac.x - a.x * ac.y) / area, (a.x * ab.y - a.y * ab.x) / area);
+    let (u, v) = (
+        (a.y * ac.x - a.x * ac.y) / area,
+        (a.x * ab.y - a.y * ab.x) / area,
+    );
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then_some([u, v])
 }
 
@@ -143,11 +156,16 @@ pub(super) fn nearest_on_edges(corners: [DVec3; 3], rounding: f64) -> ([f64; 2],
         let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
         let way = to - from;
         let squared = way.x * way.x + way.y * way.y;
-        let part = if squared > 0.0 { -(from.x * way.x + from.y * way.y) / squared } else { 0.0 };
+        let part = if squared > 0.0 {
+            -(from.x * way.x + from.y * way.y) / squared
+        } else {
+            0.0
+        };
         let part = part.clamp(0.0, 1.0);
         let point = from + part * way;
         let distance = point.x.hypot(point.y);
-        let is_better = distance < best.2 - rounding || distance < best.2 + rounding && point.z < best.1;
+        let is_better =
+            distance < best.2 - rounding || distance < best.2 + rounding && point.z < best.1;
         if is_better {
             let mut weights = [0.0; 3];
             (weights[edge], weights[(edge + 1) % 3]) = (1.0 - part, part);

@@ -70,7 +70,10 @@ impl RayFrame {
         let sight = self.axes[2];
         let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
         for axis in 0..3 {
-            let (low, high) = (bounds[0][axis] - self.base[axis], bounds[1][axis] - self.base[axis]);
+            let (low, high) = (
+                bounds[0][axis] - self.base[axis],
+                bounds[1][axis] - self.base[axis],
+            );
             if sight[axis] == 0.0 {
                 if low > 0.0 || high < 0.0 {
                     return None;
@@ -150,15 +153,27 @@ impl<'a> RaySearch<'a> {
             // What is met twice there is still found twice.
             self.last = self.last.min(depth + self.tolerance);
         }
-        self.found.push(Found { depth, face, weights: spot.weights(at), crossing });
+        self.found.push(Found {
+            depth,
+            face,
+            weights: spot.weights(at),
+            crossing,
+        });
     }
 
     /// Whether points in whose hull a piece is are beside the ray, or before its start or behind its end.
-    fn is_missed(&self, points: impl Iterator<Item = DVec3> + Clone, corners: Option<[DVec3; 3]>) -> bool {
+    fn is_missed(
+        &self,
+        points: impl Iterator<Item = DVec3> + Clone,
+        corners: Option<[DVec3; 3]>,
+    ) -> bool {
         let depths = points.clone().map(|point| point.z);
-        let (low, high) =
-            depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(z), high.max(z)));
-        high < self.first - self.tolerance || low > self.last + self.tolerance || is_beside(points, corners)
+        let (low, high) = depths.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+            (low.min(z), high.max(z))
+        });
+        high < self.first - self.tolerance
+            || low > self.last + self.tolerance
+            || is_beside(points, corners)
     }
 
     /// A regular piece, its points in the ray's frame.
@@ -172,10 +187,18 @@ impl<'a> RaySearch<'a> {
         if projection == Projection::Injective
             && let Some(meeting) = meeting(&net)
         {
-            let crossing = if meeting.is_front { Crossing::Entering } else { Crossing::Leaving };
+            let crossing = if meeting.is_front {
+                Crossing::Entering
+            } else {
+                Crossing::Leaving
+            };
             return self.add(place, meeting.at, meeting.depth, crossing);
         }
-        let bulge = || net.off_flat().map(|off| off.abs().max_element()).fold(0.0, f64::max);
+        let bulge = || {
+            net.off_flat()
+                .map(|off| off.abs().max_element())
+                .fold(0.0, f64::max)
+        };
         let is_small = extent(net.0.iter().copied()) < SIZE * self.tolerance;
         if is_small
             || self.looked_at > MOST_PIECES

@@ -27,25 +27,45 @@ impl AttributeGoal {
     /// The values of a place differ by no more than `tolerance`, as a Euclidean length over all their numbers; each mesh has
     /// three of these as its positions ([`crate::carry::goal`] makes them of a channel).
     pub fn values(meshes: Vec<Mesh>, tolerance: f64) -> Self {
-        Self { meshes, tolerance, kind: GoalKind::Values }
+        Self {
+            meshes,
+            tolerance,
+            kind: GoalKind::Values,
+        }
     }
 
     /// The surface of `moved`, as a morph target or a pose makes it, and the refined triangles moved alike are within `tolerance` of each
     /// other, both ways.
     pub fn surface(moved: Mesh, tolerance: f64) -> Self {
-        Self { meshes: vec![moved], tolerance, kind: GoalKind::Surface }
+        Self {
+            meshes: vec![moved],
+            tolerance,
+            kind: GoalKind::Surface,
+        }
     }
 
     /// Refuses tolerances that are none, and meshes with other faces than so many.
     pub(crate) fn check(&self, faces: usize) -> Result<(), MeshError> {
-        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected });
+        let bad = |name, value, expected| {
+            Err(MeshError::BadOption {
+                name,
+                value,
+                expected,
+            })
+        };
         if !(self.tolerance > 0.0 && self.tolerance.is_finite()) {
-            return bad("tolerance of an attribute", self.tolerance, "a number above 0");
+            return bad(
+                "tolerance of an attribute",
+                self.tolerance,
+                "a number above 0",
+            );
         }
         match self.meshes.iter().find(|mesh| mesh.face_count() != faces) {
-            Some(mesh) => {
-                bad("number of an attribute's faces", mesh.face_count() as f64, "that of the control mesh")
-            }
+            Some(mesh) => bad(
+                "number of an attribute's faces",
+                mesh.face_count() as f64,
+                "that of the control mesh",
+            ),
             None => Ok(()),
         }
     }

@@ -37,7 +37,9 @@ impl SharpLines {
     fn next(&self, from: u32, over: u32, numbers: &[u32]) -> Option<u32> {
         let (mut before, mut at) = (from, over);
         while numbers[at as usize] == NONE {
-            let [one, other] = self.ends(at) else { return None };
+            let [one, other] = self.ends(at) else {
+                return None;
+            };
             let onward = if one[1] == before { other[1] } else { one[1] };
             (before, at) = (at, onward);
             if at == from {
@@ -52,8 +54,15 @@ impl SharpLines {
 pub(super) fn features(kept: Vec<[u32; 2]>) -> Features {
     let mut ends: Vec<u32> = kept.iter().flatten().copied().collect();
     ends.sort_unstable();
-    let vertices = ends.chunk_by(|a, b| a == b).filter(|own| own.len() != 2).map(|own| own[0]).collect();
-    Features { edges: kept, vertices }
+    let vertices = ends
+        .chunk_by(|a, b| a == b)
+        .filter(|own| own.len() != 2)
+        .map(|own| own[0])
+        .collect();
+    Features {
+        edges: kept,
+        vertices,
+    }
 }
 
 /// Pairs of corners, by the half-edges that leave them: of the coarse mesh, ascending, and of the fine one. `vertices` are the fine
@@ -76,20 +85,34 @@ pub(super) fn corner_sources(
         for &[_, over] in lines.ends(vertex) {
             let own = half_edge(fine.topology(), VertexId(vertex), over);
             let next = lines.next(vertex, over, &numbers);
-            let left = next.and_then(|next| half_edge(coarse.topology(), number, numbers[next as usize]));
+            let left =
+                next.and_then(|next| half_edge(coarse.topology(), number, numbers[next as usize]));
             along.extend(left.zip(own));
         }
         if along.is_empty() {
             continue;
         }
         if coarse.topology().is_boundary(number) {
-            let (left, own) =
-                (coarse.topology().outgoing(number), fine.topology().outgoing(VertexId(vertex)));
+            let (left, own) = (
+                coarse.topology().outgoing(number),
+                fine.topology().outgoing(VertexId(vertex)),
+            );
             along.push((left.0, own.0));
         }
-        let on_line = |h: u32| along.iter().find(|&&(left, _)| left == h).map(|&(_, own)| own);
-        let ring: Vec<u32> = coarse.topology().outgoing_ring(number).map(|h| h.0).collect();
-        let Some(first) = ring.iter().position(|&h| on_line(h).is_some()) else { continue };
+        let on_line = |h: u32| {
+            along
+                .iter()
+                .find(|&&(left, _)| left == h)
+                .map(|&(_, own)| own)
+        };
+        let ring: Vec<u32> = coarse
+            .topology()
+            .outgoing_ring(number)
+            .map(|h| h.0)
+            .collect();
+        let Some(first) = ring.iter().position(|&h| on_line(h).is_some()) else {
+            continue;
+        };
         let mut own = 0;
         for at in 0..ring.len() {
             let h = ring[(first + at) % ring.len()];
@@ -103,7 +126,10 @@ pub(super) fn corner_sources(
 
 /// The half-edge from a vertex to another, if it has a face.
 fn half_edge(topology: &Topology, from: VertexId, to: u32) -> Option<u32> {
-    topology.outgoing_ring(from).find(|&h| topology.target(h).0 == to).map(|h| h.0)
+    topology
+        .outgoing_ring(from)
+        .find(|&h| topology.target(h).0 == to)
+        .map(|h| h.0)
 }
 
 #[cfg(test)]
@@ -114,15 +140,22 @@ mod tests {
     /// A flat sheet of n × n squares with a line of kept edges along row `at`, from the left to column `end`.
     fn sheet(n: u32, at: u32, end: u32) -> (Mesh, Vec<[u32; 2]>) {
         let vertex = |x: u32, y: u32| y * (n + 1) + x;
-        let positions =
-            (0..=n).flat_map(|y| (0..=n).map(move |x| [f64::from(x), f64::from(y), 0.0])).collect();
+        let positions = (0..=n)
+            .flat_map(|y| (0..=n).map(move |x| [f64::from(x), f64::from(y), 0.0]))
+            .collect();
         let squares = (0..n).flat_map(|y| (0..n).map(move |x| [x, y]));
         let triangles = squares.flat_map(|[x, y]| {
-            let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| vertex(x, y));
+            let [a, b, c, d] =
+                [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(|[x, y]| vertex(x, y));
             [[a, b, c], [a, c, d]]
         });
-        let kept = (0..end).map(|x| [vertex(x, at), vertex(x + 1, at)]).collect();
-        (Mesh::from_triangles(positions, triangles.collect()).expect("a sheet"), kept)
+        let kept = (0..end)
+            .map(|x| [vertex(x, at), vertex(x + 1, at)])
+            .collect();
+        (
+            Mesh::from_triangles(positions, triangles.collect()).expect("a sheet"),
+            kept,
+        )
     }
 
     #[test]
@@ -132,11 +165,19 @@ mod tests {
             let lines = SharpLines::new(&fine, &kept);
             let goals = SimplifyOptions::default().tolerance(Some(1e-6));
             let coarse = simplify(&fine, &features(kept.clone()), &goals).expect("a coarser sheet");
-            assert!(coarse.mesh.face_count() < 20, "{}", coarse.mesh.face_count());
+            assert!(
+                coarse.mesh.face_count() < 20,
+                "{}",
+                coarse.mesh.face_count()
+            );
             let sources = corner_sources(&fine, &lines, &coarse.mesh, &coarse.vertices);
             assert!(!sources.is_empty() && sources.is_sorted());
             let middle = |mesh: &Mesh, h: u32| {
-                mesh.as_triangles().corners(h as usize / 3).iter().map(|corner| corner[1] / 3.0).sum::<f64>()
+                mesh.as_triangles()
+                    .corners(h as usize / 3)
+                    .iter()
+                    .map(|corner| corner[1] / 3.0)
+                    .sum::<f64>()
             };
             let mut sides = [0; 2];
             for (left, own) in sources {

@@ -57,7 +57,8 @@ impl Driver<'_> {
             let closure = split.closure_cases(&divisible);
             drop(divisible);
             let moving = moves(mesh, &split);
-            let (next, numbered) = advance(mesh, self.scheme, split, moving.as_deref(), &mut watch)?;
+            let (next, numbered) =
+                advance(mesh, self.scheme, split, moving.as_deref(), &mut watch)?;
             if let Some(lineage) = &mut lineage {
                 lineage.advance(mesh, &numbered);
             }
@@ -82,16 +83,31 @@ impl Driver<'_> {
             true => Some(table.sided_normals_polled(&mesh, &mut |done| watch.done(done))??),
             false => None,
         };
-        let mesh = if self.limit { at_limit(mesh, &table, &mut watch)? } else { mesh };
+        let mesh = if self.limit {
+            at_limit(mesh, &table, &mut watch)?
+        } else {
+            mesh
+        };
         // Coordinates near the greatest number may overflow in a weighted sum.
         check_finite(mesh.positions())?;
         let (origins, parents) = lineage.map(Lineage::finish).unwrap_or_default();
-        Ok(Refinement { mesh, normals, origins, parents, steps, stop })
+        Ok(Refinement {
+            mesh,
+            normals,
+            origins,
+            parents,
+            steps,
+            stop,
+        })
     }
 }
 
 /// The mesh with its vertices moved to its limit surface.
-fn at_limit(mesh: Mesh, table: &LimitTable<'_>, watch: &mut Watch<'_>) -> Result<Mesh, RefineError> {
+fn at_limit(
+    mesh: Mesh,
+    table: &LimitTable<'_>,
+    watch: &mut Watch<'_>,
+) -> Result<Mesh, RefineError> {
     watch.stage(Stage::Limits, Some(mesh.vertex_count()))?;
     let mut positions = table.positions_polled(&mesh, &mut |done| watch.done(done))??;
     join_copies(&mut positions, &mesh.junctions().vertices);

@@ -219,13 +219,24 @@ impl ExactOptions {
             (self.max_triangles, ExactStop::TriangleCap),
             (by_memory, ExactStop::MemoryCap),
         ];
-        let given = limits.into_iter().filter_map(|(limit, stop)| Some((limit?, stop)));
-        given.min_by_key(|&(limit, _)| limit).unwrap_or((usize::MAX, ExactStop::TriangleCap))
+        let given = limits
+            .into_iter()
+            .filter_map(|(limit, stop)| Some((limit?, stop)));
+        given
+            .min_by_key(|&(limit, _)| limit)
+            .unwrap_or((usize::MAX, ExactStop::TriangleCap))
     }
 
     /// Refuses goals that are no positive numbers, and having none.
     pub(super) fn check(&self, control: &Mesh) -> Result<(), RefineError> {
-        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
+        let bad = |name, value, expected| {
+            Err(MeshError::BadOption {
+                name,
+                value,
+                expected,
+            }
+            .into())
+        };
         if let Some(tolerance) = self.tolerance
             && !(tolerance > 0.0 && tolerance.is_finite())
         {
@@ -245,7 +256,11 @@ impl ExactOptions {
             return bad("number of levels", self.max_levels as f64, "at most 30");
         }
         if self.pixels.is_some() && self.cameras.is_empty() {
-            return bad("number of cameras", 0.0, "at least one, for a distance in pixels");
+            return bad(
+                "number of cameras",
+                0.0,
+                "at least one, for a distance in pixels",
+            );
         }
         if let Some(view) = self.view {
             view.check()?;
@@ -255,13 +270,25 @@ impl ExactOptions {
             return bad("optimisation", 1.0, expected);
         }
         let quality = self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some();
-        self.attributes.iter().try_for_each(|goal| goal.check(control.face_count()))?;
-        if !self.attributes.is_empty() && (self.optimize || self.balance || self.triangles.is_some()) {
+        self.attributes
+            .iter()
+            .try_for_each(|goal| goal.check(control.face_count()))?;
+        if !self.attributes.is_empty()
+            && (self.optimize || self.balance || self.triangles.is_some())
+        {
             let expected = "none with a number of triangles, balance or optimisation";
-            return bad("number of goals for attributes", self.attributes.len() as f64, expected);
+            return bad(
+                "number of goals for attributes",
+                self.attributes.len() as f64,
+                expected,
+            );
         }
         if !quality && self.triangles.is_none() {
-            return bad("number of goals", 0.0, "a tolerance, an angle, pixels or a number of triangles");
+            return bad(
+                "number of goals",
+                0.0,
+                "a tolerance, an angle, pixels or a number of triangles",
+            );
         }
         Ok(())
     }

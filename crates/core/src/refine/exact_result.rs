@@ -68,9 +68,16 @@ impl Origin {
         if self.face == face {
             return Some(*self);
         }
-        let (from, to) = (triangles.get(self.face as usize)?, triangles.get(face as usize)?);
+        let (from, to) = (
+            triangles.get(self.face as usize)?,
+            triangles.get(face as usize)?,
+        );
         let mut barycentric = [0.0; 3];
-        for (vertex, &weight) in from.iter().zip(&self.barycentric).filter(|&(_, &weight)| weight != 0.0) {
+        for (vertex, &weight) in from
+            .iter()
+            .zip(&self.barycentric)
+            .filter(|&(_, &weight)| weight != 0.0)
+        {
             barycentric[to.iter().position(|other| other == vertex)?] = weight;
         }
         Some(Self { face, barycentric })
@@ -158,7 +165,10 @@ impl Exact {
             })
         };
         let pieces = parallel::pieces(self.mesh.face_count(), |faces| {
-            faces.filter(|&f| is_inverted(f)).map(|f| f as u32).collect::<Vec<_>>()
+            faces
+                .filter(|&f| is_inverted(f))
+                .map(|f| f as u32)
+                .collect::<Vec<_>>()
         });
         pieces.concat()
     }
@@ -180,11 +190,16 @@ impl Traced for Exact {
     }
 
     fn corner_origin(&self, control: &[[u32; 3]], corner: HalfEdgeId) -> Option<Origin> {
-        let origin = self.origins.get(self.mesh.topology().origin(corner).index())?;
+        let origin = self
+            .origins
+            .get(self.mesh.topology().origin(corner).index())?;
         if !self.is_optimized {
             return origin.in_face(control, *self.parents.get(corner.face().index())?);
         }
-        match self.side_origins.binary_search_by_key(&corner.0, |&(h, _)| h) {
+        match self
+            .side_origins
+            .binary_search_by_key(&corner.0, |&(h, _)| h)
+        {
             Ok(place) => Some(self.side_origins[place].1),
             Err(_) => Some(*origin),
         }

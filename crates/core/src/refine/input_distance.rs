@@ -67,8 +67,15 @@ impl InputDistance {
         let moved = Moves::of(input, found, origins);
         let rounding = ROUNDING * greatest(input);
         let lower = lower(input, (found, origins), &moved)? - rounding;
-        let off_planes = if found.off_planes > 0.0 { 2.0 * found.off_planes + residual } else { 0.0 };
-        Ok(Some(Self { lower: lower.max(0.0), upper: moved.greatest + off_planes + rounding }))
+        let off_planes = if found.off_planes > 0.0 {
+            2.0 * found.off_planes + residual
+        } else {
+            0.0
+        };
+        Ok(Some(Self {
+            lower: lower.max(0.0),
+            upper: moved.greatest + off_planes + rounding,
+        }))
     }
 
     /// Of another mesh that stands for the limit surface of this one's, where these are within `apart` of each other.
@@ -100,7 +107,11 @@ impl InputDistance {
         observer: &mut Observer<'_>,
     ) -> Result<Self, MeasureError> {
         let is_wide = self.upper > expected && self.upper > WIDE * self.lower;
-        if is_wide { self.measured(meshes, NARROW, observer) } else { Ok(self) }
+        if is_wide {
+            self.measured(meshes, NARROW, observer)
+        } else {
+            Ok(self)
+        }
     }
 
     /// Measured anew where it is open whether the distance is below a bound.
@@ -114,7 +125,11 @@ impl InputDistance {
         observer: &mut Observer<'_>,
     ) -> Result<Self, MeasureError> {
         let is_open = self.lower <= bound && bound < self.upper;
-        if is_open { self.measured(meshes, NARROWEST, observer) } else { Ok(self) }
+        if is_open {
+            self.measured(meshes, NARROWEST, observer)
+        } else {
+            Ok(self)
+        }
     }
 
     fn measured(
@@ -126,26 +141,45 @@ impl InputDistance {
         if input.triangles.len() + found.triangles.len() > MOST_TRIANGLES {
             return Ok(self);
         }
-        let (from, to) = (Bvh::new_observed(found, observer)?, Bvh::new_observed(input, observer)?);
-        let options = CertifiedOptions::default().relative_gap(gap).max_work(MOST_WORK);
+        let (from, to) = (
+            Bvh::new_observed(found, observer)?,
+            Bvh::new_observed(input, observer)?,
+        );
+        let options = CertifiedOptions::default()
+            .relative_gap(gap)
+            .max_work(MOST_WORK);
         let measured = certified_hausdorff_between_observed(&from, &to, &options, observer)?;
-        Ok(Self { lower: self.lower.max(measured.lower()), upper: self.upper.min(measured.upper()) })
+        Ok(Self {
+            lower: self.lower.max(measured.lower()),
+            upper: self.upper.min(measured.upper()),
+        })
     }
 
     /// After vertices were rounded by so much at most.
     pub fn rounded(self, rounding: f64) -> Self {
-        Self { lower: (self.lower - rounding).max(0.0), upper: self.upper + rounding }
+        Self {
+            lower: (self.lower - rounding).max(0.0),
+            upper: self.upper + rounding,
+        }
     }
 }
 
 fn greatest(mesh: Triangles<'_>) -> f64 {
-    mesh.positions.as_flattened().iter().fold(0.0, |greatest, x| greatest.max(x.abs()))
+    mesh.positions
+        .as_flattened()
+        .iter()
+        .fold(0.0, |greatest, x| greatest.max(x.abs()))
 }
 
 /// Where a vertex came from.
 pub(super) fn place(input: Triangles<'_>, origin: &Origin) -> DVec3 {
     let corners = input.corners(origin.face as usize);
-    origin.barycentric.iter().zip(corners).map(|(&weight, corner)| weight * vector(corner)).sum()
+    origin
+        .barycentric
+        .iter()
+        .zip(corners)
+        .map(|(&weight, corner)| weight * vector(corner))
+        .sum()
 }
 
 /// How far vertices are from where they came from.
@@ -164,11 +198,17 @@ impl Moves {
             for vertex in vertices {
                 let step = vector(positions[vertex]) - place(input, &origins[vertex]);
                 greatest = greatest.max(step.length());
-                insert(&mut most, (step.dot(vector(found.normals[vertex])).abs(), vertex));
+                insert(
+                    &mut most,
+                    (step.dot(vector(found.normals[vertex])).abs(), vertex),
+                );
             }
             (greatest, most)
         });
-        let mut all = Self { greatest: 0.0, most: Vec::new() };
+        let mut all = Self {
+            greatest: 0.0,
+            most: Vec::new(),
+        };
         let mut most = Vec::new();
         for (greatest, of_part) in parts {
             all.greatest = all.greatest.max(greatest);
@@ -201,7 +241,10 @@ fn lower(
         .most
         .iter()
         .map(|&vertex| {
-            let (here, there) = (vector(found.mesh.positions()[vertex]), place(input, &origins[vertex]));
+            let (here, there) = (
+                vector(found.mesh.positions()[vertex]),
+                place(input, &origins[vertex]),
+            );
             let far = here.distance(there);
             ((here, far), (there, far))
         })
@@ -233,12 +276,21 @@ fn greatest_distance(points: &[(DVec3, f64)], surface: Triangles<'_>) -> Result<
     });
     let mut greatest = 0.0f64;
     for (at, &(point, _)) in points.iter().enumerate() {
-        let near: Vec<[f64; 3]> = near.iter().flat_map(|near| near[at].as_flattened()).copied().collect();
+        let near: Vec<[f64; 3]> = near
+            .iter()
+            .flat_map(|near| near[at].as_flattened())
+            .copied()
+            .collect();
         if near.is_empty() {
             continue;
         }
-        let triangles: Vec<_> = (0..near.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let near = Bvh::new(Triangles { positions: &near, triangles: &triangles })?;
+        let triangles: Vec<_> = (0..near.len() as u32 / 3)
+            .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+            .collect();
+        let near = Bvh::new(Triangles {
+            positions: &near,
+            triangles: &triangles,
+        })?;
         greatest = greatest.max(near.closest(point.to_array()).distance);
     }
     Ok(greatest)

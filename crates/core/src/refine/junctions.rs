@@ -23,7 +23,9 @@ pub(super) fn edge_groups(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTopol
     let mut groups = Groups::default();
     for edge in mesh.junctions().edges.iter() {
         let members = || edge.iter().map(|&h| HalfEdgeId(h));
-        let Some(first) = members().next() else { continue };
+        let Some(first) = members().next() else {
+            continue;
+        };
         let start = origin_place(first);
         // Sheets may run along the edge either way; a half belongs to the end that it touches.
         let half = |h: HalfEdgeId, near_start: bool| {
@@ -40,20 +42,29 @@ pub(super) fn edge_groups(mesh: &Mesh, split: &SplitEdges, numbered: &SplitTopol
 /// Gives all copies of a vertex the position of the first, whose sums may have been taken in another order.
 pub(super) fn join_copies(positions: &mut [[f64; 3]], groups: &Groups) {
     for group in groups.iter() {
-        let Some((&first, others)) = group.split_first() else { continue };
+        let Some((&first, others)) = group.split_first() else {
+            continue;
+        };
         let position = positions[first as usize];
-        others.iter().for_each(|&v| positions[v as usize] = position);
+        others
+            .iter()
+            .for_each(|&v| positions[v as usize] = position);
     }
 }
 
 /// Makes the flags of all copies of a vertex agree: set on all where `combine` of all says so.
 pub(super) fn agree(flags: &mut [bool], groups: &Groups, combine: fn(bool, bool) -> bool) {
     for group in groups.iter() {
-        let Some(flag) = group.iter().map(|&v| flags[v as usize]).reduce(combine) else { continue };
+        let Some(flag) = group.iter().map(|&v| flags[v as usize]).reduce(combine) else {
+            continue;
+        };
         group.iter().for_each(|&v| flags[v as usize] = flag);
     }
 }
 
 fn split_groups<'a>(mesh: &'a Mesh, split: &'a SplitEdges) -> impl Iterator<Item = &'a [u32]> {
-    mesh.junctions().edges.iter().filter(|edge| edge.first().is_some_and(|&h| split.contains(HalfEdgeId(h))))
+    mesh.junctions()
+        .edges
+        .iter()
+        .filter(|edge| edge.first().is_some_and(|&h| split.contains(HalfEdgeId(h))))
 }

@@ -20,7 +20,8 @@ impl KeptFaces {
         let exists = |v: u32| (v as usize) < topology.vertex_count();
         let mut pairs = HashSet::new();
         for &[a, b] in kept {
-            let edge = (exists(a) && exists(b)).then(|| topology.edge_between(VertexId(a), VertexId(b)));
+            let edge =
+                (exists(a) && exists(b)).then(|| topology.edge_between(VertexId(a), VertexId(b)));
             let Some(edge) = edge.flatten() else {
                 let place = format!("edge from vertex {a} to vertex {b}");
                 return Err(MeshError::Broken {
@@ -49,11 +50,17 @@ impl KeptFaces {
         }
         let topology = fine.mesh.topology();
         let is_kept = |h: HalfEdgeId| {
-            let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else { return false };
+            let Some(twin) = topology.twin(h).filter(|twin| h.0 < twin.0) else {
+                return false;
+            };
             let [one, other] = [h, twin].map(|h| fine.parents[h.face().index()]);
             one != other && self.0.contains(&ordered(one, other))
         };
-        topology.half_edges().filter(|&h| is_kept(h)).map(|h| topology.ends(h).map(|v| v.0)).collect()
+        topology
+            .half_edges()
+            .filter(|&h| is_kept(h))
+            .map(|h| topology.ends(h).map(|v| v.0))
+            .collect()
     }
 }
 

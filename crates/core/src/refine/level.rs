@@ -39,15 +39,21 @@ impl Level {
     /// The positions of the vertices at a moment of the geomorph, from 0 (the coarser level) to 1 (this one).
     pub fn positions_at(&self, t: f64) -> Vec<[f64; 3]> {
         let own = self.exact.mesh.positions();
-        let Some(morph) = &self.geomorph else { return own.to_vec() };
-        let between = |(from, to): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|i| (1.0 - t) * from[i] + t * to[i]);
+        let Some(morph) = &self.geomorph else {
+            return own.to_vec();
+        };
+        let between =
+            |(from, to): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|i| (1.0 - t) * from[i] + t * to[i]);
         morph.positions.iter().zip(own).map(between).collect()
     }
 
     /// How far mesh and limit surface are from each other at most, both ways and place by place, at a moment of the geomorph
     /// (module [`levels_of_detail`](super::levels_of_detail()) has the proof).
     pub fn deviation_at(&self, t: f64) -> f64 {
-        let start = self.geomorph.as_ref().map_or(self.parametric, |morph| morph.start);
+        let start = self
+            .geomorph
+            .as_ref()
+            .map_or(self.parametric, |morph| morph.start);
         (1.0 - t) * start + t * self.parametric
     }
 
@@ -55,8 +61,14 @@ impl Level {
     /// normal on the coarser level.
     pub fn split_surface(&self) -> (SplitSurface, Vec<[f64; 3]>) {
         let split = self.exact.split_surface();
-        let Some(morph) = &self.geomorph else { return (split, Vec::new()) };
-        let mut normals: Vec<[f64; 3]> = split.sources.iter().map(|&v| morph.normals[v as usize]).collect();
+        let Some(morph) = &self.geomorph else {
+            return (split, Vec::new());
+        };
+        let mut normals: Vec<[f64; 3]> = split
+            .sources
+            .iter()
+            .map(|&v| morph.normals[v as usize])
+            .collect();
         for &(corner, normal) in &morph.sides {
             let vertex = split.triangles.as_flattened()[corner as usize];
             normals[vertex as usize] = normal;
@@ -73,7 +85,10 @@ pub fn switching_distance(deviation: f64, pixels: f64, height: f64, field_of_vie
 
 /// The sum of vectors times weights, of which those of zero do not count.
 pub(super) fn combined(points: [[f64; 3]; 3], weights: [f64; 3]) -> [f64; 3] {
-    let parts = points.into_iter().zip(weights).filter(|&(_, weight)| weight != 0.0);
+    let parts = points
+        .into_iter()
+        .zip(weights)
+        .filter(|&(_, weight)| weight != 0.0);
     parts
         .map(|(point, weight)| weight * vector(point))
         .reduce(|sum, part| sum + part)

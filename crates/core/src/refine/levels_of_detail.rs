@@ -56,8 +56,19 @@ pub struct LodOptions {
 impl LodOptions {
     /// Levels within these distances, coarse to fine.
     pub fn new(tolerances: Vec<f64>) -> Self {
-        let ExactOptions { max_levels, max_triangles, max_memory, .. } = ExactOptions::default();
-        Self { tolerances, geomorphs: true, max_levels, max_triangles, max_memory }
+        let ExactOptions {
+            max_levels,
+            max_triangles,
+            max_memory,
+            ..
+        } = ExactOptions::default();
+        Self {
+            tolerances,
+            geomorphs: true,
+            max_levels,
+            max_triangles,
+            max_memory,
+        }
     }
 
     /// Sets [`Self::geomorphs`].
@@ -79,7 +90,14 @@ impl LodOptions {
     }
 
     fn check(&self) -> Result<(), RefineError> {
-        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
+        let bad = |name, value, expected| {
+            Err(MeshError::BadOption {
+                name,
+                value,
+                expected,
+            }
+            .into())
+        };
         if self.tolerances.is_empty() {
             return bad("number of levels", 0.0, "at least one");
         }
@@ -95,7 +113,9 @@ impl LodOptions {
             max_levels: self.max_levels,
             max_triangles: self.max_triangles,
             max_memory: self.max_memory,
-            ..ExactOptions::default().tolerance(tolerance).flat_regions(false)
+            ..ExactOptions::default()
+                .tolerance(tolerance)
+                .flat_regions(false)
         }
     }
 }
@@ -144,11 +164,23 @@ pub fn levels_of_detail_observed(
     for &tolerance in &options.tolerances {
         options.exact(tolerance).check(control)?;
     }
-    let Some(factor) = scale::factor(control) else { return all(control, scheme, options, observer) };
-    let tolerances = options.tolerances.iter().map(|&length| scale::length(length, factor)).collect();
-    let scaled = LodOptions { tolerances, ..options.clone() };
+    let Some(factor) = scale::factor(control) else {
+        return all(control, scheme, options, observer);
+    };
+    let tolerances = options
+        .tolerances
+        .iter()
+        .map(|&length| scale::length(length, factor))
+        .collect();
+    let scaled = LodOptions {
+        tolerances,
+        ..options.clone()
+    };
     let levels = all(&scale::mesh(control, factor)?, scheme, &scaled, observer)?;
-    levels.into_iter().map(|level| rescaled(level, factor)).collect()
+    levels
+        .into_iter()
+        .map(|level| rescaled(level, factor))
+        .collect()
 }
 
 fn all(
@@ -161,7 +193,12 @@ fn all(
     let mut levels: Vec<Level> = Vec::with_capacity(options.tolerances.len());
     for &tolerance in &options.tolerances {
         let asked = (&options.exact(tolerance), tolerance);
-        let level = nested((&surface, scheme), asked, (levels.last(), options.geomorphs), observer)?;
+        let level = nested(
+            (&surface, scheme),
+            asked,
+            (levels.last(), options.geomorphs),
+            observer,
+        )?;
         let is_met = level.exact.stop == super::ExactStop::Met;
         levels.push(level);
         if !is_met {
@@ -173,12 +210,26 @@ fn all(
 
 /// A level at the size that was asked for.
 fn rescaled(level: Level, factor: f64) -> Result<Level, RefineError> {
-    let Level { exact, tolerance, parametric, geomorph } = level;
+    let Level {
+        exact,
+        tolerance,
+        parametric,
+        geomorph,
+    } = level;
     let geomorph = geomorph.map(|morph| Geomorph {
-        positions: morph.positions.iter().map(|p| p.map(|x| x / factor)).collect(),
+        positions: morph
+            .positions
+            .iter()
+            .map(|p| p.map(|x| x / factor))
+            .collect(),
         start: morph.start / factor,
         ..morph
     });
     let exact = scale::result(exact, factor)?;
-    Ok(Level { exact, tolerance: tolerance / factor, parametric: parametric / factor, geomorph })
+    Ok(Level {
+        exact,
+        tolerance: tolerance / factor,
+        parametric: parametric / factor,
+        geomorph,
+    })
 }

@@ -6,7 +6,9 @@
 //! narrow as asked for.
 
 use super::{ExactOptions, ExactStop, RefineError, exact_observed, is_certified};
-use crate::measure::{Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed};
+use crate::measure::{
+    Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed,
+};
 use crate::mesh::{Mesh, MeshError, Triangles};
 use crate::options::options;
 use crate::progress::{Observer, unobserved};
@@ -97,21 +99,35 @@ pub fn limit_distance_observed(
 ) -> Result<LimitDistance, RefineError> {
     if !is_certified(scheme) {
         let place = format!("scheme {}", scheme.name());
-        return Err(MeshError::Broken { place, what: "distances are proven for the Loop family only" }.into());
+        return Err(MeshError::Broken {
+            place,
+            what: "distances are proven for the Loop family only",
+        }
+        .into());
     }
     if let Some(value) = options.gap.filter(|gap| !(*gap >= 0.0 && gap.is_finite())) {
-        return Err(MeshError::BadOption { name: "gap", value, expected: "a length of at least 0" }.into());
+        return Err(MeshError::BadOption {
+            name: "gap",
+            value,
+            expected: "a length of at least 0",
+        }
+        .into());
     }
     let diagonal = control.diagonal();
     let surface = Bvh::new_observed(surface, observer)?;
-    let mut tolerance = options.gap.map_or(FIRST_ERROR * diagonal, |gap| (0.25 * gap).max(f64::MIN_POSITIVE));
+    let mut tolerance = options.gap.map_or(FIRST_ERROR * diagonal, |gap| {
+        (0.25 * gap).max(f64::MIN_POSITIVE)
+    });
     loop {
         let goals = ExactOptions::default()
             .tolerance(tolerance)
             .max_triangles(Some(MOST_TRIANGLES))
             .unfold(options.unfold)
             .origins(false);
-        let goals = ExactOptions { tightens: false, ..goals };
+        let goals = ExactOptions {
+            tightens: false,
+            ..goals
+        };
         let stands = exact_observed(control, scheme, &goals, observer)?;
         let tree = Bvh::new_observed(stands.mesh.as_triangles(), observer)?;
         let search = search(options, tolerance);
@@ -119,7 +135,8 @@ pub fn limit_distance_observed(
         let error = stands.error.upper;
         let mut distance = between.widened(error);
         let asked = options.gap;
-        let narrow = asked.unwrap_or_else(|| (USUAL_SHARE * distance.lower()).max(LEAST_SHARE * diagonal));
+        let narrow =
+            asked.unwrap_or_else(|| (USUAL_SHARE * distance.lower()).max(LEAST_SHARE * diagonal));
         for bounds in [&mut distance.forward, &mut distance.backward] {
             bounds.converged = bounds.upper - bounds.lower <= narrow;
         }
@@ -128,10 +145,19 @@ pub fn limit_distance_observed(
         if distance.converged() || was_capped || asked.is_some() || !between.converged() {
             let (reference, levels) = (stands.mesh, stands.levels);
             let is_capped = was_capped && between.converged();
-            return Ok(LimitDistance { distance, reference, error, levels, is_capped });
+            return Ok(LimitDistance {
+                distance,
+                reference,
+                error,
+                levels,
+                is_capped,
+            });
         }
-        tolerance =
-            if distance.lower() > 0.0 { (0.2 * narrow).min(0.5 * tolerance) } else { tolerance / STEP };
+        tolerance = if distance.lower() > 0.0 {
+            (0.2 * narrow).min(0.5 * tolerance)
+        } else {
+            tolerance / STEP
+        };
     }
 }
 
@@ -139,8 +165,12 @@ pub fn limit_distance_observed(
 /// both sides.
 fn search(options: &LimitDistanceOptions, tolerance: f64) -> CertifiedOptions {
     let search = match options.gap {
-        Some(gap) => CertifiedOptions::default().gap(Some(0.5 * gap)).relative_gap(0.0),
-        None => CertifiedOptions::default().gap(Some(0.5 * tolerance)).relative_gap(0.25 * USUAL_SHARE),
+        Some(gap) => CertifiedOptions::default()
+            .gap(Some(0.5 * gap))
+            .relative_gap(0.0),
+        None => CertifiedOptions::default()
+            .gap(Some(0.5 * tolerance))
+            .relative_gap(0.25 * USUAL_SHARE),
     };
     search.max_work(options.max_work)
 }

@@ -30,9 +30,14 @@ pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Opti
             .and_then(|times| times.checked_mul(control_faces))
             .is_some_and(|n| n <= most)
     };
-    let usual = (0..=USUAL_LEVELS).rev().find(|&levels| fits(levels, USUAL_TRIANGLES)).unwrap_or(0);
+    let usual = (0..=USUAL_LEVELS)
+        .rev()
+        .find(|&levels| fits(levels, USUAL_TRIANGLES))
+        .unwrap_or(0);
     // Nearer to the next level than to this one.
-    let own = (0..).take_while(|&levels| fits(levels, measured_triangles / 2)).count();
+    let own = (0..)
+        .take_while(|&levels| fits(levels, measured_triangles / 2))
+        .count();
     Some(usual.max(own + FINER)).filter(|&levels| fits(levels, MOST_TRIANGLES))
 }
 
@@ -44,8 +49,17 @@ pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Opti
 ///
 /// # Errors
 /// See [`RefineError`].
-pub fn limit_reference(control: &Mesh, scheme: &dyn Scheme, levels: usize) -> Result<Mesh, RefineError> {
-    Ok(uniform(control, scheme, &UniformOptions::default().levels(levels).limit(true))?.mesh)
+pub fn limit_reference(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    levels: usize,
+) -> Result<Mesh, RefineError> {
+    Ok(uniform(
+        control,
+        scheme,
+        &UniformOptions::default().levels(levels).limit(true),
+    )?
+    .mesh)
 }
 
 #[cfg(test)]
@@ -84,18 +98,28 @@ mod tests {
             [0.0, -1.0, 0.0],
             [0.0, 0.0, -1.0],
         ];
-        let triangles =
-            vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+        let triangles = vec![
+            [0, 1, 2],
+            [1, 3, 2],
+            [3, 4, 2],
+            [4, 0, 2],
+            [1, 0, 5],
+            [3, 1, 5],
+            [4, 3, 5],
+            [0, 4, 5],
+        ];
         let control = Mesh::from_triangles(corners, triangles).unwrap();
         let scheme = Loop;
-        let references: Vec<Mesh> =
-            (0..=4).map(|levels| limit_reference(&control, &scheme, levels).unwrap()).collect();
+        let references: Vec<Mesh> = (0..=4)
+            .map(|levels| limit_reference(&control, &scheme, levels).unwrap())
+            .collect();
         assert_eq!(references[3].face_count(), 8 * 64);
 
         // The limit positions of the control vertices are vertices of every level.
         for limit in LimitTable::new(&scheme).positions(&control).unwrap() {
             for reference in &references {
-                let nearest = |p: &[f64; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f64::max);
+                let nearest =
+                    |p: &[f64; 3]| (0..3).map(|i| (p[i] - limit[i]).abs()).fold(0.0, f64::max);
                 assert!(reference.positions().iter().any(|p| nearest(p) < 1e-12));
             }
         }
@@ -104,7 +128,9 @@ mod tests {
         let distances: Vec<f64> = references[1..]
             .windows(2)
             .map(|pair| {
-                hausdorff(pair[0].as_triangles(), pair[1].as_triangles(), &options).unwrap().symmetric()
+                hausdorff(pair[0].as_triangles(), pair[1].as_triangles(), &options)
+                    .unwrap()
+                    .symmetric()
             })
             .collect();
         for pair in distances.windows(2) {

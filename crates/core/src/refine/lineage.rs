@@ -21,7 +21,9 @@ pub trait Traced {
     /// Where the corner that a half-edge leaves came from, in a control face on its own triangle's side of edges that tell sides apart.
     /// `control` are the control mesh's triangles. `None` where that is not known.
     fn corner_origin(&self, control: &[[u32; 3]], corner: HalfEdgeId) -> Option<Origin> {
-        let origin = self.origins().get(self.mesh().topology().origin(corner).index())?;
+        let origin = self
+            .origins()
+            .get(self.mesh().topology().origin(corner).index())?;
         origin.in_face(control, *self.parents().get(corner.face().index())?)
     }
 }
@@ -41,14 +43,24 @@ impl<'a> Lineage<'a> {
             let h = topology.outgoing(VertexId(v as u32));
             // A vertex of no face came from nowhere.
             if h.0 == NONE {
-                return Origin { face: 0, barycentric: [0.0; 3] };
+                return Origin {
+                    face: 0,
+                    barycentric: [0.0; 3],
+                };
             }
             let mut barycentric = [0.0; 3];
             barycentric[h.corner()] = 1.0;
-            Origin { face: h.face().0, barycentric }
+            Origin {
+                face: h.face().0,
+                barycentric,
+            }
         };
         let origins = (0..control.vertex_count()).map(origin).collect();
-        Self { control, origins, parents: (0..control.face_count() as u32).collect() }
+        Self {
+            control,
+            origins,
+            parents: (0..control.face_count() as u32).collect(),
+        }
     }
 
     /// Goes on by a step that numbered the elements of the mesh `before` it anew: vertices on edges are halfway between their ends.
@@ -61,12 +73,17 @@ impl<'a> Lineage<'a> {
                 let own = self.origins[v.index()].in_face(control, face);
                 own.map_or([0.0; 3], |origin| origin.barycentric)
             });
-            Origin { face, barycentric: [0, 1, 2].map(|i| 0.5 * (ends[0][i] + ends[1][i])) }
+            Origin {
+                face,
+                barycentric: [0, 1, 2].map(|i| 0.5 * (ends[0][i] + ends[1][i])),
+            }
         });
         self.origins.extend(new);
         let children = self.parents.iter().zip(numbered.starts.windows(2));
         self.parents = children
-            .flat_map(|(&parent, range)| std::iter::repeat_n(parent, (range[1] - range[0]) as usize))
+            .flat_map(|(&parent, range)| {
+                std::iter::repeat_n(parent, (range[1] - range[0]) as usize)
+            })
             .collect();
     }
 

@@ -36,7 +36,9 @@ pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
 pub use input_distance::InputDistance;
 pub use level::{Geomorph, Level, switching_distance};
 pub use levels_of_detail::{LodOptions, levels_of_detail, levels_of_detail_observed};
-pub use limit_distance::{LimitDistance, LimitDistanceOptions, limit_distance, limit_distance_observed};
+pub use limit_distance::{
+    LimitDistance, LimitDistanceOptions, limit_distance, limit_distance_observed,
+};
 pub use limit_reference::{limit_reference, reference_levels};
 pub use lineage::Traced;
 pub use replay::{Frame, Replay, ReplayError};

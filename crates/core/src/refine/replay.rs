@@ -160,7 +160,9 @@ impl Replay {
     ) -> Result<Self, ReplayError> {
         let rules = Rules::of(scheme);
         if !rules.is_certified() {
-            return Err(ReplayError::Scheme { scheme: scheme.name().to_owned() });
+            return Err(ReplayError::Scheme {
+                scheme: scheme.name().to_owned(),
+            });
         }
         let (sharpness, large) = (Sharpness::of(control), LargeRings::of(control));
         let stencils = rules.table().vertex_stencils(control)?;
@@ -179,13 +181,19 @@ impl Replay {
         let slot = |spot: u32| slots[spot as usize];
         table.slots = slots[..count].to_vec();
         let mut rings = Groups::default();
-        large.vertices().for_each(|vertex| rings.push(control.topology().ring(vertex).map(|v| v.0)));
+        large
+            .vertices()
+            .for_each(|vertex| rings.push(control.topology().ring(vertex).map(|v| v.0)));
         let averages = wants.averages.into_iter();
         Ok(Self {
             table,
             control_vertices: control.vertex_count(),
             rings,
-            sides: wants.sides.into_iter().map(|(h, spot)| (h, slot(spot))).collect(),
+            sides: wants
+                .sides
+                .into_iter()
+                .map(|(h, spot)| (h, slot(spot)))
+                .collect(),
             averages: averages
                 .map(|(vertex, spots)| (vertex, spots.into_iter().map(slot).collect()))
                 .collect(),
@@ -204,10 +212,15 @@ impl Replay {
         frame.normals.resize(self.table.slots.len(), [0.0; 3]);
         self.table.take(normals, &mut frame.normals);
         for (vertex, slots) in &self.averages {
-            frame.normals[*vertex as usize] = average(slots.iter().map(|&slot| normals[slot as usize]));
+            frame.normals[*vertex as usize] =
+                average(slots.iter().map(|&slot| normals[slot as usize]));
         }
         frame.sides.clear();
-        frame.sides.extend(self.sides.iter().map(|&(h, slot)| (h, normals[slot as usize])));
+        frame.sides.extend(
+            self.sides
+                .iter()
+                .map(|&(h, slot)| (h, normals[slot as usize])),
+        );
         Ok(())
     }
 
@@ -219,10 +232,19 @@ impl Replay {
         self.fill(control, frame, false)
     }
 
-    fn fill(&self, control: &[[f64; 3]], frame: &mut Frame, with_normals: bool) -> Result<(), ReplayError> {
+    fn fill(
+        &self,
+        control: &[[f64; 3]],
+        frame: &mut Frame,
+        with_normals: bool,
+    ) -> Result<(), ReplayError> {
         if control.len() != self.control_vertices {
             return Err(MeshError::Broken {
-                place: format!("{} positions for {} control vertices", control.len(), self.control_vertices),
+                place: format!(
+                    "{} positions for {} control vertices",
+                    control.len(),
+                    self.control_vertices
+                ),
                 what: "one position for each control vertex is needed",
             }
             .into());
@@ -230,11 +252,21 @@ impl Replay {
         check_finite(control)?;
         let means = self.rings.iter().map(|ring| mean(ring, control));
         frame.inputs.clear();
-        frame.inputs.extend(control.iter().copied().chain(means).map(|[x, y, z]| [x, y, z, 0.0]));
+        frame.inputs.extend(
+            control
+                .iter()
+                .copied()
+                .chain(means)
+                .map(|[x, y, z]| [x, y, z, 0.0]),
+        );
         let [positions, normals] = &mut frame.slots;
         positions.resize(self.table.slot_count(), [0.0; 3]);
         normals.resize(self.table.slot_count(), [0.0; 3]);
-        let normals = if with_normals { &mut normals[..] } else { &mut [] };
+        let normals = if with_normals {
+            &mut normals[..]
+        } else {
+            &mut []
+        };
         self.table.fill(&frame.inputs, positions, normals);
         frame.positions.resize(self.table.slots.len(), [0.0; 3]);
         self.table.take(positions, &mut frame.positions);
@@ -244,8 +276,16 @@ impl Replay {
 
     /// Bytes of all that is kept between frames.
     pub fn table_bytes(&self) -> usize {
-        let of_groups = |groups: &Groups| groups.iter().map(|group| 4 * (group.len() + 1)).sum::<usize>();
-        let averages = self.averages.iter().map(|(_, slots)| size_of::<(u32, Vec<u32>)>() + 4 * slots.len());
+        let of_groups = |groups: &Groups| {
+            groups
+                .iter()
+                .map(|group| 4 * (group.len() + 1))
+                .sum::<usize>()
+        };
+        let averages = self
+            .averages
+            .iter()
+            .map(|(_, slots)| size_of::<(u32, Vec<u32>)>() + 4 * slots.len());
         self.table.bytes()
             + size_of_val(&self.sides[..])
             + averages.sum::<usize>()
@@ -269,14 +309,23 @@ impl Exact {
     pub fn moved_to(mut self, frame: &Frame) -> Result<Self, MeshError> {
         if frame.normals.len() != self.normals.len() || frame.sides.len() != self.sides.len() {
             return Err(MeshError::Broken {
-                place: format!("{} normals and {} on sides", frame.normals.len(), frame.sides.len()),
+                place: format!(
+                    "{} normals and {} on sides",
+                    frame.normals.len(),
+                    frame.sides.len()
+                ),
                 what: "a frame has the normals of the mesh that it was made from",
             });
         }
         self.mesh = self.mesh.with_positions(frame.positions.clone())?;
         self.normals.clone_from(&frame.normals);
         self.sides.clone_from(&frame.sides);
-        self.error = super::ErrorBounds { lower: 0.0, upper: f64::INFINITY, certified: false, at: [0.0; 3] };
+        self.error = super::ErrorBounds {
+            lower: 0.0,
+            upper: f64::INFINITY,
+            certified: false,
+            at: [0.0; 3],
+        };
         self.pixels = self.pixels.map(|_| f64::INFINITY);
         self.attribute_bounds.fill(f64::INFINITY);
         Ok(self)

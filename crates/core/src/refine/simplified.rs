@@ -47,9 +47,14 @@ pub(super) fn simplified(
     let kept = KeptFaces::of(control, &options.kept_edges)?;
     let fine = adaptive(control, scheme, &fine_options, observer)?;
     let features = features(kept.edges(&fine));
-    let allowance =
-        options.tolerance.map(|tolerance| tolerance - fine.error.upper).filter(|&left| left > 0.0);
-    let fewest = [options.triangles, options.max_triangles].into_iter().flatten().min();
+    let allowance = options
+        .tolerance
+        .map(|tolerance| tolerance - fine.error.upper)
+        .filter(|&left| left > 0.0);
+    let fewest = [options.triangles, options.max_triangles]
+        .into_iter()
+        .flatten()
+        .min();
     let mut collapsed = match (allowance, options.tolerance, fewest) {
         (Some(_), ..) => collapse((&fine.mesh, &features), allowance, None, observer)?,
         // A cap ended the refinement before the tolerance left anything to collapse.
@@ -61,7 +66,10 @@ pub(super) fn simplified(
     if allowance.is_some() && collapsed.mesh.face_count() > most {
         collapsed = collapse((&fine.mesh, &features), None, fewest, observer)?;
     }
-    let unoptimised = ExactOptions { optimize: false, ..options.clone() };
+    let unoptimised = ExactOptions {
+        optimize: false,
+        ..options.clone()
+    };
     // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
@@ -71,16 +79,23 @@ pub(super) fn simplified(
         }
     }
     let error = error_bounds(&fine, &collapsed, observer)?;
-    let is_met = options.tolerance.is_some_and(|tolerance| error.upper <= tolerance);
+    let is_met = options
+        .tolerance
+        .is_some_and(|tolerance| error.upper <= tolerance);
     // Refinement alone may need fewer, as beside edges that are sharp for a while, and takes little time beside this.
     if options.tolerance.is_some() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
-        if plain.stop == ExactStop::Met && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
+        if plain.stop == ExactStop::Met
+            && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
         {
             return Ok(plain);
         }
     }
-    let Inherited { sides, side_origins, parents } = Inherited::new(control, &fine, &features, &collapsed);
+    let Inherited {
+        sides,
+        side_origins,
+        parents,
+    } = Inherited::new(control, &fine, &features, &collapsed);
     let count = collapsed.mesh.face_count();
     let stop = match options.triangles {
         _ if is_met => ExactStop::Met,
@@ -90,10 +105,18 @@ pub(super) fn simplified(
         _ => fine.stop,
     };
     Ok(Exact {
-        normals: collapsed.vertices.iter().map(|&v| fine.normals[v as usize]).collect(),
+        normals: collapsed
+            .vertices
+            .iter()
+            .map(|&v| fine.normals[v as usize])
+            .collect(),
         origins: match &fine.origins[..] {
             [] => Vec::new(),
-            origins => collapsed.vertices.iter().map(|&v| origins[v as usize]).collect(),
+            origins => collapsed
+                .vertices
+                .iter()
+                .map(|&v| origins[v as usize])
+                .collect(),
         },
         sides,
         off_planes: fine.off_planes,
@@ -106,7 +129,9 @@ pub(super) fn simplified(
         pixels: None,
         attribute_bounds: Vec::new(),
         open_cones: 0,
-        worst: options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance),
+        worst: options
+            .tolerance
+            .map_or(0.0, |tolerance| error.upper / tolerance),
         stop,
         levels: fine.levels,
         refused: collapsed.refused,
@@ -121,7 +146,9 @@ fn collapse(
     triangles: Option<usize>,
     observer: &mut Observer<'_>,
 ) -> Result<Simplified, RefineError> {
-    let goals = SimplifyOptions::default().tolerance(tolerance).triangles(triangles);
+    let goals = SimplifyOptions::default()
+        .tolerance(tolerance)
+        .triangles(triangles);
     Ok(simplify_observed(fine, features, &goals, observer)?)
 }
 
@@ -137,21 +164,38 @@ impl Inherited {
         let lines = SharpLines::new(&fine.mesh, &features.edges);
         let sources = corner_sources(&fine.mesh, &lines, &collapsed.mesh, &collapsed.vertices);
         let normal = |&(corner, own): &(u32, u32)| (corner, fine.corner_normal(HalfEdgeId(own)));
-        let sides = if fine.sides.is_empty() { Vec::new() } else { sources.iter().map(normal).collect() };
+        let sides = if fine.sides.is_empty() {
+            Vec::new()
+        } else {
+            sources.iter().map(normal).collect()
+        };
         let origin = |&(corner, own): &(u32, u32)| {
-            Some((corner, fine.corner_origin(control.triangles(), HalfEdgeId(own))?))
+            Some((
+                corner,
+                fine.corner_origin(control.triangles(), HalfEdgeId(own))?,
+            ))
         };
         let side_origins: Vec<(u32, Origin)> = sources.iter().filter_map(origin).collect();
         // Where no side is to be told, any triangle around a corner will do.
         let topology = fine.mesh.topology();
-        let any =
-            |triangle: &[u32; 3]| topology.outgoing(VertexId(collapsed.vertices[triangle[0] as usize])).0;
+        let any = |triangle: &[u32; 3]| {
+            topology
+                .outgoing(VertexId(collapsed.vertices[triangle[0] as usize]))
+                .0
+        };
         let mut own: Vec<u32> = collapsed.mesh.triangles().iter().map(any).collect();
         for &(corner, source) in &sources {
             own[corner as usize / 3] = source;
         }
-        let parents = own.into_iter().map(|h| fine.parents[HalfEdgeId(h).face().index()]).collect();
-        Self { sides, side_origins, parents }
+        let parents = own
+            .into_iter()
+            .map(|h| fine.parents[HalfEdgeId(h).face().index()])
+            .collect();
+        Self {
+            sides,
+            side_origins,
+            parents,
+        }
     }
 }
 
@@ -163,17 +207,35 @@ fn error_bounds(
 ) -> Result<ErrorBounds, RefineError> {
     let (lower, at) = farthest(&fine.mesh, &collapsed.mesh, observer)?;
     let upper = collapsed.bound.unwrap_or(f64::INFINITY) + fine.error.upper;
-    Ok(ErrorBounds { lower, upper, at, certified: fine.error.certified })
+    Ok(ErrorBounds {
+        lower,
+        upper,
+        at,
+        certified: fine.error.certified,
+    })
 }
 
 /// The greatest distance of a fine mesh's vertices, which are points of the surface, to another mesh, and where.
-fn farthest(fine: &Mesh, coarse: &Mesh, observer: &mut Observer<'_>) -> Result<(f64, [f64; 3]), RefineError> {
+fn farthest(
+    fine: &Mesh,
+    coarse: &Mesh,
+    observer: &mut Observer<'_>,
+) -> Result<(f64, [f64; 3]), RefineError> {
     let broken = |why: MeasureError| match why {
         MeasureError::Cancelled(_) => RefineError::Cancelled(Cancelled),
-        why => MeshError::Broken { place: why.to_string(), what: "an optimised mesh can be measured" }.into(),
+        why => MeshError::Broken {
+            place: why.to_string(),
+            what: "an optimised mesh can be measured",
+        }
+        .into(),
     };
     let distances =
         distances_to_observed(fine.positions(), coarse.as_triangles(), observer).map_err(broken)?;
-    let farthest = distances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-    Ok(farthest.map_or((0.0, [0.0; 3]), |(v, &distance)| (distance, fine.positions()[v])))
+    let farthest = distances
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(b.1));
+    Ok(farthest.map_or((0.0, [0.0; 3]), |(v, &distance)| {
+        (distance, fine.positions()[v])
+    }))
 }

@@ -68,16 +68,20 @@ impl SplitEdges {
 
     /// Number of triangles after the split.
     pub(super) fn triangle_count(&self) -> usize {
-        parallel::pieces(self.faces.len(), |piece| piece.map(|f| 1 + self.count(f)).sum::<usize>())
-            .into_iter()
-            .sum()
+        parallel::pieces(self.faces.len(), |piece| {
+            piece.map(|f| 1 + self.count(f)).sum::<usize>()
+        })
+        .into_iter()
+        .sum()
     }
 
     /// Number of indivisible faces by their split edges: the cases (a) to (d) of Figure 5.
     pub(super) fn closure_cases(&self, divisible: &[bool]) -> [usize; 4] {
         let of_piece = |piece: core::ops::Range<usize>| {
             let mut cases = [0; 4];
-            piece.filter(|&face| !divisible[face]).for_each(|face| cases[self.count(face)] += 1);
+            piece
+                .filter(|&face| !divisible[face])
+                .for_each(|face| cases[self.count(face)] += 1);
             cases
         };
         let mut cases = [0; 4];
@@ -90,13 +94,22 @@ impl SplitEdges {
     #[inline]
     pub(super) fn pattern(&self, face: usize) -> &'static Pattern {
         let bits = self.faces[face];
-        let diagonal = if bits & DIAGONAL_BIT == 0 { Diagonal::FromStart } else { Diagonal::FromEnd };
+        let diagonal = if bits & DIAGONAL_BIT == 0 {
+            Diagonal::FromStart
+        } else {
+            Diagonal::FromEnd
+        };
         closure(bits, diagonal)
     }
 
     /// In every face with two split edges, cuts the quadrilateral by its shorter diagonal, or by the one from
     /// the vertex with the lower number where they are equally long.
-    pub(super) fn choose_diagonals(&mut self, mesh: &Mesh, numbered: &SplitTopology, positions: &[[f64; 3]]) {
+    pub(super) fn choose_diagonals(
+        &mut self,
+        mesh: &Mesh,
+        numbered: &SplitTopology,
+        positions: &[[f64; 3]],
+    ) {
         let between = |a: u32, b: u32| {
             let [a, b] = [a, b].map(|v| crate::vector::vector(positions[v as usize]));
             b - a
@@ -115,7 +128,8 @@ impl SplitEdges {
                 let (from_start, from_end) = (between(start, after), between(end, before));
                 // Scaled, so that squares neither vanish nor overflow.
                 let size = from_start.abs().max(from_end.abs()).max_element();
-                let [from_start, from_end] = [from_start, from_end].map(|d| (d / size).length_squared());
+                let [from_start, from_end] =
+                    [from_start, from_end].map(|d| (d / size).length_squared());
                 if from_end < from_start || (from_end == from_start && end < start) {
                     *bits |= DIAGONAL_BIT;
                 }
@@ -137,7 +151,12 @@ impl SplitTopology {
         let topology = mesh.topology();
         let needed = split.triangle_count();
         if needed > MAX_FACES {
-            return Err(MeshError::TooMany { what: "faces", count: needed, limit: MAX_FACES }.into());
+            return Err(MeshError::TooMany {
+                what: "faces",
+                count: needed,
+                limit: MAX_FACES,
+            }
+            .into());
         }
         let too_many = || MeshError::TooMany {
             what: "vertices",
@@ -149,26 +168,40 @@ impl SplitTopology {
             split.contains(h) && topology.twin(h).is_none_or(|twin| h < twin)
         };
         let poll = &mut |_| watch.poll();
-        let before = parallel::starts(topology.half_edge_count(), poll, |h| u32::from(is_first(h)))?
-            .ok_or_else(too_many)?;
+        let before =
+            parallel::starts(topology.half_edge_count(), poll, |h| u32::from(is_first(h)))?
+                .ok_or_else(too_many)?;
         let new_vertices = before.last().copied().unwrap_or(0) as usize;
         let old_vertices = mesh.vertex_count() as u32;
-        old_vertices.checked_add(new_vertices as u32).ok_or_else(too_many)?;
+        old_vertices
+            .checked_add(new_vertices as u32)
+            .ok_or_else(too_many)?;
 
         let mut edges = limitmesh_pages::filled(HalfEdgeId(0), new_vertices);
-        parallel::for_each_run(&before, &mut edges, &mut vec![(); new_vertices], poll, |h, slot, _| {
-            if let [edge] = slot {
-                *edge = HalfEdgeId(h as u32);
-            }
-        })?;
+        parallel::for_each_run(
+            &before,
+            &mut edges,
+            &mut vec![(); new_vertices],
+            poll,
+            |h, slot, _| {
+                if let [edge] = slot {
+                    *edge = HalfEdgeId(h as u32);
+                }
+            },
+        )?;
         let vertex_on = parallel::map_polled(topology.half_edge_count(), poll, |h| {
             let twin = topology.raw_twins()[h] as usize;
             old_vertices + before[h.min(twin)]
         })?;
         drop(before);
-        let starts = parallel::starts(mesh.face_count(), poll, |face| 1 + split.count(face) as u32)?
-            .ok_or_else(too_many)?;
-        Ok(Self { edges, vertex_on, starts })
+        let starts =
+            parallel::starts(mesh.face_count(), poll, |face| 1 + split.count(face) as u32)?
+                .ok_or_else(too_many)?;
+        Ok(Self {
+            edges,
+            vertex_on,
+            starts,
+        })
     }
 
     /// The topology of the split mesh.
@@ -183,28 +216,34 @@ impl SplitTopology {
         let poll = &mut |_| watch.poll();
         let mut triangles = limitmesh_pages::defaults::<[u32; 3]>(count);
         let mut twins = limitmesh_pages::defaults::<[u32; 3]>(count);
-        parallel::for_each_run(&self.starts, &mut triangles, &mut twins, poll, |face, triangles, twins| {
-            let pattern = split.pattern(face);
-            let first = 3 * self.starts[face];
-            let labels = self.labels(topology, face);
-            for (slot, labelled) in triangles.iter_mut().zip(pattern.triangles()) {
-                *slot = labelled.map(|label| labels[label as usize]);
-            }
-            let twins = twins.as_flattened_mut();
-            for (h, slot) in twins.iter_mut().enumerate() {
-                if let Some(twin) = pattern.twin(h) {
-                    *slot = first + twin as u32;
+        parallel::for_each_run(
+            &self.starts,
+            &mut triangles,
+            &mut twins,
+            poll,
+            |face, triangles, twins| {
+                let pattern = split.pattern(face);
+                let first = 3 * self.starts[face];
+                let labels = self.labels(topology, face);
+                for (slot, labelled) in triangles.iter_mut().zip(pattern.triangles()) {
+                    *slot = labelled.map(|label| labels[label as usize]);
                 }
-            }
-            for corner in 0..3 {
-                let across = topology.twin(HalfEdgeId::of(FaceId(face as u32), corner));
-                // Seen from the neighbour the halves come in the other order.
-                let [second, first] = across.map_or([NONE; 2], |twin| self.halves(split, twin));
-                let [mine_first, mine_second] = pattern.border(corner);
-                twins[mine_first] = first;
-                twins[mine_second] = second;
-            }
-        })?;
+                let twins = twins.as_flattened_mut();
+                for (h, slot) in twins.iter_mut().enumerate() {
+                    if let Some(twin) = pattern.twin(h) {
+                        *slot = first + twin as u32;
+                    }
+                }
+                for corner in 0..3 {
+                    let across = topology.twin(HalfEdgeId::of(FaceId(face as u32), corner));
+                    // Seen from the neighbour the halves come in the other order.
+                    let [second, first] = across.map_or([NONE; 2], |twin| self.halves(split, twin));
+                    let [mine_first, mine_second] = pattern.border(corner);
+                    twins[mine_first] = first;
+                    twins[mine_second] = second;
+                }
+            },
+        )?;
         let old = topology.vertex_count();
         let outgoing = parallel::map_polled(old + self.edges.len(), poll, |v| {
             if v < old {
@@ -213,7 +252,11 @@ impl SplitTopology {
                 self.halves(split, self.edges[v - old])[1]
             }
         })?;
-        Ok(Topology::from_parts(triangles, twins.into_flattened(), outgoing))
+        Ok(Topology::from_parts(
+            triangles,
+            twins.into_flattened(),
+            outgoing,
+        ))
     }
 
     /// The half-edges of the split mesh along `h`: first and second half, or twice the same.
@@ -221,7 +264,10 @@ impl SplitTopology {
     pub(super) fn halves(&self, split: &SplitEdges, h: HalfEdgeId) -> [u32; 2] {
         let face = h.face().index();
         let first = 3 * self.starts[face];
-        split.pattern(face).border(h.corner()).map(|local| first + local as u32)
+        split
+            .pattern(face)
+            .border(h.corner())
+            .map(|local| first + local as u32)
     }
 
     /// The new vertex on `h`, which must be split.

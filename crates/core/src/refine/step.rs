@@ -26,10 +26,16 @@ pub(super) fn advance(
     let vertices = vertex_groups(mesh, &split, &numbered);
     join_copies(&mut positions, &vertices);
     split.choose_diagonals(mesh, &numbered, &positions);
-    let junctions = Junctions { vertices, edges: edge_groups(mesh, &split, &numbered) };
+    let junctions = Junctions {
+        vertices,
+        edges: edge_groups(mesh, &split, &numbered),
+    };
     let topology = numbered.connect(mesh, &split, watch)?;
     let tags = refined_tags(mesh, &split, &numbered, moves);
-    Ok((Mesh::from_parts(topology, positions, tags, junctions), numbered))
+    Ok((
+        Mesh::from_parts(topology, positions, tags, junctions),
+        numbered,
+    ))
 }
 
 /// Old vertices, moved or not, and then the new ones.

@@ -80,7 +80,9 @@ pub fn stepwise_observed(
         origins: options.origins,
         max_triangles: options.max_triangles,
     };
-    driver.run(mesh, observer, flags, |mesh, split| moving_vertices(mesh, split, options.seam))
+    driver.run(mesh, observer, flags, |mesh, split| {
+        moving_vertices(mesh, split, options.seam)
+    })
 }
 
 /// Which vertices take their new position under a seam rule; `None` for all.

@@ -17,7 +17,10 @@ pub(super) fn refined_tags(
     let tags = mesh.tags();
     let corner = |tag: &CornerTag| match moves {
         Some(moves) if !moves[tag.vertex as usize] => Some(*tag),
-        _ => Some(CornerTag { sharpness: less_sharp(tag.sharpness)?, ..*tag }),
+        _ => Some(CornerTag {
+            sharpness: less_sharp(tag.sharpness)?,
+            ..*tag
+        }),
     };
     let creases = tags.creases.iter().flat_map(|crease| {
         let [a, b] = crease.vertices;
@@ -26,13 +29,21 @@ pub(super) fn refined_tags(
             .edge_between(VertexId(a), VertexId(b))
             .filter(|&h| split.contains(h))
             .map(|h| numbered.vertex_on(h));
-        let halves = middle.zip(less_sharp(crease.sharpness)).map(|(middle, sharpness)| {
-            [[a, middle], [middle, b]].map(|vertices| CreaseTag { vertices, sharpness })
-        });
+        let halves = middle
+            .zip(less_sharp(crease.sharpness))
+            .map(|(middle, sharpness)| {
+                [[a, middle], [middle, b]].map(|vertices| CreaseTag {
+                    vertices,
+                    sharpness,
+                })
+            });
         let whole = middle.is_none().then_some(*crease);
         halves.into_iter().flatten().chain(whole)
     });
-    Tags { creases: creases.collect(), corners: tags.corners.iter().filter_map(corner).collect() }
+    Tags {
+        creases: creases.collect(),
+        corners: tags.corners.iter().filter_map(corner).collect(),
+    }
 }
 
 /// The sharpness one level on; `None` once the tag has faded.

@@ -16,7 +16,9 @@ use self::limits::{AtLimit, Wanted};
 use super::driver::Driver;
 use super::{RefineError, Refinement, StepReport, Stop};
 use crate::limit::SidedNormals;
-use crate::mesh::{Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Topology, Triangles, check_finite};
+use crate::mesh::{
+    Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Topology, Triangles, check_finite,
+};
 use crate::patch::Rules;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;
@@ -42,7 +44,13 @@ pub struct UniformOptions {
 
 impl Default for UniformOptions {
     fn default() -> Self {
-        Self { levels: 3, limit: false, normals: false, origins: false, max_triangles: None }
+        Self {
+            levels: 3,
+            limit: false,
+            normals: false,
+            origins: false,
+            max_triangles: None,
+        }
     }
 }
 
@@ -106,12 +114,29 @@ pub fn uniform_observed(
     let Some(last) = LastLevels::of(mesh, scheme, options)? else {
         return by_steps(mesh, scheme, options, observer);
     };
-    let wanted = Wanted { normals: options.normals, connections: true };
+    let wanted = Wanted {
+        normals: options.normals,
+        connections: true,
+    };
     let (found, steps) = last.refined(mesh, wanted, observer)?;
-    let AtLimit { triangles, twins, outgoing, positions, normals, tags } = found;
+    let AtLimit {
+        triangles,
+        twins,
+        outgoing,
+        positions,
+        normals,
+        tags,
+    } = found;
     let topology = Topology::from_parts(triangles, twins, outgoing);
     let mesh = Mesh::from_parts(topology, positions, tags, Junctions::default());
-    Ok(Refinement { mesh, normals, origins: Vec::new(), parents: Vec::new(), steps, stop: last.end.stop })
+    Ok(Refinement {
+        mesh,
+        normals,
+        origins: Vec::new(),
+        parents: Vec::new(),
+        steps,
+        stop: last.end.stop,
+    })
 }
 
 /// What uniform refinement gives whoever needs no connections, as to draw, to measure or to write it.
@@ -142,13 +167,25 @@ impl UniformTriangles {
     ) -> Self {
         let sides = normals.iter().flat_map(|normals| normals.sides());
         let sides = sides.map(|&(corner, normal)| (corner.0, normal)).collect();
-        let normals = normals.map(SidedNormals::into_by_vertex).unwrap_or_default();
-        Self { positions, triangles, normals, sides, levels, stop }
+        let normals = normals
+            .map(SidedNormals::into_by_vertex)
+            .unwrap_or_default();
+        Self {
+            positions,
+            triangles,
+            normals,
+            sides,
+            levels,
+            stop,
+        }
     }
 
     /// The surface.
     pub fn as_triangles(&self) -> Triangles<'_> {
-        Triangles { positions: &self.positions, triangles: &self.triangles }
+        Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        }
     }
 }
 
@@ -193,10 +230,24 @@ pub fn uniform_triangles_observed(
 ) -> Result<UniformTriangles, RefineError> {
     let options = options.origins(false);
     let Some(last) = LastLevels::of(mesh, scheme, &options)? else {
-        let Refinement { mesh, normals, steps, stop, .. } = by_steps(mesh, scheme, &options, observer)?;
-        return Ok(UniformTriangles::new(mesh.into_positions_and_triangles(), normals, steps.len(), stop));
+        let Refinement {
+            mesh,
+            normals,
+            steps,
+            stop,
+            ..
+        } = by_steps(mesh, scheme, &options, observer)?;
+        return Ok(UniformTriangles::new(
+            mesh.into_positions_and_triangles(),
+            normals,
+            steps.len(),
+            stop,
+        ));
     };
-    let wanted = Wanted { normals: options.normals, connections: false };
+    let wanted = Wanted {
+        normals: options.normals,
+        connections: false,
+    };
     let (found, _) = last.refined(mesh, wanted, observer)?;
     Ok(UniformTriangles::new(
         (found.positions, found.triangles),
@@ -213,9 +264,23 @@ fn by_steps(
     options: &UniformOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Refinement, RefineError> {
-    let UniformOptions { levels, limit, normals, origins, max_triangles } = *options;
+    let UniformOptions {
+        levels,
+        limit,
+        normals,
+        origins,
+        max_triangles,
+    } = *options;
     let all = |mesh: &Mesh| Ok(vec![true; mesh.face_count()]);
-    Driver { scheme, levels, limit, normals, origins, max_triangles }.run(mesh, observer, all, |_, _| None)
+    Driver {
+        scheme,
+        levels,
+        limit,
+        normals,
+        origins,
+        max_triangles,
+    }
+    .run(mesh, observer, all, |_, _| None)
 }
 
 /// How uniform refinement will end.
@@ -231,14 +296,26 @@ impl End {
         for level in 0..options.levels {
             let needed = faces.saturating_mul(4);
             if options.max_triangles.is_some_and(|cap| needed > cap) {
-                return Self { levels: level, stop: Stop::TriangleCap { needed }, too_many: 0 };
+                return Self {
+                    levels: level,
+                    stop: Stop::TriangleCap { needed },
+                    too_many: 0,
+                };
             }
             if needed > MAX_FACES {
-                return Self { levels: level, stop: Stop::Levels, too_many: needed };
+                return Self {
+                    levels: level,
+                    stop: Stop::Levels,
+                    too_many: needed,
+                };
             }
             faces = needed;
         }
-        Self { levels: options.levels, stop: Stop::Levels, too_many: 0 }
+        Self {
+            levels: options.levels,
+            stop: Stop::Levels,
+            too_many: 0,
+        }
     }
 }
 
@@ -248,7 +325,10 @@ fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     if !rules.is_certified() || !mesh.junctions().is_empty() {
         return 0;
     }
-    let first = levels.saturating_sub(MOST_TOGETHER).max(1).max(Sharpness::of(mesh).fading_levels());
+    let first = levels
+        .saturating_sub(MOST_TOGETHER)
+        .max(1)
+        .max(Sharpness::of(mesh).fading_levels());
     levels.saturating_sub(first)
 }
 
@@ -279,9 +359,18 @@ impl<'a> LastLevels<'a> {
         let together = levels_together(mesh, &rules, end.levels);
         if together > 0 && end.too_many > 0 {
             let (what, count) = ("faces", end.too_many);
-            return Err(MeshError::TooMany { what, count, limit: MAX_FACES }.into());
+            return Err(MeshError::TooMany {
+                what,
+                count,
+                limit: MAX_FACES,
+            }
+            .into());
         }
-        Ok((together > 0).then_some(Self { rules, end, together }))
+        Ok((together > 0).then_some(Self {
+            rules,
+            end,
+            together,
+        }))
     }
 
     /// The first levels by steps, then the last ones; with what each level did.
@@ -291,9 +380,15 @@ impl<'a> LastLevels<'a> {
         wanted: Wanted,
         observer: &mut Observer<'_>,
     ) -> Result<(AtLimit, Vec<StepReport>), RefineError> {
-        let &Self { ref rules, ref end, together } = self;
+        let &Self {
+            ref rules,
+            ref end,
+            together,
+        } = self;
         let first = UniformOptions::default().levels(end.levels - together);
-        let Refinement { mesh, mut steps, .. } = by_steps(mesh, rules.scheme(), &first, observer)?;
+        let Refinement {
+            mesh, mut steps, ..
+        } = by_steps(mesh, rules.scheme(), &first, observer)?;
         let start = Instant::now();
         let mut watch = Watch::new(observer, Stage::Refining);
         watch.triangles(mesh.face_count());
@@ -304,9 +399,20 @@ impl<'a> LastLevels<'a> {
         for step in end.levels - together + 1..=end.levels {
             let (faces_before, faces_after) = (faces, 4 * faces);
             // The time of levels that are done together stands at the last.
-            let duration = if step == end.levels { start.elapsed() } else { Default::default() };
+            let duration = if step == end.levels {
+                start.elapsed()
+            } else {
+                Default::default()
+            };
             let divisible = faces_before;
-            steps.push(StepReport { step, faces_before, divisible, closure: [0; 4], faces_after, duration });
+            steps.push(StepReport {
+                step,
+                faces_before,
+                divisible,
+                closure: [0; 4],
+                faces_after,
+                duration,
+            });
             faces = faces_after;
         }
         watch.triangles(faces);
@@ -323,5 +429,9 @@ impl<'a> LastLevels<'a> {
 /// many times as it has edges, which are fewer than [`MAX_FACES`].
 fn stays_finite(control: &Mesh) -> bool {
     const FAR: f64 = 1e290;
-    control.positions().as_flattened().iter().all(|x| x.abs() <= FAR)
+    control
+        .positions()
+        .as_flattened()
+        .iter()
+        .all(|x| x.abs() <= FAR)
 }

@@ -37,12 +37,22 @@ pub struct RingShape {
 impl RingShape {
     /// A smooth interior vertex with `valence` edges (and as many faces).
     pub const fn interior(valence: u32) -> Self {
-        Self { valence, open: false, corner: false, dart: false }
+        Self {
+            valence,
+            open: false,
+            corner: false,
+            dart: false,
+        }
     }
 
     /// A smooth boundary vertex with `valence` edges (and one face fewer).
     pub const fn boundary(valence: u32) -> Self {
-        Self { valence, open: true, corner: false, dart: false }
+        Self {
+            valence,
+            open: true,
+            corner: false,
+            dart: false,
+        }
     }
 
     /// The rules the vertex follows.
@@ -56,7 +66,11 @@ impl RingShape {
 
     /// Number of faces at the vertex.
     pub const fn faces(&self) -> u32 {
-        if self.open { self.valence - 1 } else { self.valence }
+        if self.open {
+            self.valence - 1
+        } else {
+            self.valence
+        }
     }
 
     /// Whether the vertex is regular: six edges inside, four on a boundary.
@@ -86,6 +100,11 @@ impl EdgeShape {
 
     /// An interior edge between two closed rings.
     pub const fn between(origin: RingShape, target: RingShape) -> Self {
-        Self { origin, origin_slot: 0, target, target_slot: 0 }
+        Self {
+            origin,
+            origin_slot: 0,
+            target,
+            target_slot: 0,
+        }
     }
 }

@@ -51,14 +51,26 @@ pub struct SharpRing {
 /// What is left of a sharpness after one refinement.
 #[inline]
 pub(crate) fn faded(sharpness: f64) -> f64 {
-    if sharpness >= INFINITELY_SHARP { sharpness } else { (sharpness - 1.0).max(0.0) }
+    if sharpness >= INFINITELY_SHARP {
+        sharpness
+    } else {
+        (sharpness - 1.0).max(0.0)
+    }
 }
 
 /// [`SharpRing::present_weight`] of a ring with such a vertex and such edges.
 pub(crate) fn present_weight(vertex: f64, spokes: &[f64]) -> f64 {
-    let about = spokes.iter().chain([&vertex]).copied().filter(|&s| s > 0.0 && s <= 1.0);
+    let about = spokes
+        .iter()
+        .chain([&vertex])
+        .copied()
+        .filter(|&s| s > 0.0 && s <= 1.0);
     let (sum, count) = about.fold((0.0, 0), |(sum, count), s| (sum + s, count + 1));
-    if count == 0 { 1.0 } else { sum / f64::from(count) }
+    if count == 0 {
+        1.0
+    } else {
+        sum / f64::from(count)
+    }
 }
 
 fn is_sharp(open: bool, spokes: &[f64], slot: usize) -> bool {
@@ -67,7 +79,10 @@ fn is_sharp(open: bool, spokes: &[f64], slot: usize) -> bool {
 
 /// [`SharpRing::rule`] of a ring with such a vertex and such edges.
 pub(crate) fn rule(open: bool, vertex: f64, spokes: &[f64]) -> VertexRule {
-    match (0..spokes.len()).filter(|&slot| is_sharp(open, spokes, slot)).count() {
+    match (0..spokes.len())
+        .filter(|&slot| is_sharp(open, spokes, slot))
+        .count()
+    {
         _ if vertex > 0.0 => VertexRule::Corner,
         0 => VertexRule::Smooth,
         1 => VertexRule::Dart,
@@ -81,24 +96,43 @@ impl SharpRing {
     pub fn of(shape: RingShape) -> Self {
         let mut spokes = vec![0.0; shape.valence as usize];
         if shape.open {
-            spokes.first_mut().into_iter().for_each(|first| *first = f64::INFINITY);
-            spokes.last_mut().into_iter().for_each(|last| *last = f64::INFINITY);
+            spokes
+                .first_mut()
+                .into_iter()
+                .for_each(|first| *first = f64::INFINITY);
+            spokes
+                .last_mut()
+                .into_iter()
+                .for_each(|last| *last = f64::INFINITY);
         } else if shape.dart {
-            spokes.first_mut().into_iter().for_each(|first| *first = f64::INFINITY);
+            spokes
+                .first_mut()
+                .into_iter()
+                .for_each(|first| *first = f64::INFINITY);
         }
-        Self { open: shape.open, vertex: if shape.corner { f64::INFINITY } else { 0.0 }, spokes }
+        Self {
+            open: shape.open,
+            vertex: if shape.corner { f64::INFINITY } else { 0.0 },
+            spokes,
+        }
     }
 
     /// The ring after one refinement.
     pub fn refined(&self) -> Self {
         let spokes = self.spokes.iter().map(|&s| faded(s)).collect();
-        Self { open: self.open, vertex: faded(self.vertex), spokes }
+        Self {
+            open: self.open,
+            vertex: faded(self.vertex),
+            spokes,
+        }
     }
 
     /// The greatest sharpness that fades; 0 where nothing does.
     pub fn fading(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]);
-        all.copied().filter(|&s| s < INFINITELY_SHARP).fold(0.0, f64::max)
+        all.copied()
+            .filter(|&s| s < INFINITELY_SHARP)
+            .fold(0.0, f64::max)
     }
 
     /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
@@ -126,17 +160,32 @@ impl SharpRing {
     /// The sectors, counter-clockwise.
     pub fn sectors(&self) -> Vec<RingSector> {
         let corner = self.rule() == VertexRule::Corner;
-        let sharp: Vec<usize> = (0..self.spokes.len()).filter(|&slot| self.is_sharp(slot)).collect();
+        let sharp: Vec<usize> = (0..self.spokes.len())
+            .filter(|&slot| self.is_sharp(slot))
+            .collect();
         if !self.open && sharp.len() < 2 {
             let interior = RingShape::interior(self.spokes.len() as u32);
-            let shape = RingShape { corner, dart: sharp.len() == 1, ..interior };
-            return vec![RingSector { first: sharp.first().copied().unwrap_or(0), shape }];
+            let shape = RingShape {
+                corner,
+                dart: sharp.len() == 1,
+                ..interior
+            };
+            return vec![RingSector {
+                first: sharp.first().copied().unwrap_or(0),
+                shape,
+            }];
         }
         // A closed ring goes on to its first sharp edge; an open one ends with its last, a boundary edge.
-        let closing = sharp.first().filter(|_| !self.open).map(|&first| first + self.spokes.len());
+        let closing = sharp
+            .first()
+            .filter(|_| !self.open)
+            .map(|&first| first + self.spokes.len());
         let ends = sharp.iter().skip(1).copied().chain(closing);
         let between = |(&first, end): (&usize, usize)| {
-            let shape = RingShape { corner, ..RingShape::boundary((end - first + 1) as u32) };
+            let shape = RingShape {
+                corner,
+                ..RingShape::boundary((end - first + 1) as u32)
+            };
             RingSector { first, shape }
         };
         sharp.iter().zip(ends).map(between).collect()

@@ -77,10 +77,25 @@ struct End<'m> {
 }
 
 fn ends<'m>(shape: &EdgeShape, mask: &'m mut EdgeMask) -> [End<'m>; 2] {
-    let EdgeMask { origin, target, origin_ring, target_ring } = mask;
+    let EdgeMask {
+        origin,
+        target,
+        origin_ring,
+        target_ring,
+    } = mask;
     [
-        End { shape: shape.origin, slot: shape.origin_slot as usize, centre: origin, ring: origin_ring },
-        End { shape: shape.target, slot: shape.target_slot as usize, centre: target, ring: target_ring },
+        End {
+            shape: shape.origin,
+            slot: shape.origin_slot as usize,
+            centre: origin,
+            ring: origin_ring,
+        },
+        End {
+            shape: shape.target,
+            slot: shape.target_slot as usize,
+            centre: target,
+            ring: target_ring,
+        },
     ]
 }
 
@@ -223,7 +238,11 @@ fn boundary_rule<'m>(origin: &mut End<'m>, target: &mut End<'m>) {
         [false, true] => [6.0 / 8.0, 3.0 / 8.0],
         [true, true] => [0.5, 0.5],
     };
-    let beyond = if corners == [false, false] { -1.0 / 16.0 } else { -1.0 / 8.0 };
+    let beyond = if corners == [false, false] {
+        -1.0 / 16.0
+    } else {
+        -1.0 / 8.0
+    };
     for ((end, corner), weight) in [origin, target].into_iter().zip(corners).zip(weights) {
         *end.centre += weight;
         if !corner {

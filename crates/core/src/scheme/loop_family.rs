@@ -24,15 +24,25 @@ enum Weights {
 }
 
 /// Loop's scheme, equation (1): `β = (5/8 − (3/8 + cos(2π/k)/4)²)/k`.
-#[expect(non_upper_case_globals, reason = "schemes without parameters read like unit structs")]
-pub const Loop: LoopFamily = LoopFamily { weights: Weights::Loop };
+#[expect(
+    non_upper_case_globals,
+    reason = "schemes without parameters read like unit structs"
+)]
+pub const Loop: LoopFamily = LoopFamily {
+    weights: Weights::Loop,
+};
 
 /// Loop's scheme with Warren's weights: `β = 3/(8k)`, and 3/16 for valence 3 (Warren 1995).
 ///
 /// Valence 3 needs the exception: 3/(8·3) makes all three eigenvalues of the difference matrix 1/4, and the
 /// normal undefined.
-#[expect(non_upper_case_globals, reason = "schemes without parameters read like unit structs")]
-pub const LoopWarren: LoopFamily = LoopFamily { weights: Weights::Warren };
+#[expect(
+    non_upper_case_globals,
+    reason = "schemes without parameters read like unit structs"
+)]
+pub const LoopWarren: LoopFamily = LoopFamily {
+    weights: Weights::Warren,
+};
 
 impl LoopFamily {
     /// The weight of each neighbour of a vertex inside the surface with `valence` edges, at least 2.
@@ -82,7 +92,10 @@ impl Scheme for LoopFamily {
             }
             VertexKind::Interior => {
                 let beta = self.beta(shape.valence);
-                VertexMask { centre: 1.0 - k as f64 * beta, ring: vec![beta; k] }
+                VertexMask {
+                    centre: 1.0 - k as f64 * beta,
+                    ring: vec![beta; k],
+                }
             }
         }
     }

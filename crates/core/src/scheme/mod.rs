@@ -98,5 +98,8 @@ mod tests;
 
 /// The mask of every corner and of every vertex of an interpolating scheme: stay.
 pub(crate) fn stay(shape: RingShape) -> VertexMask {
-    VertexMask { centre: 1.0, ring: vec![0.0; shape.valence as usize] }
+    VertexMask {
+        centre: 1.0,
+        ring: vec![0.0; shape.valence as usize],
+    }
 }

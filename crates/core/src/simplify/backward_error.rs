@@ -40,7 +40,8 @@ impl BackwardProbes {
         self.sites.extend(sites);
         let origin = self.sites.first().map_or(DVec3::ZERO, |&(_, p)| p);
         self.origin = origin;
-        self.near.extend(self.sites.iter().map(|&(_, p)| (p - origin).as_vec3()));
+        self.near
+            .extend(self.sites.iter().map(|&(_, p)| (p - origin).as_vec3()));
     }
 
     /// Adds a point to be measured.

@@ -11,18 +11,32 @@ pub(super) fn mesh(
     surface: &EditableMesh,
     kinds: &[Kind],
 ) -> Result<(Mesh, Vec<u32>), MeshError> {
-    let vertices: Vec<u32> = (0..fine.vertex_count() as u32).filter(|&v| surface.is_alive(v)).collect();
+    let vertices: Vec<u32> = (0..fine.vertex_count() as u32)
+        .filter(|&v| surface.is_alive(v))
+        .collect();
     let mut numbers = vec![NONE; fine.vertex_count()];
     for (number, &v) in vertices.iter().enumerate() {
         numbers[v as usize] = number as u32;
     }
     let number = |v: u32| numbers[v as usize];
-    let triangles = surface.faces().map(|face| surface.corners(face).map(number)).collect();
+    let triangles = surface
+        .faces()
+        .map(|face| surface.corners(face).map(number))
+        .collect();
     let topology = Topology::from_triangles(triangles, vertices.len())?;
-    let tags = Tags { creases: creases(fine, surface, kinds, number), corners: corners(fine, number) };
+    let tags = Tags {
+        creases: creases(fine, surface, kinds, number),
+        corners: corners(fine, number),
+    };
     let junctions = junctions(fine, &topology, number);
-    let positions = vertices.iter().map(|&v| fine.positions()[v as usize]).collect();
-    Ok((Mesh::from_parts(topology, positions, tags, junctions), vertices))
+    let positions = vertices
+        .iter()
+        .map(|&v| fine.positions()[v as usize])
+        .collect();
+    Ok((
+        Mesh::from_parts(topology, positions, tags, junctions),
+        vertices,
+    ))
 }
 
 /// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it stands for.
@@ -41,7 +55,10 @@ fn creases(
                 let ends = [number(start), number(end)];
                 // Seen from both ends, told from one.
                 if ends[0] < ends[1] {
-                    creases.push(CreaseTag { vertices: ends, sharpness: tag.sharpness });
+                    creases.push(CreaseTag {
+                        vertices: ends,
+                        sharpness: tag.sharpness,
+                    });
                 }
             }
         }
@@ -51,7 +68,10 @@ fn creases(
 
 /// The corners, all of which are still there.
 fn corners(fine: &Mesh, number: impl Fn(u32) -> u32) -> Vec<CornerTag> {
-    let renumbered = |tag: &CornerTag| CornerTag { vertex: number(tag.vertex), ..*tag };
+    let renumbered = |tag: &CornerTag| CornerTag {
+        vertex: number(tag.vertex),
+        ..*tag
+    };
     fine.tags().corners.iter().map(renumbered).collect()
 }
 
@@ -63,7 +83,10 @@ fn junctions(fine: &Mesh, topology: &Topology, number: impl Fn(u32) -> u32) -> J
     }
     for group in fine.junctions().edges.iter() {
         let renumbered = group.iter().filter_map(|&h| {
-            let [a, b] = fine.topology().ends(crate::index::HalfEdgeId(h)).map(|v| VertexId(number(v.0)));
+            let [a, b] = fine
+                .topology()
+                .ends(crate::index::HalfEdgeId(h))
+                .map(|v| VertexId(number(v.0)));
             topology.edge_between(a, b).map(|h| h.0)
         });
         junctions.edges.push(renumbered);

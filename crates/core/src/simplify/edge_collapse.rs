@@ -111,13 +111,24 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     pub(super) fn finish(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let mut back = Vec::new();
         if let Some(prover) = &mut self.prover {
-            while let Some(failing) = prover.finish(&self.surface, &self.samples, goals.tolerance, watch)? {
-                let Some(history) = &mut self.history else { break };
-                let Some(change) = history.latest(failing.into_iter()) else { break };
-                history.take_back(change, &mut self.surface, &mut self.samples, |faces, vertex| {
-                    prover.reopen(faces);
-                    back.push(vertex);
-                });
+            while let Some(failing) =
+                prover.finish(&self.surface, &self.samples, goals.tolerance, watch)?
+            {
+                let Some(history) = &mut self.history else {
+                    break;
+                };
+                let Some(change) = history.latest(failing.into_iter()) else {
+                    break;
+                };
+                history.take_back(
+                    change,
+                    &mut self.surface,
+                    &mut self.samples,
+                    |faces, vertex| {
+                        prover.reopen(faces);
+                        back.push(vertex);
+                    },
+                );
             }
         }
         back.retain(|&vertex| vertex != NONE && self.surface.is_alive(vertex));
@@ -129,7 +140,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         for vertex in back {
             self.costs[vertex as usize] = 0.0;
             let costs = &mut self.costs;
-            self.surface.for_each_neighbour(vertex, |v| costs[v as usize] = 0.0);
+            self.surface
+                .for_each_neighbour(vertex, |v| costs[v as usize] = 0.0);
         }
         self.run(goals, watch)
     }
@@ -161,10 +173,16 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     }
 
     fn collapse_up_to(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
-        let mut left: Vec<u32> = (0..self.costs.len() as u32).filter(|&v| self.surface.is_alive(v)).collect();
+        let mut left: Vec<u32> = (0..self.costs.len() as u32)
+            .filter(|&v| self.surface.is_alive(v))
+            .collect();
         let mut threshold = self.flat.min(goals.tolerance);
         while self.surface.faces_left() > goals.triangles {
-            self.share = if goals.tolerance < f64::MAX { threshold / goals.tolerance } else { 0.0 };
+            self.share = if goals.tolerance < f64::MAX {
+                threshold / goals.tolerance
+            } else {
+                0.0
+            };
             let least = self.round(&left, threshold, goals, watch)?;
             left.retain(|&v| self.surface.is_alive(v));
             if least > goals.tolerance {
@@ -172,7 +190,9 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             }
             let near = self.surface.faces_left() / FAR <= goals.triangles;
             let growth = if near { SLOW } else { FAST };
-            threshold = self.rung_above((threshold * growth).max(least), growth).min(goals.tolerance);
+            threshold = self
+                .rung_above((threshold * growth).max(least), growth)
+                .min(goals.tolerance);
         }
         Ok(())
     }
@@ -184,7 +204,11 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         const SLACK: f64 = 1e-9;
         let rung = ((cost / self.flat).ln() / growth.ln() - SLACK).ceil();
         let threshold = self.flat * growth.powf(rung.max(0.0));
-        if threshold.is_finite() { threshold } else { cost }
+        if threshold.is_finite() {
+            threshold
+        } else {
+            cost
+        }
     }
 
     /// Flips edges where that brings the mesh nearer to the surface; whether there were any.
@@ -193,9 +217,14 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         for h in edges(&self.surface) {
             self.observe(goals, watch)?;
             let history = self.history.as_mut();
-            let proof = self.prover.as_mut().map(|prover| (prover, goals.tolerance, history));
+            let proof = self
+                .prover
+                .as_mut()
+                .map(|prover| (prover, goals.tolerance, history));
             let (flat, surface, samples) = (self.flat, &mut self.surface, &mut self.samples);
-            let flipped = self.flipper.flip(h, flat, surface, samples, &self.reference, proof);
+            let flipped = self
+                .flipper
+                .flip(h, flat, surface, samples, &self.reference, proof);
             any |= flipped.is_some();
             for v in flipped.into_iter().flatten() {
                 self.costs[v as usize] = 0.0;
@@ -231,13 +260,21 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     fn consider(&mut self, vertex: u32, threshold: f64, goals: Goals) -> f64 {
         self.refused[vertex as usize] = false;
         if self.reference.kind(vertex) == Kind::Fixed
-            || self.surface.outgoing_ring(vertex).take(MOST_EDGES + 1).count() > MOST_EDGES
+            || self
+                .surface
+                .outgoing_ring(vertex)
+                .take(MOST_EDGES + 1)
+                .count()
+                > MOST_EDGES
         {
             return f64::INFINITY;
         }
-        self.star.gather(vertex, &self.surface, &self.samples, &self.reference);
+        self.star
+            .gather(vertex, &self.surface, &self.samples, &self.reference);
         self.star.find_ways(&self.reference);
-        let Some((way, cost)) = self.best_way(threshold, goals.tolerance) else { return f64::INFINITY };
+        let Some((way, cost)) = self.best_way(threshold, goals.tolerance) else {
+            return f64::INFINITY;
+        };
         if cost > threshold {
             return cost;
         }
@@ -245,19 +282,33 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         let change = self.star.change(&self.surface);
         if let Some(prover) = &mut self.prover {
             // Where their number stops the collapses, no triangle is to be much worse than the others.
-            let goal = if goals.tolerance < f64::MAX { goals.tolerance } else { threshold * UNEVEN };
+            let goal = if goals.tolerance < f64::MAX {
+                goals.tolerance
+            } else {
+                threshold * UNEVEN
+            };
             if cost < self.sure {
                 prover.defer(&change, &self.surface, &self.samples);
             } else if prover.prove(&change, &self.surface, &self.samples, goal) {
                 prover.commit(&change);
             } else {
                 self.refused[vertex as usize] = true;
-                return if goal < goals.tolerance { goal } else { f64::INFINITY };
+                return if goal < goals.tolerance {
+                    goal
+                } else {
+                    f64::INFINITY
+                };
             }
         }
         if let Some(history) = &mut self.history {
             let change = self.star.change(&self.surface);
-            history.record(change.old, vertex, change.region.samples(), &self.surface, &self.samples);
+            history.record(
+                change.old,
+                vertex,
+                change.region.samples(),
+                &self.surface,
+                &self.samples,
+            );
         }
         self.surface.collapse(self.star.edge(way.slot), vertex);
         self.star.hand_over(&mut self.samples);
@@ -283,17 +334,27 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             if !self.star.collapse_into(way.slot, &self.reference) {
                 continue;
             }
-            let Some(cost) = self.star.cost(way, &self.reference, bound) else { continue };
+            let Some(cost) = self.star.cost(way, &self.reference, bound) else {
+                continue;
+            };
             // Where it is flat, one way is as good as another for the distance.
             let shape = self.star.shape();
             if best.is_some_and(|best| best.1 <= self.flat && shape <= best_shape) {
                 continue;
             }
             // Whether the mesh stays a manifold takes long to find out, and matters only for what is to be done now.
-            if cost > threshold || self.surface.can_collapse(self.star.edge(way.slot), self.star.centre) {
+            if cost > threshold
+                || self
+                    .surface
+                    .can_collapse(self.star.edge(way.slot), self.star.centre)
+            {
                 best = Some((way, cost));
                 best_shape = shape;
-                bound = if cost <= self.flat { bound.min(self.flat.next_up()) } else { cost };
+                bound = if cost <= self.flat {
+                    bound.min(self.flat.next_up())
+                } else {
+                    cost
+                };
             }
         }
         best

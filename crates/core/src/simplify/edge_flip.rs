@@ -46,16 +46,28 @@ struct Cut {
 impl Quadrilateral {
     fn at(h: u32, surface: &EditableMesh, samples: &FineSamples) -> Self {
         let t = surface.twin(h);
-        let corners =
-            [surface.origin(h), surface.origin(previous(t)), surface.target(h), surface.origin(previous(h))];
-        Self { corners, positions: corners.map(|v| samples.position(v)), faces: [h / 3, t / 3] }
+        let corners = [
+            surface.origin(h),
+            surface.origin(previous(t)),
+            surface.target(h),
+            surface.origin(previous(h)),
+        ];
+        Self {
+            corners,
+            positions: corners.map(|v| samples.position(v)),
+            faces: [h / 3, t / 3],
+        }
     }
 
     /// The faces across its sides.
     fn around(&self, h: u32, surface: &EditableMesh) -> Vec<u32> {
         let t = surface.twin(h);
         let across = [next(h), previous(h), next(t), previous(t)].map(|side| surface.twin(side));
-        across.into_iter().filter(|&twin| twin != NONE).map(|twin| twin / 3).collect()
+        across
+            .into_iter()
+            .filter(|&twin| twin != NONE)
+            .map(|twin| twin / 3)
+            .collect()
     }
 
     fn plane(&self, triangle: [usize; 3]) -> Option<Plane> {
@@ -65,16 +77,24 @@ impl Quadrilateral {
     /// How far the surface bulges over a triangle, by the normals at its corners.
     fn bulge(&self, [i, j, k]: [usize; 3], reference: &Reference<'_>) -> f64 {
         let sagitta = |i: usize, j: usize| {
-            reference.sagitta([self.corners[i], self.corners[j]], [self.positions[i], self.positions[j]])
+            reference.sagitta(
+                [self.corners[i], self.corners[j]],
+                [self.positions[i], self.positions[j]],
+            )
         };
         bulge([sagitta(i, j), sagitta(j, k), sagitta(k, i)])
     }
 
     fn standard(&self, reference: &Reference<'_>) -> Standard {
-        let mut standard = Standard { worst: Worst::NONE, facing: DVec3::ZERO };
+        let mut standard = Standard {
+            worst: Worst::NONE,
+            facing: DVec3::ZERO,
+        };
         for triangle in BEFORE {
             let plane = self.plane(triangle);
-            standard.worst.add(plane.as_ref(), triangle.map(|i| self.corners[i]), reference);
+            standard
+                .worst
+                .add(plane.as_ref(), triangle.map(|i| self.corners[i]), reference);
             standard.facing += plane.map_or(DVec3::ZERO, |plane| plane.normal);
         }
         standard
@@ -99,11 +119,21 @@ impl Flipper {
         }
         let quadrilateral = Quadrilateral::at(h, surface, samples);
         self.region.clear();
-        quadrilateral.faces.iter().for_each(|&face| self.region.add_face(face, samples));
-        quadrilateral.corners.iter().for_each(|&v| self.region.add_corner(v, samples));
+        quadrilateral
+            .faces
+            .iter()
+            .for_each(|&face| self.region.add_face(face, samples));
+        quadrilateral
+            .corners
+            .iter()
+            .for_each(|&v| self.region.add_corner(v, samples));
         let before = self.cut(&quadrilateral, BEFORE, f64::INFINITY, None, reference);
         let error = before.as_ref().map_or(f64::INFINITY, |cut| cut.error);
-        let bound = if error <= flat { flat.next_up() } else { error * GAIN };
+        let bound = if error <= flat {
+            flat.next_up()
+        } else {
+            error * GAIN
+        };
         let standard = quadrilateral.standard(reference);
         let after = self.cut(&quadrilateral, AFTER, bound, Some(standard), reference)?;
         let better = error > flat || before.is_none_or(|before| after.shape > before.shape / GAIN);
@@ -114,17 +144,29 @@ impl Flipper {
         if let Some((prover, goal, history)) = proof {
             let around = quadrilateral.around(h, surface);
             let around = around.as_slice();
-            let change = Change { old: &quadrilateral.faces, around, gone: NONE, region: &self.region };
+            let change = Change {
+                old: &quadrilateral.faces,
+                around,
+                gone: NONE,
+                region: &self.region,
+            };
             if !prover.prove(&change, surface, samples, goal) {
                 return None;
             }
             prover.commit(&change);
             if let Some(history) = history {
-                history.record(&quadrilateral.faces, NONE, self.region.samples(), surface, samples);
+                history.record(
+                    &quadrilateral.faces,
+                    NONE,
+                    self.region.samples(),
+                    surface,
+                    samples,
+                );
             }
         }
         surface.flip(h);
-        self.region.hand_over(samples, quadrilateral.faces.into_iter());
+        self.region
+            .hand_over(samples, quadrilateral.faces.into_iter());
         Some(quadrilateral.corners)
     }
 
@@ -150,7 +192,8 @@ impl Flipper {
             }
             estimate = estimate.max(quadrilateral.bulge(triangle, reference));
             shape = shape.min(plane.shape);
-            self.region.add_triangle(plane, triangle.map(|i| quadrilateral.corners[i]), face);
+            self.region
+                .add_triangle(plane, triangle.map(|i| quadrilateral.corners[i]), face);
         }
         let error = self.region.forward_error(estimate, bound)?;
         let [a, b] = [0, 1].map(|end| quadrilateral.positions[triangles[0][end]]);

@@ -46,7 +46,10 @@ impl EditableMesh {
             sharp: twins.iter().map(|&twin| twin == NONE).collect(),
             open: twins.contains(&NONE),
             twins,
-            outgoing: topology.vertices().map(|v| topology.outgoing(v).0).collect(),
+            outgoing: topology
+                .vertices()
+                .map(|v| topology.outgoing(v).0)
+                .collect(),
             faces_left: topology.face_count(),
         }
     }
@@ -60,7 +63,11 @@ impl EditableMesh {
     #[inline]
     pub(super) fn corners(&self, face: u32) -> [u32; 3] {
         let first = 3 * face as usize;
-        [self.origins[first], self.origins[first + 1], self.origins[first + 2]]
+        [
+            self.origins[first],
+            self.origins[first + 1],
+            self.origins[first + 2],
+        ]
     }
 
     /// All faces that are left, ascending.
@@ -141,14 +148,19 @@ impl EditableMesh {
 
     /// Whether there is an edge between two vertices.
     pub(super) fn are_neighbours(&self, a: u32, b: u32) -> bool {
-        self.outgoing_ring(a).any(|h| self.target(h) == b || self.origins[previous(h) as usize] == b)
+        self.outgoing_ring(a)
+            .any(|h| self.target(h) == b || self.origins[previous(h) as usize] == b)
     }
 
     /// Whether the edge of `h` can be collapsed, its end `from` into the other, and the result is a manifold of the same
     /// kind (the link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999): the ends share no neighbours but those
     /// opposite the edge, an inner edge does not join two boundary vertices, and those opposite keep a face.
     pub(super) fn can_collapse(&self, h: u32, from: u32) -> bool {
-        let into = if self.origin(h) == from { self.target(h) } else { self.origin(h) };
+        let into = if self.origin(h) == from {
+            self.target(h)
+        } else {
+            self.origin(h)
+        };
         let twin = self.twin(h);
         if twin != NONE && self.is_boundary(from) {
             return false;
@@ -164,14 +176,19 @@ impl EditableMesh {
             around += 1;
             shared += usize::from(v != into && self.are_neighbours(v, into));
         });
-        let is_tetrahedron = || around == 3 && twin != NONE && self.outgoing_ring(into).take(4).count() == 3;
+        let is_tetrahedron =
+            || around == 3 && twin != NONE && self.outgoing_ring(into).take(4).count() == 3;
         shared == 1 + usize::from(twin != NONE) && !is_tetrahedron()
     }
 
     /// Collapses the edge of `h`: its end `from` goes, and its faces now meet at the other. The caller has asked
     /// [`Self::can_collapse`].
     pub(super) fn collapse(&mut self, h: u32, from: u32) {
-        let into = if self.origin(h) == from { self.target(h) } else { self.origin(h) };
+        let into = if self.origin(h) == from {
+            self.target(h)
+        } else {
+            self.origin(h)
+        };
         let twin = self.twin(h);
         self.rename_fan(from, into);
         self.outgoing[from as usize] = NONE;
@@ -208,8 +225,16 @@ impl EditableMesh {
             self.twins[dead as usize] = NONE;
         }
         self.faces_left -= 1;
-        let leaves_other = if leaving != NONE { leaving } else { next(reaching) };
-        let leaves_merged = if reaching != NONE { reaching } else { next(leaving) };
+        let leaves_other = if leaving != NONE {
+            leaving
+        } else {
+            next(reaching)
+        };
+        let leaves_merged = if reaching != NONE {
+            reaching
+        } else {
+            next(leaving)
+        };
         [(other, leaves_other), (merged, leaves_merged)]
     }
 
@@ -230,7 +255,11 @@ impl EditableMesh {
     /// What is known of the half-edge `h`, to be [`Self::put`] back.
     pub(super) fn slot(&self, h: u32) -> Slot {
         let at = h as usize;
-        Slot { origin: self.origins[at], twin: self.twins[at], sharp: self.sharp[at] }
+        Slot {
+            origin: self.origins[at],
+            twin: self.twins[at],
+            sharp: self.sharp[at],
+        }
     }
 
     /// Makes the half-edge `h` what it was.
@@ -271,7 +300,12 @@ impl EditableMesh {
             self.origins[slot as usize] = origin;
         }
         let [beyond_n, beyond_p, beyond_tn, beyond_tp] = outside;
-        for (slot, (across, sharp)) in [(n, beyond_tp), (p, beyond_n), (tn, beyond_p), (tp, beyond_tn)] {
+        for (slot, (across, sharp)) in [
+            (n, beyond_tp),
+            (p, beyond_n),
+            (tn, beyond_p),
+            (tp, beyond_tn),
+        ] {
             self.twins[slot as usize] = across;
             self.sharp[slot as usize] = sharp;
             if across != NONE {

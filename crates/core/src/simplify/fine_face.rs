@@ -42,13 +42,25 @@ impl Corner {
     #[inline]
     pub(super) fn near(at: DVec3, triangle: usize, distance: f64) -> Self {
         let near = if triangle < MOST { 1 << triangle } else { 0 };
-        Self { at, near, known: (triangle, distance), vertex: NONE, complete: false }
+        Self {
+            at,
+            near,
+            known: (triangle, distance),
+            vertex: NONE,
+            complete: false,
+        }
     }
 
     /// A vertex of the mesh, near to the triangles at it.
     #[inline]
     pub(super) fn vertex(at: DVec3, vertex: u32) -> Self {
-        Self { at, near: 0, known: (MOST, 0.0), vertex, complete: false }
+        Self {
+            at,
+            near: 0,
+            known: (MOST, 0.0),
+            vertex,
+            complete: false,
+        }
     }
 }
 
@@ -79,34 +91,54 @@ impl Candidates {
 
     /// Adds a triangle, if it is not there and there is room, and gives its place.
     pub(super) fn add(&mut self, face: u32, corners: [u32; 3], positions: [DVec3; 3]) -> usize {
-        if let Some(place) = self.triangles.iter().position(|candidate| candidate.face == face) {
+        if let Some(place) = self
+            .triangles
+            .iter()
+            .position(|candidate| candidate.face == face)
+        {
             return place;
         }
         let place = self.triangles.len();
         if place < MOST {
             let mut beside = 0;
             for (other, triangle) in self.triangles.iter_mut().enumerate() {
-                let shared = corners.iter().filter(|corner| triangle.corners.contains(corner)).count();
+                let shared = corners
+                    .iter()
+                    .filter(|corner| triangle.corners.contains(corner))
+                    .count();
                 if shared == 2 {
                     beside |= 1 << other;
                     triangle.beside |= 1 << place;
                 }
             }
-            self.triangles.push(Candidate { face, corners, positions, beside });
+            self.triangles.push(Candidate {
+                face,
+                corners,
+                positions,
+                beside,
+            });
         }
         place
     }
 
     /// The triangles at a vertex of the mesh.
     fn around(&self, vertex: u32) -> u64 {
-        let at =
-            |(place, triangle): (usize, &Candidate)| u64::from(triangle.corners.contains(&vertex)) << place;
-        self.triangles.iter().enumerate().map(at).fold(0, |near, bit| near | bit)
+        let at = |(place, triangle): (usize, &Candidate)| {
+            u64::from(triangle.corners.contains(&vertex)) << place
+        };
+        self.triangles
+            .iter()
+            .enumerate()
+            .map(at)
+            .fold(0, |near, bit| near | bit)
     }
 
     /// The corner at a sample near the triangle at a place.
     pub(super) fn sample(&self, at: DVec3, place: usize) -> Corner {
-        let distance = self.triangles.get(place).map_or(f64::INFINITY, |t| distance(at, t.positions));
+        let distance = self
+            .triangles
+            .get(place)
+            .map_or(f64::INFINITY, |t| distance(at, t.positions));
         Corner::near(at, place, distance)
     }
 
@@ -144,7 +176,12 @@ impl Candidates {
             if common != 0 {
                 let place = common.trailing_zeros() as usize;
                 self.used |= 1 << place;
-                return Some(corners.iter().map(|c| self.distance(c, place)).fold(0.0, f64::max));
+                return Some(
+                    corners
+                        .iter()
+                        .map(|c| self.distance(c, place))
+                        .fold(0.0, f64::max),
+                );
             }
             // Around a vertex, small pieces may be cut over and over, each corner known to be near to two triangles only.
             if self.cuts <= MOST_CUTS / 2 && !corners.iter().all(|corner| corner.complete) {
@@ -157,7 +194,8 @@ impl Candidates {
             let (i, apart) = self.side_to_cut(&corners);
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
             let crossing = if apart {
-                self.crossing(&mut corners, i, j).or_else(|| self.crossing(&mut corners, j, i))
+                self.crossing(&mut corners, i, j)
+                    .or_else(|| self.crossing(&mut corners, j, i))
             } else {
                 None
             };
@@ -201,7 +239,9 @@ impl Candidates {
         for (wanted, all) in [(q.near, false), (!p.near, true)] {
             for a in bits(p.near) {
                 for b in bits(self.triangles[a].beside & wanted) {
-                    let Some([from, to]) = self.edge_between(a, b) else { continue };
+                    let Some([from, to]) = self.edge_between(a, b) else {
+                        continue;
+                    };
                     let (s, at, foot) = nearest_points([p.at, q.at], [from, to]);
                     let distance = at.distance(foot);
                     if !is_within(distance, self.goal) || (all && (s <= 0.0 || s >= 1.0)) {
@@ -214,7 +254,13 @@ impl Candidates {
                         end.near |= near;
                         return Some(Crossing::Corner);
                     }
-                    let cut = Corner { at, near, known: (a, distance), vertex: NONE, complete: false };
+                    let cut = Corner {
+                        at,
+                        near,
+                        known: (a, distance),
+                        vertex: NONE,
+                        complete: false,
+                    };
                     return Some(Crossing::At(cut));
                 }
             }
@@ -232,7 +278,8 @@ impl Candidates {
     /// Looks at all triangles.
     fn complete(&self, corner: &mut Corner) {
         for (place, triangle) in self.triangles.iter().enumerate() {
-            if corner.near >> place & 1 == 0 && distance(corner.at, triangle.positions) <= self.goal {
+            if corner.near >> place & 1 == 0 && distance(corner.at, triangle.positions) <= self.goal
+            {
                 corner.near |= 1 << place;
             }
         }
@@ -282,9 +329,19 @@ fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
 /// to 1 (Ericson, Real-Time Collision Detection, section 5.1.9).
 fn nearest_points([p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> (f64, DVec3, DVec3) {
     let (along, edge, from) = (q - p, b - a, p - a);
-    let (pp, ee, pe) = (along.length_squared(), edge.length_squared(), along.dot(edge));
+    let (pp, ee, pe) = (
+        along.length_squared(),
+        edge.length_squared(),
+        along.dot(edge),
+    );
     let (pf, ef) = (along.dot(from), edge.dot(from));
-    let share = |x: f64, y: f64| if y > 0.0 { (x / y).clamp(0.0, 1.0) } else { 0.0 };
+    let share = |x: f64, y: f64| {
+        if y > 0.0 {
+            (x / y).clamp(0.0, 1.0)
+        } else {
+            0.0
+        }
+    };
     let determinant = pp * ee - pe * pe;
     let t = share(pe * share(pe * ef - pf * ee, determinant) + ef, ee);
     let s = share(pe * t - pf, pp);
@@ -305,21 +362,38 @@ mod tests {
             DVec3::new(angle.cos(), angle.sin(), heights[i % n])
         };
         let number = |i: usize| 1 + (i % n) as u32;
-        (0..n).map(|i| ([0, number(i), number(i + 1)], [DVec3::ZERO, rim(i), rim(i + 1)])).collect()
+        (0..n)
+            .map(|i| {
+                (
+                    [0, number(i), number(i + 1)],
+                    [DVec3::ZERO, rim(i), rim(i + 1)],
+                )
+            })
+            .collect()
     }
 
     /// The greatest distance of dense points of a face from a fan, each against all triangles one by one, and what is told of the face.
-    fn looked_at(heights: &[f64], corners: [(f64, f64, f64); 3], goal: f64) -> (f64, Option<(f64, u64)>) {
+    fn looked_at(
+        heights: &[f64],
+        corners: [(f64, f64, f64); 3],
+        goal: f64,
+    ) -> (f64, Option<(f64, u64)>) {
         let fan = fan(heights);
         let mut candidates = Candidates::default();
         for (i, &(corners, positions)) in fan.iter().enumerate() {
             candidates.add(i as u32, corners, positions);
         }
-        let nearest = |p: DVec3| fan.iter().map(|t| distance(p, t.1)).fold(f64::INFINITY, f64::min);
+        let nearest = |p: DVec3| {
+            fan.iter()
+                .map(|t| distance(p, t.1))
+                .fold(f64::INFINITY, f64::min)
+        };
         let positions = corners.map(|(x, y, z)| DVec3::new(x, y, z));
         let greatest = (0..=24)
             .flat_map(|i| (0..=24 - i).map(move |j| (f64::from(i) / 24.0, f64::from(j) / 24.0)))
-            .map(|(u, v)| nearest(positions[0] * (1.0 - u - v) + positions[1] * u + positions[2] * v))
+            .map(|(u, v)| {
+                nearest(positions[0] * (1.0 - u - v) + positions[1] * u + positions[2] * v)
+            })
             .fold(0.0, f64::max);
         let ends = positions.map(|p| {
             let near = |&(a, b): &(usize, usize)| distance(p, fan[a].1) < distance(p, fan[b].1);
@@ -359,6 +433,9 @@ mod tests {
                 missed += usize::from(found.is_none());
             }
         }
-        assert!(within > 1_000 && 100 * missed <= within, "{missed} of {within}");
+        assert!(
+            within > 1_000 && 100 * missed <= within,
+            "{missed} of {within}"
+        );
     }
 }

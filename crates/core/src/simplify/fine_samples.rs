@@ -84,6 +84,8 @@ impl FineSamples {
     #[inline]
     pub(super) fn of(&self, face: u32) -> impl Iterator<Item = u32> + use<'_> {
         let some = |sample: u32| (sample != NONE).then_some(sample);
-        core::iter::successors(some(self.first[face as usize]), move |&s| some(self.following[s as usize]))
+        core::iter::successors(some(self.first[face as usize]), move |&s| {
+            some(self.following[s as usize])
+        })
     }
 }

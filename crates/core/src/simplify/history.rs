@@ -73,21 +73,34 @@ impl History {
         for &face in old {
             let before = core::mem::replace(&mut self.last[face as usize], change);
             let slots = [0, 1, 2].map(|corner| surface.slot(3 * face + corner));
-            self.faces.push(OldFace { face, slots, error: samples.error(face), before });
+            self.faces.push(OldFace {
+                face,
+                slots,
+                error: samples.error(face),
+                before,
+            });
         }
         for h in old.iter().flat_map(|&face| 3 * face..3 * face + 3) {
             let twin = surface.twin(h);
             if twin != NONE && !old.contains(&(twin / 3)) {
                 let before = core::mem::replace(&mut self.last[twin as usize / 3], change);
-                self.across.push(Across { h: twin, slot: surface.slot(twin), before });
+                self.across.push(Across {
+                    h: twin,
+                    slot: surface.slot(twin),
+                    before,
+                });
             }
         }
-        self.samples.extend(below.iter().map(|&sample| (sample, samples.holder(sample))));
+        self.samples
+            .extend(below.iter().map(|&sample| (sample, samples.holder(sample))));
     }
 
     /// The last change that touched any of the faces.
     pub(super) fn latest(&self, faces: impl Iterator<Item = u32>) -> Option<u32> {
-        faces.map(|face| self.last[face as usize]).filter(|&change| change != NONE).max()
+        faces
+            .map(|face| self.last[face as usize])
+            .filter(|&change| change != NONE)
+            .max()
     }
 
     /// Takes back a change and those that came after it where it was; tells of each which faces are as they were again, and
@@ -103,8 +116,13 @@ impl History {
         while let Some(&change) = waiting.last() {
             let records = self.records(change);
             let faces = self.faces[records.0.clone()].iter().map(|old| old.face);
-            let across = self.across[records.1.clone()].iter().map(|across| across.h / 3);
-            let later = faces.chain(across).map(|face| self.last[face as usize]).max();
+            let across = self.across[records.1.clone()]
+                .iter()
+                .map(|across| across.h / 3);
+            let later = faces
+                .chain(across)
+                .map(|face| self.last[face as usize])
+                .max();
             if let Some(later) = later.filter(|&later| later > change) {
                 waiting.push(later);
                 continue;
@@ -112,7 +130,10 @@ impl History {
             waiting.pop();
             self.restore(change, surface, samples);
             let faces = &self.faces[records.0];
-            told(&mut faces.iter().map(|old| old.face), self.changes[change as usize].centre);
+            told(
+                &mut faces.iter().map(|old| old.face),
+                self.changes[change as usize].centre,
+            );
         }
     }
 
@@ -120,7 +141,11 @@ impl History {
     fn records(
         &self,
         change: u32,
-    ) -> (core::ops::Range<usize>, core::ops::Range<usize>, core::ops::Range<usize>) {
+    ) -> (
+        core::ops::Range<usize>,
+        core::ops::Range<usize>,
+        core::ops::Range<usize>,
+    ) {
         let own = &self.changes[change as usize];
         let (faces, across, samples) = match self.changes.get(change as usize + 1) {
             Some(next) => (next.faces, next.across, next.samples),
@@ -167,7 +192,9 @@ mod tests {
     #[test]
     fn what_is_taken_back_leaves_no_trace() {
         for name in ["sphere", "sheet", "bunny"] {
-            let fine = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+            let fine = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+                .unwrap()
+                .0;
             let positions = fine.positions().iter().copied().map(vector).collect();
             let mut samples = FineSamples::new(positions, fine.face_count());
             let whole = EditableMesh::new(fine.topology());
@@ -189,18 +216,26 @@ mod tests {
                         continue;
                     }
                     let old = [h / 3, twin / 3];
-                    let below: Vec<u32> =
-                        old.iter().flat_map(|&face| samples.of(face).collect::<Vec<_>>()).collect();
+                    let below: Vec<u32> = old
+                        .iter()
+                        .flat_map(|&face| samples.of(face).collect::<Vec<_>>())
+                        .collect();
                     history.record(&old, NONE, &below, &surface, &samples);
                     surface.flip(h);
-                } else if spokes.len() > 1 + usize::from(twin != NONE) && surface.can_collapse(h, v) {
-                    let mut below: Vec<u32> =
-                        faces.iter().flat_map(|&face| samples.of(face).collect::<Vec<_>>()).collect();
+                } else if spokes.len() > 1 + usize::from(twin != NONE) && surface.can_collapse(h, v)
+                {
+                    let mut below: Vec<u32> = faces
+                        .iter()
+                        .flat_map(|&face| samples.of(face).collect::<Vec<_>>())
+                        .collect();
                     below.push(v);
                     history.record(&faces, v, &below, &surface, &samples);
                     surface.collapse(h, v);
-                    let left: Vec<u32> =
-                        faces.iter().copied().filter(|&f| surface.corners(f)[0] != NONE).collect();
+                    let left: Vec<u32> = faces
+                        .iter()
+                        .copied()
+                        .filter(|&f| surface.corners(f)[0] != NONE)
+                        .collect();
                     faces.iter().for_each(|&face| samples.clear(face));
                     for sample in below {
                         samples.give(left[random.below(left.len())], sample, 0.5);
@@ -220,16 +255,24 @@ mod tests {
                 for change in 0..count {
                     let faces = &history.faces[history.records(change).0];
                     is_back[change as usize] = faces.iter().any(|old| {
-                        history.last[old.face as usize] == NONE || history.last[old.face as usize] < change
+                        history.last[old.face as usize] == NONE
+                            || history.last[old.face as usize] < change
                     });
                 }
             }
             assert_eq!(surface.faces_left(), fine.face_count());
             for face in 0..fine.face_count() as u32 {
                 assert_eq!(surface.corners(face), whole.corners(face), "{name}");
-                assert_eq!((samples.of(face).count(), samples.error(face)), (0, 0.0), "{name}");
+                assert_eq!(
+                    (samples.of(face).count(), samples.error(face)),
+                    (0, 0.0),
+                    "{name}"
+                );
                 for h in 3 * face..3 * face + 3 {
-                    assert_eq!((surface.twin(h), surface.is_sharp(h)), (whole.twin(h), whole.is_sharp(h)));
+                    assert_eq!(
+                        (surface.twin(h), surface.is_sharp(h)),
+                        (whole.twin(h), whole.is_sharp(h))
+                    );
                 }
             }
             for v in 0..fine.vertex_count() as u32 {

@@ -38,8 +38,11 @@ pub(super) fn kinds(
     let exists = |v: u32| (v as usize) < topology.vertex_count();
     let tagged = fine.tags().creases.iter().map(|crease| crease.vertices);
     for [a, b] in features.edges.iter().copied().chain(tagged) {
-        let edge =
-            if exists(a) && exists(b) { topology.edge_between(VertexId(a), VertexId(b)) } else { None };
+        let edge = if exists(a) && exists(b) {
+            topology.edge_between(VertexId(a), VertexId(b))
+        } else {
+            None
+        };
         let Some(edge) = edge else {
             return Err(broken(
                 format!("edge from vertex {a} to vertex {b}"),
@@ -48,12 +51,15 @@ pub(super) fn kinds(
         };
         surface.sharpen(edge.0);
     }
-    let mut kinds: Vec<Kind> = (0..topology.vertex_count() as u32).map(|v| chain_at(v, surface)).collect();
+    let mut kinds: Vec<Kind> = (0..topology.vertex_count() as u32)
+        .map(|v| chain_at(v, surface))
+        .collect();
     let corners = fine.tags().corners.iter().map(|corner| corner.vertex);
     for v in features.vertices.iter().copied().chain(corners) {
         *kinds
             .get_mut(v as usize)
-            .ok_or_else(|| broken(format!("vertex {v}"), "a feature is a vertex of the mesh"))? = Kind::Fixed;
+            .ok_or_else(|| broken(format!("vertex {v}"), "a feature is a vertex of the mesh"))? =
+            Kind::Fixed;
     }
     // Sheets that were cut apart meet in the copies of their vertices.
     for group in fine.junctions().vertices.iter() {
@@ -61,7 +67,10 @@ pub(super) fn kinds(
     }
     for group in fine.junctions().edges.iter() {
         for &h in group {
-            topology.ends(HalfEdgeId(h)).iter().for_each(|v| kinds[v.index()] = Kind::Fixed);
+            topology
+                .ends(HalfEdgeId(h))
+                .iter()
+                .for_each(|v| kinds[v.index()] = Kind::Fixed);
         }
     }
     // A chain whose tag changes ends there, so that each of its edges has one tag.
@@ -113,7 +122,9 @@ pub(super) fn walk_chain(
     while !surface.is_alive(at) {
         gone(at);
         // Only vertices inside chains go.
-        let Kind::Chain(ways) = kinds[at as usize] else { break };
+        let Kind::Chain(ways) = kinds[at as usize] else {
+            break;
+        };
         (before, at) = (at, if ways[0] == before { ways[1] } else { ways[0] });
     }
     at

@@ -78,7 +78,11 @@ pub struct SimplifyOptions {
 
 impl Default for SimplifyOptions {
     fn default() -> Self {
-        Self { tolerance: None, triangles: None, certify: true }
+        Self {
+            tolerance: None,
+            triangles: None,
+            certify: true,
+        }
     }
 }
 
@@ -108,16 +112,28 @@ impl SimplifyOptions {
     fn goals(&self, fine: &Mesh) -> Result<Goals, MeshError> {
         if let Some(value) = self.tolerance.filter(|t| !t.is_finite() || *t < 0.0) {
             let expected = "a finite number of at least 0";
-            return Err(MeshError::BadOption { name: "tolerance", value, expected });
+            return Err(MeshError::BadOption {
+                name: "tolerance",
+                value,
+                expected,
+            });
         }
         if self.triangles == Some(0) {
-            return Err(MeshError::BadOption { name: "triangles", value: 0.0, expected: "at least 1" });
+            return Err(MeshError::BadOption {
+                name: "triangles",
+                value: 0.0,
+                expected: "at least 1",
+            });
         }
         Ok(match (self.tolerance, self.triangles) {
-            (None, None) => Goals { tolerance: Self::DEFAULT_SHARE * fine.diagonal(), triangles: 0 },
-            (tolerance, triangles) => {
-                Goals { tolerance: tolerance.unwrap_or(f64::MAX), triangles: triangles.unwrap_or(0) }
-            }
+            (None, None) => Goals {
+                tolerance: Self::DEFAULT_SHARE * fine.diagonal(),
+                triangles: 0,
+            },
+            (tolerance, triangles) => Goals {
+                tolerance: tolerance.unwrap_or(f64::MAX),
+                triangles: triangles.unwrap_or(0),
+            },
         })
     }
 }
@@ -199,16 +215,33 @@ pub fn simplify_observed(
     let mut surface = EditableMesh::new(fine.topology());
     let kinds = kept_features::kinds(fine, features, &mut surface)?;
     let (normals, agreed): (Vec<DVec3>, Vec<bool>) = normals(fine).into_iter().unzip();
-    let reference = Reference { kinds: &kinds, normals: &normals, agreed: &agreed, fine };
-    let hierarchy = options.certify.then(|| Bvh::new_observed(fine.as_triangles(), observer)).transpose();
+    let reference = Reference {
+        kinds: &kinds,
+        normals: &normals,
+        agreed: &agreed,
+        fine,
+    };
+    let hierarchy = options
+        .certify
+        .then(|| Bvh::new_observed(fine.as_triangles(), observer))
+        .transpose();
     let hierarchy = match hierarchy {
-        Err(MeasureError::Cancelled(_)) => return Err(SimplifyError::Cancelled(Box::new(untouched(fine)))),
+        Err(MeasureError::Cancelled(_)) => {
+            return Err(SimplifyError::Cancelled(Box::new(untouched(fine))));
+        }
         hierarchy => hierarchy?,
     };
-    let target = hierarchy.as_ref().map(|bvh| Target::of_mesh(bvh, fine.topology())).transpose()?;
+    let target = hierarchy
+        .as_ref()
+        .map(|bvh| Target::of_mesh(bvh, fine.topology()))
+        .transpose()?;
     let mut watch = Watch::new(observer, Stage::Simplifying);
     // Where their number alone stops the collapses nobody knows what is far from the limit.
-    let sure = if goals.tolerance < f64::MAX { SURE * goals.tolerance } else { 0.0 };
+    let sure = if goals.tolerance < f64::MAX {
+        SURE * goals.tolerance
+    } else {
+        0.0
+    };
     for sure in [sure, 0.0] {
         let positions = fine.positions().iter().copied().map(vector).collect();
         let samples = FineSamples::new(positions, fine.face_count());
@@ -226,15 +259,22 @@ pub fn simplify_observed(
             return Ok(simplified);
         }
     }
-    Err(MeshError::Broken { place: "the simplified mesh".to_owned(), what: "what was proven has a bound" }
-        .into())
+    Err(MeshError::Broken {
+        place: "the simplified mesh".to_owned(),
+        what: "what was proven has a bound",
+    }
+    .into())
 }
 
 /// Normals of the vertices, as the areas of the faces around weigh them (those of a fine mesh on a smooth surface are off
 /// by the square of its edge length at most), and whether all the faces around agree with them.
 fn normals(fine: &Mesh) -> Vec<(DVec3, bool)> {
     parallel::map(fine.vertex_count(), |v| {
-        let around = || fine.topology().outgoing_ring(VertexId(v as u32)).map(|h| h.face().index());
+        let around = || {
+            fine.topology()
+                .outgoing_ring(VertexId(v as u32))
+                .map(|h| h.face().index())
+        };
         let normal = unit_or_zero(around().map(|face| fine.face_normal_vector(face)).sum());
         let agrees = |face: usize| fine.unit_face_normal(face).dot(normal) >= LEAST_AGREEMENT;
         (normal, around().all(agrees))
@@ -244,13 +284,30 @@ fn normals(fine: &Mesh) -> Vec<(DVec3, bool)> {
 /// The fine mesh as its own result.
 fn untouched(fine: &Mesh) -> Simplified {
     let vertices = (0..fine.vertex_count() as u32).collect();
-    Simplified { mesh: fine.clone(), vertices, estimate: 0.0, bound: Some(0.0), refused: 0 }
+    Simplified {
+        mesh: fine.clone(),
+        vertices,
+        estimate: 0.0,
+        bound: Some(0.0),
+        refused: 0,
+    }
 }
 
 fn result(collapser: &Collapser<'_, '_, '_>) -> Result<Simplified, SimplifyError> {
-    let Collapser { surface, samples, reference, .. } = collapser;
+    let Collapser {
+        surface,
+        samples,
+        reference,
+        ..
+    } = collapser;
     let (mesh, vertices) = compaction::mesh(reference.fine, surface, reference.kinds)?;
     let errors = surface.faces().map(|face| samples.error(face));
     let estimate = errors.fold(collapser.reached, f64::max);
-    Ok(Simplified { mesh, vertices, estimate, bound: collapser.bound(), refused: collapser.refused() })
+    Ok(Simplified {
+        mesh,
+        vertices,
+        estimate,
+        bound: collapser.bound(),
+        refused: collapser.refused(),
+    })
 }

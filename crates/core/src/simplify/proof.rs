@@ -102,7 +102,11 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
     /// The greatest distance that the mesh and the fine one are proven to be within.
     pub(super) fn bound(&self, mesh: &EditableMesh) -> f64 {
         let forward = mesh.faces().map(|face| self.forward[face as usize]);
-        self.backward.iter().copied().chain(forward).fold(0.0, f64::max)
+        self.backward
+            .iter()
+            .copied()
+            .chain(forward)
+            .fold(0.0, f64::max)
     }
 
     /// Whether the mesh is proven to stay within `goal` of the fine mesh by a change of it.
@@ -142,7 +146,8 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         }
         for &face in change.around {
             let corners = mesh.corners(face);
-            self.candidates.add(face, corners, corners.map(|v| samples.position(v)));
+            self.candidates
+                .add(face, corners, corners.map(|v| samples.position(v)));
         }
     }
 
@@ -166,14 +171,26 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
             if found.is_none() && self.add_more(fine, change, mesh, samples) {
                 found = self.candidates.bound(corners, goal);
             }
-            let Some((bound, used)) = found else { return false };
-            self.rests.push(Rest { fine, used, bound: bound + self.slack });
+            let Some((bound, used)) = found else {
+                return false;
+            };
+            self.rests.push(Rest {
+                fine,
+                used,
+                bound: bound + self.slack,
+            });
         }
         true
     }
 
     /// A corner of a fine face, and what is known of the triangles near it.
-    fn corner(&mut self, v: u32, change: &Change<'_>, mesh: &EditableMesh, samples: &FineSamples) -> Corner {
+    fn corner(
+        &mut self,
+        v: u32,
+        change: &Change<'_>,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+    ) -> Corner {
         let at = samples.position(v);
         if v != change.gone && mesh.is_alive(v) {
             return Corner::vertex(at, v);
@@ -188,7 +205,9 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
             return Corner::vertex(at, v);
         }
         let corners = mesh.corners(holder);
-        let triangle = self.candidates.add(holder, corners, corners.map(|v| samples.position(v)));
+        let triangle = self
+            .candidates
+            .add(holder, corners, corners.map(|v| samples.position(v)));
         self.candidates.sample(at, triangle)
     }
 
@@ -216,7 +235,8 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
                 for h in mesh.outgoing_ring(corner).take(MOST_AROUND) {
                     if !change.old.contains(&(h / 3)) {
                         let corners = mesh.corners(h / 3);
-                        self.candidates.add(h / 3, corners, corners.map(|v| samples.position(v)));
+                        self.candidates
+                            .add(h / 3, corners, corners.map(|v| samples.position(v)));
                     }
                 }
             }
@@ -230,7 +250,9 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
             let near = new.corners.map(|v| self.fine_face_at(v));
             let below = self.rests.iter().find(|rest| rest.used >> i & 1 == 1);
             let start = below.map_or(near[0], |rest| rest.fine);
-            let bound = self.worker.within(change.region.planes()[i].corners, start, near, goal);
+            let bound = self
+                .worker
+                .within(change.region.planes()[i].corners, start, near, goal);
             if !is_within(bound, goal) {
                 return false;
             }
@@ -240,7 +262,12 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
     }
 
     /// Takes in a change without proof; [`Self::finish`] has to follow.
-    pub(super) fn defer(&mut self, change: &Change<'_>, mesh: &EditableMesh, samples: &FineSamples) {
+    pub(super) fn defer(
+        &mut self,
+        change: &Change<'_>,
+        mesh: &EditableMesh,
+        samples: &FineSamples,
+    ) {
         self.gather(change, mesh, samples);
         for &face in change.old {
             self.resting[face as usize].clear();
@@ -255,7 +282,10 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
                 let is_below = change.region.samples().get(place) == Some(&v);
                 is_below.then(|| change.region.assigned()[place].0)
             });
-            let at_corner = || new.iter().position(|new| corners.iter().any(|v| new.corners.contains(v)));
+            let at_corner = || {
+                new.iter()
+                    .position(|new| corners.iter().any(|v| new.corners.contains(v)))
+            };
             let face = holder.or_else(at_corner).unwrap_or(0);
             self.resting[new[face].face as usize].push(fine);
         }
@@ -279,7 +309,12 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
             self.open_faces = self.open_fine.clone();
         }
         let region = StarRegion::default();
-        let nothing = Change { old: &[], around: &[], gone: NONE, region: &region };
+        let nothing = Change {
+            old: &[],
+            around: &[],
+            gone: NONE,
+            region: &region,
+        };
         while let Some(&fine) = self.open_fine.last() {
             if !self.backward[fine as usize].is_finite() {
                 if fine % OBSERVED == 0 {
@@ -302,7 +337,10 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
                     watch.poll()?;
                 }
                 let near = corners.map(|v| self.fine_face_at(v));
-                let start = samples.of(face).next().map_or(near[0], |v| self.fine_face_at(v));
+                let start = samples
+                    .of(face)
+                    .next()
+                    .map_or(near[0], |v| self.fine_face_at(v));
                 let triangle = corners.map(|v| samples.position(v));
                 let bound = self.worker.within(triangle, start, near, goal);
                 if !is_within(bound, goal) {
@@ -318,17 +356,27 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
     /// The faces that care for the corners of a fine face; those that its last proof looked at where its corners are all there.
     fn below(&self, fine: u32, samples: &FineSamples) -> Vec<u32> {
         let corners = self.fine.topology().triangles()[fine as usize];
-        let holders: Vec<u32> =
-            corners.map(|v| samples.holder(v)).into_iter().filter(|&face| face != NONE).collect();
+        let holders: Vec<u32> = corners
+            .map(|v| samples.holder(v))
+            .into_iter()
+            .filter(|&face| face != NONE)
+            .collect();
         if holders.is_empty() {
-            return (0..self.candidates.len()).map(|place| self.candidates.face(place)).collect();
+            return (0..self.candidates.len())
+                .map(|place| self.candidates.face(place))
+                .collect();
         }
         holders
     }
 
     /// Takes in the last proof of a fine face, without a change.
     fn rest(&mut self, fine: u32) {
-        let Some(&Rest { mut used, bound, .. }) = self.rests.first() else { return };
+        let Some(&Rest {
+            mut used, bound, ..
+        }) = self.rests.first()
+        else {
+            return;
+        };
         self.backward[fine as usize] = bound;
         while used != 0 {
             let face = self.candidates.face(used.trailing_zeros() as usize);

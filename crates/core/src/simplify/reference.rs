@@ -39,11 +39,21 @@ pub(super) struct Worst {
 
 impl Worst {
     /// No triangle yet.
-    pub(super) const NONE: Self = Self { shape: 1.0, turn: 1.0 };
+    pub(super) const NONE: Self = Self {
+        shape: 1.0,
+        turn: 1.0,
+    };
 
     /// Takes account of a triangle, `None` where it spans no plane.
-    pub(super) fn add(&mut self, plane: Option<&Plane>, corners: [u32; 3], reference: &Reference<'_>) {
-        let (shape, turn) = plane.map_or((0.0, -1.0), |plane| (plane.shape, reference.turn(plane, corners)));
+    pub(super) fn add(
+        &mut self,
+        plane: Option<&Plane>,
+        corners: [u32; 3],
+        reference: &Reference<'_>,
+    ) {
+        let (shape, turn) = plane.map_or((0.0, -1.0), |plane| {
+            (plane.shape, reference.turn(plane, corners))
+        });
         self.shape = self.shape.min(shape);
         self.turn = self.turn.min(turn);
     }
@@ -79,11 +89,19 @@ impl Reference<'_> {
 
     #[cold]
     fn distance_to_faces(&self, point: DVec3, vertex: u32) -> f64 {
-        let around = self.fine.topology().outgoing_ring(VertexId(vertex)).map(|h| h.face().index());
+        let around = self
+            .fine
+            .topology()
+            .outgoing_ring(VertexId(vertex))
+            .map(|h| h.face().index());
         let distances = around.map(|face| {
             let corners = self.fine.as_triangles().corners(face).map(vector);
-            let Some(plane) = Plane::new(corners) else { return point.distance(corners[0]) };
-            plane.height(point).unwrap_or_else(|| plane.squared_to_sides(point).sqrt())
+            let Some(plane) = Plane::new(corners) else {
+                return point.distance(corners[0]);
+            };
+            plane
+                .height(point)
+                .unwrap_or_else(|| plane.squared_to_sides(point).sqrt())
         });
         distances.fold(f64::INFINITY, f64::min)
     }
@@ -91,13 +109,17 @@ impl Reference<'_> {
     /// Whether a triangle is neither too thin nor too steep over the surface at its corners.
     #[inline]
     pub(super) fn fits(&self, plane: &Plane, corners: [u32; 3], worst: Worst) -> bool {
-        plane.shape >= LEAST_SHAPE.min(worst.shape) && self.turn(plane, corners) >= LEAST_TURN.min(worst.turn)
+        plane.shape >= LEAST_SHAPE.min(worst.shape)
+            && self.turn(plane, corners) >= LEAST_TURN.min(worst.turn)
     }
 
     /// The least cosine between a triangle's normal and the surface's normals at its corners.
     #[inline]
     pub(super) fn turn(&self, plane: &Plane, corners: [u32; 3]) -> f64 {
-        let turns = corners.iter().filter_map(|&v| self.normal(v)).map(|normal| plane.normal.dot(normal));
+        let turns = corners
+            .iter()
+            .filter_map(|&v| self.normal(v))
+            .map(|normal| plane.normal.dot(normal));
         turns.fold(1.0, f64::min)
     }
 
@@ -116,5 +138,8 @@ impl Reference<'_> {
 /// by the sagittas of its sides: over the centroid a quadratic form rises by a ninth of half its values on the sides.
 #[inline]
 pub(super) fn bulge([a, b, c]: [f64; 3]) -> f64 {
-    a.abs().max(b.abs()).max(c.abs()).max((4.0 / 9.0) * (a + b + c).abs())
+    a.abs()
+        .max(b.abs())
+        .max(c.abs())
+        .max((4.0 / 9.0) * (a + b + c).abs())
 }

@@ -126,8 +126,13 @@ impl StarRegion {
     /// which are forgotten.
     pub(super) fn backward_error(&mut self, reference: &Reference<'_>) -> f64 {
         if self.probes.is_empty() {
-            let samples = self.samples.iter().copied().zip(self.points.iter().copied());
-            self.probes.surround(samples.chain(self.rim.iter().copied()));
+            let samples = self
+                .samples
+                .iter()
+                .copied()
+                .zip(self.points.iter().copied());
+            self.probes
+                .surround(samples.chain(self.rim.iter().copied()));
         }
         for plane in &self.planes {
             self.probes.add(plane.centroid());

@@ -8,7 +8,12 @@ use crate::scheme::Loop;
 use proptest::prelude::*;
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&models::find(name).unwrap().soup(), &BuildOptions::default()).unwrap().0
+    Mesh::from_soup(
+        &models::find(name).unwrap().soup(),
+        &BuildOptions::default(),
+    )
+    .unwrap()
+    .0
 }
 
 fn run(fine: &Mesh, options: &SimplifyOptions) -> Simplified {
@@ -25,7 +30,10 @@ fn within(tolerance: f64) -> SimplifyOptions {
 fn check_invariants(fine: &Mesh, coarse: &Simplified) {
     let mesh = &coarse.mesh;
     mesh.validate().unwrap();
-    assert_eq!(mesh.topology().euler_characteristic(), fine.topology().euler_characteristic());
+    assert_eq!(
+        mesh.topology().euler_characteristic(),
+        fine.topology().euler_characteristic()
+    );
     assert_eq!(boundary_loops(mesh), boundary_loops(fine));
     assert_eq!(mesh.vertex_count(), coarse.vertices.len());
     for (at, &v) in mesh.positions().iter().zip(&coarse.vertices) {
@@ -85,11 +93,20 @@ fn split_flat(mesh: &Mesh, times: usize) -> Mesh {
         let split = |crease: &CreaseTag| {
             let [p, q] = crease.vertices;
             let middle = middles[&[p.min(q), p.max(q)]];
-            [[p, middle], [middle, q]].map(|vertices| CreaseTag { vertices, ..*crease })
+            [[p, middle], [middle, q]].map(|vertices| CreaseTag {
+                vertices,
+                ..*crease
+            })
         };
         let creases = mesh.tags().creases.iter().flat_map(split).collect();
-        let tags = Tags { creases, corners: mesh.tags().corners.clone() };
-        mesh = Mesh::from_triangles(positions, triangles).unwrap().with_tags(tags).unwrap();
+        let tags = Tags {
+            creases,
+            corners: mesh.tags().corners.clone(),
+        };
+        mesh = Mesh::from_triangles(positions, triangles)
+            .unwrap()
+            .with_tags(tags)
+            .unwrap();
     }
     mesh
 }
@@ -98,10 +115,16 @@ fn split_flat(mesh: &Mesh, times: usize) -> Mesh {
 fn a_flat_square_keeps_its_corners_alone() {
     let corners = [0, 20, 420, 440];
     let fine = square(20, |_, _| 0.0);
-    let features = Features { vertices: corners.to_vec(), ..Features::default() };
+    let features = Features {
+        vertices: corners.to_vec(),
+        ..Features::default()
+    };
     let coarse = simplify(&fine, &features, &within(1e-9)).unwrap();
     check_invariants(&fine, &coarse);
-    assert_eq!((coarse.vertices, coarse.mesh.face_count()), (corners.to_vec(), 2));
+    assert_eq!(
+        (coarse.vertices, coarse.mesh.face_count()),
+        (corners.to_vec(), 2)
+    );
     assert!(coarse.estimate < 1e-15);
     // Untold that they are corners, it keeps them all the same: to lose one would leave the surface.
     assert_eq!(run(&fine, &within(1e-9)).vertices, corners);
@@ -111,26 +134,59 @@ fn a_flat_square_keeps_its_corners_alone() {
 fn a_cube_with_creases_becomes_twelve_triangles() {
     let cube = model("cube");
     let diagonal = |&[a, b]: &[u32; 2]| {
-        let (p, q) = (vector(cube.positions()[a as usize]), vector(cube.positions()[b as usize]));
-        (p - q).abs().to_array().iter().filter(|&&x| x > 0.0).count() > 1
+        let (p, q) = (
+            vector(cube.positions()[a as usize]),
+            vector(cube.positions()[b as usize]),
+        );
+        (p - q)
+            .abs()
+            .to_array()
+            .iter()
+            .filter(|&&x| x > 0.0)
+            .count()
+            > 1
     };
     let topology = cube.topology();
-    let mut edges: Vec<[u32; 2]> =
-        topology.half_edges().map(|h| topology.ends(h).map(|v| v.0)).filter(|[a, b]| a < b).collect();
+    let mut edges: Vec<[u32; 2]> = topology
+        .half_edges()
+        .map(|h| topology.ends(h).map(|v| v.0))
+        .filter(|[a, b]| a < b)
+        .collect();
     edges.retain(|edge| !diagonal(edge));
     assert_eq!(edges.len(), 12);
-    let creases = edges.iter().map(|&vertices| CreaseTag { vertices, sharpness: INFINITELY_SHARP }).collect();
-    let tagged = cube.clone().with_tags(Tags { creases, corners: Vec::new() }).unwrap();
+    let creases = edges
+        .iter()
+        .map(|&vertices| CreaseTag {
+            vertices,
+            sharpness: INFINITELY_SHARP,
+        })
+        .collect();
+    let tagged = cube
+        .clone()
+        .with_tags(Tags {
+            creases,
+            corners: Vec::new(),
+        })
+        .unwrap();
     let fine = split_flat(&tagged, 4);
     let coarse = run(&fine, &within(1e-9));
     assert_eq!(coarse.mesh.face_count(), 12);
     assert_eq!(coarse.vertices, (0..8).collect::<Vec<u32>>());
-    let mut kept: Vec<[u32; 2]> = coarse.mesh.tags().creases.iter().map(|crease| crease.vertices).collect();
+    let mut kept: Vec<[u32; 2]> = coarse
+        .mesh
+        .tags()
+        .creases
+        .iter()
+        .map(|crease| crease.vertices)
+        .collect();
     kept.sort_unstable();
     edges.sort_unstable();
     assert_eq!(kept, edges);
     // Without tags the shape says the same.
-    assert_eq!(run(&split_flat(&cube, 4), &within(1e-9)).mesh.face_count(), 12);
+    assert_eq!(
+        run(&split_flat(&cube, 4), &within(1e-9)).mesh.face_count(),
+        12
+    );
 }
 
 /// Greatest distances between a mesh inscribed in the unit sphere about the origin and the sphere, sampled densely.
@@ -152,7 +208,10 @@ fn distance_to_sphere(mesh: &Mesh) -> f64 {
 fn a_sphere_stays_within_the_tolerance_and_close_to_the_optimum() {
     let onto_sphere = |p: &[f64; 3]| vector(*p).normalize().to_array();
     let flat = split_flat(&model("icosphere"), 3);
-    let fine = flat.clone().with_positions(flat.positions().iter().map(onto_sphere).collect()).unwrap();
+    let fine = flat
+        .clone()
+        .with_positions(flat.positions().iter().map(onto_sphere).collect())
+        .unwrap();
     for tolerance in [0.02, 0.005] {
         let coarse = run(&fine, &within(tolerance));
         let distance = distance_to_sphere(&coarse.mesh);
@@ -169,7 +228,12 @@ fn a_sphere_stays_within_the_tolerance_and_close_to_the_optimum() {
 fn the_number_of_triangles_is_kept() {
     let fine = limit_reference(&model("bumpy"), &Loop, 3).unwrap();
     for triangles in [4000, 1001, 100] {
-        let coarse = run(&fine, &SimplifyOptions::default().triangles(Some(triangles)).certify(false));
+        let coarse = run(
+            &fine,
+            &SimplifyOptions::default()
+                .triangles(Some(triangles))
+                .certify(false),
+        );
         assert!((triangles - 1..=triangles).contains(&coarse.mesh.face_count()));
     }
     // Both goals: the first one reached stops it.
@@ -181,14 +245,22 @@ fn the_number_of_triangles_is_kept() {
 
 #[test]
 fn both_directions_keep_the_tolerance_on_the_models() {
-    for (name, levels) in [("bumpy", 3), ("cup", 2), ("head", 3), ("torus", 3), ("sheet", 3), ("cusp", 2)] {
+    for (name, levels) in [
+        ("bumpy", 3),
+        ("cup", 2),
+        ("head", 3),
+        ("torus", 3),
+        ("sheet", 3),
+        ("cusp", 2),
+    ] {
         let fine = limit_reference(&model(name), &Loop, levels).unwrap();
         let tolerance = 0.002 * fine.diagonal();
         let coarse = run(&fine, &within(tolerance));
         assert!(coarse.mesh.face_count() < fine.face_count() / 2, "{name}");
         let options = SamplingOptions::default().samples(50_000);
-        let distance =
-            hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
+        let distance = hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options)
+            .unwrap()
+            .symmetric();
         assert!(distance <= tolerance, "{name}: {distance} > {tolerance}");
     }
 }
@@ -204,7 +276,10 @@ fn triangles_do_not_fold_over() {
             let below = fine_surface.closest(((a + b + c) / 3.0).to_array()).face;
             let normal = vector(coarse.mesh.face_normal(FaceId(face as u32))).normalize();
             let surface = vector(fine.face_normal(FaceId(below))).normalize();
-            assert!(normal.dot(surface) > 0.0, "{name}: triangle {face} is turned over");
+            assert!(
+                normal.dot(surface) > 0.0,
+                "{name}: triangle {face} is turned over"
+            );
         }
     }
 }
@@ -214,15 +289,36 @@ fn options_and_features_out_of_range_are_refused() {
     let mesh = model("tetrahedron");
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let error = simplify(&mesh, &Features::default(), &within(tolerance)).unwrap_err();
-        assert!(matches!(error, SimplifyError::Mesh(MeshError::BadOption { name: "tolerance", .. })));
+        assert!(matches!(
+            error,
+            SimplifyError::Mesh(MeshError::BadOption {
+                name: "tolerance",
+                ..
+            })
+        ));
     }
     let none = SimplifyOptions::default().triangles(Some(0));
     let error = simplify(&mesh, &Features::default(), &none).unwrap_err();
-    assert!(matches!(error, SimplifyError::Mesh(MeshError::BadOption { name: "triangles", .. })));
+    assert!(matches!(
+        error,
+        SimplifyError::Mesh(MeshError::BadOption {
+            name: "triangles",
+            ..
+        })
+    ));
     for features in [
-        Features { vertices: vec![4], ..Features::default() },
-        Features { edges: vec![[0, 4]], ..Features::default() },
-        Features { edges: vec![[1, 1]], ..Features::default() },
+        Features {
+            vertices: vec![4],
+            ..Features::default()
+        },
+        Features {
+            edges: vec![[0, 4]],
+            ..Features::default()
+        },
+        Features {
+            edges: vec![[1, 1]],
+            ..Features::default()
+        },
     ] {
         assert!(simplify(&mesh, &features, &within(0.1)).is_err());
     }
@@ -230,9 +326,11 @@ fn options_and_features_out_of_range_are_refused() {
 
 #[test]
 fn the_smallest_meshes_are_left_alone() {
-    let triangle =
-        Mesh::from_triangles(vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])
-            .unwrap();
+    let triangle = Mesh::from_triangles(
+        vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        vec![[0, 1, 2]],
+    )
+    .unwrap();
     assert_eq!(run(&triangle, &within(10.0)).mesh, triangle);
     let tetrahedron = model("tetrahedron");
     assert_eq!(run(&tetrahedron, &within(10.0)).mesh, tetrahedron);
@@ -242,7 +340,10 @@ fn the_smallest_meshes_are_left_alone() {
 fn the_same_bytes_for_any_number_of_threads() {
     let fine = limit_reference(&model("cusp"), &Loop, 2).unwrap();
     let with_threads = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| run(&fine, &SimplifyOptions::default().triangles(Some(800))))
     };
     let (one, three) = (with_threads(1), with_threads(3));
@@ -256,9 +357,15 @@ fn creases_stay_where_they_are() {
     let fine = square(n, |x, y| 0.3 - (x - 0.5).abs() + 0.05 * (6.0 * y).sin());
     let ridge = |j: usize| ((n / 2) * (n + 1) + j) as u32;
     let creases = (0..n)
-        .map(|j| CreaseTag { vertices: [ridge(j), ridge(j + 1)], sharpness: INFINITELY_SHARP })
+        .map(|j| CreaseTag {
+            vertices: [ridge(j), ridge(j + 1)],
+            sharpness: INFINITELY_SHARP,
+        })
         .collect();
-    let corners = vec![CornerTag { vertex: ridge(5), sharpness: INFINITELY_SHARP }];
+    let corners = vec![CornerTag {
+        vertex: ridge(5),
+        sharpness: INFINITELY_SHARP,
+    }];
     let fine = fine.with_tags(Tags { creases, corners }).unwrap();
     let tolerance = 0.002;
     let coarse = run(&fine, &within(tolerance));
@@ -311,33 +418,61 @@ fn the_bound_holds_for_a_given_number_of_triangles() {
     let coarse = run(&fine, &SimplifyOptions::default().triangles(Some(1500)));
     assert!((1499..=1500).contains(&coarse.mesh.face_count()));
     let options = SamplingOptions::default().samples(200_000);
-    let distance = hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
+    let distance = hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options)
+        .unwrap()
+        .symmetric();
     let bound = coarse.bound.unwrap();
-    assert!(distance <= bound && bound < 1.1 * distance, "{distance} and {bound}");
+    assert!(
+        distance <= bound && bound < 1.1 * distance,
+        "{distance} and {bound}"
+    );
     // Without proof it is made in one go, and never better.
-    let quick = run(&fine, &SimplifyOptions::default().triangles(Some(1500)).certify(false));
+    let quick = run(
+        &fine,
+        &SimplifyOptions::default()
+            .triangles(Some(1500))
+            .certify(false),
+    );
     assert_eq!(quick.bound, None);
-    let quick = hausdorff(quick.mesh.as_triangles(), fine.as_triangles(), &options).unwrap().symmetric();
+    let quick = hausdorff(quick.mesh.as_triangles(), fine.as_triangles(), &options)
+        .unwrap()
+        .symmetric();
     assert!(distance <= 1.01 * quick);
 }
 
 /// Encloses the distance by another way: branch and bound over both meshes as a whole.
 fn enclosed(coarse: &Simplified, fine: &Mesh) -> (f64, f64) {
-    let options = CertifiedOptions::default().gap(Some(1e-12)).relative_gap(0.01);
-    let distance = certified_hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap();
+    let options = CertifiedOptions::default()
+        .gap(Some(1e-12))
+        .relative_gap(0.01);
+    let distance =
+        certified_hausdorff(coarse.mesh.as_triangles(), fine.as_triangles(), &options).unwrap();
     (distance.lower(), distance.upper())
 }
 
 #[test]
 fn the_proven_bound_holds_and_is_tight() {
-    for (name, levels) in [("bumpy", 3), ("cup", 2), ("head", 3), ("sheet", 3), ("cusp", 2), ("bunny", 2)] {
+    for (name, levels) in [
+        ("bumpy", 3),
+        ("cup", 2),
+        ("head", 3),
+        ("sheet", 3),
+        ("cusp", 2),
+        ("bunny", 2),
+    ] {
         let fine = limit_reference(&model(name), &Loop, levels).unwrap();
         let tolerance = 0.002 * fine.diagonal();
         let coarse = run(&fine, &within(tolerance));
         let (lower, upper) = enclosed(&coarse, &fine);
         let bound = coarse.bound.unwrap();
-        assert!(lower <= bound && bound <= tolerance, "{name}: {lower} {bound} {tolerance}");
-        assert!(bound <= 1.05 * upper, "{name}: {bound} where {upper} is true");
+        assert!(
+            lower <= bound && bound <= tolerance,
+            "{name}: {lower} {bound} {tolerance}"
+        );
+        assert!(
+            bound <= 1.05 * upper,
+            "{name}: {bound} where {upper} is true"
+        );
         // The greater part of the tolerance is used.
         assert!(lower > 0.9 * tolerance, "{name}: {lower} of {tolerance}");
     }
@@ -350,7 +485,10 @@ fn more_tolerance_never_asks_for_more_triangles() {
     for step in 0..8 {
         let tolerance = 0.0004 * 1.2f64.powi(step) * fine.diagonal();
         let count = run(&fine, &within(tolerance)).mesh.face_count();
-        assert!(count as f64 <= 1.05 * before as f64, "{count} after {before}");
+        assert!(
+            count as f64 <= 1.05 * before as f64,
+            "{count} after {before}"
+        );
         before = count;
     }
 }
@@ -364,13 +502,19 @@ fn cancelling_gives_what_there_is() {
         _ => core::ops::ControlFlow::Continue(()),
     };
     let options = SimplifyOptions::default().triangles(Some(100));
-    let error = simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap_err();
-    let SimplifyError::Cancelled(coarse) = error else { panic!("{error}") };
+    let error =
+        simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap_err();
+    let SimplifyError::Cancelled(coarse) = error else {
+        panic!("{error}")
+    };
     check_invariants(&fine, &coarse);
     assert!((enough / 2..enough).contains(&coarse.mesh.face_count()));
     let (lower, upper) = enclosed(&coarse, &fine);
     let bound = coarse.bound.unwrap();
-    assert!(lower <= bound && bound <= 1.1 * upper, "{lower} {bound} {upper}");
+    assert!(
+        lower <= bound && bound <= 1.1 * upper,
+        "{lower} {bound} {upper}"
+    );
     // Before the first collapse there is the fine mesh.
     let stop = &mut |_: &crate::progress::Progress| core::ops::ControlFlow::Break(());
     let error = simplify_observed(&fine, &Features::default(), &options, stop).unwrap_err();
@@ -385,7 +529,11 @@ fn the_observer_is_called_often() {
         let now = std::time::Instant::now();
         longest = longest.max(last.map_or(core::time::Duration::ZERO, |last| now - last));
         last = Some(now);
-        least = least.min(if progress.triangles > 0 { progress.triangles } else { usize::MAX });
+        least = least.min(if progress.triangles > 0 {
+            progress.triangles
+        } else {
+            usize::MAX
+        });
         core::ops::ControlFlow::Continue(())
     };
     let options = within(0.001 * fine.diagonal());

@@ -22,7 +22,10 @@ impl Plane {
         let (ab, ac) = (b - a, c - a);
         let cross = ab.cross(ac);
         let squared = cross.length_squared();
-        let longest = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+        let longest = ab
+            .length_squared()
+            .max(ac.length_squared())
+            .max((c - b).length_squared());
         // Rounding has eaten up the direction of the normal of a triangle thinner than this.
         if squared.is_nan() || squared <= 1e-24 * longest * longest {
             return None;
@@ -79,7 +82,11 @@ impl Plane {
 pub(super) fn squared_to_segment(point: DVec3, a: DVec3, b: DVec3) -> f64 {
     let (along, from) = (b - a, point - a);
     let squared = along.length_squared();
-    let t = if squared > 0.0 { (from.dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    let t = if squared > 0.0 {
+        (from.dot(along) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
     (from - along * t).length_squared()
 }
 
@@ -94,7 +101,11 @@ pub(super) fn nearest(planes: &[Plane], point: DVec3) -> (f64, usize) {
             best = (height, i);
         }
     }
-    if best.0 == f64::INFINITY { nearest_side(planes, point) } else { best }
+    if best.0 == f64::INFINITY {
+        nearest_side(planes, point)
+    } else {
+        best
+    }
 }
 
 /// The same for a point that is above none of them.

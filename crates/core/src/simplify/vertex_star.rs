@@ -81,20 +81,32 @@ impl VertexStar {
     }
 
     /// Walks from the centre along its crease or boundary to the next vertices that are still there.
-    fn gather_chain(&mut self, surface: &EditableMesh, samples: &FineSamples, reference: &Reference<'_>) {
+    fn gather_chain(
+        &mut self,
+        surface: &EditableMesh,
+        samples: &FineSamples,
+        reference: &Reference<'_>,
+    ) {
         self.chain.clear();
-        let Kind::Chain(ways) = reference.kind(self.centre) else { return };
+        let Kind::Chain(ways) = reference.kind(self.centre) else {
+            return;
+        };
         self.chain.push(self.position);
         self.chain_ends = ways.map(|way| {
             let chain = &mut self.chain;
-            walk_chain(self.centre, way, surface, reference.kinds, |v| chain.push(samples.position(v)))
+            walk_chain(self.centre, way, surface, reference.kinds, |v| {
+                chain.push(samples.position(v))
+            })
         });
     }
 
     /// The half-edge along the edge from the centre to the neighbour at `slot`, whichever way it runs.
     pub(super) fn edge(&self, slot: usize) -> u32 {
         // The last neighbour of an open ring is only reached the other way.
-        self.spokes.get(slot).copied().unwrap_or_else(|| previous(self.spokes[slot - 1]))
+        self.spokes
+            .get(slot)
+            .copied()
+            .unwrap_or_else(|| previous(self.spokes[slot - 1]))
     }
 
     /// The faces of the star as places in the ring: those of their two corners beside the centre.
@@ -111,9 +123,18 @@ impl VertexStar {
         let mut worst = Worst::NONE;
         self.normals.clear();
         for [i, j] in self.sectors() {
-            let plane = Plane::new([self.position, self.ring_positions[i], self.ring_positions[j]]);
-            worst.add(plane.as_ref(), [self.centre, self.ring[i], self.ring[j]], reference);
-            self.normals.push(plane.map_or(DVec3::ZERO, |plane| plane.normal));
+            let plane = Plane::new([
+                self.position,
+                self.ring_positions[i],
+                self.ring_positions[j],
+            ]);
+            worst.add(
+                plane.as_ref(),
+                [self.centre, self.ring[i], self.ring[j]],
+                reference,
+            );
+            self.normals
+                .push(plane.map_or(DVec3::ZERO, |plane| plane.normal));
         }
         self.worst = Some(worst);
         worst
@@ -135,7 +156,8 @@ impl VertexStar {
                 self.ways.push(Way { slot, bulge });
             }
         }
-        self.ways.sort_unstable_by(|a, b| a.bulge.total_cmp(&b.bulge).then(a.slot.cmp(&b.slot)));
+        self.ways
+            .sort_unstable_by(|a, b| a.bulge.total_cmp(&b.bulge).then(a.slot.cmp(&b.slot)));
     }
 
     /// The neighbour that comes `place`th in the order of [`Self::find_ways`].
@@ -164,7 +186,9 @@ impl VertexStar {
         let n = self.ring.len();
         let chord = |i: usize, j: usize| self.sagittas[i * n + j];
         let triangles = self.sectors().filter(|sector| !sector.contains(&slot));
-        triangles.map(|[i, j]| bulge([chord(slot, i), chord(i, j), chord(j, slot)])).fold(0.0, f64::max)
+        triangles
+            .map(|[i, j]| bulge([chord(slot, i), chord(i, j), chord(j, slot)]))
+            .fold(0.0, f64::max)
     }
 
     /// Looks at the triangles of the star once the centre has gone to the neighbour at `slot`: whether all of them stand
@@ -178,7 +202,8 @@ impl VertexStar {
             if i == slot || j == slot {
                 continue;
             }
-            let Some(plane) = Plane::new([at, self.ring_positions[i], self.ring_positions[j]]) else {
+            let Some(plane) = Plane::new([at, self.ring_positions[i], self.ring_positions[j]])
+            else {
                 return false;
             };
             let turn = plane.normal.dot(normal.unwrap_or(self.normals[i]));
@@ -193,13 +218,19 @@ impl VertexStar {
 
     /// The least shape among the triangles of the last [`Self::collapse_into`].
     pub(super) fn shape(&self) -> f64 {
-        self.region.planes().iter().map(|plane| plane.shape).fold(1.0, f64::min)
+        self.region
+            .planes()
+            .iter()
+            .map(|plane| plane.shape)
+            .fold(1.0, f64::min)
     }
 
     /// The cost of the triangles that [`Self::collapse_into`] left for this way: their greatest error. `None` if that is not
     /// below `bound`.
     pub(super) fn cost(&mut self, way: Way, reference: &Reference<'_>, bound: f64) -> Option<f64> {
-        let error = self.region.forward_error(self.chain_error().max(way.bulge), bound)?;
+        let error = self
+            .region
+            .forward_error(self.chain_error().max(way.bulge), bound)?;
         // With few samples the normals at the corners tell as much.
         if self.region.sample_count() <= 2 * self.spokes.len() {
             return Some(error);
@@ -223,9 +254,15 @@ impl VertexStar {
         self.faces.extend(self.spokes.iter().map(|h| h / 3));
         self.around.clear();
         let across = self.spokes.iter().map(|&h| surface.twin(next(h)));
-        self.around.extend(across.filter(|&twin| twin != NONE).map(|twin| twin / 3));
+        self.around
+            .extend(across.filter(|&twin| twin != NONE).map(|twin| twin / 3));
         self.region.assign();
-        Change { old: &self.faces, around: &self.around, gone: self.centre, region: &self.region }
+        Change {
+            old: &self.faces,
+            around: &self.around,
+            gone: self.centre,
+            region: &self.region,
+        }
     }
 
     /// How far the removed vertices of the chain would be from the edge that replaces them.
@@ -233,9 +270,20 @@ impl VertexStar {
         if self.chain.is_empty() {
             return 0.0;
         }
-        let position = |v: u32| self.ring.iter().position(|&r| r == v).map(|slot| self.ring_positions[slot]);
-        let [Some(a), Some(b)] = self.chain_ends.map(position) else { return f64::INFINITY };
-        self.chain.iter().map(|&p| squared_to_segment(p, a, b)).fold(0.0, f64::max).sqrt()
+        let position = |v: u32| {
+            self.ring
+                .iter()
+                .position(|&r| r == v)
+                .map(|slot| self.ring_positions[slot])
+        };
+        let [Some(a), Some(b)] = self.chain_ends.map(position) else {
+            return f64::INFINITY;
+        };
+        self.chain
+            .iter()
+            .map(|&p| squared_to_segment(p, a, b))
+            .fold(0.0, f64::max)
+            .sqrt()
     }
 
     /// Gives all samples of the star to the triangles of the last [`Self::change`], which are there now.

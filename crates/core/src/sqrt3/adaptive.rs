@@ -79,7 +79,10 @@ pub fn adaptive_observed(
     let mut watch = Watch::new(observer, Stage::Refining);
     watch.triangles(control.face_count());
     watch.poll()?;
-    let most = options.triangles.unwrap_or(MAX_FACES).min(options.max_triangles.unwrap_or(MAX_FACES));
+    let most = options
+        .triangles
+        .unwrap_or(MAX_FACES)
+        .min(options.max_triangles.unwrap_or(MAX_FACES));
     let mut run = Run {
         forest: Forest::new(control, options.origins, most.max(control.face_count()))?,
         goals: Goals::of(options),
@@ -94,13 +97,28 @@ pub fn adaptive_observed(
         Ended::Deep => ExactStop::LevelCap,
         Ended::Met => ExactStop::Met,
     };
-    let Run { forest, goals, seen, .. } = run;
-    let left = || seen.iter().filter(|(triangle, _)| forest.is_there(*triangle)).map(|(_, found)| found);
+    let Run {
+        forest,
+        goals,
+        seen,
+        ..
+    } = run;
+    let left = || {
+        seen.iter()
+            .filter(|(triangle, _)| forest.is_there(*triangle))
+            .map(|(_, found)| found)
+    };
     let distance = left().fold(0.0, |most: f64, found| most.max(found.distance));
     let worst = left().fold(0.0, |most: f64, found| most.max(found.ratio));
     let has_quality = options.angle.is_some() || options.tolerance.is_some();
     watch.stage(Stage::Assembling, None)?;
-    let Emitted { mesh, normals, origins, parents, levels } = forest.emit()?;
+    let Emitted {
+        mesh,
+        normals,
+        origins,
+        parents,
+        levels,
+    } = forest.emit()?;
     Ok(Sqrt3 {
         mesh,
         normals,
@@ -137,7 +155,9 @@ struct Waiting {
 
 impl Ord for Waiting {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.ratio.total_cmp(&other.ratio).then(self.triangle.cmp(&other.triangle))
+        self.ratio
+            .total_cmp(&other.ratio)
+            .then(self.triangle.cmp(&other.triangle))
     }
 }
 
@@ -165,7 +185,11 @@ impl Run<'_> {
             self.look(root);
         }
         let mut done = 0;
-        while let Some(Waiting { triangle: Reverse(triangle), .. }) = self.waiting.pop() {
+        while let Some(Waiting {
+            triangle: Reverse(triangle),
+            ..
+        }) = self.waiting.pop()
+        {
             if !self.forest.is_there(triangle) {
                 continue;
             }
@@ -197,7 +221,10 @@ impl Run<'_> {
         let found = self.goals.look(&mut self.forest, triangle);
         self.seen.push((triangle, found));
         if self.goals.fails(&found) {
-            self.waiting.push(Waiting { ratio: found.ratio, triangle: Reverse(triangle) });
+            self.waiting.push(Waiting {
+                ratio: found.ratio,
+                triangle: Reverse(triangle),
+            });
         }
     }
 }

@@ -30,12 +30,20 @@ pub(super) struct Found {
 impl Goals {
     pub(super) fn of(options: &Sqrt3Options) -> Self {
         let by_distance = options.angle.is_none() && options.tolerance.is_none();
-        Self { angle: options.angle, tolerance: options.tolerance, by_distance }
+        Self {
+            angle: options.angle,
+            tolerance: options.tolerance,
+            by_distance,
+        }
     }
 
     /// Whether a triangle is not good enough.
     pub(super) fn fails(&self, found: &Found) -> bool {
-        if self.by_distance { found.ratio > 0.0 } else { found.ratio > 1.0 }
+        if self.by_distance {
+            found.ratio > 0.0
+        } else {
+            found.ratio > 1.0
+        }
     }
 
     /// Whether distances are estimated.
@@ -47,14 +55,19 @@ impl Goals {
     pub(super) fn look(&self, forest: &mut Forest<'_>, triangle: Triangle) -> Found {
         let vertices = forest.corners(triangle);
         let corners = vertices.map(|v| forest.limit(v));
-        let mut found = Found { ratio: 0.0, distance: 0.0 };
+        let mut found = Found {
+            ratio: 0.0,
+            distance: 0.0,
+        };
         if let Some(angle) = self.angle {
             let normals = vertices.map(|v| forest.normal(v));
             found.ratio = cone_ratio(unit_normal(corners), normals, angle);
         }
         if self.has_distances() {
             found.distance = distance(forest, triangle, corners);
-            found.ratio = found.ratio.max(found.distance / self.tolerance.unwrap_or(1.0));
+            found.ratio = found
+                .ratio
+                .max(found.distance / self.tolerance.unwrap_or(1.0));
         }
         found
     }

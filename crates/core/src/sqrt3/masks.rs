@@ -69,14 +69,20 @@ impl Scheme for DoubleStep {
             VertexKind::Corner => {}
             VertexKind::Boundary => {
                 (ring[0], ring[n as usize - 1]) = (4.0 / 27.0, 4.0 / 27.0);
-                return VertexMask { centre: 19.0 / 27.0, ring };
+                return VertexMask {
+                    centre: 19.0 / 27.0,
+                    ring,
+                };
             }
             VertexKind::Interior => {
                 // v″ = v∞ + (2/3 − α)² (v − v∞) with v∞ = (v + 3α p̄) / (1 + 3α).
                 let to_limit = 1.0 - shrinking(n) * shrinking(n);
                 let moved = to_limit * 3.0 * alpha(n) / (1.0 + 3.0 * alpha(n));
                 ring.fill(moved / f64::from(n));
-                return VertexMask { centre: 1.0 - moved, ring };
+                return VertexMask {
+                    centre: 1.0 - moved,
+                    ring,
+                };
             }
         }
         VertexMask { centre: 1.0, ring }
@@ -87,8 +93,11 @@ impl Scheme for DoubleStep {
         let (slot, n) = (shape.origin_slot as usize, shape.origin.valence as usize);
         if shape.is_boundary() {
             let smooth = !shape.origin.corner;
-            (mask.origin, mask.target) =
-                if smooth { (16.0 / 27.0, 10.0 / 27.0) } else { (2.0 / 3.0, 1.0 / 3.0) };
+            (mask.origin, mask.target) = if smooth {
+                (16.0 / 27.0, 10.0 / 27.0)
+            } else {
+                (2.0 / 3.0, 1.0 / 3.0)
+            };
             if smooth {
                 mask.origin_ring[n - 1 - slot] += 1.0 / 27.0;
             }
@@ -96,7 +105,11 @@ impl Scheme for DoubleStep {
         }
         // The centre of the origin, as the first step leaves it, and of the centres of both faces.
         let moves = shape.origin.kind() == VertexKind::Interior;
-        let alpha = if moves { alpha(shape.origin.valence) } else { 0.0 };
+        let alpha = if moves {
+            alpha(shape.origin.valence)
+        } else {
+            0.0
+        };
         mask.origin_ring.fill(alpha / (3.0 * n as f64));
         mask.origin = (1.0 - alpha) / 3.0 + 2.0 / 9.0;
         mask.target = 2.0 / 9.0;

@@ -30,7 +30,14 @@ impl Sqrt3Options {
     /// # Errors
     /// A goal is out of range, or there is none.
     pub(super) fn check(&self) -> Result<(), RefineError> {
-        let bad = |name, value, expected| Err(MeshError::BadOption { name, value, expected }.into());
+        let bad = |name, value, expected| {
+            Err(MeshError::BadOption {
+                name,
+                value,
+                expected,
+            }
+            .into())
+        };
         if let Some(tolerance) = self.tolerance
             && !(tolerance > 0.0 && tolerance.is_finite())
         {
@@ -45,9 +52,11 @@ impl Sqrt3Options {
             return bad("number of levels", self.max_levels as f64, "at most 48");
         }
         match (self.angle, self.tolerance, self.triangles) {
-            (None, None, None) => {
-                bad("number of goals", 0.0, "an angle, a tolerance or a number of triangles")
-            }
+            (None, None, None) => bad(
+                "number of goals",
+                0.0,
+                "an angle, a tolerance or a number of triangles",
+            ),
             _ => Ok(()),
         }
     }

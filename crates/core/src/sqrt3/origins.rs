@@ -30,14 +30,27 @@ pub(super) struct Origins<'m> {
 impl<'m> Origins<'m> {
     /// Of a control mesh itself.
     pub(super) fn of(control: &'m Mesh) -> Self {
-        let vertices = control.topology().vertices().map(|v| of_control(control, v)).collect();
-        Self { control, vertices, parents: (0..control.face_count() as u32).collect() }
+        let vertices = control
+            .topology()
+            .vertices()
+            .map(|v| of_control(control, v))
+            .collect();
+        Self {
+            control,
+            vertices,
+            parents: (0..control.face_count() as u32).collect(),
+        }
     }
 
     /// Goes on by the step that made new vertices of the mesh `before` it.
     ///
     /// `straddles` says which faces lie across an edge of the level before: after an odd step all but those on sharp edges.
-    pub(super) fn advance(&mut self, before: &Mesh, made: &[Made], straddles: impl Fn(usize) -> bool) {
+    pub(super) fn advance(
+        &mut self,
+        before: &Mesh,
+        made: &[Made],
+        straddles: impl Fn(usize) -> bool,
+    ) {
         let topology = before.topology();
         for &made in made {
             let (face, ends) = match made {
@@ -45,20 +58,30 @@ impl<'m> Origins<'m> {
                     // (A, apex, apex) across what was the edge from A to B.
                     let between = HalfEdgeId(3 * face + 1);
                     let b = topology.twin(between).map_or(between, HalfEdgeId::previous);
-                    (face, [HalfEdgeId(3 * face), b].map(|h| topology.origin(h).0))
+                    (
+                        face,
+                        [HalfEdgeId(3 * face), b].map(|h| topology.origin(h).0),
+                    )
                 }
                 Made::Centre(face) => {
-                    let corners = before.triangles()[face as usize].map(|v| self.in_parent(v, face));
-                    let barycentric =
-                        [0, 1, 2].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
-                    self.vertices.push(Origin { face: self.parents[face as usize], barycentric });
+                    let corners =
+                        before.triangles()[face as usize].map(|v| self.in_parent(v, face));
+                    let barycentric = [0, 1, 2]
+                        .map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
+                    self.vertices.push(Origin {
+                        face: self.parents[face as usize],
+                        barycentric,
+                    });
                     continue;
                 }
                 Made::BesideOrigin(h) => (h.face().0, topology.ends(h).map(|v| v.0)),
                 Made::BesideTarget(h) => (h.face().0, [topology.target(h).0, topology.origin(h).0]),
             };
             let origin = third(ends.map(|v| self.in_parent(v, face)));
-            self.vertices.push(Origin { face: self.parents[face as usize], barycentric: origin });
+            self.vertices.push(Origin {
+                face: self.parents[face as usize],
+                barycentric: origin,
+            });
         }
         let parent = |h: HalfEdgeId| {
             // (A, apex, apex): the second is in the face across the edge, and so is what comes of the edges at it.
@@ -93,8 +116,14 @@ pub(super) fn of_control(control: &Mesh, vertex: VertexId) -> Origin {
     let h = control.topology().outgoing(vertex);
     let mut barycentric = [0.0; 3];
     if h.0 == NONE {
-        return Origin { face: 0, barycentric };
+        return Origin {
+            face: 0,
+            barycentric,
+        };
     }
     barycentric[h.corner()] = 1.0;
-    Origin { face: h.face().0, barycentric }
+    Origin {
+        face: h.face().0,
+        barycentric,
+    }
 }

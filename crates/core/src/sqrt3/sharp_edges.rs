@@ -21,14 +21,20 @@ impl<'m> SharpEdges<'m> {
         let fades = |sharpness: f64| sharpness > 0.0 && sharpness < INFINITELY_SHARP;
         if let Some(tag) = tags.creases.iter().find(|tag| fades(tag.sharpness)) {
             let [a, b] = tag.vertices;
-            let (tag, sharpness) = (format!("the edge from vertex {a} to vertex {b}"), tag.sharpness);
+            let (tag, sharpness) = (
+                format!("the edge from vertex {a} to vertex {b}"),
+                tag.sharpness,
+            );
             return Err(RefineError::FadingTag { tag, sharpness });
         }
         if let Some(tag) = tags.corners.iter().find(|tag| fades(tag.sharpness)) {
             let (tag, sharpness) = (format!("vertex {}", tag.vertex), tag.sharpness);
             return Err(RefineError::FadingTag { tag, sharpness });
         }
-        Ok(Self { topology: mesh.topology(), sharpness: Sharpness::of(mesh) })
+        Ok(Self {
+            topology: mesh.topology(),
+            sharpness: Sharpness::of(mesh),
+        })
     }
 
     /// Whether there is nothing sharp but boundaries.
@@ -50,7 +56,11 @@ impl<'m> SharpEdges<'m> {
     pub(super) fn neighbours(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         self.topology.outgoing_ring(vertex).flat_map(|h| {
             let before = h.previous();
-            let last = self.topology.twin(before).is_none().then(|| self.topology.origin(before));
+            let last = self
+                .topology
+                .twin(before)
+                .is_none()
+                .then(|| self.topology.origin(before));
             let first = self.is_sharp(h).then(|| self.topology.target(h));
             first.into_iter().chain(last)
         })

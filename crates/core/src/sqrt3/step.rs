@@ -49,10 +49,19 @@ impl Level {
     pub(super) fn control(mesh: &Mesh) -> Result<Self, RefineError> {
         let sharp = SharpEdges::of(mesh)?;
         check_valences(mesh)?;
-        let mut level = Self { mesh: mesh.clone(), steps: 0, darts: Vec::new() };
+        let mut level = Self {
+            mesh: mesh.clone(),
+            steps: 0,
+            darts: Vec::new(),
+        };
         if !sharp.is_empty() {
-            let darts = mesh.topology().vertices().filter(|&v| sharp.rule(v) == VertexRule::Dart);
-            level.darts = darts.map(|v| (v.0, vector(mesh.positions()[v.index()]))).collect();
+            let darts = mesh
+                .topology()
+                .vertices()
+                .filter(|&v| sharp.rule(v) == VertexRule::Dart);
+            level.darts = darts
+                .map(|v| (v.0, vector(mesh.positions()[v.index()])))
+                .collect();
         }
         Ok(level)
     }
@@ -74,7 +83,12 @@ impl Level {
         let faces = self.mesh.face_count();
         if faces > MAX_FACES / 3 {
             let (what, count) = ("faces", faces.saturating_mul(3));
-            return Err(MeshError::TooMany { what, count, limit: MAX_FACES }.into());
+            return Err(MeshError::TooMany {
+                what,
+                count,
+                limit: MAX_FACES,
+            }
+            .into());
         }
         let sharp = SharpEdges::of(&self.mesh)?;
         let numbering = Numbering::new(&self.mesh, &sharp, self.is_odd(), watch)?;
@@ -89,19 +103,30 @@ impl Level {
         }
         let mut darts = self.darts.clone();
         if self.is_odd() {
-            darts.iter_mut().for_each(|(v, place)| *place = vector(mesh.positions()[*v as usize]));
+            darts
+                .iter_mut()
+                .for_each(|(v, place)| *place = vector(mesh.positions()[*v as usize]));
         }
-        Ok(Self { mesh, steps: self.steps + 1, darts })
+        Ok(Self {
+            mesh,
+            steps: self.steps + 1,
+            darts,
+        })
     }
 
     fn at(&self, vertex: VertexId) -> DVec3 {
         vector(self.mesh.positions()[vertex.index()])
     }
 
-    fn positions(&self, new: &Numbering<'_>, watch: &mut Watch<'_>) -> Result<Vec<[f64; 3]>, Cancelled> {
-        let mut positions = parallel::map_polled(self.mesh.vertex_count(), &mut |_| watch.poll(), |v| {
-            self.moved(new.sharp, VertexId(v as u32)).to_array()
-        })?;
+    fn positions(
+        &self,
+        new: &Numbering<'_>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Vec<[f64; 3]>, Cancelled> {
+        let mut positions =
+            parallel::map_polled(self.mesh.vertex_count(), &mut |_| watch.poll(), |v| {
+                self.moved(new.sharp, VertexId(v as u32)).to_array()
+            })?;
         positions.resize(new.vertex_count, [0.0; 3]);
         for (face, (&cut, &apexes)) in new.cut.iter().zip(&new.apexes).enumerate() {
             if face % (1 << 16) == 0 {
@@ -111,7 +136,10 @@ impl Level {
                 let corners = self.mesh.triangles()[face].map(|v| self.at(VertexId(v)));
                 positions[apexes[0] as usize] = centre(corners).to_array();
             } else {
-                let [a, b] = self.mesh.topology().ends(HalfEdgeId(3 * face as u32 + u32::from(cut)));
+                let [a, b] = self
+                    .mesh
+                    .topology()
+                    .ends(HalfEdgeId(3 * face as u32 + u32::from(cut)));
                 positions[apexes[0] as usize] = self.beside(new.sharp, a, b).to_array();
                 positions[apexes[1] as usize] = self.beside(new.sharp, b, a).to_array();
             }
@@ -126,7 +154,9 @@ impl Level {
             VertexRule::Smooth => smoothed(here, topology.ring(vertex).map(|v| self.at(v))),
             // As if the crease were not there: at odd levels its edge is the one that should have been flipped.
             VertexRule::Dart => {
-                let ring = topology.outgoing_ring(vertex).filter(|&h| !self.is_odd() || !sharp.is_sharp(h));
+                let ring = topology
+                    .outgoing_ring(vertex)
+                    .filter(|&h| !self.is_odd() || !sharp.is_sharp(h));
                 smoothed(here, ring.map(|h| self.at(topology.target(h))))
             }
             VertexRule::Crease if self.is_odd() => {
@@ -149,8 +179,15 @@ impl Level {
     /// The new point beside `near` on the sharp edge to `far`.
     fn beside(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
         let (here, there) = (self.on_even(near), self.on_even(far));
-        let other = || sharp.neighbours(near).find(|&v| v != far).map(|v| self.on_even(v));
-        let beyond = (sharp.rule(near) == VertexRule::Crease).then(other).flatten();
+        let other = || {
+            sharp
+                .neighbours(near)
+                .find(|&v| v != far)
+                .map(|v| self.on_even(v))
+        };
+        let beyond = (sharp.rule(near) == VertexRule::Crease)
+            .then(other)
+            .flatten();
         beside(beyond.unwrap_or(2.0 * here - there), here, there)
     }
 }
@@ -158,7 +195,10 @@ impl Level {
 /// Refuses two triangles on one another: where an interior vertex has two edges, the edges of a step coincide.
 pub(super) fn check_valences(mesh: &Mesh) -> Result<(), MeshError> {
     let topology = mesh.topology();
-    match topology.vertices().find(|&v| topology.valence_and_openness(v) == (2, false)) {
+    match topology
+        .vertices()
+        .find(|&v| topology.valence_and_openness(v) == (2, false))
+    {
         None => Ok(()),
         Some(vertex) => Err(MeshError::Broken {
             place: vertex.to_string(),
@@ -176,7 +216,9 @@ impl<'m> Numbering<'m> {
     ) -> Result<Self, RefineError> {
         let topology = mesh.topology();
         let cut = match cuts {
-            true => parallel::map_polled(mesh.face_count(), &mut |_| watch.poll(), |f| sharp.corner_of(f))?,
+            true => parallel::map_polled(mesh.face_count(), &mut |_| watch.poll(), |f| {
+                sharp.corner_of(f)
+            })?,
             false => vec![NO_CORNER; mesh.face_count()],
         };
         let mut next = mesh.vertex_count();
@@ -189,7 +231,10 @@ impl<'m> Numbering<'m> {
             }
             // The other side of a crease has the same points, the other way round.
             let across = topology.twin(HalfEdgeId(3 * face as u32 + u32::from(cut[face])));
-            match across.map(|twin| apexes[twin.face().index()]).filter(|known| known[0] != NONE) {
+            match across
+                .map(|twin| apexes[twin.face().index()])
+                .filter(|known| known[0] != NONE)
+            {
                 Some([l, r]) => apexes[face] = [r, l],
                 None => {
                     apexes[face] = [next as u32, next as u32 + 1];
@@ -199,9 +244,20 @@ impl<'m> Numbering<'m> {
         }
         if next > NONE as usize {
             let limit = NONE as usize;
-            return Err(MeshError::TooMany { what: "vertices", count: next, limit }.into());
+            return Err(MeshError::TooMany {
+                what: "vertices",
+                count: next,
+                limit,
+            }
+            .into());
         }
-        Ok(Self { topology, sharp, cut, apexes, vertex_count: next })
+        Ok(Self {
+            topology,
+            sharp,
+            cut,
+            apexes,
+            vertex_count: next,
+        })
     }
 
     /// How each new vertex comes about.
@@ -241,7 +297,11 @@ impl<'m> Numbering<'m> {
 
     /// The three parts of a sharp edge that is cut, in its direction, as half-edges of the next level.
     fn parts(&self, s: HalfEdgeId) -> [Option<u32>; 3] {
-        [self.across(s.previous()).map(|w| 3 * w.0), Some(3 * s.0), Some(3 * s.next().0 + 2)]
+        [
+            self.across(s.previous()).map(|w| 3 * w.0),
+            Some(3 * s.0),
+            Some(3 * s.next().0 + 2),
+        ]
     }
 
     /// What is across part `part` of a sharp edge that is cut.
@@ -284,15 +344,21 @@ impl<'m> Numbering<'m> {
             let after = self.across(h.next()).map(|w| 3 * w.0);
             return [self.across_part(h, 1), after, Some(3 * before.0 + 2)];
         }
-        [self.topology.twin(h).map(|twin| 3 * twin.0), Some(3 * h.next().0 + 2), Some(last())]
+        [
+            self.topology.twin(h).map(|twin| 3 * twin.0),
+            Some(3 * h.next().0 + 2),
+            Some(last()),
+        ]
     }
 
     fn connect(&self, watch: &mut Watch<'_>) -> Result<Topology, Cancelled> {
         let half_edges = self.topology.half_edge_count();
         let triangle = |h: usize| self.triangle(HalfEdgeId(h as u32));
-        let triangles: Vec<[u32; 3]> = parallel::map_polled(half_edges, &mut |_| watch.poll(), triangle)?;
+        let triangles: Vec<[u32; 3]> =
+            parallel::map_polled(half_edges, &mut |_| watch.poll(), triangle)?;
         let twins = parallel::map_polled(half_edges, &mut |_| watch.poll(), |h| {
-            self.twins(HalfEdgeId(h as u32)).map(|twin| twin.unwrap_or(NONE))
+            self.twins(HalfEdgeId(h as u32))
+                .map(|twin| twin.unwrap_or(NONE))
         })?;
         let twins = twins.into_flattened();
         let outgoing = outgoing_half_edges(&triangles, &twins, self.vertex_count);
@@ -301,7 +367,10 @@ impl<'m> Numbering<'m> {
 
     /// The tags of the next level: a crease is one of its parts.
     fn tags(&self, tags: &Tags) -> Tags {
-        let mut next = Tags { creases: Vec::new(), corners: tags.corners.clone() };
+        let mut next = Tags {
+            creases: Vec::new(),
+            corners: tags.corners.clone(),
+        };
         for tag in tags.creases.iter().filter(|tag| tag.sharpness > 0.0) {
             let [a, b] = tag.vertices.map(VertexId);
             let h = self.topology.edge_between(a, b);
@@ -309,21 +378,30 @@ impl<'m> Numbering<'m> {
                 next.creases.push(*tag);
                 continue;
             };
-            let [[a, b], [l, r]] = [self.topology.ends(h).map(|v| v.0), self.apexes[h.face().index()]];
+            let [[a, b], [l, r]] = [
+                self.topology.ends(h).map(|v| v.0),
+                self.apexes[h.face().index()],
+            ];
             let parts = [[a, l], [l, r], [r, b]];
-            next.creases.extend(parts.map(|vertices| CreaseTag { vertices, ..*tag }));
+            next.creases
+                .extend(parts.map(|vertices| CreaseTag { vertices, ..*tag }));
         }
         next
     }
 
     /// Copies of the vertices and edges along which sheets were cut apart.
     fn junctions(&self, junctions: &Junctions) -> Junctions {
-        let mut next = Junctions { vertices: junctions.vertices.clone(), edges: Groups::default() };
+        let mut next = Junctions {
+            vertices: junctions.vertices.clone(),
+            edges: Groups::default(),
+        };
         let first = junctions.first_copies();
         let place = |v: u32| first.get(&v).copied().unwrap_or(v);
         for group in junctions.edges.iter() {
             let members = || group.iter().map(|&h| HalfEdgeId(h));
-            let Some(first) = members().next() else { continue };
+            let Some(first) = members().next() else {
+                continue;
+            };
             if self.cut_edge(first) != Some(first) {
                 next.edges.push(members().map(|h| 3 * h.0));
                 continue;
@@ -332,8 +410,9 @@ impl<'m> Numbering<'m> {
             let start = place(self.topology.origin(first).0);
             let turned = |h: HalfEdgeId| place(self.topology.origin(h).0) != start;
             for end in 0..2 {
-                let point =
-                    |h: HalfEdgeId| self.apexes[h.face().index()][if turned(h) { 1 - end } else { end }];
+                let point = |h: HalfEdgeId| {
+                    self.apexes[h.face().index()][if turned(h) { 1 - end } else { end }]
+                };
                 next.vertices.push(members().map(point));
             }
             for part in 0..3 {

@@ -70,7 +70,14 @@ pub fn uniform_observed(
     };
     check_finite(mesh.positions())?;
     let (origins, parents) = origins.map(Origins::finish).unwrap_or_default();
-    Ok(Refinement { mesh, normals, origins, parents, steps, stop })
+    Ok(Refinement {
+        mesh,
+        normals,
+        origins,
+        parents,
+        steps,
+        stop,
+    })
 }
 
 type Limits = (Option<Vec<[f64; 3]>>, Option<SidedNormals>);
@@ -84,8 +91,13 @@ fn limits(
     watch.stage(Stage::Limits, Some(level.mesh.vertex_count()))?;
     let table = LimitTable::new(&DoubleStep);
     // The rings of two steps are those of an even level; where nothing is sharp, all levels have such rings.
-    let has_curves = level.mesh.topology().boundary_edge_count() > 0 || !level.mesh.tags().creases.is_empty();
-    let even = if level.is_odd() && has_curves { Some(level.step(None, watch)?.mesh) } else { None };
+    let has_curves =
+        level.mesh.topology().boundary_edge_count() > 0 || !level.mesh.tags().creases.is_empty();
+    let even = if level.is_odd() && has_curves {
+        Some(level.step(None, watch)?.mesh)
+    } else {
+        None
+    };
     let mesh = even.as_ref().unwrap_or(&level.mesh);
     let count = level.mesh.vertex_count();
     let positions = match positions {
@@ -118,7 +130,11 @@ fn odd_normals(
     for h in topology.half_edges().filter(|_| !sharp.is_empty()) {
         // The face that a smooth half-edge gives leaves from its origin, on the same side of creases; and of the two at a corner of
         // a face of an odd level one is smooth.
-        let smooth = if sharp.is_sharp(h) { topology.twin(h.previous()) } else { Some(h) };
+        let smooth = if sharp.is_sharp(h) {
+            topology.twin(h.previous())
+        } else {
+            Some(h)
+        };
         let normal = smooth.map(|h| finer.at(even.topology(), HalfEdgeId(3 * h.0)));
         let vertex = topology.origin(h);
         if let Some(normal) = normal.filter(|&normal| normal != finer.by_vertex()[vertex.index()]) {
@@ -154,5 +170,9 @@ pub fn tangent_plane(mesh: &Mesh, vertex: VertexId) -> Result<Vec<TangentPlane>,
     SharpEdges::of(mesh)?;
     let ring = Sharpness::of(mesh).ring(vertex);
     let stencil = LimitTable::new(&DoubleStep).sharp_stencil(&ring)?;
-    Ok(stencil.sides().iter().map(|side| side.tangent_plane()).collect())
+    Ok(stencil
+        .sides()
+        .iter()
+        .map(|side| side.tangent_plane())
+        .collect())
 }

@@ -10,7 +10,12 @@ use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, Mesh};
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -24,7 +29,9 @@ fn angles(result: &Exact) -> Vec<([f64; 3], f64)> {
         let normal = result.mesh.face_normal(face);
         let normal = normal.map(|x| x / dot(normal, normal).sqrt());
         let corners = (0..3).map(|corner| result.corner_normal(HalfEdgeId::of(face, corner)));
-        let cosine = corners.map(|corner| dot(corner, normal)).fold(1.0, f64::min);
+        let cosine = corners
+            .map(|corner| dot(corner, normal))
+            .fold(1.0, f64::min);
         (normal, cosine.max(-1.0).acos())
     };
     (0..result.mesh.face_count()).map(of_face).collect()
@@ -36,7 +43,11 @@ fn a_view_never_costs_triangles() {
     for name in ["cup", "sphere", "sheet"] {
         let control = model(name);
         let plain = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
-        assert_eq!((plain.stop, plain.open_cones), (ExactStop::Met, 0), "{name}");
+        assert_eq!(
+            (plain.stop, plain.open_cones),
+            (ExactStop::Met, 0),
+            "{name}"
+        );
         let viewpoints = [
             Viewpoint::Direction([0.0, 0.0, -1.0]),
             Viewpoint::Direction([1.0, 2.0, 0.5]),
@@ -46,18 +57,31 @@ fn a_view_never_costs_triangles() {
         for viewpoint in viewpoints {
             let mut fewest = plain.mesh.face_count();
             for dilatation in [0.0, 1.0, 4.0] {
-                let view = View { viewpoint, dilatation };
-                let seen = exact(&control, &Loop, &ExactOptions::default().angle(angle).view(view)).unwrap();
+                let view = View {
+                    viewpoint,
+                    dilatation,
+                };
+                let seen = exact(
+                    &control,
+                    &Loop,
+                    &ExactOptions::default().angle(angle).view(view),
+                )
+                .unwrap();
                 assert_eq!(seen.stop, ExactStop::Met, "{name}, {view:?}");
                 let count = seen.mesh.face_count();
-                assert!(count <= fewest, "{name}, {view:?}: {count} against {fewest}");
+                assert!(
+                    count <= fewest,
+                    "{name}, {view:?}: {count} against {fewest}"
+                );
                 fewest = count;
                 // Equation (11) by hand, where the angle leaves room.
                 for (face, (normal, found)) in angles(&seen).into_iter().enumerate() {
                     let [a, b, c] = seen.mesh.as_triangles().corners(face);
                     let sight = match viewpoint {
                         Viewpoint::Direction(sight) => sight,
-                        Viewpoint::Eye(eye) => [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0 - eye[i]),
+                        Viewpoint::Eye(eye) => {
+                            [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0 - eye[i])
+                        }
                     };
                     let facing = -dot(sight, normal) / dot(sight, sight).sqrt();
                     let limit = angle * (dilatation * facing).max(1.0);
@@ -81,7 +105,12 @@ fn an_angle_alone_ends_where_no_cone_closes() {
         let result = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.stop, ExactStop::Cones);
-        assert!(result.worst <= 1.0 && result.levels <= 13, "{} at level {}", result.worst, result.levels);
+        assert!(
+            result.worst <= 1.0 && result.levels <= 13,
+            "{} at level {}",
+            result.worst,
+            result.levels
+        );
         let open: Vec<usize> = angles(&result)
             .into_iter()
             .enumerate()
@@ -89,7 +118,11 @@ fn an_angle_alone_ends_where_no_cone_closes() {
             .map(|(face, _)| face)
             .collect();
         assert_eq!(open.len(), result.open_cones);
-        assert!(!open.is_empty() && open.len() < result.mesh.face_count() / 20, "{}", open.len());
+        assert!(
+            !open.is_empty() && open.len() < result.mesh.face_count() / 20,
+            "{}",
+            open.len()
+        );
         // They are small, and stand together in a few places.
         let mut places: Vec<[f64; 3]> = Vec::new();
         for face in open {
@@ -112,30 +145,51 @@ fn an_angle_alone_ends_where_no_cone_closes() {
 fn a_tolerance_is_kept_where_cones_stay_open() {
     let control = model("head");
     let tolerance = 1e-4 * control.diagonal();
-    let options = ExactOptions::default().angle(30f64.to_radians()).tolerance(tolerance);
+    let options = ExactOptions::default()
+        .angle(30f64.to_radians())
+        .tolerance(tolerance);
     let result = exact(&control, &Loop, &options).unwrap();
-    assert!(result.error.upper <= tolerance && result.stop == ExactStop::Cones, "{:?}", result.stop);
+    assert!(
+        result.error.upper <= tolerance && result.stop == ExactStop::Cones,
+        "{:?}",
+        result.stop
+    );
 }
 
 /// By hand in every frame, whichever comes first: triangles are within the angle, or told as open, as many as there are in the worst frame.
 #[test]
 fn angles_hold_in_every_frame() {
-    for (name, degrees, expected) in [("cup", 15.0f64, ExactStop::Met), ("head", 40.0, ExactStop::Cones)] {
+    for (name, degrees, expected) in [
+        ("cup", 15.0f64, ExactStop::Met),
+        ("head", 40.0, ExactStop::Cones),
+    ] {
         let (control, angle) = (model(name), degrees.to_radians());
         let positions = control.positions().to_vec();
-        let stretched: Vec<[f64; 3]> = positions.iter().map(|&[x, y, z]| [x, 1.7 * y, 0.8 * z]).collect();
-        for frames in [[positions.clone(), stretched.clone()], [stretched, positions]] {
+        let stretched: Vec<[f64; 3]> = positions
+            .iter()
+            .map(|&[x, y, z]| [x, 1.7 * y, 0.8 * z])
+            .collect();
+        for frames in [
+            [positions.clone(), stretched.clone()],
+            [stretched, positions],
+        ] {
             let options = ExactOptions::default().angle(angle);
             let found = exact_frames(&control, &Loop, &frames, &options).unwrap();
             let mut frame = Frame::default();
             let open = frames.iter().map(|positions| {
                 found.replay.frame(positions, &mut frame).unwrap();
                 let shown = found.refined.clone().moved_to(&frame).unwrap();
-                angles(&shown).iter().filter(|(_, found)| *found > angle * (1.0 + 1e-6)).count()
+                angles(&shown)
+                    .iter()
+                    .filter(|(_, found)| *found > angle * (1.0 + 1e-6))
+                    .count()
             });
             assert_eq!(found.refined.open_cones, open.max().unwrap(), "{name}");
             assert_eq!(found.refined.stop, expected, "{name}");
-            assert!((found.refined.open_cones > 0) == (expected == ExactStop::Cones), "{name}");
+            assert!(
+                (found.refined.open_cones > 0) == (expected == ExactStop::Cones),
+                "{name}"
+            );
             assert_eq!(found.refined.pixels, None);
         }
     }

@@ -7,8 +7,8 @@ use limitmesh::carry::{carried, goal};
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
 use limitmesh::refine::{
-    AttributeGoal, Exact, ExactOptions, ExactStop, Origin, Traced, UniformOptions, exact, exact_estimate,
-    uniform,
+    AttributeGoal, Exact, ExactOptions, ExactStop, Origin, Traced, UniformOptions, exact,
+    exact_estimate, uniform,
 };
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{HalfEdgeId, Mesh};
@@ -16,50 +16,87 @@ use limitmesh::{HalfEdgeId, Mesh};
 /// Values at the corners of faces, with seams: every third face has a value of its own at its first corner.
 fn channel(mesh: &Mesh, arity: usize, seed: u64) -> Channel {
     let mut random = Random::new(seed);
-    let mut values: Vec<f64> = (0..arity * mesh.vertex_count()).map(|_| random.signed()).collect();
+    let mut values: Vec<f64> = (0..arity * mesh.vertex_count())
+        .map(|_| random.signed())
+        .collect();
     let mut indices = mesh.triangles().as_flattened().to_vec();
     for face in (0..mesh.face_count()).step_by(3) {
         indices[3 * face] = (values.len() / arity) as u32;
         values.extend((0..arity).map(|_| random.signed()));
     }
-    Channel::new("values", Semantic::TextureCoordinates, Domain::Corner, arity).with(values, indices)
+    Channel::new(
+        "values",
+        Semantic::TextureCoordinates,
+        Domain::Corner,
+        arity,
+    )
+    .with(values, indices)
 }
 
 /// Where the corners of a mesh are in their own control faces.
 fn corner_origins(control: &Mesh, found: &dyn Traced) -> Vec<Origin> {
     let corners = 0..3 * found.mesh().face_count() as u32;
-    corners.map(|h| found.corner_origin(control.triangles(), HalfEdgeId(h)).unwrap()).collect()
+    corners
+        .map(|h| {
+            found
+                .corner_origin(control.triangles(), HalfEdgeId(h))
+                .unwrap()
+        })
+        .collect()
 }
 
 /// The barycentric coordinates of a place in a triangle of places, all of one control face.
 fn within(place: [f64; 3], triangle: [[f64; 3]; 3]) -> Option<[f64; 3]> {
     let [a, b, c] = triangle.map(|corner| [corner[1], corner[2]]);
-    let cross =
-        |p: [f64; 2], q: [f64; 2], r: [f64; 2]| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let cross = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+    };
     let p = [place[1], place[2]];
     let area = cross(a, b, c);
     let weights = [cross(p, b, c), cross(a, p, c), cross(a, b, p)].map(|own| own / area);
-    weights.iter().all(|&weight| weight >= -1e-12).then_some(weights)
+    weights
+        .iter()
+        .all(|&weight| weight >= -1e-12)
+        .then_some(weights)
 }
 
 /// The greatest difference between a channel and what the triangles hold of it, at places of a uniform refinement.
 fn sampled(control: &Mesh, channel: &Channel, found: &Exact, levels: usize) -> f64 {
-    let options = UniformOptions::default().levels(levels).limit(true).origins(true);
+    let options = UniformOptions::default()
+        .levels(levels)
+        .limit(true)
+        .origins(true);
     let dense = uniform(control, &Loop, &options).unwrap();
-    let [own, truth] = [found as &dyn Traced, &dense]
-        .map(|mesh| carried(std::slice::from_ref(channel), control, &Loop, mesh).unwrap().remove(0));
+    let [own, truth] = [found as &dyn Traced, &dense].map(|mesh| {
+        carried(std::slice::from_ref(channel), control, &Loop, mesh)
+            .unwrap()
+            .remove(0)
+    });
     let mut of_face: Vec<Vec<([f64; 3], usize)>> = vec![Vec::new(); control.face_count()];
     for (corner, origin) in corner_origins(control, &dense).into_iter().enumerate() {
         of_face[origin.face as usize].push((origin.barycentric, corner));
     }
     let mut greatest = 0.0f64;
-    for (triangle, corners) in corner_origins(control, found).as_chunks::<3>().0.iter().enumerate() {
+    for (triangle, corners) in corner_origins(control, found)
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .enumerate()
+    {
         for &(place, dense_corner) in &of_face[corners[0].face as usize] {
-            let Some(weights) = within(place, corners.map(|corner| corner.barycentric)) else { continue };
-            let held = |i: usize| -> f64 {
-                (0..3).map(|corner| weights[corner] * own.value(3 * triangle + corner)[i]).sum()
+            let Some(weights) = within(place, corners.map(|corner| corner.barycentric)) else {
+                continue;
             };
-            let squares = truth.value(dense_corner).iter().enumerate().map(|(i, x)| (x - held(i)).powi(2));
+            let held = |i: usize| -> f64 {
+                (0..3)
+                    .map(|corner| weights[corner] * own.value(3 * triangle + corner)[i])
+                    .sum()
+            };
+            let squares = truth
+                .value(dense_corner)
+                .iter()
+                .enumerate()
+                .map(|(i, x)| (x - held(i)).powi(2));
             greatest = greatest.max(squares.sum::<f64>().sqrt());
         }
     }
@@ -67,7 +104,9 @@ fn sampled(control: &Mesh, channel: &Channel, found: &Exact, levels: usize) -> f
 }
 
 fn coarse(mesh: &Mesh) -> ExactOptions {
-    ExactOptions::default().tolerance(0.1 * mesh.diagonal()).flat_regions(false)
+    ExactOptions::default()
+        .tolerance(0.1 * mesh.diagonal())
+        .flat_regions(false)
 }
 
 #[test]
@@ -79,13 +118,29 @@ fn values_are_within_their_tolerance() {
             let before = sampled(&mesh, &channel, &plain, 4);
             let goal = goal(&channel, &mesh, tolerance).unwrap().unwrap();
             let found = exact(&mesh, &Loop, &coarse(&mesh).attributes(vec![goal])).unwrap();
-            let (bound, what) = (found.attribute_bounds[0], format!("{name}, {arity} numbers"));
-            assert!(found.stop == ExactStop::Met && bound <= tolerance, "{what}: {bound}, {:?}", found.stop);
+            let (bound, what) = (
+                found.attribute_bounds[0],
+                format!("{name}, {arity} numbers"),
+            );
+            assert!(
+                found.stop == ExactStop::Met && bound <= tolerance,
+                "{what}: {bound}, {:?}",
+                found.stop
+            );
             let after = sampled(&mesh, &channel, &found, 5);
-            assert!(after <= bound * (1.0 + 1e-9), "{what}: {after} was found, {bound} is claimed");
-            assert!(before > 2.0 * tolerance, "{what}: {before} asks for nothing");
+            assert!(
+                after <= bound * (1.0 + 1e-9),
+                "{what}: {after} was found, {bound} is claimed"
+            );
+            assert!(
+                before > 2.0 * tolerance,
+                "{what}: {before} asks for nothing"
+            );
             // Bounds are no wild guesses, and no face is divided for nothing.
-            assert!(after > 0.2 * bound, "{what}: {after} was found, {bound} is claimed");
+            assert!(
+                after > 0.2 * bound,
+                "{what}: {after} was found, {bound} is claimed"
+            );
             assert!(found.error.upper <= 0.1 * mesh.diagonal());
         }
     }
@@ -105,8 +160,11 @@ fn linear_channels_and_names_ask_for_nothing() {
 fn moved(mesh: &Mesh, seed: u64) -> (Mesh, Channel) {
     let mut random = Random::new(seed);
     let size = 0.3 * mesh.diagonal();
-    let positions: Vec<[f64; 3]> =
-        mesh.positions().iter().map(|p| p.map(|x| x + size * random.signed())).collect();
+    let positions: Vec<[f64; 3]> = mesh
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| x + size * random.signed()))
+        .collect();
     let values = positions.as_flattened().to_vec();
     let channel = Channel::new("moved", Semantic::Displacement, Domain::Vertex, 3)
         .with(values, (0..mesh.vertex_count() as u32).collect());
@@ -121,10 +179,22 @@ fn moved_surfaces_are_within_their_tolerance() {
         let goal = AttributeGoal::surface(target.clone(), tolerance);
         let found = exact(&mesh, &Loop, &coarse(&mesh).attributes(vec![goal])).unwrap();
         let bound = found.attribute_bounds[0];
-        assert!(found.stop == ExactStop::Met && bound <= tolerance, "{name}: {bound}, {:?}", found.stop);
-        let dense = uniform(&target, &Loop, &UniformOptions::default().levels(5).limit(true)).unwrap().mesh;
+        assert!(
+            found.stop == ExactStop::Met && bound <= tolerance,
+            "{name}: {bound}, {:?}",
+            found.stop
+        );
+        let dense = uniform(
+            &target,
+            &Loop,
+            &UniformOptions::default().levels(5).limit(true),
+        )
+        .unwrap()
+        .mesh;
         let distance_of = |found: &Exact| {
-            let own = carried(std::slice::from_ref(&channel), &mesh, &Loop, found).unwrap().remove(0);
+            let own = carried(std::slice::from_ref(&channel), &mesh, &Loop, found)
+                .unwrap()
+                .remove(0);
             let corners = found.mesh.triangles().as_flattened();
             let mut positions = vec![[0.0; 3]; found.mesh.vertex_count()];
             for (corner, &vertex) in corners.iter().enumerate() {
@@ -132,7 +202,11 @@ fn moved_surfaces_are_within_their_tolerance() {
             }
             let posed = found.mesh.clone().with_positions(positions).unwrap();
             let tree = Bvh::new(posed.as_triangles()).unwrap();
-            let to = dense.positions().iter().map(|&p| tree.closest(p).distance).fold(0.0, f64::max);
+            let to = dense
+                .positions()
+                .iter()
+                .map(|&p| tree.closest(p).distance)
+                .fold(0.0, f64::max);
             let tree = Bvh::new(dense.as_triangles()).unwrap();
             let middles = posed.triangles().iter().map(|t| {
                 let corners = t.map(|v| posed.positions()[v as usize]);
@@ -143,8 +217,14 @@ fn moved_surfaces_are_within_their_tolerance() {
         let plain = exact(&mesh, &Loop, &coarse(&mesh)).unwrap();
         let (before, after) = (distance_of(&plain), distance_of(&found));
         // The dense mesh itself is a little off the surface.
-        assert!(after <= 1.02 * bound, "{name}: {after} was found, {bound} is claimed");
-        assert!(before > 2.0 * tolerance, "{name}: {before} asks for nothing");
+        assert!(
+            after <= 1.02 * bound,
+            "{name}: {after} was found, {bound} is claimed"
+        );
+        assert!(
+            before > 2.0 * tolerance,
+            "{name}: {before} asks for nothing"
+        );
     }
 }
 
@@ -154,11 +234,25 @@ fn goals_that_are_not_met_are_told() {
     let mesh = torus(5, 4);
     let channel = channel(&mesh, 2, 9);
     let goals = || vec![goal(&channel, &mesh, 1e-4).unwrap().unwrap()];
-    let found = exact(&mesh, &Loop, &coarse(&mesh).attributes(goals()).max_levels(2)).unwrap();
+    let found = exact(
+        &mesh,
+        &Loop,
+        &coarse(&mesh).attributes(goals()).max_levels(2),
+    )
+    .unwrap();
     assert_eq!(found.stop, ExactStop::LevelCap);
     let after = sampled(&mesh, &channel, &found, 5);
-    assert!(after > 1e-4 && after <= found.attribute_bounds[0], "{after} {:?}", found.attribute_bounds);
-    let found = exact(&mesh, &Loop, &coarse(&mesh).attributes(goals()).max_triangles(Some(400))).unwrap();
+    assert!(
+        after > 1e-4 && after <= found.attribute_bounds[0],
+        "{after} {:?}",
+        found.attribute_bounds
+    );
+    let found = exact(
+        &mesh,
+        &Loop,
+        &coarse(&mesh).attributes(goals()).max_triangles(Some(400)),
+    )
+    .unwrap();
     assert_eq!(found.stop, ExactStop::TriangleCap);
     assert!(found.mesh.face_count() <= 400);
     assert!(sampled(&mesh, &channel, &found, 4) <= found.attribute_bounds[0]);
@@ -173,7 +267,14 @@ fn other_schemes_have_estimates() {
     let values = AttributeGoal::values(vec![target.clone()], tolerance);
     let goals = vec![values, AttributeGoal::surface(target, tolerance)];
     let found = exact(&mesh, &ModifiedButterfly, &coarse(&mesh).attributes(goals)).unwrap();
-    assert!(found.attribute_bounds.iter().all(|&bound| bound <= tolerance), "{:?}", found.attribute_bounds);
+    assert!(
+        found
+            .attribute_bounds
+            .iter()
+            .all(|&bound| bound <= tolerance),
+        "{:?}",
+        found.attribute_bounds
+    );
     assert!(!found.error.certified && found.stop == ExactStop::Met);
 }
 
@@ -182,8 +283,10 @@ fn estimates_count_what_goals_ask_for() {
     let mesh = torus(5, 4);
     let goal = goal(&channel(&mesh, 2, 9), &mesh, 0.01).unwrap().unwrap();
     let options = coarse(&mesh).attributes(vec![goal]);
-    let (found, told) =
-        (exact(&mesh, &Loop, &options).unwrap(), exact_estimate(&mesh, &Loop, &options).unwrap());
+    let (found, told) = (
+        exact(&mesh, &Loop, &options).unwrap(),
+        exact_estimate(&mesh, &Loop, &options).unwrap(),
+    );
     let ratio = told.triangles as f64 / found.mesh.face_count() as f64;
     assert!((0.7..1.1).contains(&ratio), "{ratio}");
 }
@@ -196,12 +299,23 @@ fn goals_that_make_no_sense_are_refused() {
         let error = exact(&mesh, &Loop, &options).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     };
-    let values = |mesh: &Mesh, tolerance| vec![AttributeGoal::values(vec![mesh.clone()], tolerance)];
+    let values =
+        |mesh: &Mesh, tolerance| vec![AttributeGoal::values(vec![mesh.clone()], tolerance)];
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        refused(coarse(&mesh).attributes(values(&mesh, tolerance)), "tolerance of an attribute");
+        refused(
+            coarse(&mesh).attributes(values(&mesh, tolerance)),
+            "tolerance of an attribute",
+        );
     }
     refused(coarse(&mesh).attributes(values(&other, 1.0)), "but is 40");
-    for options in [coarse(&mesh).triangles(100), coarse(&mesh).balance(true), coarse(&mesh).optimize(true)] {
-        refused(options.attributes(values(&mesh, 1.0)), "none with a number of triangles");
+    for options in [
+        coarse(&mesh).triangles(100),
+        coarse(&mesh).balance(true),
+        coarse(&mesh).optimize(true),
+    ] {
+        refused(
+            options.attributes(values(&mesh, 1.0)),
+            "none with a number of triangles",
+        );
     }
 }

@@ -11,7 +11,12 @@ use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 
 fn built_in(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// Loop's refinement of the control mesh: the same surface, with four faces where there was one.
@@ -27,7 +32,12 @@ fn models() -> Vec<(&'static str, Mesh)> {
         ("torus", crate::support::torus(8, 6)),
         ("lumpy", crate::support::lumpy(12, 7)),
         ("cup", built_in("cup")),
-        ("creased cup", built_in("cup").with_creases_above(40f64.to_radians()).unwrap()),
+        (
+            "creased cup",
+            built_in("cup")
+                .with_creases_above(40f64.to_radians())
+                .unwrap(),
+        ),
         ("bunny", built_in("bunny")),
     ]
 }
@@ -42,7 +52,14 @@ fn camera(mesh: &Mesh, random: &mut Random) -> Camera {
     let eye = [0, 1, 2].map(|i| target[i] + distance * away[i]);
     let fov_degrees =
         2.0 * (0.55 * mesh.diagonal() / dot(minus(eye, target), minus(eye, target)).sqrt()).atan();
-    Camera { eye, target, up, fov_degrees: fov_degrees.to_degrees(), width: 640, height: 640 }
+    Camera {
+        eye,
+        target,
+        up,
+        fov_degrees: fov_degrees.to_degrees(),
+        width: 640,
+        height: 640,
+    }
 }
 
 /// The mesh with an open triangle behind the camera, far away: with it backs may be seen.
@@ -54,7 +71,10 @@ fn with_a_stray_triangle(mesh: &Mesh, camera: &Camera) -> Mesh {
     positions.extend([[x, y, z], [x + 1e-3, y, z], [x, y + 1e-3, z + 1e-3]]);
     triangles.push([first, first + 1, first + 2]);
     let tags = mesh.tags().clone();
-    Mesh::from_triangles(positions, triangles).unwrap().with_tags(tags).unwrap()
+    Mesh::from_triangles(positions, triangles)
+        .unwrap()
+        .with_tags(tags)
+        .unwrap()
 }
 
 #[test]
@@ -65,12 +85,17 @@ fn backs_save_triangles_and_never_cost_any() {
         for limit in [0.3, 1.0, 4.0] {
             for balance in [false, true] {
                 let camera = camera(&mesh, &mut random);
-                let options = ExactOptions::default().pixels(limit, vec![camera]).balance(balance);
+                let options = ExactOptions::default()
+                    .pixels(limit, vec![camera])
+                    .balance(balance);
                 let seen = exact(&mesh, &Loop, &options).unwrap();
                 let all = exact(&with_a_stray_triangle(&mesh, &camera), &Loop, &options).unwrap();
                 assert_eq!((seen.stop, all.stop), (ExactStop::Met, ExactStop::Met));
                 let [own, other] = [seen, all].map(|result| result.mesh.face_count());
-                assert!(own < other, "{name}, {limit}, {balance}: {own} of {other}, {camera:?}");
+                assert!(
+                    own < other,
+                    "{name}, {limit}, {balance}: {own} of {other}, {camera:?}"
+                );
                 (closed, open) = (closed + own, open + other);
             }
         }
@@ -87,9 +112,15 @@ fn cameras_on_both_sides_see_all() {
     let eye = [0, 1, 2].map(|i| 2.0 * front.target[i] - front.eye[i]);
     let back = Camera { eye, ..front };
     let count = |cameras: Vec<Camera>| {
-        exact(&mesh, &Loop, &ExactOptions::default().pixels(0.3, cameras)).unwrap().mesh.face_count()
+        exact(&mesh, &Loop, &ExactOptions::default().pixels(0.3, cameras))
+            .unwrap()
+            .mesh
+            .face_count()
     };
-    let (both, one) = (count(vec![front, back]), count(vec![front]).max(count(vec![back])));
+    let (both, one) = (
+        count(vec![front, back]),
+        count(vec![front]).max(count(vec![back])),
+    );
     assert!(4 * both > 5 * one, "{both} {one}");
 }
 
@@ -106,8 +137,15 @@ fn distances_count_what_nobody_sees() {
             let result = exact(&mesh, &Loop, &options).unwrap();
             let found = distances_to(limit.positions(), result.mesh.as_triangles()).unwrap();
             let found = found.into_iter().fold(0.0, f64::max);
-            assert!(found <= result.error.upper, "{name}: {found} of {:?}", result.error);
-            assert!(tolerance.is_none_or(|tolerance| result.error.upper <= tolerance), "{name}");
+            assert!(
+                found <= result.error.upper,
+                "{name}: {found} of {:?}",
+                result.error
+            );
+            assert!(
+                tolerance.is_none_or(|tolerance| result.error.upper <= tolerance),
+                "{name}"
+            );
         }
     }
 }
@@ -119,7 +157,9 @@ const SIDE: u32 = 12;
 fn looking_away(mesh: &Mesh, viewpoint: &Viewpoint) -> Vec<bool> {
     let surface = LimitSurface::new(mesh, &Loop).unwrap();
     let at = |i: u32, j: u32| [i, j, SIDE - i - j].map(|x| f64::from(x) / f64::from(SIDE));
-    let places: Vec<Point> = (0..=SIDE).flat_map(|i| (0..=SIDE - i).map(move |j| at(i, j))).collect();
+    let places: Vec<Point> = (0..=SIDE)
+        .flat_map(|i| (0..=SIDE - i).map(move |j| at(i, j)))
+        .collect();
     let away = |point: Point, normal: Point| {
         let sight = match *viewpoint {
             Viewpoint::Direction(sight) => sight,
@@ -130,17 +170,22 @@ fn looking_away(mesh: &Mesh, viewpoint: &Viewpoint) -> Vec<bool> {
     let is_away = |face: usize| {
         let face = FaceId(face as u32);
         let points = surface.at_all(&places.iter().map(|&at| (face, at)).collect::<Vec<_>>());
-        let [a, b, c] =
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|at| surface.at(face, at).position);
+        let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+            .map(|at| surface.at(face, at).position);
         away(a, cross(minus(b, a), minus(c, a)))
-            && points.iter().all(|point| away(point.position, point.normal))
+            && points
+                .iter()
+                .all(|point| away(point.position, point.normal))
     };
     (0..mesh.face_count()).map(is_away).collect()
 }
 
 /// How many faces each face is away from one that is not marked.
 fn rings(mesh: &Mesh, marked: &[bool]) -> Vec<usize> {
-    let mut rings: Vec<usize> = marked.iter().map(|&marked| if marked { usize::MAX } else { 0 }).collect();
+    let mut rings: Vec<usize> = marked
+        .iter()
+        .map(|&marked| if marked { usize::MAX } else { 0 })
+        .collect();
     let topology = mesh.topology();
     for ring in 0..mesh.face_count() {
         for face in 0..mesh.face_count() {
@@ -149,7 +194,9 @@ fn rings(mesh: &Mesh, marked: &[bool]) -> Vec<usize> {
             }
             for corner in 0..3 {
                 let twin = topology.twin(limitmesh::HalfEdgeId::of(FaceId(face as u32), corner));
-                let Some(beside) = twin.map(|h| h.face().index()) else { continue };
+                let Some(beside) = twin.map(|h| h.face().index()) else {
+                    continue;
+                };
                 rings[beside] = rings[beside].min(ring + 1);
             }
         }
@@ -161,12 +208,18 @@ fn rings(mesh: &Mesh, marked: &[bool]) -> Vec<usize> {
 /// from what shows are not divided, and not closed either.
 fn assert_untouched(name: &str, mesh: &Mesh, result: &Exact, viewpoint: &Viewpoint) -> usize {
     let mut counts = vec![0; mesh.face_count()];
-    result.parents.iter().for_each(|&face| counts[face as usize] += 1);
+    result
+        .parents
+        .iter()
+        .for_each(|&face| counts[face as usize] += 1);
     let away = looking_away(mesh, viewpoint);
     let mut untouched = 0;
     for (face, ring) in rings(mesh, &away).into_iter().enumerate() {
         if away[face] && ring > result.levels + 1 {
-            assert_eq!(counts[face], 1, "{name}: face {face}, {ring} from what shows, {viewpoint:?}");
+            assert_eq!(
+                counts[face], 1,
+                "{name}: face {face}, {ring} from what shows, {viewpoint:?}"
+            );
             untouched += 1;
         }
     }
@@ -177,9 +230,17 @@ fn assert_untouched(name: &str, mesh: &Mesh, result: &Exact, viewpoint: &Viewpoi
 fn what_looks_away_is_divided_for_its_neighbours_only() {
     let mut random = Random::new(21);
     let models = [
-        ("octahedron", refined(&refined(&crate::support::octahedron())), 0.5),
+        (
+            "octahedron",
+            refined(&refined(&crate::support::octahedron())),
+            0.5,
+        ),
         ("torus", refined(&crate::support::torus(8, 6)), 0.6),
-        ("lumpy", refined(&refined(&crate::support::lumpy(12, 7))), 0.5),
+        (
+            "lumpy",
+            refined(&refined(&crate::support::lumpy(12, 7))),
+            0.5,
+        ),
         ("bunny", refined(&built_in("bunny")), 1.0),
     ];
     for (name, mesh, limit) in models {
@@ -190,13 +251,21 @@ fn what_looks_away_is_divided_for_its_neighbours_only() {
             let result = exact(&mesh, &Loop, &options).unwrap();
             assert!(result.levels > 0 && result.pixels.unwrap() <= limit);
             untouched += assert_untouched(name, &mesh, &result, &Viewpoint::Eye(camera.eye));
-            for viewpoint in
-                [Viewpoint::Eye(camera.eye), Viewpoint::Direction(minus(camera.target, camera.eye))]
-            {
-                let view = View { viewpoint, dilatation: 1.0 };
+            for viewpoint in [
+                Viewpoint::Eye(camera.eye),
+                Viewpoint::Direction(minus(camera.target, camera.eye)),
+            ] {
+                let view = View {
+                    viewpoint,
+                    dilatation: 1.0,
+                };
                 let options = ExactOptions::default().angle(12f64.to_radians()).view(view);
                 let result = exact(&mesh, &Loop, &options).unwrap();
-                assert_eq!((result.stop, result.open_cones), (ExactStop::Met, 0), "{name}");
+                assert_eq!(
+                    (result.stop, result.open_cones),
+                    (ExactStop::Met, 0),
+                    "{name}"
+                );
                 untouched += assert_untouched(name, &mesh, &result, &viewpoint);
             }
         }
@@ -212,6 +281,11 @@ fn other_schemes_leave_backs_coarse_too() {
     let camera = camera(&mesh, &mut Random::new(2));
     let options = ExactOptions::default().pixels(1.0, vec![camera]);
     let seen = exact(&mesh, &ModifiedButterfly, &options).unwrap();
-    let all = exact(&with_a_stray_triangle(&mesh, &camera), &ModifiedButterfly, &options).unwrap();
+    let all = exact(
+        &with_a_stray_triangle(&mesh, &camera),
+        &ModifiedButterfly,
+        &options,
+    )
+    .unwrap();
     assert!(10 * seen.mesh.face_count() < 9 * all.mesh.face_count());
 }

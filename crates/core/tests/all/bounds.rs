@@ -5,7 +5,9 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
-use limitmesh::measure::{Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between};
+use limitmesh::measure::{
+    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between,
+};
 use limitmesh::progress::Progress;
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
@@ -14,15 +16,23 @@ use limitmesh::scheme::Loop;
 use crate::support::{exact, torus};
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// The greatest distance between a result and the limit surface, for which a mesh that is nearer to it stands.
 fn true_distance(control: &Mesh, result: &Exact) -> (f64, f64) {
-    let options = ExactOptions::default().tolerance(result.error.lower / 25.0).max_triangles(Some(400_000));
+    let options = ExactOptions::default()
+        .tolerance(result.error.lower / 25.0)
+        .max_triangles(Some(400_000));
     let fine = exact(control, &Loop, &options).unwrap();
     let asked = CertifiedOptions::default().relative_gap(0.03);
-    let found = certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
+    let found =
+        certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
     let found = found.widened(fine.error.upper);
     (found.lower(), found.upper())
 }
@@ -31,16 +41,38 @@ fn goals(control: &Mesh) -> Vec<(&'static str, ExactStop, ExactOptions)> {
     let diagonal = control.diagonal();
     let [low, high] = control.as_triangles().bounding_box().unwrap();
     let centre: [f64; 3] = std::array::from_fn(|i| 0.5 * (low[i] + high[i]));
-    let eye = [centre[0] + 1.3 * diagonal, centre[1] + 0.4 * diagonal, centre[2] + 0.2 * diagonal];
+    let eye = [
+        centre[0] + 1.3 * diagonal,
+        centre[1] + 0.4 * diagonal,
+        centre[2] + 0.2 * diagonal,
+    ];
     let up = [0.0, 0.0, 1.0];
-    let camera = Camera { eye, target: centre, up, fov_degrees: 45.0, width: 960, height: 540 };
-    let view = View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation: 1.0 };
+    let camera = Camera {
+        eye,
+        target: centre,
+        up,
+        fov_degrees: 45.0,
+        width: 960,
+        height: 540,
+    };
+    let view = View {
+        viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]),
+        dilatation: 1.0,
+    };
     let none = ExactOptions::default;
     vec![
         ("angle", ExactStop::Met, none().angle(10f64.to_radians())),
-        ("angle in a view", ExactStop::Met, none().angle(10f64.to_radians()).view(view)),
+        (
+            "angle in a view",
+            ExactStop::Met,
+            none().angle(10f64.to_radians()).view(view),
+        ),
         ("pixels", ExactStop::Met, none().pixels(0.5, vec![camera])),
-        ("pixels and an angle", ExactStop::Met, none().pixels(0.5, vec![camera]).angle(20f64.to_radians())),
+        (
+            "pixels and an angle",
+            ExactStop::Met,
+            none().pixels(0.5, vec![camera]).angle(20f64.to_radians()),
+        ),
     ]
 }
 
@@ -74,7 +106,11 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
 /// the engine, is at most a quarter below what is proven, or a half where that is a tolerance, but for what that mesh and the samples miss.
 #[test]
 fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
-    let sharp = |name: &str, degrees: f64| model(name).with_creases_above(degrees.to_radians()).unwrap();
+    let sharp = |name: &str, degrees: f64| {
+        model(name)
+            .with_creases_above(degrees.to_radians())
+            .unwrap()
+    };
     let models = [
         ("cup", model("cup"), 5),
         ("bunny", model("bunny"), 4),
@@ -88,17 +124,27 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
         let finer = limit_reference(&control, &Loop, levels + 1).unwrap();
         let tree = Bvh::new(reference.as_triangles()).unwrap();
         let step = finer.positions().len().div_ceil(20_000);
-        let chords =
-            finer.positions().iter().step_by(step).map(|&p| tree.closest(p).distance).fold(0.0, f64::max);
+        let chords = finer
+            .positions()
+            .iter()
+            .step_by(step)
+            .map(|&p| tree.closest(p).distance)
+            .fold(0.0, f64::max);
         let diagonal = control.diagonal();
         let within = |share: f64| ExactOptions::default().tolerance(share * diagonal);
         let budget = ExactOptions::default().triangles(3 * control.face_count());
         let goals = [
             ("a tolerance", within(1e-2)),
-            ("a tolerance and an angle", within(2e-2).angle(8f64.to_radians())),
+            (
+                "a tolerance and an angle",
+                within(2e-2).angle(8f64.to_radians()),
+            ),
             ("balance", within(5e-3).balance(true)),
             ("collapses", within(5e-3).optimize(true)),
-            ("hierarchies in flat regions", within(5e-3).flat_regions(false)),
+            (
+                "hierarchies in flat regions",
+                within(5e-3).flat_regions(false),
+            ),
             ("a number", budget.clone()),
             ("a balanced number", budget.clone().balance(true)),
             ("a collapsed number", budget.optimize(true)),
@@ -112,7 +158,8 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
             // The reference's chords leave the surface by 4/3 of the next level's distance in the end.
             let chords = 4.0 / 3.0 * chords;
             // A tolerance that is met is proven already.
-            let is_met = options.tolerance.is_some() && options.angle.is_none() && !options.optimize;
+            let is_met =
+                options.tolerance.is_some() && options.angle.is_none() && !options.optimize;
             let times = if is_met { 2.0 } else { 1.25 };
             assert!(
                 found <= error.upper + chords
@@ -120,7 +167,10 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
                 "{name}, {goal}: {error:?}, samples find {found}, give or take {chords}"
             );
             let at = [&output, &tree].map(|of| of.closest(error.at).distance);
-            assert!(error.lower <= at[0].max(at[1]) + chords, "{name}, {goal}: {error:?}, there {at:?}");
+            assert!(
+                error.lower <= at[0].max(at[1]) + chords,
+                "{name}, {goal}: {error:?}, there {at:?}"
+            );
         }
     }
 }
@@ -129,13 +179,25 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
 /// for how far the mesh that stands for the limit surface is from it.
 #[test]
 fn bounds_hold_where_levels_end_the_division() {
-    for name in ["torus", "sphere", "cup", "bunny", "spike", "bumpy", "head", "cube", "tetrahedron"] {
+    for name in [
+        "torus",
+        "sphere",
+        "cup",
+        "bunny",
+        "spike",
+        "bumpy",
+        "head",
+        "cube",
+        "tetrahedron",
+    ] {
         let control = model(name);
         for levels in [0, 1, 2] {
             // Its chords are a 64th as high as the result's.
             let reference = limit_reference(&control, &Loop, levels + 3).unwrap();
             let reference = Bvh::new(reference.as_triangles()).unwrap();
-            let options = ExactOptions::default().tolerance(1e-6 * control.diagonal()).max_levels(levels);
+            let options = ExactOptions::default()
+                .tolerance(1e-6 * control.diagonal())
+                .max_levels(levels);
             let result = exact(&control, &Loop, &options).unwrap();
             assert_eq!(result.stop, ExactStop::LevelCap, "{name}");
             let samples = SamplingOptions::default().samples(10_000);
@@ -154,12 +216,19 @@ fn bounds_hold_where_levels_end_the_division() {
 /// mesh's. `--nocapture` shows how near both come.
 #[test]
 fn the_certified_measurement_agrees_with_what_is_proven() {
-    let names = ["head", "shoe", "bunny", "teddy", "shark", "cup", "radish", "cusp", "sphere", "torus"];
+    let names = [
+        "head", "shoe", "bunny", "teddy", "shark", "cup", "radish", "cusp", "sphere", "torus",
+    ];
     for name in names {
         let control = model(name);
         for share in [1e-2, 3e-3, 1e-3] {
             let tolerance = share * control.diagonal();
-            let result = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+            let result = exact(
+                &control,
+                &Loop,
+                &ExactOptions::default().tolerance(tolerance),
+            )
+            .unwrap();
             assert_eq!(result.stop, ExactStop::Met, "{name}, {share}");
             let (least, most) = true_distance(&control, &result);
             let error = result.error;
@@ -172,9 +241,18 @@ fn the_certified_measurement_agrees_with_what_is_proven() {
                 most / tolerance,
                 error.upper / most
             );
-            assert!(error.certified && error.upper <= tolerance, "{name}, {share}: {error:?}");
-            assert!(least <= error.upper, "{name}, {share}: {error:?}, at least {least}");
-            assert!(error.lower <= most, "{name}, {share}: {error:?}, at most {most}");
+            assert!(
+                error.certified && error.upper <= tolerance,
+                "{name}, {share}: {error:?}"
+            );
+            assert!(
+                least <= error.upper,
+                "{name}, {share}: {error:?}, at least {least}"
+            );
+            assert!(
+                error.lower <= most,
+                "{name}, {share}: {error:?}, at most {most}"
+            );
         }
     }
 }
@@ -195,8 +273,18 @@ fn tolerances_that_are_proven_are_met_whatever_ended_the_division() {
             for options in capped.into_iter().chain([options.clone().max_levels(1)]) {
                 let found = exact(&control, &Loop, &options).unwrap();
                 let is_proven = found.error.upper <= tolerance;
-                assert_eq!(found.stop == ExactStop::Met, is_proven, "{name} {share}: {:?}", found.error);
-                assert_eq!(found.worst <= 1.0, is_proven, "{name} {share}: {}", found.worst);
+                assert_eq!(
+                    found.stop == ExactStop::Met,
+                    is_proven,
+                    "{name} {share}: {:?}",
+                    found.error
+                );
+                assert_eq!(
+                    found.worst <= 1.0,
+                    is_proven,
+                    "{name} {share}: {}",
+                    found.worst
+                );
                 if is_proven {
                     let (least, _) = true_distance(&control, &found);
                     assert!(least <= tolerance, "{name} {share}: {least}");
@@ -227,14 +315,28 @@ fn one_far_vertex_takes_no_finer_meshes() {
             };
             let found = exact_observed(&control, &Loop, &options, &mut watch).unwrap();
             let count = found.mesh.face_count();
-            assert!(most <= 4 * count, "{far}, {share}: {most} triangles for {count}");
+            assert!(
+                most <= 4 * count,
+                "{far}, {share}: {most} triangles for {count}"
+            );
             // What is proven holds all the same: dense samples of the true surface find no more.
             let reference = limit_reference(&control, &Loop, 5).unwrap();
             let output = Bvh::new(found.mesh.as_triangles()).unwrap();
-            let sampled =
-                reference.positions().iter().map(|&p| output.closest(p).distance).fold(0.0, f64::max);
-            assert!(found.error.upper <= tolerance, "{far}, {share}: {:?}", found.error);
-            assert!(sampled <= found.error.upper, "{far}, {share}: {sampled}, {:?}", found.error);
+            let sampled = reference
+                .positions()
+                .iter()
+                .map(|&p| output.closest(p).distance)
+                .fold(0.0, f64::max);
+            assert!(
+                found.error.upper <= tolerance,
+                "{far}, {share}: {:?}",
+                found.error
+            );
+            assert!(
+                sampled <= found.error.upper,
+                "{far}, {share}: {sampled}, {:?}",
+                found.error
+            );
         }
     }
 }

@@ -10,8 +10,8 @@ use limitmesh::criterion::LimitNormal;
 use limitmesh::limit::LimitTable;
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{
-    BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces, PolygonSoup,
-    SeamRule, Semantic, Tags,
+    BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces,
+    PolygonSoup, SeamRule, Semantic, Tags,
 };
 use limitmesh::refine::{
     Exact, ExactOptions, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
@@ -22,10 +22,22 @@ use opensubdiv_rs::{far, sdc};
 
 const RULES: [(SeamRule, sdc::FVarLinearInterpolation); 5] = [
     (SeamRule::None, sdc::FVarLinearInterpolation::None),
-    (SeamRule::CornersOnly, sdc::FVarLinearInterpolation::CornersOnly),
-    (SeamRule::CornersPlus1, sdc::FVarLinearInterpolation::CornersPlus1),
-    (SeamRule::CornersPlus2, sdc::FVarLinearInterpolation::CornersPlus2),
-    (SeamRule::Boundaries, sdc::FVarLinearInterpolation::Boundaries),
+    (
+        SeamRule::CornersOnly,
+        sdc::FVarLinearInterpolation::CornersOnly,
+    ),
+    (
+        SeamRule::CornersPlus1,
+        sdc::FVarLinearInterpolation::CornersPlus1,
+    ),
+    (
+        SeamRule::CornersPlus2,
+        sdc::FVarLinearInterpolation::CornersPlus2,
+    ),
+    (
+        SeamRule::Boundaries,
+        sdc::FVarLinearInterpolation::Boundaries,
+    ),
 ];
 
 /// A channel with seams: around some vertices the faces are parted in two or three fans that have values of their own, so that seams end
@@ -36,10 +48,20 @@ fn with_seams(mesh: &Mesh, one_in: usize, seed: u64) -> Channel {
     let (mut values, mut indices) = (Vec::new(), vec![0; 3 * mesh.face_count()]);
     let mut parting = Random::new(seed ^ 0xfa);
     for vertex in mesh.topology().vertices() {
-        let parts = if parting.below(one_in) == 0 { 2 + parting.below(2) } else { 1 };
-        let ring: Vec<usize> = mesh.topology().outgoing_ring(vertex).map(|h| h.index()).collect();
+        let parts = if parting.below(one_in) == 0 {
+            2 + parting.below(2)
+        } else {
+            1
+        };
+        let ring: Vec<usize> = mesh
+            .topology()
+            .outgoing_ring(vertex)
+            .map(|h| h.index())
+            .collect();
         for (at, &corner) in ring.iter().enumerate() {
-            if at * parts / ring.len() != at.wrapping_sub(1).wrapping_mul(parts) / ring.len() || at == 0 {
+            if at * parts / ring.len() != at.wrapping_sub(1).wrapping_mul(parts) / ring.len()
+                || at == 0
+            {
                 (0..3).for_each(|_| values.push(number()));
             }
             indices[corner] = values.len() as u32 / 3 - 1;
@@ -57,21 +79,33 @@ fn other_implementation(
     const LEVELS: usize = 2;
     let corners = vec![3usize; mesh.face_count()];
     let pairs: Vec<[u32; 2]> = mesh.tags().creases.iter().map(|tag| tag.vertices).collect();
-    let weights: Vec<f32> = mesh.tags().creases.iter().map(|tag| tag.sharpness.min(10.0) as f32).collect();
+    let weights: Vec<f32> = mesh
+        .tags()
+        .creases
+        .iter()
+        .map(|tag| tag.sharpness.min(10.0) as f32)
+        .collect();
     let refined = |count: usize, indices: &[u32], values: &[[f64; 3]], rule, is_limit: bool| {
         let own = [far::FVarChannelDescriptor::new(count, indices)];
-        let descriptor =
-            far::TopologyDescriptor::new(mesh.vertex_count(), &corners, mesh.triangles().as_flattened())
-                .with_creases(&pairs, &weights)
-                .with_fvar_channels(&own);
+        let descriptor = far::TopologyDescriptor::new(
+            mesh.vertex_count(),
+            &corners,
+            mesh.triangles().as_flattened(),
+        )
+        .with_creases(&pairs, &weights)
+        .with_fvar_channels(&own);
         let options = sdc::Options::default()
             .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly)
             .with_fvar_linear_interpolation(rule);
         let mut refiner =
-            far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options).unwrap();
+            far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options)
+                .unwrap();
         refiner.refine_uniform(far::UniformOptions::new(LEVELS));
         let primvars = far::PrimvarRefiner::new(&refiner);
-        let mut last = primvars.interpolate_face_varying_all(0, values).pop().unwrap();
+        let mut last = primvars
+            .interpolate_face_varying_all(0, values)
+            .pop()
+            .unwrap();
         if is_limit {
             let source = last.clone();
             primvars.limit_face_varying(0, &source, &mut last);
@@ -79,25 +113,38 @@ fn other_implementation(
         let level = refiner.level(LEVELS);
         let faces = mesh.face_count() << (2 * LEVELS);
         let by_corner = (0..faces).flat_map(|face| level.face_fvar_values(face, 0).to_vec());
-        by_corner.map(|value| last[value as usize]).collect::<Vec<[f64; 3]>>()
+        by_corner
+            .map(|value| last[value as usize])
+            .collect::<Vec<[f64; 3]>>()
     };
     // Where each refined corner is, by a linear channel that counts.
     let count = 3 * mesh.face_count();
-    let units: Vec<[f64; 3]> =
-        (0..count).map(|corner| std::array::from_fn(|i| f64::from(u8::from(i == corner % 3)))).collect();
+    let units: Vec<[f64; 3]> = (0..count)
+        .map(|corner| std::array::from_fn(|i| f64::from(u8::from(i == corner % 3))))
+        .collect();
     let own: Vec<u32> = (0..count as u32).collect();
-    let places = refined(count, &own, &units, sdc::FVarLinearInterpolation::All, false);
+    let places = refined(
+        count,
+        &own,
+        &units,
+        sdc::FVarLinearInterpolation::All,
+        false,
+    );
     let values: Vec<[f64; 3]> = channel.values.as_chunks::<3>().0.to_vec();
     let limits = refined(values.len(), &channel.indices, &values, rule, true);
     let face = |corner: usize| (corner / 3 / (1 << (2 * LEVELS))) as u32;
     let quarters = |place: &[f64; 3]| place.map(|weight| (4.0 * weight).round() as u32);
     let all = places.iter().zip(limits).enumerate();
-    all.map(|(corner, (place, limit))| ((face(corner), quarters(place)), limit)).collect()
+    all.map(|(corner, (place, limit))| ((face(corner), quarters(place)), limit))
+        .collect()
 }
 
 /// Every face divided twice.
 fn twice_divided(mesh: &Mesh) -> Exact {
-    let options = ExactOptions::default().tolerance(1e-9).max_levels(2).flat_regions(false);
+    let options = ExactOptions::default()
+        .tolerance(1e-9)
+        .max_levels(2)
+        .flat_regions(false);
     exact(mesh, &Loop, &options).unwrap()
 }
 
@@ -111,23 +158,33 @@ fn check_against_other(what: &str, mesh: &Mesh, channel: &Channel) {
         for (face, &parent) in fine.parents.iter().enumerate() {
             for corner in 0..3 {
                 let vertex = fine.mesh.triangles()[face][corner];
-                let Origin { face: own, barycentric, .. } = fine.origins[vertex as usize];
+                let Origin {
+                    face: own,
+                    barycentric,
+                    ..
+                } = fine.origins[vertex as usize];
                 if own != parent {
                     continue;
                 }
-                let Some(their) = theirs.get(&(own, barycentric.map(|w| (4.0 * w).round() as u32))) else {
+                let Some(their) = theirs.get(&(own, barycentric.map(|w| (4.0 * w).round() as u32)))
+                else {
                     continue;
                 };
                 // At darts it has the limits of smooth vertices.
                 let at = barycentric.iter().position(|&weight| weight == 1.0);
                 let at = at.map(|corner| mesh.triangles()[own as usize][corner]);
-                let creases =
-                    mesh.tags().creases.iter().filter(|tag| at.is_some_and(|v| tag.vertices.contains(&v)));
+                let creases = mesh
+                    .tags()
+                    .creases
+                    .iter()
+                    .filter(|tag| at.is_some_and(|v| tag.vertices.contains(&v)));
                 if creases.count() == 1 {
                     continue;
                 }
                 let our = ours.value(3 * face + corner);
-                let off = (0..3).map(|i| (our[i] - their[i]).abs()).fold(0.0, f64::max);
+                let off = (0..3)
+                    .map(|i| (our[i] - their[i]).abs())
+                    .fold(0.0, f64::max);
                 assert!(
                     off < 2e-6,
                     "{what}, {rule:?}: {off} at {barycentric:?} of face {own}: {our:?} {their:?}"
@@ -156,11 +213,22 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
         for seed in 0..4 {
             let mut random = Random::new(seed);
             let topology = mesh.topology();
-            let creases = topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h < twin));
+            let creases = topology
+                .half_edges()
+                .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin));
             let creases = creases.filter(|_| random.below(5) == 0);
-            let tag = |h| CreaseTag { vertices: topology.ends(h).map(|v| v.0), sharpness: INFINITELY_SHARP };
+            let tag = |h| CreaseTag {
+                vertices: topology.ends(h).map(|v| v.0),
+                sharpness: INFINITELY_SHARP,
+            };
             let creases: Vec<CreaseTag> = creases.map(tag).collect();
-            let creased = mesh.clone().with_tags(Tags { creases, ..Tags::default() }).unwrap();
+            let creased = mesh
+                .clone()
+                .with_tags(Tags {
+                    creases,
+                    ..Tags::default()
+                })
+                .unwrap();
             let whole = with_seams(&creased, usize::MAX, seed);
             check_against_other(&format!("{name}, creased, {seed}"), &creased, &whole);
         }
@@ -171,7 +239,12 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
 #[test]
 fn positions_as_a_channel_are_positions() {
     for (name, mesh) in samples() {
-        let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-2).flat_regions(false)).unwrap();
+        let fine = exact(
+            &mesh,
+            &Loop,
+            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
+        )
+        .unwrap();
         let values = mesh.positions().as_flattened().to_vec();
         let channel = Channel::new("positions", Semantic::Displacement, Domain::Vertex, 3)
             .with(values, (0..mesh.vertex_count() as u32).collect());
@@ -190,9 +263,16 @@ fn positions_as_a_channel_are_positions() {
 #[test]
 fn linear_channels_are_exact() {
     for (name, mesh) in samples() {
-        let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-2).flat_regions(false)).unwrap();
+        let fine = exact(
+            &mesh,
+            &Loop,
+            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
+        )
+        .unwrap();
         let channel = with_seams(&mesh, 3, 7).interpolated(Interpolation::Linear);
-        let found = carried(core::slice::from_ref(&channel), &mesh, &Loop, &fine).unwrap().remove(0);
+        let found = carried(core::slice::from_ref(&channel), &mesh, &Loop, &fine)
+            .unwrap()
+            .remove(0);
         for (face, &parent) in fine.parents.iter().enumerate() {
             for corner in 0..3 {
                 let vertex = fine.mesh.triangles()[face][corner];
@@ -200,10 +280,15 @@ fn linear_channels_are_exact() {
                 // By hand: the weights belong to vertices, which the parent has, too.
                 let from = mesh.triangles()[origin.face as usize];
                 let to = mesh.triangles()[parent as usize];
-                let weight =
-                    |v: u32| from.iter().position(|&w| w == v).map_or(0.0, |k| origin.barycentric[k]);
+                let weight = |v: u32| {
+                    from.iter()
+                        .position(|&w| w == v)
+                        .map_or(0.0, |k| origin.barycentric[k])
+                };
                 let expected: [f64; 3] = std::array::from_fn(|i| {
-                    (0..3).map(|k| weight(to[k]) * channel.value(3 * parent as usize + k)[i]).sum()
+                    (0..3)
+                        .map(|k| weight(to[k]) * channel.value(3 * parent as usize + k)[i])
+                        .sum()
                 });
                 let off = distance(expected, found.value(3 * face + corner).try_into().unwrap());
                 assert!(off < 1e-14, "{name}: {off}");
@@ -211,7 +296,9 @@ fn linear_channels_are_exact() {
         }
         let seams = |mesh: &Mesh, channel: &Channel| {
             let topology = mesh.topology();
-            let both = topology.half_edges().filter_map(|h| Some((h, topology.twin(h)?)));
+            let both = topology
+                .half_edges()
+                .filter_map(|h| Some((h, topology.twin(h)?)));
             let differ = both.filter(|&(h, twin)| {
                 let at = |h: limitmesh::HalfEdgeId| channel.indices[h.index()];
                 at(h) != at(twin.next()) || at(h.next()) != at(twin)
@@ -226,7 +313,8 @@ fn linear_channels_are_exact() {
         let after = seams(&fine.mesh, &found);
         assert!(after.len() >= before.len());
         for h in after {
-            let faces = [h, fine.mesh.topology().twin(h).unwrap()].map(|h| fine.parents[h.face().index()]);
+            let faces =
+                [h, fine.mesh.topology().twin(h).unwrap()].map(|h| fine.parents[h.face().index()]);
             assert!(before.contains(&faces), "{name}: {faces:?}");
         }
     }
@@ -236,14 +324,23 @@ fn linear_channels_are_exact() {
 #[test]
 fn affine_coordinates_of_a_disc_stay_affine() {
     let mesh = sheet(4, 5, 3);
-    let flat = mesh.positions().iter().map(|&[x, y, _]| [x, y, 0.0]).collect();
+    let flat = mesh
+        .positions()
+        .iter()
+        .map(|&[x, y, _]| [x, y, 0.0])
+        .collect();
     let mesh = mesh.with_positions(flat).unwrap();
     let affine = |[x, y, _]: [f64; 3]| [0.3 * x - 0.8 * y + 0.1, 1.7 * x + 0.4 * y - 2.0];
     let values = mesh.positions().iter().flat_map(|&p| affine(p)).collect();
     let channel = Channel::new("uv", Semantic::TextureCoordinates, Domain::Vertex, 2)
         .with(values, (0..mesh.vertex_count() as u32).collect())
         .interpolated(Interpolation::Smooth(SeamRule::None));
-    let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-3).flat_regions(false)).unwrap();
+    let fine = exact(
+        &mesh,
+        &Loop,
+        &ExactOptions::default().tolerance(1e-3).flat_regions(false),
+    )
+    .unwrap();
     let found = carried(&[channel], &mesh, &Loop, &fine).unwrap().remove(0);
     for (corner, &vertex) in fine.mesh.triangles().as_flattened().iter().enumerate() {
         let expected = affine(fine.mesh.positions()[vertex as usize]);
@@ -256,7 +353,9 @@ fn affine_coordinates_of_a_disc_stay_affine() {
 #[test]
 fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
     for (name, mesh) in samples() {
-        let stepped = uniform(&mesh, &Loop, &UniformOptions::default().levels(2)).unwrap().mesh;
+        let stepped = uniform(&mesh, &Loop, &UniformOptions::default().levels(2))
+            .unwrap()
+            .mesh;
         let limits = LimitTable::new(&Loop).positions(&stepped).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let mut met = vec![false; limits.len()];
@@ -265,8 +364,14 @@ fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
                 let place = [4 - i - j, i, j].map(|weight| f64::from(weight) / 4.0);
                 let point = surface.at(FaceId(face), place).position;
                 let off = |v: &usize| distance(limits[*v], point);
-                let nearest = (0..limits.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
-                assert!(off(&nearest) < 1e-12, "{name}, {place:?} of face {face}: {}", off(&nearest));
+                let nearest = (0..limits.len())
+                    .min_by(|a, b| off(a).total_cmp(&off(b)))
+                    .unwrap();
+                assert!(
+                    off(&nearest) < 1e-12,
+                    "{name}, {place:?} of face {face}: {}",
+                    off(&nearest)
+                );
                 met[nearest] = true;
             }
         }
@@ -285,7 +390,11 @@ fn the_surface_between_vertices_is_near_a_certified_mesh() {
         for face in 0..mesh.face_count() as u32 {
             for _ in 0..20 {
                 let [a, b] = [0, 1].map(|_| 0.5 * (random.signed() + 1.0));
-                let [u, v] = if a + b > 1.0 { [1.0 - a, 1.0 - b] } else { [a, b] };
+                let [u, v] = if a + b > 1.0 {
+                    [1.0 - a, 1.0 - b]
+                } else {
+                    [a, b]
+                };
                 let point = surface.at(FaceId(face), [1.0 - u - v, u, v]);
                 assert!(
                     tree.closest(point.position).distance <= fine.error.upper,
@@ -302,13 +411,22 @@ fn the_surface_between_vertices_is_near_a_certified_mesh() {
 #[test]
 fn channels_of_a_soup_reach_the_mesh() {
     // A square of two triangles whose second is turned over, with a texture that each corner names for itself.
-    let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
     let faces: PolygonFaces = [&[0u32, 1, 2][..], &[0, 3, 2]].into_iter().collect();
     let texture = |v: u32| [positions[v as usize][0], positions[v as usize][1]];
     let values: Vec<f64> = faces.iter().flatten().flat_map(|&v| texture(v)).collect();
-    let channel =
-        Channel::new("uv", Semantic::TextureCoordinates, Domain::Corner, 2).with(values, (0..6).collect());
-    let soup = PolygonSoup { positions: positions.clone(), faces, ..PolygonSoup::default() };
+    let channel = Channel::new("uv", Semantic::TextureCoordinates, Domain::Corner, 2)
+        .with(values, (0..6).collect());
+    let soup = PolygonSoup {
+        positions: positions.clone(),
+        faces,
+        ..PolygonSoup::default()
+    };
     let (mesh, _, trace) = Mesh::from_soup_traced(&soup, &BuildOptions::default()).unwrap();
     let channel = channel.on_mesh(&soup, &mesh, &trace).unwrap();
     for (corner, &vertex) in mesh.triangles().as_flattened().iter().enumerate() {
@@ -322,8 +440,17 @@ fn channels_of_a_soup_reach_the_mesh() {
 #[test]
 fn an_empty_mesh_carries_nothing() {
     let mesh = Mesh::from_triangles(Vec::new(), Vec::new()).unwrap();
-    let fine = uniform(&mesh, &Loop, &UniformOptions::default().levels(1).origins(true)).unwrap();
-    for semantic in [Semantic::TextureCoordinates, Semantic::Displacement, Semantic::Label] {
+    let fine = uniform(
+        &mesh,
+        &Loop,
+        &UniformOptions::default().levels(1).origins(true),
+    )
+    .unwrap();
+    for semantic in [
+        Semantic::TextureCoordinates,
+        Semantic::Displacement,
+        Semantic::Label,
+    ] {
         let channel = Channel::new("none", semantic, Domain::Corner, 1);
         let carried = carried(std::slice::from_ref(&channel), &mesh, &Loop, &fine).unwrap();
         assert_eq!(carried, [channel]);
@@ -337,7 +464,10 @@ fn uniform_refinement_carries_channels() {
         let indices = mesh.triangles().as_flattened().to_vec();
         let places = Channel::new("places", Semantic::Displacement, Domain::Corner, 3)
             .with(mesh.positions().as_flattened().to_vec(), indices);
-        let options = UniformOptions::default().levels(2).limit(true).origins(true);
+        let options = UniformOptions::default()
+            .levels(2)
+            .limit(true)
+            .origins(true);
         let fine = uniform(&mesh, &Loop, &options).unwrap();
         let carried = &carried(&[places], &mesh, &Loop, &fine).unwrap()[0];
         for (corner, &v) in fine.mesh.triangles().as_flattened().iter().enumerate() {

@@ -29,11 +29,17 @@ fn unrolled(mesh: &Mesh) -> Channel {
             f64::from(if wraps { count } else { own }) / f64::from(count)
         };
         for own in [a, b, c] {
-            let value = [far(own[0], [a[0], b[0], c[0]], AROUND), far(own[1], [a[1], b[1], c[1]], ACROSS)];
-            let known = values.iter().position(|&known| known == value).unwrap_or_else(|| {
-                values.push(value);
-                values.len() - 1
-            });
+            let value = [
+                far(own[0], [a[0], b[0], c[0]], AROUND),
+                far(own[1], [a[1], b[1], c[1]], ACROSS),
+            ];
+            let known = values
+                .iter()
+                .position(|&known| known == value)
+                .unwrap_or_else(|| {
+                    values.push(value);
+                    values.len() - 1
+                });
             indices.push(known as u32);
         }
     }
@@ -44,8 +50,13 @@ fn unrolled(mesh: &Mesh) -> Channel {
 
 fn collapsed(mesh: &Mesh, channels: &[Channel], tolerance: f64) -> Exact {
     // Where the surface is flat, or straight in one direction, refinement alone would leave nothing to collapse.
-    let plain = ExactOptions::default().tolerance(tolerance).flat_regions(false);
-    let options = plain.clone().optimize(true).kept_edges(borders(channels, mesh));
+    let plain = ExactOptions::default()
+        .tolerance(tolerance)
+        .flat_regions(false);
+    let options = plain
+        .clone()
+        .optimize(true)
+        .kept_edges(borders(channels, mesh));
     let found = exact(mesh, &Loop, &options).unwrap();
     assert!(found.is_optimized);
     let plain = exact(mesh, &Loop, &plain).unwrap();
@@ -72,7 +83,11 @@ fn seams_stay_where_they_were() {
             let [x, y, _] = fine.mesh.positions()[v as usize];
             let turn = (y.atan2(x) / TAU).rem_euclid(1.0);
             let off = (at[corner][0] - turn).rem_euclid(1.0);
-            assert!(off.min(1.0 - off) < 0.3 / f64::from(AROUND), "{:?} at {turn}", at[corner]);
+            assert!(
+                off.min(1.0 - off) < 0.3 / f64::from(AROUND),
+                "{:?} at {turn}",
+                at[corner]
+            );
             wraps += usize::from(at[corner][0] == 1.0);
         }
     }
@@ -86,8 +101,11 @@ fn smooth_values_are_exact_at_corners() {
     let indices = mesh.triangles().as_flattened().to_vec();
     let places = Channel::new("places", Semantic::Displacement, Domain::Corner, 3)
         .with(mesh.positions().as_flattened().to_vec(), indices);
-    let halves = (0..mesh.face_count()).map(|face| (face % 2) as u32).collect();
-    let label = Channel::new("label", Semantic::Label, Domain::Face, 1).with(vec![0.0, 1.0], halves);
+    let halves = (0..mesh.face_count())
+        .map(|face| (face % 2) as u32)
+        .collect();
+    let label =
+        Channel::new("label", Semantic::Label, Domain::Face, 1).with(vec![0.0, 1.0], halves);
     let fine = collapsed(&mesh, std::slice::from_ref(&places), 1e-3 * mesh.diagonal());
     let carried = carried(&[places, label], &mesh, &Loop, &fine).unwrap();
     for (corner, &v) in fine.mesh.triangles().as_flattened().iter().enumerate() {
@@ -100,9 +118,17 @@ fn smooth_values_are_exact_at_corners() {
 #[test]
 fn borders_of_materials_stay() {
     let mesh = torus(AROUND, ACROSS);
-    let of = |face: usize| mesh.triangles()[face].iter().all(|v| (3..9).contains(&(v / ACROSS)));
-    let label = Channel::new("materials", Semantic::Label, Domain::Face, 1)
-        .with(vec![0.0, 1.0], (0..mesh.face_count()).map(|face| u32::from(of(face))).collect());
+    let of = |face: usize| {
+        mesh.triangles()[face]
+            .iter()
+            .all(|v| (3..9).contains(&(v / ACROSS)))
+    };
+    let label = Channel::new("materials", Semantic::Label, Domain::Face, 1).with(
+        vec![0.0, 1.0],
+        (0..mesh.face_count())
+            .map(|face| u32::from(of(face)))
+            .collect(),
+    );
     let coarse = collapsed(&mesh, std::slice::from_ref(&label), 1e-3);
     let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-4)).unwrap();
     let area = |found: &Exact| {
@@ -110,14 +136,21 @@ fn borders_of_materials_stay() {
         let own = (0..found.mesh.face_count()).filter(|&face| carried.value(face) == [1.0]);
         own.map(|face| {
             let [a, b, c] = found.mesh.as_triangles().corners(face);
-            let (u, v) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
-            let cross = [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
+            let (u, v) = (
+                [0, 1, 2].map(|i| b[i] - a[i]),
+                [0, 1, 2].map(|i| c[i] - a[i]),
+            );
+            let cross = [0, 1, 2]
+                .map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
             0.5 * cross.iter().map(|x| x * x).sum::<f64>().sqrt()
         })
         .sum::<f64>()
     };
     let [one, other] = [&coarse, &fine].map(area);
-    assert!(other > 0.1 && (one / other - 1.0).abs() < 5e-3, "{one} {other}");
+    assert!(
+        other > 0.1 && (one / other - 1.0).abs() < 5e-3,
+        "{one} {other}"
+    );
 }
 
 /// A prism with sharp edges around its flat ends: their corners there have the ends' normals, and the sides' corners look outwards.
@@ -130,11 +163,19 @@ fn normals_are_those_of_their_side_of_a_crease() {
             [turn.cos(), turn.sin(), z]
         })
     };
-    let positions = rim(-1.0).chain(rim(1.0)).chain([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]).collect();
+    let positions = rim(-1.0)
+        .chain(rim(1.0))
+        .chain([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])
+        .collect();
     let triangles = (0..SIDES).flat_map(|i| {
         let j = (i + 1) % SIDES;
         let (a, b, c, d) = (i, j, SIDES + j, SIDES + i);
-        [[a, b, c], [a, c, d], [2 * SIDES, b, a], [2 * SIDES + 1, d, c]]
+        [
+            [a, b, c],
+            [a, c, d],
+            [2 * SIDES, b, a],
+            [2 * SIDES + 1, d, c],
+        ]
     });
     let mesh = Mesh::from_triangles(positions, triangles.collect()).unwrap();
     let mesh = mesh.with_creases_above(60f64.to_radians()).unwrap();
@@ -142,13 +183,22 @@ fn normals_are_those_of_their_side_of_a_crease() {
     let mut counts = [0; 2];
     for face in 0..fine.mesh.face_count() {
         let corners = fine.mesh.as_triangles().corners(face);
-        let is_end = corners.iter().all(|corner| (corner[2] - corners[0][2]).abs() < 1e-9);
+        let is_end = corners
+            .iter()
+            .all(|corner| (corner[2] - corners[0][2]).abs() < 1e-9);
         counts[usize::from(is_end)] += 1;
         for (corner, [x, y, z]) in corners.into_iter().enumerate() {
             let normal = fine.corner_normal(HalfEdgeId::of(FaceId(face as u32), corner));
-            let expected = if is_end { [0.0, 0.0, z.signum()] } else { [x, y, 0.0].map(|c| c / x.hypot(y)) };
+            let expected = if is_end {
+                [0.0, 0.0, z.signum()]
+            } else {
+                [x, y, 0.0].map(|c| c / x.hypot(y))
+            };
             let cosine: f64 = (0..3).map(|i| normal[i] * expected[i]).sum();
-            assert!(cosine > 0.999, "{normal:?} at {x} {y} {z}, expected {expected:?}");
+            assert!(
+                cosine > 0.999,
+                "{normal:?} at {x} {y} {z}, expected {expected:?}"
+            );
         }
     }
     assert!(counts[0] > 20 && counts[1] > 20, "{counts:?}");

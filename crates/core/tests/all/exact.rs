@@ -14,7 +14,12 @@ use limitmesh::refine::{ExactOptions, ExactStop, exact_estimate, exact_observed}
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// Without origins the rest of a result is the same.
@@ -22,14 +27,21 @@ fn model(name: &str) -> Mesh {
 fn origins_are_only_told_to_those_who_ask() {
     let mesh = model("cup");
     let within = ExactOptions::default().tolerance(1e-3 * mesh.diagonal());
-    for options in [within.clone(), within.clone().balance(true), within.optimize(true)] {
+    for options in [
+        within.clone(),
+        within.clone().balance(true),
+        within.optimize(true),
+    ] {
         let told = exact(&mesh, &Loop, &options.clone()).unwrap();
         let untold = exact(&mesh, &Loop, &options.origins(false)).unwrap();
         assert_eq!(told.origins.len(), told.mesh.vertex_count());
         assert!(untold.origins.is_empty());
         assert_eq!(told.mesh.positions(), untold.mesh.positions());
         assert_eq!(told.mesh.triangles(), untold.mesh.triangles());
-        assert_eq!((&told.normals, &told.parents), (&untold.normals, &untold.parents));
+        assert_eq!(
+            (&told.normals, &told.parents),
+            (&untold.normals, &untold.parents)
+        );
         assert_eq!(told.error, untold.error);
     }
 }
@@ -41,8 +53,12 @@ fn vertices_lie_where_uniform_refinement_has_its_limits() {
         for name in ["tetrahedron", "cube", "cup", "head", "sheet", "spike"] {
             let control = model(name);
             let diagonal = control.diagonal();
-            let result =
-                exact(&control, scheme, &ExactOptions::default().tolerance(0.004 * diagonal)).unwrap();
+            let result = exact(
+                &control,
+                scheme,
+                &ExactOptions::default().tolerance(0.004 * diagonal),
+            )
+            .unwrap();
             result.mesh.validate().unwrap();
             vertices_are_of_uniform_refinement(&control, scheme, &result, name);
         }
@@ -54,15 +70,33 @@ fn the_certified_bound_holds_and_is_tight() {
     for name in ["cup", "head", "teddy", "sphere", "sheet", "spike"] {
         let control = model(name);
         let tolerance = 0.002 * control.diagonal();
-        let result = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+        let result = exact(
+            &control,
+            &Loop,
+            &ExactOptions::default().tolerance(tolerance),
+        )
+        .unwrap();
         assert_eq!(result.stop, ExactStop::Met);
-        assert!(result.error.upper <= tolerance, "{name}: {}", result.error.upper);
+        assert!(
+            result.error.upper <= tolerance,
+            "{name}: {}",
+            result.error.upper
+        );
         let reference = limit_reference(&control, &Loop, 5).unwrap();
         let samples = SamplingOptions::default().samples(50_000);
-        let sampled = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        let sampled = hausdorff(
+            result.mesh.as_triangles(),
+            reference.as_triangles(),
+            &samples,
+        )
+        .unwrap();
         // The reference's own chords leave the surface, inwards, by less than this.
         let slack = 0.02 * tolerance;
-        assert!(sampled.symmetric() <= result.error.upper + slack, "{name}: {}", sampled.symmetric());
+        assert!(
+            sampled.symmetric() <= result.error.upper + slack,
+            "{name}: {}",
+            sampled.symmetric()
+        );
         assert_eq!(
             result.mesh.topology().euler_characteristic(),
             control.topology().euler_characteristic(),
@@ -81,11 +115,15 @@ fn budgets_are_kept_and_spent_on_the_worst() {
         let control = model(name);
         let mut last = f64::INFINITY;
         for budget in [1500, 3000, 6000] {
-            let result = exact(&control, &Loop, &ExactOptions::default().triangles(budget)).unwrap();
+            let result =
+                exact(&control, &Loop, &ExactOptions::default().triangles(budget)).unwrap();
             result.mesh.validate().unwrap();
             let count = result.mesh.face_count();
             assert_eq!(result.stop, ExactStop::Triangles);
-            assert!(count <= budget && count + budget / 50 + 50 >= budget, "{name}: {count} of {budget}");
+            assert!(
+                count <= budget && count + budget / 50 + 50 >= budget,
+                "{name}: {count} of {budget}"
+            );
             // Evenly curved models get no better before all of their faces are divided.
             assert!(result.error.lower <= last, "{name}: {:?}", result.error);
             assert!(result.error.lower <= result.error.upper);
@@ -100,7 +138,11 @@ fn budgets_are_kept_and_spent_on_the_worst() {
 fn budgets_prove_what_tolerances_prove() {
     let smooth = ["cup", "teddy", "bunny"].map(|name| (name, [2e-3, 7e-4]));
     // Few more than there are faces; even divisions come nearer to the spike, but that cannot be proven.
-    let others = [("cup", [8.3e-3, 7e-3]), ("shoe", [9e-3, 5e-3]), ("spike", [1.3e-2, 9e-3])];
+    let others = [
+        ("cup", [8.3e-3, 7e-3]),
+        ("shoe", [9e-3, 5e-3]),
+        ("spike", [1.3e-2, 9e-3]),
+    ];
     for (name, tolerances) in smooth.into_iter().chain(others) {
         let control = model(name);
         let reference = limit_reference(&control, &Loop, 4).unwrap();
@@ -108,17 +150,29 @@ fn budgets_prove_what_tolerances_prove() {
         let mut last = f64::INFINITY;
         for tolerance in tolerances {
             let tolerance = tolerance * control.diagonal();
-            let within = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+            let within = exact(
+                &control,
+                &Loop,
+                &ExactOptions::default().tolerance(tolerance),
+            )
+            .unwrap();
             let count = within.mesh.face_count();
             let budget = exact(&control, &Loop, &ExactOptions::default().triangles(count)).unwrap();
             assert!(budget.mesh.face_count() <= count, "{name}");
-            assert!(budget.error.upper <= 1.15 * tolerance, "{name}: {:?} of {tolerance}", budget.error);
+            assert!(
+                budget.error.upper <= 1.15 * tolerance,
+                "{name}: {:?} of {tolerance}",
+                budget.error
+            );
             assert!(budget.error.upper <= last, "{name}");
             last = budget.error.upper;
             let samples = SamplingOptions::default().samples(20_000);
             let output = Bvh::new(budget.mesh.as_triangles()).unwrap();
             let found = hausdorff_between(&output, &reference, &samples);
-            assert!(found.symmetric() <= budget.error.upper + 0.03 * tolerance, "{name}");
+            assert!(
+                found.symmetric() <= budget.error.upper + 0.03 * tolerance,
+                "{name}"
+            );
         }
     }
 }
@@ -130,7 +184,10 @@ fn budgets_prove_what_tolerances_prove() {
 fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
         return;
     };
     let cases = [
@@ -141,12 +198,24 @@ fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
     for (name, tolerances) in cases {
         let control = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
         for tolerance in tolerances.map(|part| part * control.diagonal()) {
-            let within = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+            let within = exact(
+                &control,
+                &Loop,
+                &ExactOptions::default().tolerance(tolerance),
+            )
+            .unwrap();
             let count = within.mesh.face_count();
             let budget = exact(&control, &Loop, &ExactOptions::default().triangles(count)).unwrap();
             let found = budget.mesh.face_count();
-            assert!(found <= count && found + count / 50 >= count, "{name}: {found} of {count}");
-            assert!(budget.error.upper <= 1.15 * tolerance, "{name}: {:?} of {tolerance}", budget.error);
+            assert!(
+                found <= count && found + count / 50 >= count,
+                "{name}: {found} of {count}"
+            );
+            assert!(
+                budget.error.upper <= 1.15 * tolerance,
+                "{name}: {:?} of {tolerance}",
+                budget.error
+            );
         }
     }
 }
@@ -167,7 +236,9 @@ fn caps_end_in_a_conforming_mesh_that_says_so() {
 
 #[test]
 fn flat_faces_between_creases_stay_as_they_are() {
-    let control = model("cube").with_creases_above(30f64.to_radians()).unwrap();
+    let control = model("cube")
+        .with_creases_above(30f64.to_radians())
+        .unwrap();
     let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-6)).unwrap();
     assert_eq!(result.mesh.triangles(), control.triangles());
     assert!(result.error.upper <= 1e-6, "{:?}", result.error);
@@ -186,29 +257,75 @@ fn cameras_spare_what_they_do_not_see() {
         height: 1000,
     };
     // At depth 10 a pixel is 0.00536 long.
-    let seen = exact(&control, &Loop, &ExactOptions::default().pixels(0.2, vec![camera])).unwrap();
+    let seen = exact(
+        &control,
+        &Loop,
+        &ExactOptions::default().pixels(0.2, vec![camera]),
+    )
+    .unwrap();
     assert_eq!(seen.stop, ExactStop::Met);
     assert!(seen.worst <= 1.0 && seen.mesh.face_count() < plain.mesh.face_count());
     let faces = |front: bool| {
         let positions = seen.mesh.positions();
         let centre_z = |t: &&[u32; 3]| t.iter().map(|&v| positions[v as usize][2]).sum::<f64>();
-        seen.mesh.triangles().iter().filter(|t| (centre_z(t) > 0.0) == front).count()
+        seen.mesh
+            .triangles()
+            .iter()
+            .filter(|t| (centre_z(t) > 0.0) == front)
+            .count()
     };
-    assert!(faces(true) > 2 * faces(false), "{} {}", faces(true), faces(false));
+    assert!(
+        faces(true) > 2 * faces(false),
+        "{} {}",
+        faces(true),
+        faces(false)
+    );
     // Both sides together need both.
-    let behind = Camera { eye: [0.0, 0.0, -10.0], ..camera };
-    let both = exact(&control, &Loop, &ExactOptions::default().pixels(0.2, vec![camera, behind])).unwrap();
+    let behind = Camera {
+        eye: [0.0, 0.0, -10.0],
+        ..camera
+    };
+    let both = exact(
+        &control,
+        &Loop,
+        &ExactOptions::default().pixels(0.2, vec![camera, behind]),
+    )
+    .unwrap();
     assert!(both.mesh.face_count() > seen.mesh.face_count());
-    let away = Camera { target: [0.0, 0.0, 20.0], ..camera };
-    let unseen = exact(&control, &Loop, &ExactOptions::default().pixels(0.2, vec![away])).unwrap();
+    let away = Camera {
+        target: [0.0, 0.0, 20.0],
+        ..camera
+    };
+    let unseen = exact(
+        &control,
+        &Loop,
+        &ExactOptions::default().pixels(0.2, vec![away]),
+    )
+    .unwrap();
     assert_eq!(unseen.mesh.triangles(), control.triangles());
     for broken in [
-        Camera { fov_degrees: f64::NAN, ..camera },
-        Camera { up: [0.0, 0.0, 1.0], ..camera },
-        Camera { target: camera.eye, ..camera },
+        Camera {
+            fov_degrees: f64::NAN,
+            ..camera
+        },
+        Camera {
+            up: [0.0, 0.0, 1.0],
+            ..camera
+        },
+        Camera {
+            target: camera.eye,
+            ..camera
+        },
         Camera { width: 0, ..camera },
     ] {
-        assert!(exact(&control, &Loop, &ExactOptions::default().pixels(0.2, vec![broken])).is_err());
+        assert!(
+            exact(
+                &control,
+                &Loop,
+                &ExactOptions::default().pixels(0.2, vec![broken])
+            )
+            .is_err()
+        );
     }
 }
 
@@ -224,7 +341,11 @@ fn cones_hold_at_every_corner() {
         for &v in &result.mesh.triangles()[face] {
             let limit = result.normals[v as usize];
             let cosine = (0..3).map(|i| n[i] * limit[i]).sum::<f64>() / length;
-            assert!(cosine >= angle.cos() - 1e-9, "face {face}: {}°", cosine.acos().to_degrees());
+            assert!(
+                cosine >= angle.cos() - 1e-9,
+                "face {face}: {}°",
+                cosine.acos().to_degrees()
+            );
         }
     }
 }
@@ -237,13 +358,19 @@ fn estimates_come_near() {
         let expected = exact_estimate(&control, &Loop, &options).unwrap();
         let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
-        assert!((0.6..1.6).contains(&ratio), "{name}: {expected:?} for {found}");
+        assert!(
+            (0.6..1.6).contains(&ratio),
+            "{name}: {expected:?} for {found}"
+        );
         // Few triangles are counted; the last ones are added when the neighbours are known.
         let options = ExactOptions::default().tolerance(1e-3 * control.diagonal());
         let expected = exact_estimate(&control, &Loop, &options).unwrap();
         let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
-        assert!(expected.is_counted && (0.9..1.1).contains(&ratio), "{name}: {expected:?} for {found}");
+        assert!(
+            expected.is_counted && (0.9..1.1).contains(&ratio),
+            "{name}: {expected:?} for {found}"
+        );
     }
 }
 
@@ -253,7 +380,10 @@ fn estimates_of_large_meshes_come_near() {
     let smooth = limit_reference(&model("bunny"), &Loop, 3).unwrap();
     let mut random = Random::new(7);
     let rough = 3e-4 * smooth.diagonal();
-    let positions = smooth.positions().iter().map(|p| p.map(|x| x + 0.5 * rough * random.signed()));
+    let positions = smooth
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| x + 0.5 * rough * random.signed()));
     let mesh = smooth.clone().with_positions(positions.collect()).unwrap();
     assert!(mesh.face_count() > 50_000);
     for share in [2e-4, 5e-5, 2e-5] {
@@ -261,7 +391,10 @@ fn estimates_of_large_meshes_come_near() {
         let expected = exact_estimate(&mesh, &Loop, &options).unwrap();
         let found = exact(&mesh, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
-        assert!(!expected.is_counted && (0.9..1.1).contains(&ratio), "{share}: {expected:?} for {found}");
+        assert!(
+            !expected.is_counted && (0.9..1.1).contains(&ratio),
+            "{share}: {expected:?} for {found}"
+        );
     }
 }
 
@@ -278,13 +411,21 @@ fn never_worse_than_uniform_refinement_at_equal_triangles() {
             let reference = Bvh::new(reference.as_triangles()).unwrap();
             let distance = |mesh: &Mesh| {
                 let samples = SamplingOptions::default().samples(20_000);
-                hausdorff_between(&Bvh::new(mesh.as_triangles()).unwrap(), &reference, &samples).symmetric()
+                hausdorff_between(
+                    &Bvh::new(mesh.as_triangles()).unwrap(),
+                    &reference,
+                    &samples,
+                )
+                .symmetric()
             };
             let options = ExactOptions::default().triangles(uniform.face_count());
             let adaptive = exact(&control, &Loop, &options).unwrap();
             assert!(adaptive.mesh.face_count() <= uniform.face_count());
             let (ours, theirs) = (distance(&adaptive.mesh), distance(&uniform));
-            assert!(ours <= 1.001 * theirs, "{name}, {levels} levels: {ours} against {theirs}");
+            assert!(
+                ours <= 1.001 * theirs,
+                "{name}, {levels} levels: {ours} against {theirs}"
+            );
         }
     }
 }
@@ -300,11 +441,23 @@ fn balanced_meshes_need_fewer_triangles() {
         balanced.mesh.validate().unwrap();
         assert_eq!(balanced.stop, ExactStop::Met);
         assert!(balanced.error.upper <= 0.001 * control.diagonal());
-        assert!(balanced.mesh.face_count() < plain.mesh.face_count(), "{name}");
+        assert!(
+            balanced.mesh.face_count() < plain.mesh.face_count(),
+            "{name}"
+        );
         let reference = limit_reference(&control, &Loop, 5).unwrap();
         let samples = SamplingOptions::default().samples(50_000);
-        let sampled = hausdorff(balanced.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
-        assert!(sampled.symmetric() <= 1.02 * balanced.error.upper, "{name}: {}", sampled.symmetric());
+        let sampled = hausdorff(
+            balanced.mesh.as_triangles(),
+            reference.as_triangles(),
+            &samples,
+        )
+        .unwrap();
+        assert!(
+            sampled.symmetric() <= 1.02 * balanced.error.upper,
+            "{name}: {}",
+            sampled.symmetric()
+        );
     }
 }
 
@@ -313,7 +466,9 @@ fn balanced_meshes_need_fewer_triangles() {
 fn balanced_angles_take_no_more_triangles() {
     for (name, angle) in [("cup", 6.0f64), ("head", 8.0), ("sphere", 4.0)] {
         let control = model(name);
-        let options = ExactOptions::default().tolerance(0.005 * control.diagonal()).angle(angle.to_radians());
+        let options = ExactOptions::default()
+            .tolerance(0.005 * control.diagonal())
+            .angle(angle.to_radians());
         let plain = exact(&control, &Loop, &options).unwrap();
         let balanced = exact(&control, &Loop, &options.balance(true)).unwrap();
         assert_eq!(balanced.stop, plain.stop, "{name}");
@@ -339,21 +494,34 @@ fn balanced_budgets_conform() {
 /// round.
 #[test]
 fn balancing_ends_after_a_few_rounds() {
-    for (name, tolerance) in [("cup", 1e-5), ("cup", 1e-4), ("sphere", 1e-5), ("teddy", 1e-4)] {
+    for (name, tolerance) in [
+        ("cup", 1e-5),
+        ("cup", 1e-4),
+        ("sphere", 1e-5),
+        ("teddy", 1e-4),
+    ] {
         let control = model(name);
         let options = ExactOptions::default().tolerance(tolerance * control.diagonal());
         let (mut rounds, mut before) = (0, Stage::Limits);
         let mut count = |progress: &Progress| {
-            rounds += usize::from(progress.stage == Stage::Assembling && before != Stage::Assembling);
+            rounds +=
+                usize::from(progress.stage == Stage::Assembling && before != Stage::Assembling);
             before = progress.stage;
             // The last time is that of the finished mesh.
-            if rounds > 10 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if rounds > 10 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let balanced = exact_observed(&control, &Loop, &options.clone().balance(true), &mut count);
         let balanced = balanced.unwrap_or_else(|why| panic!("{name} within {tolerance}: {why}"));
         assert_eq!(balanced.stop, ExactStop::Met);
         let plain = exact(&control, &Loop, &options).unwrap();
-        assert!(balanced.mesh.face_count() < 4 * plain.mesh.face_count() / 5, "{name} within {tolerance}");
+        assert!(
+            balanced.mesh.face_count() < 4 * plain.mesh.face_count() / 5,
+            "{name} within {tolerance}"
+        );
     }
 }
 
@@ -396,7 +564,10 @@ fn sides_of_a_crease_have_normals_of_their_own() {
             let h = limitmesh::HalfEdgeId::of(limitmesh::FaceId(face as u32), corner);
             let normal = result.corner_normal(h);
             let cosine = (0..3).map(|i| n[i] * normal[i]).sum::<f64>() / length;
-            assert!(cosine > if is_cap { 1.0 - 1e-12 } else { 0.95 }, "face {face}, cap {is_cap}: {cosine}");
+            assert!(
+                cosine > if is_cap { 1.0 - 1e-12 } else { 0.95 },
+                "face {face}, cap {is_cap}: {cosine}"
+            );
         }
     }
     assert!(caps > 20, "{caps}");
@@ -414,18 +585,31 @@ fn cut_sheets_stay_together() {
         [-0.5, -1.0, 0.9],
         [2.0, 0.5, 0.5],
     ];
-    let mut soup = limitmesh::PolygonSoup { positions, ..Default::default() };
+    let mut soup = limitmesh::PolygonSoup {
+        positions,
+        ..Default::default()
+    };
     for face in [[0, 1, 2], [1, 0, 3], [0, 1, 4], [2, 1, 5]] {
         soup.faces.push(&face);
     }
     let (control, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
     assert!(!control.junctions().edges.is_empty());
     // Of the three copies of the edge two go opposite ways.
-    assert_eq!((control.topology().boundary_edge_count(), control.open_edge_count()), (10, 8));
+    assert_eq!(
+        (
+            control.topology().boundary_edge_count(),
+            control.open_edge_count()
+        ),
+        (10, 8)
+    );
     let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-3)).unwrap();
     result.mesh.validate().unwrap();
     let edges = &result.mesh.junctions().edges;
-    assert!(edges.len() >= 4, "the edge was divided {} times", edges.len());
+    assert!(
+        edges.len() >= 4,
+        "the edge was divided {} times",
+        edges.len()
+    );
     assert!(edges.iter().all(|copies| copies.len() == 3));
 }
 
@@ -438,7 +622,10 @@ fn depths_have_limits() {
         let error = exact(&control, &Loop, &options).unwrap_err().to_string();
         assert!(error.contains("levels") && error.contains("30"), "{error}");
     }
-    let options = ExactOptions::default().tolerance(1e-300).max_levels(30).max_triangles(Some(3_000));
+    let options = ExactOptions::default()
+        .tolerance(1e-300)
+        .max_levels(30)
+        .max_triangles(Some(3_000));
     let result = exact(&control, &Loop, &options).unwrap();
     result.mesh.validate().unwrap();
     assert!(result.stop != ExactStop::Met && result.mesh.face_count() <= 3_000);
@@ -450,7 +637,10 @@ fn depths_have_limits() {
 fn budgets_beyond_all_numbers_end_at_other_caps() {
     let control = model("tetrahedron");
     for budget in [usize::MAX, usize::MAX / 4 * 3] {
-        let options = ExactOptions::default().max_triangles(None).max_levels(3).triangles(budget);
+        let options = ExactOptions::default()
+            .max_triangles(None)
+            .max_levels(3)
+            .triangles(budget);
         let result = exact(&control, &Loop, &options).unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.mesh.face_count(), control.face_count() << 6);
@@ -469,14 +659,24 @@ fn budgets_see_that_levels_are_used_up() {
         (&prism, 2, 1_000),
     ];
     for (control, levels, budget) in cases {
-        let options = ExactOptions::default().max_levels(levels).max_triangles(None).triangles(budget);
+        let options = ExactOptions::default()
+            .max_levels(levels)
+            .max_triangles(None)
+            .triangles(budget);
         let options = options.flat_regions(false);
         let mut rounds = 0;
         let result = exact_observed(control, &Loop, &options, &mut |progress| {
-            rounds = if progress.stage == Stage::Refining { progress.done.max(rounds) } else { rounds };
+            rounds = if progress.stage == Stage::Refining {
+                progress.done.max(rounds)
+            } else {
+                rounds
+            };
             ControlFlow::Continue(())
         });
-        assert_eq!(result.unwrap().mesh.face_count(), control.face_count() << (2 * levels));
+        assert_eq!(
+            result.unwrap().mesh.face_count(),
+            control.face_count() << (2 * levels)
+        );
         assert!(rounds <= 60, "{rounds} rounds for {levels} levels");
     }
 }
@@ -488,13 +688,22 @@ fn budgets_may_leave_nothing_for_neighbours() {
         let control = model(name);
         let faces = control.face_count();
         // Any angle goes: a goal for which triangles are looked at among their neighbours.
-        let within = ExactOptions::default().tolerance(tolerance * control.diagonal()).angle(3.1);
+        let within = ExactOptions::default()
+            .tolerance(tolerance * control.diagonal())
+            .angle(3.1);
         let whole = exact(&control, &Loop, &within).unwrap();
-        assert!(whole.stop == ExactStop::Met && whole.mesh.face_count() > faces, "{name}");
+        assert!(
+            whole.stop == ExactStop::Met && whole.mesh.face_count() > faces,
+            "{name}"
+        );
         for budget in [0, 1, faces, faces + 1] {
             let result = exact(&control, &Loop, &within.clone().triangles(budget)).unwrap();
             assert_eq!(result.stop, ExactStop::Triangles, "{name}, {budget}");
-            assert_eq!(result.mesh.triangles(), control.triangles(), "{name}, {budget}");
+            assert_eq!(
+                result.mesh.triangles(),
+                control.triangles(),
+                "{name}, {budget}"
+            );
         }
     }
 }
@@ -515,9 +724,18 @@ fn results_are_the_same_bytes_in_every_build() {
         let options = ExactOptions::default().tolerance(0.1 * 0.01 * control.diagonal());
         let mesh = exact(&control, &Loop, &options).unwrap().mesh;
         let coordinates = mesh.positions().as_flattened().iter().map(|x| x.to_bits());
-        let corners = mesh.triangles().as_flattened().iter().map(|&vertex| u64::from(vertex));
+        let corners = mesh
+            .triangles()
+            .as_flattened()
+            .iter()
+            .map(|&vertex| u64::from(vertex));
         let bits = coordinates.chain(corners);
-        (name, bits.fold(0u64, |hash, bits| (hash.rotate_left(5) ^ bits).wrapping_mul(PRIME)))
+        (
+            name,
+            bits.fold(0u64, |hash, bits| {
+                (hash.rotate_left(5) ^ bits).wrapping_mul(PRIME)
+            }),
+        )
     });
     assert_eq!(found, golden, "{found:#x?}");
 }

@@ -14,7 +14,12 @@ fn model(name: &str) -> Mesh {
     if name == "octahedron" {
         return octahedron();
     }
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// Tags on about a fifth of the edges and a tenth of the vertices, most of them fading.
@@ -27,12 +32,19 @@ fn tagged(mesh: Mesh, seed: u64) -> Mesh {
     };
     let mut tags = Tags::default();
     let topology = mesh.topology();
-    for h in topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h < twin)) {
+    for h in topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin))
+    {
         let vertices = topology.ends(h).map(|v| v.0);
-        tags.creases.extend(sharpness(5).map(|sharpness| CreaseTag { vertices, sharpness }));
+        tags.creases.extend(sharpness(5).map(|sharpness| CreaseTag {
+            vertices,
+            sharpness,
+        }));
     }
     for vertex in 0..mesh.vertex_count() as u32 {
-        tags.corners.extend(sharpness(10).map(|sharpness| CornerTag { vertex, sharpness }));
+        tags.corners
+            .extend(sharpness(10).map(|sharpness| CornerTag { vertex, sharpness }));
     }
     mesh.with_tags(tags).unwrap()
 }
@@ -41,23 +53,41 @@ fn tagged(mesh: Mesh, seed: u64) -> Mesh {
 fn sampled(control: &Mesh, scheme: &dyn Scheme, mesh: &Mesh, levels: usize) -> f64 {
     let reference = limit_reference(control, scheme, levels).unwrap();
     let samples = SamplingOptions::default().samples(25_000);
-    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
+    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples)
+        .unwrap()
+        .symmetric()
 }
 
 #[test]
 fn fading_tags_are_followed_to_the_limit() {
-    for (seed, name) in ["tetrahedron", "cube", "octahedron", "spike", "sheet"].into_iter().enumerate() {
+    for (seed, name) in ["tetrahedron", "cube", "octahedron", "spike", "sheet"]
+        .into_iter()
+        .enumerate()
+    {
         for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
             let control = tagged(model(name), seed as u64 + 1);
             let tolerance = 0.004 * control.diagonal();
-            let result = exact(&control, scheme, &ExactOptions::default().tolerance(tolerance)).unwrap();
+            let result = exact(
+                &control,
+                scheme,
+                &ExactOptions::default().tolerance(tolerance),
+            )
+            .unwrap();
             result.mesh.validate().unwrap();
             assert_eq!(result.stop, ExactStop::Met);
-            assert!(result.error.certified && result.error.upper <= tolerance, "{name}: {:?}", result.error);
+            assert!(
+                result.error.certified && result.error.upper <= tolerance,
+                "{name}: {:?}",
+                result.error
+            );
             vertices_are_of_uniform_refinement(&control, scheme, &result, name);
             let found = sampled(&control, scheme, &result.mesh, 5);
             // The reference's own chords leave the surface by less than this.
-            assert!(found <= result.error.upper + 0.05 * tolerance, "{name}: {found} {:?}", result.error);
+            assert!(
+                found <= result.error.upper + 0.05 * tolerance,
+                "{name}: {found} {:?}",
+                result.error
+            );
         }
     }
 }
@@ -66,9 +96,21 @@ fn fading_tags_are_followed_to_the_limit() {
 fn tags_that_fade_leave_no_crease() {
     let control = tagged(model("octahedron"), 3);
     let result = exact(&control, &Loop, &ExactOptions::default().tolerance(0.01)).unwrap();
-    let lasting = control.tags().creases.iter().filter(|tag| tag.sharpness.is_infinite()).count();
+    let lasting = control
+        .tags()
+        .creases
+        .iter()
+        .filter(|tag| tag.sharpness.is_infinite())
+        .count();
     assert_eq!(result.mesh.tags().creases.is_empty(), lasting == 0);
-    assert!(result.mesh.tags().creases.iter().all(|tag| tag.sharpness.is_infinite()));
+    assert!(
+        result
+            .mesh
+            .tags()
+            .creases
+            .iter()
+            .all(|tag| tag.sharpness.is_infinite())
+    );
 }
 
 #[test]
@@ -77,11 +119,20 @@ fn butterfly_passes_through_the_control_vertices_and_its_limit() {
         let control = model(name);
         let tolerance = 0.01 * control.diagonal();
         let scheme = &ModifiedButterfly;
-        let result = exact(&control, scheme, &ExactOptions::default().tolerance(tolerance)).unwrap();
+        let result = exact(
+            &control,
+            scheme,
+            &ExactOptions::default().tolerance(tolerance),
+        )
+        .unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.stop, ExactStop::Met, "{name}");
         assert!(!result.error.certified);
-        assert_eq!(&result.mesh.positions()[..control.vertex_count()], control.positions(), "{name}");
+        assert_eq!(
+            &result.mesh.positions()[..control.vertex_count()],
+            control.positions(),
+            "{name}"
+        );
         vertices_are_of_uniform_refinement(&control, scheme, &result, name);
         let found = sampled(&control, scheme, &result.mesh, 4);
         assert!(result.error.lower <= result.error.upper);
@@ -99,7 +150,12 @@ fn tagged_butterfly_meshes_are_refined_too() {
         let control = tagged(model(name), seed as u64 + 7);
         let scheme = &ModifiedButterfly;
         let tolerance = 0.01 * control.diagonal();
-        let result = exact(&control, scheme, &ExactOptions::default().tolerance(tolerance)).unwrap();
+        let result = exact(
+            &control,
+            scheme,
+            &ExactOptions::default().tolerance(tolerance),
+        )
+        .unwrap();
         result.mesh.validate().unwrap();
         vertices_are_of_uniform_refinement(&control, scheme, &result, name);
     }
@@ -108,7 +164,12 @@ fn tagged_butterfly_meshes_are_refined_too() {
 #[test]
 fn budgets_hold_for_butterfly() {
     let control = model("cube");
-    let result = exact(&control, &ModifiedButterfly, &ExactOptions::default().triangles(400)).unwrap();
+    let result = exact(
+        &control,
+        &ModifiedButterfly,
+        &ExactOptions::default().triangles(400),
+    )
+    .unwrap();
     let count = result.mesh.face_count();
     assert!((340..=400).contains(&count), "{count}");
 }
@@ -118,10 +179,19 @@ fn normals_are_those_of_the_limit() {
     let control = tagged(model("octahedron"), 5);
     for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
         let result = exact(&control, scheme, &ExactOptions::default().tolerance(0.02)).unwrap();
-        let expected = limitmesh::limit::LimitTable::new(scheme).normals(&control).unwrap();
+        let expected = limitmesh::limit::LimitTable::new(scheme)
+            .normals(&control)
+            .unwrap();
         assert_eq!(&result.normals[..control.vertex_count()], &expected[..]);
-        let lengths = result.normals.iter().map(|n| n.iter().map(|x| x * x).sum::<f64>());
-        assert!(lengths.into_iter().all(|square| square == 0.0 || (square - 1.0).abs() < 1e-9));
+        let lengths = result
+            .normals
+            .iter()
+            .map(|n| n.iter().map(|x| x * x).sum::<f64>());
+        assert!(
+            lengths
+                .into_iter()
+                .all(|square| square == 0.0 || (square - 1.0).abs() < 1e-9)
+        );
     }
 }
 
@@ -135,7 +205,12 @@ fn threads_change_nothing() {
         let butterfly = exact(&plain, &ModifiedButterfly, &options(&plain)).unwrap();
         [loop_result, butterfly].map(|found| (found.mesh, found.normals, found.error))
     };
-    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
     assert!(pool(1).install(run) == pool(3).install(run));
 }
 
@@ -157,29 +232,53 @@ t corner 1/1/0 1 10.0
 #[test]
 fn schemes_without_proofs_come_to_an_end() {
     let control = tagged_obj(NEEDLE);
-    let found =
-        exact(&control, &ModifiedButterfly, &ExactOptions::default().triangles(40).optimize(true)).unwrap();
+    let found = exact(
+        &control,
+        &ModifiedButterfly,
+        &ExactOptions::default().triangles(40).optimize(true),
+    )
+    .unwrap();
     found.mesh.validate().unwrap();
     assert_eq!(found.mesh.face_count(), 40);
     let greatest = sampled(&control, &ModifiedButterfly, &found.mesh, 7);
-    assert!(greatest <= 1.1 * found.error.upper, "{greatest} {:?}", found.error);
+    assert!(
+        greatest <= 1.1 * found.error.upper,
+        "{greatest} {:?}",
+        found.error
+    );
 }
 
 #[test]
 fn shared_models_with_fading_creases_are_followed() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
         return;
     };
     for (name, levels) in [("loop_icos_semisharp.obj", 6), ("rook_creased.obj", 4)] {
         let control = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
         let tolerance = 0.001 * control.diagonal();
-        let result = exact(&control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap();
+        let result = exact(
+            &control,
+            &Loop,
+            &ExactOptions::default().tolerance(tolerance),
+        )
+        .unwrap();
         assert_eq!(result.stop, ExactStop::Met);
-        assert!(result.error.certified && result.error.upper <= tolerance, "{name}: {:?}", result.error);
+        assert!(
+            result.error.certified && result.error.upper <= tolerance,
+            "{name}: {:?}",
+            result.error
+        );
         vertices_are_of_uniform_refinement(&control, &Loop, &result, name);
         let found = sampled(&control, &Loop, &result.mesh, levels);
-        assert!(found <= result.error.upper + 0.05 * tolerance, "{name}: {found} {:?}", result.error);
+        assert!(
+            found <= result.error.upper + 0.05 * tolerance,
+            "{name}: {found} {:?}",
+            result.error
+        );
     }
 }

@@ -16,9 +16,16 @@ const SIDE: u32 = 16;
 /// A mesh with some of its edges sharp, for ever and for a while.
 fn creased() -> Mesh {
     let mesh = lumpy(9, 3);
-    let crease = |[a, b]: [u32; 2], sharpness| CreaseTag { vertices: [a.min(b), a.max(b)], sharpness };
+    let crease = |[a, b]: [u32; 2], sharpness| CreaseTag {
+        vertices: [a.min(b), a.max(b)],
+        sharpness,
+    };
     let edges = [[0, 2], [1, 2], [1, 3], [0, 3], [0, 4]];
-    let is_edge = |[a, b]: [u32; 2]| mesh.triangles().iter().any(|t| t.contains(&a) && t.contains(&b));
+    let is_edge = |[a, b]: [u32; 2]| {
+        mesh.triangles()
+            .iter()
+            .any(|t| t.contains(&a) && t.contains(&b))
+    };
     let mut creases: Vec<CreaseTag> = edges
         .into_iter()
         .filter(|&edge| is_edge(edge))
@@ -27,7 +34,11 @@ fn creased() -> Mesh {
         .collect();
     assert!(creases.len() > 2);
     creases.sort_by_key(|crease| crease.vertices);
-    mesh.with_tags(Tags { creases, ..Tags::default() }).unwrap()
+    mesh.with_tags(Tags {
+        creases,
+        ..Tags::default()
+    })
+    .unwrap()
 }
 
 fn models() -> Vec<(&'static str, Mesh)> {
@@ -47,17 +58,30 @@ fn sampled(surface: &LimitSurface<'_>, mesh: &Mesh) -> Vec<Vec<SurfacePoint>> {
         let (u, v) = (f64::from(i) / side, f64::from(j) / side);
         [1.0 - u - v, u, v]
     };
-    let places: Vec<[f64; 3]> =
-        (0..=SIDE).flat_map(|i| (0..=SIDE - i).map(move |j| (i, j))).map(|(i, j)| place(i, j)).collect();
+    let places: Vec<[f64; 3]> = (0..=SIDE)
+        .flat_map(|i| (0..=SIDE - i).map(move |j| (i, j)))
+        .map(|(i, j)| place(i, j))
+        .collect();
     (0..mesh.face_count() as u32)
-        .map(|face| surface.at_all(&places.iter().map(|&at| (FaceId(face), at)).collect::<Vec<_>>()))
+        .map(|face| {
+            surface.at_all(
+                &places
+                    .iter()
+                    .map(|&at| (FaceId(face), at))
+                    .collect::<Vec<_>>(),
+            )
+        })
         .collect()
 }
 
 fn viewpoint(random: &mut Random) -> Viewpoint {
     let mut place = |size: f64| [0; 3].map(|_: i32| size * random.signed());
     let (near, far, direction) = (place(2.0), place(20.0), place(1.0));
-    [Viewpoint::Eye(near), Viewpoint::Eye(far), Viewpoint::Direction(direction)][random.below(3)]
+    [
+        Viewpoint::Eye(near),
+        Viewpoint::Eye(far),
+        Viewpoint::Direction(direction),
+    ][random.below(3)]
 }
 
 /// How much of the front a viewer sees: above 0 where a point shows its front.
@@ -70,7 +94,10 @@ fn side(viewpoint: &Viewpoint, point: &SurfacePoint) -> f64 {
 
 /// What samples say; `None` where there are both sides.
 fn by_samples(viewpoint: &Viewpoint, points: &[SurfacePoint]) -> Option<Facing> {
-    let fronts = points.iter().filter(|point| side(viewpoint, point) > 0.0).count();
+    let fronts = points
+        .iter()
+        .filter(|point| side(viewpoint, point) > 0.0)
+        .count();
     match fronts {
         0 => Some(Facing::Back),
         _ => (fronts == points.len()).then_some(Facing::Front),
@@ -83,8 +110,9 @@ fn facing_is_never_wrong_and_seldom_undecided() {
     for (name, mesh) in models() {
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let points = sampled(&surface, &mesh);
-        let cones: Vec<_> =
-            (0..mesh.face_count() as u32).map(|face| surface.normal_cone(FaceId(face))).collect();
+        let cones: Vec<_> = (0..mesh.face_count() as u32)
+            .map(|face| surface.normal_cone(FaceId(face)))
+            .collect();
         let (mut decided, mut mixed, mut undecided, mut by_cone) = ([0, 0], 0, 0, 0);
         for _ in 0..25 {
             let viewpoint = viewpoint(&mut random);
@@ -92,8 +120,15 @@ fn facing_is_never_wrong_and_seldom_undecided() {
                 let truth = by_samples(&viewpoint, points);
                 let found = surface.facing(FaceId(face as u32), &viewpoint);
                 let cone = cones[face].map_or(Facing::Undecided, |cone| cone.facing(&viewpoint));
-                for facing in [found, cone].into_iter().filter(|&facing| facing != Facing::Undecided) {
-                    assert_eq!(Some(facing), truth, "{name}, face {face} from {viewpoint:?}");
+                for facing in [found, cone]
+                    .into_iter()
+                    .filter(|&facing| facing != Facing::Undecided)
+                {
+                    assert_eq!(
+                        Some(facing),
+                        truth,
+                        "{name}, face {face} from {viewpoint:?}"
+                    );
                 }
                 match truth {
                     None => mixed += 1,
@@ -106,10 +141,16 @@ fn facing_is_never_wrong_and_seldom_undecided() {
         println!(
             "{name}: {decided:?} one side, {mixed} both; undecided of the former {undecided}, by cones {by_cone}"
         );
-        assert!(decided[0] > 20 && decided[1] > 20 && mixed > 5, "{name}: {decided:?} {mixed}");
+        assert!(
+            decided[0] > 20 && decided[1] > 20 && mixed > 5,
+            "{name}: {decided:?} {mixed}"
+        );
         // Beside creases and boundaries irregular vertices stay undecided.
         let is_smooth = !["sheet", "creased"].contains(&name);
-        assert!(!is_smooth || undecided <= mixed / 5, "{name}: {undecided} undecided, {decided:?} {mixed}");
+        assert!(
+            !is_smooth || undecided <= mixed / 5,
+            "{name}: {undecided} undecided, {decided:?} {mixed}"
+        );
     }
 }
 
@@ -118,15 +159,24 @@ fn all_faces_at_once_are_each_one_by_one() {
     for (name, mesh) in models() {
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let viewpoint = Viewpoint::Eye([2.0, -7.0, 3.0]);
-        let each = (0..mesh.face_count() as u32).map(|face| surface.facing(FaceId(face), &viewpoint));
-        assert_eq!(surface.facing_of_all(&viewpoint), each.collect::<Vec<_>>(), "{name}");
+        let each =
+            (0..mesh.face_count() as u32).map(|face| surface.facing(FaceId(face), &viewpoint));
+        assert_eq!(
+            surface.facing_of_all(&viewpoint),
+            each.collect::<Vec<_>>(),
+            "{name}"
+        );
         let mut told = 0;
         let found = surface.facing_of_all_observed(&viewpoint, &mut |progress| {
             told = progress.done;
             ControlFlow::Continue(())
         });
         assert!(found.is_ok() && told == mesh.face_count(), "{name}: {told}");
-        assert!(surface.facing_of_all_observed(&viewpoint, &mut |_| ControlFlow::Break(())).is_err());
+        assert!(
+            surface
+                .facing_of_all_observed(&viewpoint, &mut |_| ControlFlow::Break(()))
+                .is_err()
+        );
     }
 }
 
@@ -137,12 +187,19 @@ fn cones_hold_the_normals_and_are_hardly_wider_than_needed() {
     for (name, mesh) in models() {
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         for (face, points) in sampled(&surface, &mesh).iter().enumerate() {
-            let Some(cone) = surface.normal_cone(FaceId(face as u32)) else { continue };
+            let Some(cone) = surface.normal_cone(FaceId(face as u32)) else {
+                continue;
+            };
             assert!((dot(cone.axis, cone.axis) - 1.0).abs() < 1e-14);
-            let angles = points.iter().map(|point| dot(cone.axis, point.normal).clamp(-1.0, 1.0).acos());
+            let angles = points
+                .iter()
+                .map(|point| dot(cone.axis, point.normal).clamp(-1.0, 1.0).acos());
             let sampled = angles.fold(0.0, f64::max);
             // An arc cosine near 1 keeps half of the digits.
-            assert!(sampled <= cone.half_angle + 2e-8, "{name}, face {face}: {sampled} {cone:?}");
+            assert!(
+                sampled <= cone.half_angle + 2e-8,
+                "{name}, face {face}: {sampled} {cone:?}"
+            );
             ratios.push(cone.half_angle / sampled);
             half_angles.push(cone.half_angle);
         }
@@ -157,25 +214,45 @@ fn cones_hold_the_normals_and_are_hardly_wider_than_needed() {
         median(&ratios),
         ratios[ratios.len() - 1]
     );
-    assert!(ratios.len() > 80 && median(&ratios) < 1.35, "{} {}", ratios.len(), median(&ratios));
+    assert!(
+        ratios.len() > 80 && median(&ratios) < 1.35,
+        "{} {}",
+        ratios.len(),
+        median(&ratios)
+    );
 }
 
 /// At the size of atoms and of galaxies, and far from the origin, the answers are those at size 1, or none.
 #[test]
 fn sizes_and_places_do_not_matter() {
     let mesh = octahedron();
-    let viewpoint = |size: f64, from: f64| Viewpoint::Eye([2.0 * size + from, 0.3 * size, 0.1 * size]);
+    let viewpoint =
+        |size: f64, from: f64| Viewpoint::Eye([2.0 * size + from, 0.3 * size, 0.1 * size]);
     let all = |size: f64, from: f64| {
-        let positions = mesh.positions().iter().map(|p| [p[0] * size + from, p[1] * size, p[2] * size]);
+        let positions = mesh
+            .positions()
+            .iter()
+            .map(|p| [p[0] * size + from, p[1] * size, p[2] * size]);
         let mesh = Mesh::from_triangles(positions.collect(), mesh.triangles().to_vec()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
-        (0..8).map(|face| surface.facing(FaceId(face), &viewpoint(size, from))).collect::<Vec<_>>()
+        (0..8)
+            .map(|face| surface.facing(FaceId(face), &viewpoint(size, from)))
+            .collect::<Vec<_>>()
     };
     let plain = all(1.0, 0.0);
     assert!(plain.contains(&Facing::Back));
-    for (size, from) in [(1e-120, 0.0), (1e120, 0.0), (1.0, 1e6), (1e-200, 0.0), (1.0, 1e15)] {
+    for (size, from) in [
+        (1e-120, 0.0),
+        (1e120, 0.0),
+        (1.0, 1e6),
+        (1e-200, 0.0),
+        (1.0, 1e15),
+    ] {
         for (found, expected) in all(size, from).into_iter().zip(&plain) {
-            assert!(found == *expected || found == Facing::Undecided, "{size} {from}");
+            assert!(
+                found == *expected || found == Facing::Undecided,
+                "{size} {from}"
+            );
         }
     }
     assert_eq!(all(1e-120, 0.0), plain);
@@ -193,10 +270,19 @@ fn what_is_not_known_is_undecided() {
     assert_eq!(warren.facing(FaceId(0), &viewpoint), Facing::Front);
     assert_eq!(warren.facing(FaceId(99), &viewpoint), Facing::Undecided);
     for nonsense in [f64::NAN, f64::INFINITY] {
-        assert_eq!(warren.facing(FaceId(0), &Viewpoint::Eye([nonsense; 3])), Facing::Undecided);
-        assert_eq!(warren.facing(FaceId(0), &Viewpoint::Direction([nonsense; 3])), Facing::Undecided);
+        assert_eq!(
+            warren.facing(FaceId(0), &Viewpoint::Eye([nonsense; 3])),
+            Facing::Undecided
+        );
+        assert_eq!(
+            warren.facing(FaceId(0), &Viewpoint::Direction([nonsense; 3])),
+            Facing::Undecided
+        );
     }
-    assert_eq!(warren.facing(FaceId(0), &Viewpoint::Direction([0.0; 3])), Facing::Undecided);
+    assert_eq!(
+        warren.facing(FaceId(0), &Viewpoint::Direction([0.0; 3])),
+        Facing::Undecided
+    );
     // All points are one.
     let speck = Mesh::from_triangles(vec![[1.0; 3]; 6], mesh.triangles().to_vec()).unwrap();
     let surface = LimitSurface::new(&speck, &Loop).unwrap();

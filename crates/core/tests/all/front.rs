@@ -51,7 +51,12 @@ fn fins() -> Mesh {
 
 fn bytes(front: &Front<'_>) -> (Vec<u8>, Vec<[u32; 3]>) {
     let mesh = front.mesh().unwrap();
-    let positions = mesh.positions().as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let positions = mesh
+        .positions()
+        .as_flattened()
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
     (positions, mesh.triangles().to_vec())
 }
 
@@ -114,7 +119,10 @@ fn updates_give_what_a_fresh_front_does() {
     for (name, control) in models() {
         let size = control.diagonal();
         let mut front = Front::new(&control, &Loop).unwrap();
-        let mut copy = Copy { positions: front.positions().to_vec(), triangles: front.triangles().to_vec() };
+        let mut copy = Copy {
+            positions: front.positions().to_vec(),
+            triangles: front.triangles().to_vec(),
+        };
         for step in 0..12 {
             let tolerance = size * 10f64.powf(-2.2 + 0.8 * random.signed());
             let demand = match random.below(5) {
@@ -130,7 +138,10 @@ fn updates_give_what_a_fresh_front_does() {
             let changes = front.update(&demand).unwrap();
             assert!(changes.vertices.is_sorted() && changes.triangles.is_sorted());
             copy.follow(&front);
-            assert!(bytes(&front) == fresh(&control, &Loop, &demand), "{name}, step {step}: {demand:?}");
+            assert!(
+                bytes(&front) == fresh(&control, &Loop, &demand),
+                "{name}, step {step}: {demand:?}"
+            );
             let mesh = front.mesh().unwrap();
             assert_eq!(
                 unnumbered(&copy.positions, &copy.triangles),
@@ -156,7 +167,10 @@ fn cancelled_updates_go_on_from_where_they_were() {
     for (name, control) in models() {
         let size = control.diagonal();
         let mut front = Front::new(&control, &Loop).unwrap();
-        let mut copy = Copy { positions: front.positions().to_vec(), triangles: front.triangles().to_vec() };
+        let mut copy = Copy {
+            positions: front.positions().to_vec(),
+            triangles: front.triangles().to_vec(),
+        };
         let mut cancelled = 0;
         for step in 0..24 {
             let tolerance = size * 10f64.powf(-2.8 + 0.8 * random.signed());
@@ -169,7 +183,11 @@ fn cancelled_updates_go_on_from_where_they_were() {
             let (mut calls, last) = (0, 1 + random.below(6));
             let mut observer = |_: &Progress| {
                 calls += 1;
-                if calls < last { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+                if calls < last {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
+                }
             };
             match front.update_observed(&demand, &mut observer) {
                 Err(FrontError::Cancelled(_)) => cancelled += 1,
@@ -186,7 +204,10 @@ fn cancelled_updates_go_on_from_where_they_were() {
             if step % 3 == 2 {
                 front.update(&demand).unwrap();
                 copy.follow(&front);
-                assert!(bytes(&front) == fresh(&control, &Loop, &demand), "{name}, step {step}: {demand:?}");
+                assert!(
+                    bytes(&front) == fresh(&control, &Loop, &demand),
+                    "{name}, step {step}: {demand:?}"
+                );
             }
         }
         assert!(cancelled > 5, "{name}: {cancelled}");
@@ -207,7 +228,11 @@ fn cameras_that_move_a_little() {
         for frame in 0..30 {
             let angle = 0.03 * f64::from(frame);
             let camera = Camera {
-                eye: [size * angle.cos(), size * angle.sin(), (0.5 + 0.2 * (3.0 * angle).sin()) * size],
+                eye: [
+                    size * angle.cos(),
+                    size * angle.sin(),
+                    (0.5 + 0.2 * (3.0 * angle).sin()) * size,
+                ],
                 target: [0.2 * size * (2.0 * angle).sin(), 0.0, 0.0],
                 up: [0.0, 0.0, 1.0],
                 fov_degrees: 40.0,
@@ -216,7 +241,10 @@ fn cameras_that_move_a_little() {
             };
             let demand = Demand::pixels(1.5, &[camera]);
             front.update(&demand).unwrap();
-            assert!(bytes(&front) == fresh(&control, &Loop, &demand), "{name}, frame {frame}");
+            assert!(
+                bytes(&front) == fresh(&control, &Loop, &demand),
+                "{name}, frame {frame}"
+            );
             assert!(front.pixels().unwrap() <= 1.5);
             counts.insert(front.triangles().len());
         }
@@ -228,7 +256,11 @@ fn cameras_that_move_a_little() {
 #[test]
 fn lengths_of_a_cameras_directions_do_not_count() {
     let control = lumpy(9, 7);
-    let away = control.positions().iter().map(|&[x, y, z]| [x, y, z - 2.0]).collect();
+    let away = control
+        .positions()
+        .iter()
+        .map(|&[x, y, z]| [x, y, z - 2.0])
+        .collect();
     let control = control.with_positions(away).unwrap();
     let camera = |length: f64| Camera {
         eye: [0.0; 3],
@@ -241,11 +273,20 @@ fn lengths_of_a_cameras_directions_do_not_count() {
     let demand = |length: f64| Demand::pixels(0.5, &[camera(length)]);
     let expected = fresh(&control, &Loop, &demand(1.0)).1;
     for length in [2f64.powi(-600), 2f64.powi(-1000), 2f64.powi(400)] {
-        assert!(fresh(&control, &Loop, &demand(length)).1 == expected, "{length}");
+        assert!(
+            fresh(&control, &Loop, &demand(length)).1 == expected,
+            "{length}"
+        );
     }
     // Much is outside the picture.
-    let all = Camera { fov_degrees: 120.0, ..camera(1.0) };
-    let all = Demand::pixels(0.5 * 10f64.to_radians().tan() / 60f64.to_radians().tan(), &[all]);
+    let all = Camera {
+        fov_degrees: 120.0,
+        ..camera(1.0)
+    };
+    let all = Demand::pixels(
+        0.5 * 10f64.to_radians().tan() / 60f64.to_radians().tan(),
+        &[all],
+    );
     assert!(expected.len() < fresh(&control, &Loop, &all).1.len());
 }
 
@@ -267,9 +308,16 @@ fn farthest(control: &Mesh, scheme: &dyn Scheme, front: &Front<'_>) -> f64 {
         }
     }
     let weights = |w: [u32; 3]| w.map(|w| f64::from(w) / f64::from(cells));
-    let found = surface.at_all(&all.iter().map(|&(face, at)| (face, weights(at))).collect::<Vec<_>>());
+    let found = surface.at_all(
+        &all.iter()
+            .map(|&(face, at)| (face, weights(at)))
+            .collect::<Vec<_>>(),
+    );
     for (&(face, at), point) in all.iter().zip(&found) {
-        places.entry((face.index(), rounded(point.position))).or_default().push(at);
+        places
+            .entry((face.index(), rounded(point.position)))
+            .or_default()
+            .push(at);
     }
     let mut most = 0.0f64;
     // Triangles stand in the order of control faces.
@@ -277,22 +325,34 @@ fn farthest(control: &Mesh, scheme: &dyn Scheme, front: &Front<'_>) -> f64 {
     for triangle in mesh.triangles() {
         let corners = triangle.map(|v| mesh.positions()[v as usize]);
         let of = |face: usize| {
-            let found: Option<Vec<_>> = corners.iter().map(|&p| places.get(&(face, rounded(p)))).collect();
+            let found: Option<Vec<_>> = corners
+                .iter()
+                .map(|&p| places.get(&(face, rounded(p))))
+                .collect();
             found.filter(|all| all.iter().all(|list| list.len() == 1))
         };
         while of(face).is_none() {
             face += 1;
-            assert!(face < control.face_count(), "no face has the triangle's corners");
+            assert!(
+                face < control.face_count(),
+                "no face has the triangle's corners"
+            );
         }
-        let at: Vec<[f64; 3]> = of(face).unwrap().iter().map(|list| weights(list[0])).collect();
+        let at: Vec<[f64; 3]> = of(face)
+            .unwrap()
+            .iter()
+            .map(|list| weights(list[0]))
+            .collect();
         let inside: Vec<[f64; 3]> = (0..=6u32)
             .flat_map(|i| (0..=6 - i).map(move |j| [i, j, 6 - i - j].map(|w| f64::from(w) / 6.0)))
             .collect();
         let mix = |points: &[[f64; 3]], w: [f64; 3]| {
             [0, 1, 2].map(|axis| (0..3).map(|k| w[k] * points[k][axis]).sum())
         };
-        let there: Vec<(FaceId, [f64; 3])> =
-            inside.iter().map(|&w| (FaceId(face as u32), mix(&at, w))).collect();
+        let there: Vec<(FaceId, [f64; 3])> = inside
+            .iter()
+            .map(|&w| (FaceId(face as u32), mix(&at, w)))
+            .collect();
         for (point, &w) in surface.at_all(&there).iter().zip(&inside) {
             most = most.max(crate::support::distance(point.position, mix(&corners, w)));
         }
@@ -310,11 +370,26 @@ fn bounds_hold_by_samples() {
         let size = control.diagonal();
         let mut front = Front::new(&control, &Loop).unwrap();
         for part in [0.02, 0.004] {
-            front.update(&Demand::tolerance(part * size).max_levels(6)).unwrap();
-            assert!(front.bound() <= part * size, "{name}: {} of {}", front.bound(), part * size);
+            front
+                .update(&Demand::tolerance(part * size).max_levels(6))
+                .unwrap();
+            assert!(
+                front.bound() <= part * size,
+                "{name}: {} of {}",
+                front.bound(),
+                part * size
+            );
             let most = farthest(&control, &Loop, &front);
-            assert!(most <= front.bound() + 1e-9 * size, "{name}: {most} beyond {}", front.bound());
-            assert!(most >= 0.3 * front.bound(), "{name}: {most} far below {}", front.bound());
+            assert!(
+                most <= front.bound() + 1e-9 * size,
+                "{name}: {most} beyond {}",
+                front.bound()
+            );
+            assert!(
+                most >= 0.3 * front.bound(),
+                "{name}: {most} far below {}",
+                front.bound()
+            );
         }
     }
 }
@@ -329,7 +404,11 @@ fn fronts_are_nested() {
         while tolerance > 0.002 * control.diagonal() {
             front.update(&Demand::tolerance(tolerance)).unwrap();
             let mesh = front.mesh().unwrap();
-            let own: BTreeSet<[u64; 3]> = mesh.positions().iter().map(|p| p.map(f64::to_bits)).collect();
+            let own: BTreeSet<[u64; 3]> = mesh
+                .positions()
+                .iter()
+                .map(|p| p.map(f64::to_bits))
+                .collect();
             assert!(before.is_none_or(|before| before.is_subset(&own)), "{name}");
             before = Some(own);
             tolerance *= 0.7;
@@ -343,16 +422,28 @@ fn budgets_are_used() {
     for (name, control) in models() {
         let mut front = Front::new(&control, &Loop).unwrap();
         for most in [control.face_count(), 200, 777, 300] {
-            front.update(&Demand::tolerance(0.0).triangles(most)).unwrap();
+            front
+                .update(&Demand::tolerance(0.0).triangles(most))
+                .unwrap();
             let (count, limit) = (front.triangles().len(), front.limit());
-            assert!(count <= most.max(control.face_count()), "{name}: {count} of {most}");
+            assert!(
+                count <= most.max(control.face_count()),
+                "{name}: {count} of {most}"
+            );
             assert_eq!(count, front.mesh().unwrap().face_count());
             let demand = Demand::tolerance(limit);
-            assert!(bytes(&front) == fresh(&control, &Loop, &demand), "{name}, {most}");
+            assert!(
+                bytes(&front) == fresh(&control, &Loop, &demand),
+                "{name}, {most}"
+            );
             let below = f64::from_bits(limit.to_bits() - 1);
             let mut finer = Front::new(&control, &Loop).unwrap();
             finer.update(&Demand::tolerance(below)).unwrap();
-            assert!(finer.triangles().len() > most, "{name}, {most}: {}", finer.triangles().len());
+            assert!(
+                finer.triangles().len() > most,
+                "{name}, {most}: {}",
+                finer.triangles().len()
+            );
         }
     }
 }

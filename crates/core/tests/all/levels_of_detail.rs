@@ -11,8 +11,8 @@ use limitmesh::measure::Bvh;
 use limitmesh::mesh::{PolygonFaces, PolygonSoup, Triangles};
 use limitmesh::progress::Progress;
 use limitmesh::refine::{
-    Exact, ExactOptions, ExactStop, Level, LodOptions, RefineError, Traced, exact, levels_of_detail,
-    levels_of_detail_observed, switching_distance,
+    Exact, ExactOptions, ExactStop, Level, LodOptions, RefineError, Traced, exact,
+    levels_of_detail, levels_of_detail_observed, switching_distance,
 };
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
@@ -21,8 +21,12 @@ type Places = [[f64; 3]; 3];
 
 /// Where a triangle's corners are in its control face.
 fn places(control: &Mesh, exact: &Exact, triangle: usize) -> Places {
-    let place =
-        |corner| exact.corner_origin(control.triangles(), HalfEdgeId::of(FaceId(triangle as u32), corner));
+    let place = |corner| {
+        exact.corner_origin(
+            control.triangles(),
+            HalfEdgeId::of(FaceId(triangle as u32), corner),
+        )
+    };
     [0, 1, 2].map(|corner| place(corner).unwrap().barycentric)
 }
 
@@ -33,7 +37,9 @@ fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
 /// Whether a place is in a triangle of places; all are halves of halves, so nothing is rounded.
 fn holds(triangle: &Places, place: [f64; 3]) -> bool {
     let [a, b, c] = *triangle;
-    [cross(a, b, place), cross(b, c, place), cross(c, a, place)].iter().all(|&area| area >= 0.0)
+    [cross(a, b, place), cross(b, c, place), cross(c, a, place)]
+        .iter()
+        .all(|&area| area >= 0.0)
 }
 
 /// The smallest part of a control face, by division in four, that holds a triangle, and whether it is that part.
@@ -45,7 +51,10 @@ fn node(triangle: &Places) -> (Places, bool) {
         let [a, b, c] = node;
         let [d, e, f] = [middle(a, b), middle(b, c), middle(c, a)];
         let parts = [[a, d, f], [d, b, e], [f, e, c], [e, f, d]];
-        match parts.into_iter().find(|part| triangle.iter().all(|&corner| holds(part, corner))) {
+        match parts
+            .into_iter()
+            .find(|part| triangle.iter().all(|&corner| holds(part, corner)))
+        {
             Some(part) if !is_node => node = part,
             _ => return (node, is_node),
         }
@@ -80,7 +89,11 @@ fn three_sheets() -> Mesh {
     for face in [[0u32, 2, 1], [0, 3, 1], [0, 4, 1], [1, 2, 5], [0, 6, 3]] {
         faces.push(&face);
     }
-    let soup = PolygonSoup { positions, faces, ..PolygonSoup::default() };
+    let soup = PolygonSoup {
+        positions,
+        faces,
+        ..PolygonSoup::default()
+    };
     Mesh::from_soup(&soup, &Default::default()).unwrap().0
 }
 
@@ -115,11 +128,16 @@ fn each_level_is_nested_in_the_next() {
             for triangle in 0..fine.mesh.face_count() {
                 let own = places(&mesh, fine, triangle);
                 let nodes = &of_face[fine.parents[triangle] as usize];
-                let is_nested = nodes.iter().any(|node| own.iter().all(|&corner| holds(node, corner)));
+                let is_nested = nodes
+                    .iter()
+                    .any(|node| own.iter().all(|&corner| holds(node, corner)));
                 assert!(is_nested, "{name}: {own:?}");
                 area += cross(own[0], own[1], own[2]);
             }
-            assert!((area - mesh.face_count() as f64).abs() < 1e-9, "{name}: the triangles cover the faces");
+            assert!(
+                (area - mesh.face_count() as f64).abs() < 1e-9,
+                "{name}: the triangles cover the faces"
+            );
         }
     }
 }
@@ -137,7 +155,10 @@ fn geomorphs_start_on_the_coarser_level() {
             let bvh = Bvh::new(coarse.mesh.as_triangles()).unwrap();
             let size = 1e-12 * mesh.diagonal();
             for &position in &morph.positions {
-                assert!(bvh.closest(position).distance <= size, "{name}: {position:?}");
+                assert!(
+                    bvh.closest(position).distance <= size,
+                    "{name}: {position:?}"
+                );
             }
             assert!(pair[1].positions_at(0.0) == morph.positions);
             assert!(pair[1].positions_at(1.0) == fine.mesh.positions());
@@ -157,15 +178,21 @@ fn geomorphs_start_on_the_coarser_level() {
                     continue;
                 };
                 // The middle is on the same triangle, by the places' own coordinates.
-                let middle: Point = std::array::from_fn(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
-                let under =
-                    Triangles { triangles: &[coarse.mesh.triangles()[under]], ..coarse.mesh.as_triangles() };
+                let middle: Point =
+                    std::array::from_fn(|i| corners.iter().map(|p| p[i]).sum::<f64>() / 3.0);
+                let under = Triangles {
+                    triangles: &[coarse.mesh.triangles()[under]],
+                    ..coarse.mesh.as_triangles()
+                };
                 let distance = Bvh::new(under).unwrap().closest(middle).distance;
                 assert!(distance <= size, "{name}: {distance}");
             }
         }
     }
-    assert!(closing > 10, "{closing} triangles across closing ones were met");
+    assert!(
+        closing > 10,
+        "{closing} triangles across closing ones were met"
+    );
 }
 
 /// The greatest distance found between the mesh at a moment and the surface at the same places, as a part of what is claimed.
@@ -182,7 +209,11 @@ fn sampled(mesh: &Mesh, scheme: &dyn Scheme, level: &Level, t: f64, random: &mut
                 (u, v) = (1.0 - u, 1.0 - v);
             }
             // Edges are where the most is to be found.
-            let weights = if sample < 3 { [0.5, 0.5 - 0.5 * u, 0.5 * u] } else { [1.0 - u - v, u, v] };
+            let weights = if sample < 3 {
+                [0.5, 0.5 - 0.5 * u, 0.5 * u]
+            } else {
+                [1.0 - u - v, u, v]
+            };
             let mix = |of: [[f64; 3]; 3]| -> [f64; 3] {
                 std::array::from_fn(|i| (0..3).map(|corner| weights[corner] * of[corner][i]).sum())
             };
@@ -191,7 +222,9 @@ fn sampled(mesh: &Mesh, scheme: &dyn Scheme, level: &Level, t: f64, random: &mut
         }
     }
     let truth = surface.at_all(&at).into_iter().zip(found);
-    let greatest = truth.map(|(truth, found)| distance(truth.position, found)).fold(0.0f64, f64::max);
+    let greatest = truth
+        .map(|(truth, found)| distance(truth.position, found))
+        .fold(0.0f64, f64::max);
     greatest / level.deviation_at(t)
 }
 
@@ -201,23 +234,41 @@ const LEAST_FOUND: f64 = 0.4;
 #[test]
 fn geomorphs_are_within_their_bound_at_every_moment() {
     let mut random = Random::new(11);
-    let loops = all_samples().into_iter().map(|own| (&Loop as &dyn Scheme, own));
-    let warrens = samples().into_iter().skip(3).map(|own| (&LoopWarren as &dyn Scheme, own));
+    let loops = all_samples()
+        .into_iter()
+        .map(|own| (&Loop as &dyn Scheme, own));
+    let warrens = samples()
+        .into_iter()
+        .skip(3)
+        .map(|own| (&LoopWarren as &dyn Scheme, own));
     for (scheme, (name, mesh)) in loops.chain(warrens) {
-        let levels = levels_of_detail(&mesh, scheme, &options(&mesh, &[0.06, 0.015, 0.004])).unwrap();
+        let levels =
+            levels_of_detail(&mesh, scheme, &options(&mesh, &[0.06, 0.015, 0.004])).unwrap();
         for (i, level) in levels.iter().enumerate() {
             assert_eq!(level.exact.stop, ExactStop::Met);
             assert!(level.exact.error.certified && level.exact.error.upper <= level.tolerance);
-            assert!(level.parametric <= level.tolerance && level.parametric >= level.exact.error.lower);
+            assert!(
+                level.parametric <= level.tolerance && level.parametric >= level.exact.error.lower
+            );
             let start = level.deviation_at(0.0);
-            assert!(i == 0 || start <= levels[i - 1].tolerance, "{name}, level {i}: {start}");
+            assert!(
+                i == 0 || start <= levels[i - 1].tolerance,
+                "{name}, level {i}: {start}"
+            );
             let inner = 0.5 + 0.5 * random.signed();
             for t in [0.0, inner, 0.5, 1.0] {
                 let part = sampled(&mesh, scheme, level, t, &mut random);
-                assert!(part <= 1.0 + 1e-9, "{name}, level {i} at {t}: {part} times what is claimed");
+                assert!(
+                    part <= 1.0 + 1e-9,
+                    "{name}, level {i} at {t}: {part} times what is claimed"
+                );
                 // Bounds are no wild guesses, but for what is next to nothing.
-                let is_end = (t == 0.0 || t == 1.0) && level.deviation_at(t) > 0.002 * level.tolerance;
-                assert!(!is_end || part > LEAST_FOUND, "{name}, level {i} at {t}: {part} of what is claimed");
+                let is_end =
+                    (t == 0.0 || t == 1.0) && level.deviation_at(t) > 0.002 * level.tolerance;
+                assert!(
+                    !is_end || part > LEAST_FOUND,
+                    "{name}, level {i} at {t}: {part} of what is claimed"
+                );
             }
         }
     }
@@ -241,12 +292,18 @@ fn closed_meshes_stay_closed_and_copies_together() {
         for level in &levels {
             let own = &level.exact.mesh;
             assert!(own.validate().is_ok(), "{name}");
-            assert!((own.topology().boundary_edge_count() == 0) == (boundary == 0), "{name}");
+            assert!(
+                (own.topology().boundary_edge_count() == 0) == (boundary == 0),
+                "{name}"
+            );
             for t in [0.0, 0.3] {
                 let positions = level.positions_at(t);
                 for copies in own.junctions().vertices.iter() {
                     let first = positions[copies[0] as usize];
-                    assert!(copies.iter().all(|&v| positions[v as usize] == first), "{name}");
+                    assert!(
+                        copies.iter().all(|&v| positions[v as usize] == first),
+                        "{name}"
+                    );
                 }
             }
         }
@@ -262,7 +319,9 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
     let levels = levels_of_detail(&mesh, &Loop, &asked.clone().geomorphs(false)).unwrap();
     let morphed = levels_of_detail(&mesh, &Loop, &asked).unwrap();
     for (level, morphed) in levels.iter().zip(&morphed) {
-        let plain = ExactOptions::default().tolerance(level.tolerance).flat_regions(false);
+        let plain = ExactOptions::default()
+            .tolerance(level.tolerance)
+            .flat_regions(false);
         let plain = exact(&mesh, &Loop, &plain).unwrap();
         assert!(level.geomorph.is_none() && level.exact.error.upper <= level.tolerance);
         let count = level.exact.mesh.face_count();
@@ -272,7 +331,9 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
         assert!(level.parametric > level.exact.error.upper);
     }
     assert_eq!(levels[0].exact.mesh.positions().len(), {
-        let plain = ExactOptions::default().tolerance(levels[0].tolerance).flat_regions(false);
+        let plain = ExactOptions::default()
+            .tolerance(levels[0].tolerance)
+            .flat_regions(false);
         exact(&mesh, &Loop, &plain).unwrap().mesh.vertex_count()
     });
 }
@@ -280,7 +341,8 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
 #[test]
 fn other_schemes_have_levels_that_are_estimated() {
     let mesh = octahedron();
-    let levels = levels_of_detail(&mesh, &ModifiedButterfly, &options(&mesh, &[0.05, 0.015])).unwrap();
+    let levels =
+        levels_of_detail(&mesh, &ModifiedButterfly, &options(&mesh, &[0.05, 0.015])).unwrap();
     for level in &levels {
         assert!(!level.exact.error.certified && level.parametric <= level.tolerance);
     }
@@ -292,19 +354,36 @@ fn other_schemes_have_levels_that_are_estimated() {
 fn sizes_and_threads_change_nothing() {
     let mesh = lumpy(6, 2).with_creases_above(1.1).unwrap();
     let asked = options(&mesh, &[0.05, 0.01]);
-    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
     let one = pool(1).install(|| levels_of_detail(&mesh, &Loop, &asked).unwrap());
     let three = pool(3).install(|| levels_of_detail(&mesh, &Loop, &asked).unwrap());
     for factor in [2f64.powi(300), 2f64.powi(-300)] {
-        let positions = mesh.positions().iter().map(|p| p.map(|x| factor * x)).collect();
+        let positions = mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| factor * x))
+            .collect();
         let huge = mesh.clone().with_positions(positions).unwrap();
-        let tolerances = asked.tolerances.iter().map(|length| factor * length).collect();
+        let tolerances = asked
+            .tolerances
+            .iter()
+            .map(|length| factor * length)
+            .collect();
         let found = levels_of_detail(&huge, &Loop, &LodOptions::new(tolerances)).unwrap();
         for (level, own) in found.iter().zip(&one) {
             assert_eq!(level.exact.mesh.triangles(), own.exact.mesh.triangles());
             assert_eq!(level.parametric, factor * own.parametric);
             assert_eq!(level.deviation_at(0.0), factor * own.deviation_at(0.0));
-            let expected: Vec<Point> = own.positions_at(0.0).iter().map(|p| p.map(|x| factor * x)).collect();
+            let expected: Vec<Point> = own
+                .positions_at(0.0)
+                .iter()
+                .map(|p| p.map(|x| factor * x))
+                .collect();
             assert_eq!(level.positions_at(0.0), expected);
         }
     }
@@ -328,7 +407,11 @@ fn normals_are_those_that_the_coarser_level_is_shaded_with() {
         let [coarse, fine] = [0, 1].map(|level| &levels[level].exact);
         let (split, normals) = levels[1].split_surface();
         let has_sides = split.positions.len() > fine.mesh.vertex_count();
-        assert_eq!(has_sides, !mesh.tags().creases.is_empty(), "{name}: creases have sides");
+        assert_eq!(
+            has_sides,
+            !mesh.tags().creases.is_empty(),
+            "{name}: creases have sides"
+        );
         let mut of_face: Vec<Vec<(Places, u32)>> = vec![Vec::new(); mesh.face_count()];
         for triangle in 0..coarse.mesh.face_count() {
             let own = places(&mesh, coarse, triangle);
@@ -340,13 +423,20 @@ fn normals_are_those_that_the_coarser_level_is_shaded_with() {
             let beneath = of_face[fine.parents[triangle] as usize]
                 .iter()
                 .find(|(coarse, _)| own.iter().all(|&corner| holds(coarse, corner)));
-            let Some((around, under)) = beneath else { continue };
+            let Some((around, under)) = beneath else {
+                continue;
+            };
             for (corner, &place) in own.iter().enumerate() {
                 let weights = weights(around, place);
-                let theirs = [0, 1, 2].map(|i| coarse.corner_normal(HalfEdgeId::of(FaceId(*under), i)));
-                let expected = std::array::from_fn(|axis| (0..3).map(|i| weights[i] * theirs[i][axis]).sum());
+                let theirs =
+                    [0, 1, 2].map(|i| coarse.corner_normal(HalfEdgeId::of(FaceId(*under), i)));
+                let expected =
+                    std::array::from_fn(|axis| (0..3).map(|i| weights[i] * theirs[i][axis]).sum());
                 let found = normals[split.triangles[triangle][corner] as usize];
-                assert!(distance(found, expected) < 1e-12, "{name}: {found:?} and {expected:?}");
+                assert!(
+                    distance(found, expected) < 1e-12,
+                    "{name}: {found:?} and {expected:?}"
+                );
                 compared += 1;
             }
         }
@@ -357,9 +447,14 @@ fn normals_are_those_that_the_coarser_level_is_shaded_with() {
 #[test]
 fn bad_tolerances_are_refused() {
     let mesh = octahedron();
-    for bad in
-        [vec![], vec![0.1, 0.1], vec![0.1, 0.2], vec![0.1, f64::NAN], vec![0.1, 0.0], vec![f64::INFINITY]]
-    {
+    for bad in [
+        vec![],
+        vec![0.1, 0.1],
+        vec![0.1, 0.2],
+        vec![0.1, f64::NAN],
+        vec![0.1, 0.0],
+        vec![f64::INFINITY],
+    ] {
         let found = levels_of_detail(&mesh, &Loop, &LodOptions::new(bad.clone()));
         assert!(matches!(found, Err(RefineError::Mesh(_))), "{bad:?}");
     }
@@ -385,9 +480,14 @@ fn observers_can_stop_it() {
     let mut calls = 0;
     let mut observer = |_: &Progress| {
         calls += 1;
-        if calls > 20 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if calls > 20 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
-    let found = levels_of_detail_observed(&mesh, &Loop, &options(&mesh, &[0.05, 0.001]), &mut observer);
+    let found =
+        levels_of_detail_observed(&mesh, &Loop, &options(&mesh, &[0.05, 0.001]), &mut observer);
     assert!(matches!(found, Err(RefineError::Cancelled(_))));
 }
 

@@ -27,7 +27,11 @@ fn dot(a: Vector, b: Vector) -> f64 {
 }
 
 fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn unit(a: Vector) -> Vector {
@@ -76,7 +80,10 @@ fn edge_point(mesh: &Mesh, scheme: &dyn Scheme, edge: HalfEdgeId) -> Vector {
 /// One step of subdivision; vertex 0 stays vertex 0.
 fn subdivided(mesh: &Mesh, scheme: &dyn Scheme) -> Mesh {
     let topology = mesh.topology();
-    let mut positions: Vec<Vector> = topology.vertices().map(|v| vertex_point(mesh, scheme, v)).collect();
+    let mut positions: Vec<Vector> = topology
+        .vertices()
+        .map(|v| vertex_point(mesh, scheme, v))
+        .collect();
     let mut new = BTreeMap::new();
     for h in topology.half_edges() {
         let [a, b] = topology.ends(h);
@@ -116,7 +123,12 @@ fn cropped(mesh: &Mesh, radius: usize) -> Mesh {
         }
     }
     let inside = |t: &&[u32; 3]| t.iter().all(|&v| index[v as usize] != u32::MAX);
-    let triangles = mesh.triangles().iter().filter(inside).map(|t| t.map(|v| index[v as usize])).collect();
+    let triangles = mesh
+        .triangles()
+        .iter()
+        .filter(inside)
+        .map(|t| t.map(|v| index[v as usize]))
+        .collect();
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
@@ -132,7 +144,11 @@ fn fan(k: u32, open: bool, seed: f64) -> Mesh {
             let n = f64::from(circle * 31 + j * 7) + seed;
             let angle = whole * (f64::from(j) + 0.2 * (n * 1.7).sin()) / f64::from(parts);
             let radius = f64::from(circle) * (1.0 + 0.1 * (n * 2.3).sin());
-            positions.push([radius * angle.cos(), radius * angle.sin(), 0.5 * (n * 3.1).sin()]);
+            positions.push([
+                radius * angle.cos(),
+                radius * angle.sin(),
+                0.5 * (n * 3.1).sin(),
+            ]);
         }
     }
     let at = |circle: u32, j: u32| 1 + (circle - 1) * k + j % k;
@@ -152,20 +168,30 @@ fn frame(mesh: &Mesh) -> [Vector; 3] {
     let ring = ring(mesh, VertexId(0), None);
     let at = |v: VertexId| add(mesh.positions()[v.index()], mesh.positions()[0], -1.0);
     let (first, second) = if mesh.topology().is_boundary(VertexId(0)) {
-        (add(at(ring[0]), at(ring[ring.len() - 1]), -1.0), at(ring[ring.len() / 2]))
+        (
+            add(at(ring[0]), at(ring[ring.len() - 1]), -1.0),
+            at(ring[ring.len() / 2]),
+        )
     } else {
         (at(ring[0]), at(ring[1.max(ring.len() / 4)]))
     };
     // The third of their size, so that heights shrink in it as they do beside them.
     let third = cross(first, second);
-    [first, second, third.map(|x| x / dot(third, third).powf(0.25))]
+    [
+        first,
+        second,
+        third.map(|x| x / dot(third, third).powf(0.25)),
+    ]
 }
 
 /// Limit position of vertex 0 and normals of its faces, after `steps` steps.
 fn brute_force(mesh: &Mesh, scheme: &dyn Scheme, steps: usize) -> (Vector, Vec<Vector>) {
     let mut mesh = mesh.clone();
     // A point x of the first mesh is now rows · (x − origin).
-    let (mut origin, mut rows) = ([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+    let (mut origin, mut rows) = (
+        [0.0; 3],
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    );
     let mut columns = rows;
     for _ in 0..steps {
         mesh = cropped(&subdivided(&mesh, scheme), 5);
@@ -179,9 +205,11 @@ fn brute_force(mesh: &Mesh, scheme: &dyn Scheme, steps: usize) -> (Vector, Vec<V
         let mapped = |p: Vector| map.map(|row| dot(row, add(p, shift, -1.0)));
         let positions = mesh.positions().iter().map(|&p| mapped(p)).collect();
         mesh = mesh.with_positions(positions).unwrap();
-        let combined = |row: Vector| (0..3).fold([0.0; 3], |sum, axis| add(sum, rows[axis], row[axis]));
+        let combined =
+            |row: Vector| (0..3).fold([0.0; 3], |sum, axis| add(sum, rows[axis], row[axis]));
         rows = map.map(combined);
-        columns = [a, b, c].map(|d| (0..3).fold([0.0; 3], |sum, axis| add(sum, columns[axis], d[axis])));
+        columns =
+            [a, b, c].map(|d| (0..3).fold([0.0; 3], |sum, axis| add(sum, columns[axis], d[axis])));
     }
     let normals = mesh.topology().outgoing_ring(VertexId(0)).map(|h| {
         let normal = mesh.face_normal(h.face());
@@ -194,18 +222,33 @@ fn brute_force(mesh: &Mesh, scheme: &dyn Scheme, steps: usize) -> (Vector, Vec<V
 fn check(scheme: &dyn Scheme, k: u32, open: bool, steps: usize) {
     let mesh = fan(k, open, f64::from(k) + 0.5);
     let table = LimitTable::new(scheme);
-    let (normal, position) =
-        (table.normal(&mesh, VertexId(0)).unwrap(), table.position(&mesh, VertexId(0)).unwrap());
-    let plane = table.stencil(mesh.ring_shape(VertexId(0))).unwrap().tangent_plane();
+    let (normal, position) = (
+        table.normal(&mesh, VertexId(0)).unwrap(),
+        table.position(&mesh, VertexId(0)).unwrap(),
+    );
+    let plane = table
+        .stencil(mesh.ring_shape(VertexId(0)))
+        .unwrap()
+        .tangent_plane();
     let (met, faces) = brute_force(&mesh, scheme, steps);
     let place = format!("{} k={k} open={open}", scheme.name());
     let apart = add(met, position, -1.0);
-    assert!(dot(apart, apart).sqrt() < 1e-10, "{place}: position {met:?}, {position:?}");
+    assert!(
+        dot(apart, apart).sqrt() < 1e-10,
+        "{place}: position {met:?}, {position:?}"
+    );
     let ends = [faces[0], faces[faces.len() - 1]];
-    let faces = if plane == TangentPlane::BoundaryRibbon { ends.to_vec() } else { faces };
+    let faces = if plane == TangentPlane::BoundaryRibbon {
+        ends.to_vec()
+    } else {
+        faces
+    };
     for face in faces {
         let apart = add(face, normal, -1.0);
-        assert!(dot(apart, apart).sqrt() < 1e-10, "{place}: normal {face:?}, {normal:?}");
+        assert!(
+            dot(apart, apart).sqrt() < 1e-10,
+            "{place}: normal {face:?}, {normal:?}"
+        );
     }
 }
 

@@ -7,7 +7,10 @@ use limitmesh::{FaceId, LimitSurface, Mesh};
 
 #[track_caller]
 fn near(found: f64, expected: f64, within: f64) {
-    assert!((found - expected).abs() <= within * expected.abs().max(1.0), "{found} and {expected}");
+    assert!(
+        (found - expected).abs() <= within * expected.abs().max(1.0),
+        "{found} and {expected}"
+    );
 }
 
 /// The corners of a solid, each face counter-clockwise from outside.
@@ -26,12 +29,26 @@ fn octahedron() -> Mesh {
     ];
     solid(
         &positions,
-        &[[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
+        &[
+            [0, 2, 4],
+            [2, 1, 4],
+            [1, 3, 4],
+            [3, 0, 4],
+            [2, 0, 5],
+            [1, 2, 5],
+            [3, 1, 5],
+            [0, 3, 5],
+        ],
     )
 }
 
 fn tetrahedron() -> Mesh {
-    let positions = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let positions = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
     solid(&positions, &[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
 }
 
@@ -39,22 +56,29 @@ fn icosahedron() -> Mesh {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut positions: Vec<[f64; 3]> = Vec::new();
     for axis in 0..3 {
-        for [a, b] in [[1.0, golden], [1.0, -golden], [-1.0, golden], [-1.0, -golden]] {
+        for [a, b] in [
+            [1.0, golden],
+            [1.0, -golden],
+            [-1.0, golden],
+            [-1.0, -golden],
+        ] {
             let mut position = [0.0; 3];
             (position[(axis + 1) % 3], position[(axis + 2) % 3]) = (a, b);
             positions.push(position);
         }
     }
     // Its edges are 2 long.
-    let from = |a: u32, b: u32| [0, 1, 2].map(|i| positions[b as usize][i] - positions[a as usize][i]);
-    let is_edge = |a: u32, b: u32| (from(a, b).iter().map(|x| x * x).sum::<f64>() - 4.0).abs() < 1e-9;
+    let from =
+        |a: u32, b: u32| [0, 1, 2].map(|i| positions[b as usize][i] - positions[a as usize][i]);
+    let is_edge =
+        |a: u32, b: u32| (from(a, b).iter().map(|x| x * x).sum::<f64>() - 4.0).abs() < 1e-9;
     let mut triangles = Vec::new();
     for a in 0..12 {
         for b in a + 1..12 {
             for c in (b + 1..12).filter(|&c| is_edge(a, b) && is_edge(b, c) && is_edge(c, a)) {
                 let ([u, v], p) = ([from(a, b), from(a, c)], positions[a as usize]);
-                let cross =
-                    [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+                let cross = [0, 1, 2]
+                    .map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
                 let is_outwards = (0..3).map(|k| cross[k] * p[k]).sum::<f64>() > 0.0;
                 triangles.push(if is_outwards { [a, b, c] } else { [a, c, b] });
             }
@@ -69,8 +93,10 @@ fn lattice(height: impl Fn(f64, f64) -> f64) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for j in 0..SIDE {
         for i in 0..SIDE {
-            let (x, y) =
-                (f64::from(i) - 3.0 + 0.5 * (f64::from(j) - 3.0), 0.75f64.sqrt() * (f64::from(j) - 3.0));
+            let (x, y) = (
+                f64::from(i) - 3.0 + 0.5 * (f64::from(j) - 3.0),
+                0.75f64.sqrt() * (f64::from(j) - 3.0),
+            );
             positions.push([x, y, height(x, y)]);
             if i + 1 < SIDE && j + 1 < SIDE {
                 let at = j * SIDE + i;
@@ -86,8 +112,13 @@ fn lattice(height: impl Fn(f64, f64) -> f64) -> Mesh {
 fn places() -> Vec<[f64; 3]> {
     (0..60)
         .map(|i| {
-            let [u, v] = [0.618_033_988_75, 0.754_877_666_25].map(|step| (0.5 + step * f64::from(i)).fract());
-            let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
+            let [u, v] = [0.618_033_988_75, 0.754_877_666_25]
+                .map(|step| (0.5 + step * f64::from(i)).fract());
+            let [u, v] = if u + v > 1.0 {
+                [1.0 - u, 1.0 - v]
+            } else {
+                [u, v]
+            };
             [1.0 - u - v, u, v]
         })
         .collect()
@@ -100,10 +131,22 @@ fn polynomials_are_reproduced_with_their_derivatives() {
     type Height = fn(f64, f64) -> f64;
     type Second = fn(f64, f64) -> [f64; 3];
     let cases: [(Height, Height, Second); 4] = [
-        (|x, y| x * x + y * y - 0.5, |x, y| x * x + y * y, |_, _| [2.0, 0.0, 2.0]),
+        (
+            |x, y| x * x + y * y - 0.5,
+            |x, y| x * x + y * y,
+            |_, _| [2.0, 0.0, 2.0],
+        ),
         (|x, y| x * y, |x, y| x * y, |_, _| [0.0, 1.0, 0.0]),
-        (|x, _| x * x * x - 0.75 * x, |x, _| x * x * x, |x, _| [6.0 * x, 0.0, 0.0]),
-        (|x, y| x * x * y - 0.25 * y, |x, y| x * x * y, |x, y| [2.0 * y, 2.0 * x, 0.0]),
+        (
+            |x, _| x * x * x - 0.75 * x,
+            |x, _| x * x * x,
+            |x, _| [6.0 * x, 0.0, 0.0],
+        ),
+        (
+            |x, y| x * x * y - 0.25 * y,
+            |x, y| x * x * y,
+            |x, y| [2.0 * y, 2.0 * x, 0.0],
+        ),
     ];
     for (control, height, second) in cases {
         let mesh = lattice(control);
@@ -143,8 +186,16 @@ fn a_paraboloid_bends_as_it_does() {
         let [x, y, _] = found.position;
         let squared = x * x + y * y;
         let curvature = found.curvature().unwrap();
-        near(curvature.gaussian, 4.0 / (1.0 + 4.0 * squared).powi(2), 1e-12);
-        near(curvature.mean, (2.0 + 4.0 * squared) / (1.0 + 4.0 * squared).powf(1.5), 1e-12);
+        near(
+            curvature.gaussian,
+            4.0 / (1.0 + 4.0 * squared).powi(2),
+            1e-12,
+        );
+        near(
+            curvature.mean,
+            (2.0 + 4.0 * squared) / (1.0 + 4.0 * squared).powf(1.5),
+            1e-12,
+        );
         let [most, least] = curvature.principal;
         near(most * least, curvature.gaussian, 1e-12);
         near(most + least, 2.0 * curvature.mean, 1e-12);
@@ -167,17 +218,35 @@ fn a_paraboloid_bends_as_it_does() {
 #[test]
 fn solids_bend_as_they_should() {
     let cases = [
-        (icosahedron(), [2.029360270416, -1.433382573510], [1.762285960192, -1.327511190232]),
-        (octahedron(), [5.983379501385, -2.531187639857], [3.848001180091, -1.961632274431]),
+        (
+            icosahedron(),
+            [2.029360270416, -1.433382573510],
+            [1.762285960192, -1.327511190232],
+        ),
+        (
+            octahedron(),
+            [5.983379501385, -2.531187639857],
+            [3.848001180091, -1.961632274431],
+        ),
     ];
     for (mesh, edge, centre) in cases {
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
-        let size = mesh.positions()[0].iter().map(|x| x * x).sum::<f64>().sqrt();
+        let size = mesh.positions()[0]
+            .iter()
+            .map(|x| x * x)
+            .sum::<f64>()
+            .sqrt();
         for face in 0..mesh.face_count() as u32 {
-            for (at, [gaussian, mean]) in
-                [([0.5, 0.5, 0.0], edge), ([0.0, 0.5, 0.5], edge), ([1.0 / 3.0; 3], centre)]
-            {
-                let found = surface.derivatives(FaceId(face), at).unwrap().curvature().unwrap();
+            for (at, [gaussian, mean]) in [
+                ([0.5, 0.5, 0.0], edge),
+                ([0.0, 0.5, 0.5], edge),
+                ([1.0 / 3.0; 3], centre),
+            ] {
+                let found = surface
+                    .derivatives(FaceId(face), at)
+                    .unwrap()
+                    .curvature()
+                    .unwrap();
                 near(found.gaussian * size * size, gaussian, 1e-10);
                 near(found.mean * size, mean, 1e-10);
             }
@@ -185,12 +254,23 @@ fn solids_bend_as_they_should() {
     }
     let mesh = tetrahedron();
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
-    let edge = surface.derivatives(FaceId(0), [0.5, 0.0, 0.5]).unwrap().curvature().unwrap();
+    let edge = surface
+        .derivatives(FaceId(0), [0.5, 0.0, 0.5])
+        .unwrap()
+        .curvature()
+        .unwrap();
     near(edge.gaussian, 15.75, 1e-11);
     near(edge.mean, -4.625, 1e-11);
     let mesh = octahedron();
-    let found = LimitSurface::new(&mesh, &Loop).unwrap().derivatives(FaceId(0), [0.5, 0.3, 0.2]).unwrap();
-    for (found, expected) in found.position.into_iter().zip([0.32634375, 0.20559375, 0.144]) {
+    let found = LimitSurface::new(&mesh, &Loop)
+        .unwrap()
+        .derivatives(FaceId(0), [0.5, 0.3, 0.2])
+        .unwrap();
+    for (found, expected) in found
+        .position
+        .into_iter()
+        .zip([0.32634375, 0.20559375, 0.144])
+    {
         near(found, expected, 1e-15);
     }
 }
@@ -198,28 +278,51 @@ fn solids_bend_as_they_should() {
 /// Volumes and areas of unit solids: extrapolated from uniform refinements by other code, whose last digits agree.
 #[test]
 fn volumes_and_areas() {
-    let cases = [(octahedron(), 0.303_854_909_279), (tetrahedron(), 0.102_993_114_295)];
+    let cases = [
+        (octahedron(), 0.303_854_909_279),
+        (tetrahedron(), 0.102_993_114_295),
+    ];
     for (mesh, volume) in cases {
         let found = LimitSurface::new(&mesh, &Loop).unwrap().volume().unwrap();
         near(found / volume, 1.0, 1e-10);
         // It is the same far from the origin, and grows with the third power of lengths whatever they are.
         for (scale, power) in [(1e100, 1e300), (1e-100, 1e-300)] {
-            let scaled = mesh.positions().iter().map(|p| p.map(|x| x * scale)).collect();
+            let scaled = mesh
+                .positions()
+                .iter()
+                .map(|p| p.map(|x| x * scale))
+                .collect();
             let scaled = mesh.clone().with_positions(scaled).unwrap();
             let surface = LimitSurface::new(&scaled, &Loop).unwrap();
             near(surface.volume().unwrap() / power / found, 1.0, 1e-12);
             let area = LimitSurface::new(&mesh, &Loop).unwrap().area().unwrap();
             near(surface.area().unwrap() / scale / scale / area, 1.0, 1e-12);
         }
-        let huge = mesh.positions().iter().map(|p| p.map(|x| x * 1e200)).collect();
+        let huge = mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| x * 1e200))
+            .collect();
         let huge = mesh.clone().with_positions(huge).unwrap();
         assert_eq!(LimitSurface::new(&huge, &Loop).unwrap().volume(), None);
-        let moved = mesh.positions().iter().map(|p| p.map(|x| x + 2f64.powi(40))).collect();
+        let moved = mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| x + 2f64.powi(40)))
+            .collect();
         let moved = mesh.clone().with_positions(moved).unwrap();
-        near(LimitSurface::new(&moved, &Loop).unwrap().volume().unwrap(), found, 1e-9);
+        near(
+            LimitSurface::new(&moved, &Loop).unwrap().volume().unwrap(),
+            found,
+            1e-9,
+        );
     }
     let mesh = icosahedron();
-    let size = mesh.positions()[0].iter().map(|x| x * x).sum::<f64>().sqrt();
+    let size = mesh.positions()[0]
+        .iter()
+        .map(|x| x * x)
+        .sum::<f64>()
+        .sqrt();
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     near(surface.volume().unwrap() / size.powi(3), 1.45042605, 2e-8);
     // Beside triangles between points of the surface, which are below it by a quarter with each level.
@@ -235,8 +338,8 @@ fn volumes_and_areas() {
                 let mut add = |places: [[f64; 3]; 3]| {
                     let [a, b, c] = places.map(|place| surface.at(FaceId(0), place).position);
                     let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-                    let cross =
-                        [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+                    let cross = [0, 1, 2]
+                        .map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
                     sum += 0.5 * cross.iter().map(|x| x * x).sum::<f64>().sqrt();
                 };
                 add([at(i, j), at(i + 1, j), at(i, j + 1)]);
@@ -258,7 +361,11 @@ fn volumes_and_areas() {
     assert!(flat.area().unwrap() < 36.0 * 0.75f64.sqrt());
     let other = LimitSurface::new(&mesh, &ModifiedButterfly).unwrap();
     assert_eq!(
-        (other.area(), other.volume(), other.derivatives(FaceId(0), [1.0 / 3.0; 3])),
+        (
+            other.area(),
+            other.volume(),
+            other.derivatives(FaceId(0), [1.0 / 3.0; 3])
+        ),
         (None, None, None)
     );
 }
@@ -275,13 +382,17 @@ fn curvature_adds_up_to_the_sphere() {
         for face in 0..mesh.face_count() as u32 {
             for i in 0..n {
                 for j in 0..n {
-                    let (x, y) = ((f64::from(i) + 0.5) / f64::from(n), (f64::from(j) + 0.5) / f64::from(n));
+                    let (x, y) = (
+                        (f64::from(i) + 0.5) / f64::from(n),
+                        (f64::from(j) + 0.5) / f64::from(n),
+                    );
                     let at = [1.0 - x, x * (1.0 - y), x * y];
                     let found = surface.derivatives(FaceId(face), at).unwrap();
                     let [u, v] = found.first;
-                    let cross =
-                        [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-                    let density = x * cross.iter().map(|x| x * x).sum::<f64>().sqrt() / f64::from(n * n);
+                    let cross = [0, 1, 2]
+                        .map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+                    let density =
+                        x * cross.iter().map(|x| x * x).sum::<f64>().sqrt() / f64::from(n * n);
                     area += density;
                     total += density * found.curvature().unwrap().gaussian;
                 }
@@ -300,18 +411,42 @@ fn fan(valence: u32) -> Mesh {
         for i in 0..valence * ring {
             let angle = core::f64::consts::TAU * f64::from(i) / f64::from(valence * ring);
             let (x, y) = (f64::from(ring) * angle.cos(), f64::from(ring) * angle.sin());
-            positions.push([x, y, 0.3 - 0.1 * (x * x + 0.4 * y * y) + 0.03 * x * y + 0.02 * x]);
+            positions.push([
+                x,
+                y,
+                0.3 - 0.1 * (x * x + 0.4 * y * y) + 0.03 * x * y + 0.02 * x,
+            ]);
         }
     }
-    let start = |ring: u32| if ring == 0 { 0 } else { 1 + valence * ring * (ring - 1) / 2 };
-    let at = |ring: u32, i: u32| if ring == 0 { 0 } else { start(ring) + i % (valence * ring) };
+    let start = |ring: u32| {
+        if ring == 0 {
+            0
+        } else {
+            1 + valence * ring * (ring - 1) / 2
+        }
+    };
+    let at = |ring: u32, i: u32| {
+        if ring == 0 {
+            0
+        } else {
+            start(ring) + i % (valence * ring)
+        }
+    };
     for ring in 0..3 {
         for sector in 0..valence {
             for i in 0..=ring {
                 let (outer, inner) = (sector * (ring + 1) + i, sector * ring + i);
-                triangles.push([at(ring, inner), at(ring + 1, outer), at(ring + 1, outer + 1)]);
+                triangles.push([
+                    at(ring, inner),
+                    at(ring + 1, outer),
+                    at(ring + 1, outer + 1),
+                ]);
                 if i < ring {
-                    triangles.push([at(ring, inner), at(ring + 1, outer + 1), at(ring, inner + 1)]);
+                    triangles.push([
+                        at(ring, inner),
+                        at(ring + 1, outer + 1),
+                        at(ring, inner + 1),
+                    ]);
                 }
             }
         }
@@ -325,14 +460,23 @@ fn derivatives_are_limits_of_differences() {
         let mesh = fan(valence);
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         for face in 0..valence + 4 {
-            for at in places().into_iter().filter(|at| at.iter().all(|&weight| weight > 0.02)) {
+            for at in places()
+                .into_iter()
+                .filter(|at| at.iter().all(|&weight| weight > 0.02))
+            {
                 let found = surface.derivatives(FaceId(face), at).unwrap();
                 let h = 1e-4;
                 let moved = |u: f64, v: f64| {
-                    surface.derivatives(FaceId(face), [at[0] - u - v, at[1] + u, at[2] + v]).unwrap()
+                    surface
+                        .derivatives(FaceId(face), [at[0] - u - v, at[1] + u, at[2] + v])
+                        .unwrap()
                 };
                 for axis in 0..3 {
-                    near(found.position[axis], surface.at(FaceId(face), at).position[axis], 1e-14);
+                    near(
+                        found.position[axis],
+                        surface.at(FaceId(face), at).position[axis],
+                        1e-14,
+                    );
                     for (k, [u, v]) in [[h, 0.0], [0.0, h]].into_iter().enumerate() {
                         let (after, before) = (moved(u, v), moved(-u, -v));
                         near(
@@ -364,9 +508,16 @@ fn normals_beside_irregular_vertices_are_exact() {
         let mesh = fan(valence);
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         for face in 0..valence {
-            let corner = mesh.triangles()[face as usize].iter().position(|&v| v == 0).unwrap();
-            let limit =
-                surface.at(FaceId(face), core::array::from_fn(|i| f64::from(u8::from(i == corner)))).normal;
+            let corner = mesh.triangles()[face as usize]
+                .iter()
+                .position(|&v| v == 0)
+                .unwrap();
+            let limit = surface
+                .at(
+                    FaceId(face),
+                    core::array::from_fn(|i| f64::from(u8::from(i == corner))),
+                )
+                .normal;
             let mut at = [0.0; 3];
             (at[corner], at[(corner + 1) % 3], at[(corner + 2) % 3]) =
                 (1.0, 0.3 * 2f64.powi(-100), 0.4 * 2f64.powi(-100));
@@ -376,7 +527,10 @@ fn normals_beside_irregular_vertices_are_exact() {
             }
             assert!(
                 surface
-                    .derivatives(FaceId(face), core::array::from_fn(|i| f64::from(u8::from(i == corner))))
+                    .derivatives(
+                        FaceId(face),
+                        core::array::from_fn(|i| f64::from(u8::from(i == corner)))
+                    )
                     .is_none()
             );
         }
@@ -389,16 +543,24 @@ fn both_sides_of_an_edge_agree() {
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let topology = mesh.topology();
     for h in topology.half_edges() {
-        let Some(twin) = topology.twin(h) else { continue };
+        let Some(twin) = topology.twin(h) else {
+            continue;
+        };
         let at = |corner: usize, weight: f64| {
             let mut at = [0.0; 3];
             (at[corner], at[(corner + 1) % 3]) = (1.0 - weight, weight);
             at
         };
-        let one = surface.derivatives(h.face(), at(h.corner(), 0.375)).unwrap();
-        let other = surface.derivatives(twin.face(), at(twin.corner(), 0.625)).unwrap();
-        let (normals, positions) =
-            ([one, other].map(|it| it.normal().unwrap()), [one, other].map(|it| it.position));
+        let one = surface
+            .derivatives(h.face(), at(h.corner(), 0.375))
+            .unwrap();
+        let other = surface
+            .derivatives(twin.face(), at(twin.corner(), 0.625))
+            .unwrap();
+        let (normals, positions) = (
+            [one, other].map(|it| it.normal().unwrap()),
+            [one, other].map(|it| it.position),
+        );
         for axis in 0..3 {
             near(positions[0][axis], positions[1][axis], 1e-13);
             near(normals[0][axis], normals[1][axis], 1e-13);
@@ -411,11 +573,21 @@ fn places_that_are_none_have_no_derivatives() {
     let mesh = octahedron();
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let inf = f64::INFINITY;
-    for at in [[-0.1, 0.6, 0.5], [f64::NAN, 0.5, 0.5], [inf, 0.0, 0.0], [0.9, 0.9, 0.9], [0.0; 3]] {
+    for at in [
+        [-0.1, 0.6, 0.5],
+        [f64::NAN, 0.5, 0.5],
+        [inf, 0.0, 0.0],
+        [0.9, 0.9, 0.9],
+        [0.0; 3],
+    ] {
         assert_eq!(surface.derivatives(FaceId(0), at), None, "{at:?}");
     }
     assert_eq!(surface.derivatives(FaceId(8), [1.0 / 3.0; 3]), None);
-    let all = [(FaceId(0), [1.0 / 3.0; 3]), (FaceId(8), [1.0 / 3.0; 3]), (FaceId(3), [0.2, 0.3, 0.5])];
+    let all = [
+        (FaceId(0), [1.0 / 3.0; 3]),
+        (FaceId(8), [1.0 / 3.0; 3]),
+        (FaceId(3), [0.2, 0.3, 0.5]),
+    ];
     let found = surface.derivatives_at(&all);
     assert_eq!(found, all.map(|(face, at)| surface.derivatives(face, at)));
 }
@@ -428,14 +600,35 @@ fn weights_give_the_points() {
         let soup = limitmesh_models::find(name).unwrap().soup();
         let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
         let [a, b, _] = mesh.triangles()[0];
-        let creases = vec![limitmesh::mesh::CreaseTag { vertices: [a, b], sharpness: 1.5 }];
-        let tagged = mesh.clone().with_tags(limitmesh::mesh::Tags { creases, corners: vec![] }).unwrap();
+        let creases = vec![limitmesh::mesh::CreaseTag {
+            vertices: [a, b],
+            sharpness: 1.5,
+        }];
+        let tagged = mesh
+            .clone()
+            .with_tags(limitmesh::mesh::Tags {
+                creases,
+                corners: vec![],
+            })
+            .unwrap();
         for mesh in [mesh, tagged] {
-            let faces = spread.into_iter().filter(|face| face.index() < mesh.face_count());
-            let at: Vec<(FaceId, [f64; 3])> =
-                faces.flat_map(|face| places().into_iter().take(9).map(move |at| (face, at))).collect();
-            let bent = |p: &[f64; 3]| [p[0] + 0.2 * p[1] * p[1], p[1] - 0.3 * p[2] * p[0], 0.7 * p[2]];
-            let moved = mesh.clone().with_positions(mesh.positions().iter().map(bent).collect()).unwrap();
+            let faces = spread
+                .into_iter()
+                .filter(|face| face.index() < mesh.face_count());
+            let at: Vec<(FaceId, [f64; 3])> = faces
+                .flat_map(|face| places().into_iter().take(9).map(move |at| (face, at)))
+                .collect();
+            let bent = |p: &[f64; 3]| {
+                [
+                    p[0] + 0.2 * p[1] * p[1],
+                    p[1] - 0.3 * p[2] * p[0],
+                    0.7 * p[2],
+                ]
+            };
+            let moved = mesh
+                .clone()
+                .with_positions(mesh.positions().iter().map(bent).collect())
+                .unwrap();
             for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
                 let surface = LimitSurface::new(&mesh, scheme).unwrap();
                 let elsewhere = LimitSurface::new(&moved, scheme).unwrap();
@@ -455,7 +648,10 @@ fn weights_give_the_points() {
                         }
                     }
                     if scheme.name() == Loop.name() {
-                        assert!(weights.iter().all(|&(_, weight)| weight > -1e-15), "{name}: {weights:?}");
+                        assert!(
+                            weights.iter().all(|&(_, weight)| weight > -1e-15),
+                            "{name}: {weights:?}"
+                        );
                     }
                 }
             }
@@ -474,7 +670,9 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
             let surface = LimitSurface::new(&mesh, scheme).unwrap();
             for face in 0..valence {
                 let face = FaceId(face);
-                let corner = (0..3).find(|&i| mesh.triangles()[face.index()][i] == 0).unwrap();
+                let corner = (0..3)
+                    .find(|&i| mesh.triangles()[face.index()][i] == 0)
+                    .unwrap();
                 let place = |share: f64, step: usize| {
                     let mut weights = [0.0; 3];
                     (weights[corner], weights[(corner + step) % 3]) = (1.0 - share, share);
@@ -496,7 +694,12 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
                 assert!(dot(cross, at.normal) > 0.0, "{valence}");
                 // What is left of the next pattern falls by a constant factor a level.
                 let off = |levels: i32| 1.0 - dot(along, towards(0.5f64.powi(levels), 1));
-                assert!(off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9, "{valence}: {} {}", off(8), off(16));
+                assert!(
+                    off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9,
+                    "{valence}: {} {}",
+                    off(8),
+                    off(16)
+                );
                 // The other edge of the face leaves to the left of the first.
                 assert!(dot(across, towards(0.5f64.powi(16), 2)) > 0.0, "{valence}");
             }

@@ -13,7 +13,11 @@ use limitmesh::refine::{Traced, UniformOptions, uniform};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh, VertexId};
 
-const MEASURES: [Measure; 3] = [Measure::PlanarityAngle, Measure::PlanarityDistance, Measure::VertexError];
+const MEASURES: [Measure; 3] = [
+    Measure::PlanarityAngle,
+    Measure::PlanarityDistance,
+    Measure::VertexError,
+];
 
 /// Levels of the towers.
 const LEVELS: usize = 4;
@@ -39,9 +43,14 @@ fn creased() -> Mesh {
     let h = HalfEdgeId(0);
     let topology = mesh.topology();
     let around: Vec<HalfEdgeId> = topology.outgoing_ring(topology.origin(h)).collect();
-    let creases = [around[0], around[around.len() / 2]]
-        .map(|h| CreaseTag { vertices: topology.ends(h).map(|v| v.0), sharpness: f64::INFINITY });
-    let tags = Tags { creases: creases.to_vec(), corners: Vec::new() };
+    let creases = [around[0], around[around.len() / 2]].map(|h| CreaseTag {
+        vertices: topology.ends(h).map(|v| v.0),
+        sharpness: f64::INFINITY,
+    });
+    let tags = Tags {
+        creases: creases.to_vec(),
+        corners: Vec::new(),
+    };
     mesh.with_tags(tags).unwrap()
 }
 
@@ -55,13 +64,21 @@ struct Level {
 
 fn tower(control: &Mesh, scheme: &dyn Scheme) -> Vec<Level> {
     let level = |levels: usize| {
-        let mesh = uniform(control, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh;
+        let mesh = uniform(control, scheme, &UniformOptions::default().levels(levels))
+            .unwrap()
+            .mesh;
         let table = LimitTable::new(scheme);
         let sided = table.sided_normals(&mesh).unwrap();
         let normals = (0..mesh.face_count())
-            .map(|face| [0, 1, 2].map(|i| sided.at(mesh.topology(), HalfEdgeId::of(FaceId(face as u32), i))))
+            .map(|face| {
+                [0, 1, 2].map(|i| sided.at(mesh.topology(), HalfEdgeId::of(FaceId(face as u32), i)))
+            })
             .collect();
-        Level { limits: table.positions(&mesh).unwrap(), normals, mesh }
+        Level {
+            limits: table.positions(&mesh).unwrap(),
+            normals,
+            mesh,
+        }
     };
     (0..=LEVELS).map(level).collect()
 }
@@ -89,11 +106,18 @@ fn value(tower: &[Level], level: usize, face: usize, measure: Measure) -> f64 {
             all.map(|there| angle(normal, there)).collect()
         }
         Measure::PlanarityDistance => finer.mesh.triangles()[middle]
-            .map(|v| dot(minus(finer.limits[v as usize], corners[0]), normal).abs() / length(normal))
+            .map(|v| {
+                dot(minus(finer.limits[v as usize], corners[0]), normal).abs() / length(normal)
+            })
             .to_vec(),
-        _ => {
-            triangle.map(|v| length(minus(own.mesh.positions()[v as usize], own.limits[v as usize]))).to_vec()
-        }
+        _ => triangle
+            .map(|v| {
+                length(minus(
+                    own.mesh.positions()[v as usize],
+                    own.limits[v as usize],
+                ))
+            })
+            .to_vec(),
     };
     values.into_iter().fold(0.0, f64::max)
 }
@@ -101,7 +125,9 @@ fn value(tower: &[Level], level: usize, face: usize, measure: Measure) -> f64 {
 /// The least set of faces to divide, by level: what fails, and what must be for neighbours to be one level apart at most.
 fn divided(tower: &[Level], limit: f64, measure: Measure) -> Vec<BTreeSet<usize>> {
     let mut all = vec![BTreeSet::new(); LEVELS];
-    let mut waiting: Vec<(usize, usize)> = (0..tower[0].mesh.face_count()).map(|face| (0, face)).collect();
+    let mut waiting: Vec<(usize, usize)> = (0..tower[0].mesh.face_count())
+        .map(|face| (0, face))
+        .collect();
     let mut forced = Vec::new();
     while let Some((level, face)) = waiting.pop() {
         if level < LEVELS && value(tower, level, face, measure) > limit {
@@ -131,7 +157,10 @@ fn places(control: &Mesh, found: &Snapshot) -> BTreeSet<[(u32, u64); 3]> {
         let corners = control.triangles()[origin.face as usize];
         let mut named = [0, 1, 2].map(|i| (corners[i], (scale * origin.barycentric[i]) as u64));
         // A point of an edge or a vertex is named by its ends alone, so that it is the same from all sides.
-        named.iter_mut().filter(|own| own.1 == 0).for_each(|own| own.0 = u32::MAX);
+        named
+            .iter_mut()
+            .filter(|own| own.1 == 0)
+            .for_each(|own| own.0 = u32::MAX);
         named.sort_unstable();
         named
     };
@@ -143,30 +172,48 @@ fn forests_are_those_of_a_tower_of_uniform_levels() {
     for (name, control) in models() {
         let tower = tower(&control, &Loop);
         for measure in MEASURES {
-            let greatest =
-                (0..control.face_count()).map(|face| value(&tower, 0, face, measure)).fold(0.0, f64::max);
+            let greatest = (0..control.face_count())
+                .map(|face| value(&tower, 0, face, measure))
+                .fold(0.0, f64::max);
             for part in [0.7, 0.3, 0.08] {
                 // No node's value is as near to that as rounding.
                 let limit = part * greatest * (1.0 + 1e-7);
                 let mut front = Front::measured_by(&control, &Loop, measure).unwrap();
-                front.update(&Demand::tolerance(limit).max_levels(LEVELS as u32)).unwrap();
+                front
+                    .update(&Demand::tolerance(limit).max_levels(LEVELS as u32))
+                    .unwrap();
                 let found = front.snapshot().unwrap();
                 let expected = divided(&tower, limit, measure);
                 // Vertices: the control mesh's, and those of the middles of divided faces.
                 let mut positions: Vec<[f64; 3]> = tower[0].limits.clone();
                 for (level, faces) in expected.iter().enumerate() {
                     let finer = &tower[level + 1];
-                    let new: BTreeSet<u32> =
-                        faces.iter().flat_map(|face| finer.mesh.triangles()[4 * face + 3]).collect();
+                    let new: BTreeSet<u32> = faces
+                        .iter()
+                        .flat_map(|face| finer.mesh.triangles()[4 * face + 3])
+                        .collect();
                     positions.extend(new.iter().map(|&v| finer.limits[v as usize]));
                 }
-                assert_eq!(found.mesh.vertex_count(), positions.len(), "{name} {measure:?} {part}");
-                assert_eq!(places(&control, &found).len(), positions.len(), "{name} {measure:?} {part}");
+                assert_eq!(
+                    found.mesh.vertex_count(),
+                    positions.len(),
+                    "{name} {measure:?} {part}"
+                );
+                assert_eq!(
+                    places(&control, &found).len(),
+                    positions.len(),
+                    "{name} {measure:?} {part}"
+                );
                 // Every vertex is one of the tower.
                 let near = |p: &[f64; 3]| {
-                    positions.iter().any(|q| length(minus(*p, *q)) < 1e-9 * control.diagonal())
+                    positions
+                        .iter()
+                        .any(|q| length(minus(*p, *q)) < 1e-9 * control.diagonal())
                 };
-                assert!(found.mesh.positions().iter().all(near), "{name} {measure:?} {part}");
+                assert!(
+                    found.mesh.positions().iter().all(near),
+                    "{name} {measure:?} {part}"
+                );
             }
         }
     }
@@ -177,7 +224,9 @@ fn planarity_holds_where_triangles_are_whole_nodes() {
     for (name, control) in models() {
         let limit = 0.25;
         let mut front = Front::measured_by(&control, &Loop, Measure::PlanarityAngle).unwrap();
-        front.update(&Demand::tolerance(limit).max_levels(7)).unwrap();
+        front
+            .update(&Demand::tolerance(limit).max_levels(7))
+            .unwrap();
         let found = front.snapshot().unwrap();
         let surface = LimitSurface::new(&control, &Loop).unwrap();
         let mut whole = 0;
@@ -200,7 +249,10 @@ fn planarity_holds_where_triangles_are_whole_nodes() {
             for origin in origins {
                 let there = surface.at(FaceId(origin.face), origin.barycentric);
                 // The cone of the paper, without its cosines.
-                assert!(angle(normal, there.normal) <= limit + 1e-9, "{name}: {origin:?}");
+                assert!(
+                    angle(normal, there.normal) <= limit + 1e-9,
+                    "{name}: {origin:?}"
+                );
             }
         }
         assert!(4 * whole > found.mesh.face_count(), "{name}: {whole}");
@@ -214,12 +266,19 @@ fn zero_divides_all_that_is_curved() {
         let mut front = Front::measured_by(&control, &Loop, measure).unwrap();
         front.update(&Demand::tolerance(0.0).max_levels(3)).unwrap();
         assert_eq!(front.triangles().len(), 64 * control.face_count());
-        assert_eq!((front.bound(), front.is_certified()), (f64::INFINITY, false));
+        assert_eq!(
+            (front.bound(), front.is_certified()),
+            (f64::INFINITY, false)
+        );
         assert!(front.worst() > 0.0 && front.worst().is_finite());
     }
     // A plane is flat, and its control points inside are on it; those of its corners, too.
     let plane = sheet(4, 4, 0);
-    let flat = plane.positions().iter().map(|p| [p[0], p[1], 0.0]).collect();
+    let flat = plane
+        .positions()
+        .iter()
+        .map(|p| [p[0], p[1], 0.0])
+        .collect();
     let plane = Mesh::from_triangles(flat, plane.triangles().to_vec()).unwrap();
     for measure in [Measure::PlanarityAngle, Measure::PlanarityDistance] {
         let mut front = Front::measured_by(&plane, &Loop, measure).unwrap();
@@ -256,8 +315,13 @@ fn vertex_errors_shrink_by_the_second_eigenvalue() {
         // Edges at the tip are 2⁻ˡ as long as those of the control mesh.
         let topology = found.mesh.topology();
         for corner in topology.outgoing_ring(VertexId(0)) {
-            let end = found.corner_origin(control.triangles(), corner.next()).unwrap();
-            let tip = control.triangles()[end.face as usize].iter().position(|&v| v == 0).unwrap();
+            let end = found
+                .corner_origin(control.triangles(), corner.next())
+                .unwrap();
+            let tip = control.triangles()[end.face as usize]
+                .iter()
+                .position(|&v| v == 0)
+                .unwrap();
             assert_eq!(1.0 - end.barycentric[tip], 0.5f64.powi(levels));
         }
         assert!(front.worst() <= tolerance);
@@ -270,18 +334,27 @@ fn updates_give_what_a_fresh_front_does() {
     let schemes: [&dyn Scheme; 3] = [&Loop, &LoopWarren, &ModifiedButterfly];
     for (name, control) in models() {
         for (measure, scheme) in MEASURES.into_iter().zip(schemes) {
-            let unit = if measure == Measure::PlanarityAngle { 3.0 } else { control.diagonal() };
+            let unit = if measure == Measure::PlanarityAngle {
+                3.0
+            } else {
+                control.diagonal()
+            };
             let mut front = Front::measured_by(&control, scheme, measure).unwrap();
             for step in 0..6 {
                 let tolerance = unit * 10f64.powf(-1.6 + 0.6 * random.signed());
                 let demand = match step % 3 {
-                    0 => Demand::tolerance(tolerance).triangles(control.face_count() + random.below(500)),
+                    0 => Demand::tolerance(tolerance)
+                        .triangles(control.face_count() + random.below(500)),
                     _ => Demand::tolerance(tolerance).max_levels(4),
                 };
                 front.update(&demand).unwrap();
                 let mut fresh = Front::measured_by(&control, scheme, measure).unwrap();
                 fresh.update(&demand).unwrap();
-                assert_eq!(front.mesh().unwrap(), fresh.mesh().unwrap(), "{name} {measure:?} {demand:?}");
+                assert_eq!(
+                    front.mesh().unwrap(),
+                    fresh.mesh().unwrap(),
+                    "{name} {measure:?} {demand:?}"
+                );
             }
         }
     }
@@ -308,8 +381,12 @@ fn snapshots_keep_creases_and_know_where_vertices_are() {
         });
         inside.count() + 1
     };
-    let expected: usize =
-        control.tags().creases.iter().map(|tag| on_edge(tag.vertices[0], tag.vertices[1])).sum();
+    let expected: usize = control
+        .tags()
+        .creases
+        .iter()
+        .map(|tag| on_edge(tag.vertices[0], tag.vertices[1]))
+        .sum();
     assert!(!control.tags().creases.is_empty());
     assert_eq!(found.mesh.tags().creases.len(), expected);
 }
@@ -327,7 +404,10 @@ fn cameras_go_with_distances_alone() {
         height: 64,
     };
     let refused = front.update(&Demand::pixels(1.0, &[camera])).unwrap_err();
-    assert!(refused.to_string().contains("does not go by distances"), "{refused}");
+    assert!(
+        refused.to_string().contains("does not go by distances"),
+        "{refused}"
+    );
     assert_eq!(front.triangles().len(), control.face_count());
 }
 
@@ -335,14 +415,22 @@ fn cameras_go_with_distances_alone() {
 fn sizes_that_cannot_be_computed_with_are_refused() {
     for size in [1e-160, 1e160] {
         let control = octahedron();
-        let positions = control.positions().iter().map(|p| p.map(|x| size * x)).collect();
+        let positions = control
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| size * x))
+            .collect();
         let control = Mesh::from_triangles(positions, control.triangles().to_vec()).unwrap();
         for measure in MEASURES.into_iter().chain([Measure::Distance]) {
-            let refused = Front::measured_by(&control, &Loop, measure).map(drop).unwrap_err();
+            let refused = Front::measured_by(&control, &Loop, measure)
+                .map(drop)
+                .unwrap_err();
             assert!(refused.to_string().contains("diagonal"), "{refused}");
         }
         let options = limitmesh::sqrt3::Sqrt3Options::default().tolerance(Some(0.1 * size));
-        let refused = limitmesh::sqrt3::adaptive(&control, &options).map(drop).unwrap_err();
+        let refused = limitmesh::sqrt3::adaptive(&control, &options)
+            .map(drop)
+            .unwrap_err();
         assert!(refused.to_string().contains("diagonal"), "{refused}");
     }
 }

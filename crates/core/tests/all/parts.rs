@@ -60,14 +60,20 @@ fn voxels(cells: &BTreeSet<[i32; 3]>) -> Mesh {
 
 fn cells(size: [i32; 3], is_own: impl Fn([i32; 3]) -> bool) -> BTreeSet<[i32; 3]> {
     let [x, y, z] = size.map(|n| -n..n);
-    let all =
-        x.flat_map(|i| y.clone().map(move |j| [i, j])).flat_map(|[i, j]| z.clone().map(move |k| [i, j, k]));
+    let all = x
+        .flat_map(|i| y.clone().map(move |j| [i, j]))
+        .flat_map(|[i, j]| z.clone().map(move |k| [i, j, k]));
     all.filter(|&cell| is_own(cell)).collect()
 }
 
 fn ball(radius: f64) -> BTreeSet<[i32; 3]> {
     let n = radius as i32 + 1;
-    cells([n; 3], |cell| cell.map(|x| (f64::from(x) + 0.5).powi(2)).iter().sum::<f64>() < radius * radius)
+    cells([n; 3], |cell| {
+        cell.map(|x| (f64::from(x) + 0.5).powi(2))
+            .iter()
+            .sum::<f64>()
+            < radius * radius
+    })
 }
 
 /// A cylinder with rings of vertices at some turns and heights, between flat ends.
@@ -80,13 +86,20 @@ fn peg(turns: &[f64], heights: &[f64], radius: f64) -> Mesh {
     let mut triangles = Vec::new();
     for pair in heights.windows(2) {
         for i in 0..n {
-            triangles.extend(quad([at(i, pair[0]), at(i + 1, pair[0]), at(i + 1, pair[1]), at(i, pair[1])]));
+            triangles.extend(quad([
+                at(i, pair[0]),
+                at(i + 1, pair[0]),
+                at(i + 1, pair[1]),
+                at(i, pair[1]),
+            ]));
         }
     }
     let (low, high) = (heights[0], heights[heights.len() - 1]);
     for i in 1..n - 1 {
-        triangles
-            .extend([[at(0, low), at(i + 1, low), at(i, low)], [at(0, high), at(i, high), at(i + 1, high)]]);
+        triangles.extend([
+            [at(0, low), at(i + 1, low), at(i, low)],
+            [at(0, high), at(i, high), at(i + 1, high)],
+        ]);
     }
     mesh(triangles)
 }
@@ -99,7 +112,9 @@ fn facets(n: usize) -> Vec<f64> {
 #[track_caller]
 fn part(mesh: &Mesh) -> (f64, usize) {
     match Look::of(mesh, &[]) {
-        Look::Part(Part { degrees, creases, .. }) => (degrees, creases.edges.len()),
+        Look::Part(Part {
+            degrees, creases, ..
+        }) => (degrees, creases.edges.len()),
         other => panic!("{other:?}"),
     }
 }
@@ -112,15 +127,23 @@ fn boxes_pegs_and_brackets_are_parts() {
     assert_eq!(part(&solid([10, 5, 2])), (30.0, 4 * (20 + 10 + 4)));
     // An L has 18 edges: two of its sides are extruded.
     let bracket = voxels(&cells([10, 5, 5], |[x, _, z]| z < -2 || x < -7));
-    assert_eq!(part(&bracket), (30.0, 2 * (20 + 3 + 17 + 7 + 3 + 10) + 6 * 10));
+    assert_eq!(
+        part(&bracket),
+        (30.0, 2 * (20 + 3 + 17 + 7 + 3 + 10) + 6 * 10)
+    );
     for (n, degrees) in [(8, 65.0), (12, 55.0), (16, 30.0), (32, 30.0), (100, 30.0)] {
-        assert_eq!(part(&peg(&facets(n), &[0.0, 8.0], 5.0)), (degrees, 2 * n), "{n}");
+        assert_eq!(
+            part(&peg(&facets(n), &[0.0, 8.0], 5.0)),
+            (degrees, 2 * n),
+            "{n}"
+        );
     }
     // A nut keeps its six edges.
     assert_eq!(part(&peg(&facets(6), &[0.0, 3.0], 5.0)), (30.0, 18));
     // A plate with 100 square holes.
-    let plate =
-        voxels(&cells([11, 11, 1], |[x, y, z]| z == 0 && (x.rem_euclid(2) == 1 || y.rem_euclid(2) == 1)));
+    let plate = voxels(&cells([11, 11, 1], |[x, y, z]| {
+        z == 0 && (x.rem_euclid(2) == 1 || y.rem_euclid(2) == 1)
+    }));
     assert_eq!(part(&plate).0, 30.0);
 }
 
@@ -141,24 +164,36 @@ fn cages_and_smooth_shapes_are_none() {
         .collect();
     let is_near = |a: usize, b: usize| distance(corners[a], corners[b]) < 2.1;
     let mut triangles = Vec::new();
-    for (a, b, c) in (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c))))
+    for (a, b, c) in
+        (0..12).flat_map(|a| (a + 1..12).flat_map(move |b| (b + 1..12).map(move |c| (a, b, c))))
     {
         if is_near(a, b) && is_near(b, c) && is_near(a, c) {
             let own = [corners[a], corners[b], corners[c]];
             let outwards = dot(cross(minus(own[1], own[0]), minus(own[2], own[0])), own[0]) > 0.0;
-            triangles.push(if outwards { own } else { [own[0], own[2], own[1]] });
+            triangles.push(if outwards {
+                own
+            } else {
+                [own[0], own[2], own[1]]
+            });
         }
     }
     assert_eq!(triangles.len(), 20);
     assert_eq!(Look::of(&mesh(triangles), &[]), Look::Cage);
-    for model in limitmesh_models::all().iter().filter(|model| !["cube", "tetrahedron"].contains(&model.name))
+    for model in limitmesh_models::all()
+        .iter()
+        .filter(|model| !["cube", "tetrahedron"].contains(&model.name))
     {
-        let mesh = Mesh::from_soup(&model.soup(), &Default::default()).unwrap().0;
+        let mesh = Mesh::from_soup(&model.soup(), &Default::default())
+            .unwrap()
+            .0;
         assert_eq!(Look::of(&mesh, &[]), Look::Smooth, "{}", model.name);
     }
     // Flat, and flat from both sides.
     let square = |z: f64| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
-    assert_eq!(Look::of(&mesh(quad(square(0.0)).to_vec()), &[]), Look::Smooth);
+    assert_eq!(
+        Look::of(&mesh(quad(square(0.0)).to_vec()), &[]),
+        Look::Smooth
+    );
     let middle = [0.3, 0.4, 0.0];
     let sides = (0..4).flat_map(|i| {
         let [a, b] = [square(0.0)[i], square(0.0)[(i + 1) % 4]];
@@ -173,12 +208,24 @@ fn tips_of_cones_are_sharp() {
     for n in [8, 12, 16, 32] {
         let at = |turn: f64| [3.0 * (TAU * turn).cos(), 3.0 * (TAU * turn).sin(), 0.0];
         let rim: Vec<Point> = facets(n).into_iter().map(at).collect();
-        let mut triangles: Vec<_> = (0..n).map(|i| [rim[i], rim[(i + 1) % n], [0.0, 0.0, 4.0]]).collect();
+        let mut triangles: Vec<_> = (0..n)
+            .map(|i| [rim[i], rim[(i + 1) % n], [0.0, 0.0, 4.0]])
+            .collect();
         triangles.extend((1..n - 1).map(|i| [rim[0], rim[i + 1], rim[i]]));
         let cone = mesh(triangles);
-        let Look::Part(found) = Look::of(&cone, &[]) else { panic!("{n}") };
-        let tips: Vec<Point> = found.tips.iter().map(|v| cone.positions()[v.index()]).collect();
-        assert_eq!((found.creases.edges.len(), &tips[..]), (n, &[[0.0, 0.0, 4.0]][..]), "{n}");
+        let Look::Part(found) = Look::of(&cone, &[]) else {
+            panic!("{n}")
+        };
+        let tips: Vec<Point> = found
+            .tips
+            .iter()
+            .map(|v| cone.positions()[v.index()])
+            .collect();
+        assert_eq!(
+            (found.creases.edges.len(), &tips[..]),
+            (n, &[[0.0, 0.0, 4.0]][..]),
+            "{n}"
+        );
         let (fine, _) = smooth(cone);
         let volume: f64 = fine
             .triangles()
@@ -191,12 +238,17 @@ fn tips_of_cones_are_sharp() {
         // The sides of few facets are hollow by a little.
         let bound = if n < 12 { 0.03 + 0.12 } else { 0.06 };
         assert!((volume / (12.0 * PI) - 1.0).abs() < bound, "{n}: {volume}");
-        let outside = fine.positions().iter().map(|p| p[0].hypot(p[1]) - 3.0 * (1.0 - p[2] / 4.0));
+        let outside = fine
+            .positions()
+            .iter()
+            .map(|p| p[0].hypot(p[1]) - 3.0 * (1.0 - p[2] / 4.0));
         assert!(outside.fold(0.0, f64::max) < 0.05, "{n}");
     }
     // The side of a rod has none, with a ring of vertices on it or without.
     for heights in [vec![0.0, 8.0], vec![0.0, 1.0, 8.0]] {
-        let Look::Part(found) = Look::of(&peg(&facets(16), &heights, 5.0), &[]) else { panic!() };
+        let Look::Part(found) = Look::of(&peg(&facets(16), &heights, 5.0), &[]) else {
+            panic!()
+        };
         assert!(found.tips.is_empty());
     }
 }
@@ -205,8 +257,9 @@ fn tips_of_cones_are_sharp() {
 fn prism(outline: &[[f64; 2]], length: f64) -> Mesh {
     let n = outline.len();
     let at = |i: usize, y: f64| [outline[i % n][0], y, outline[i % n][1]];
-    let mut triangles: Vec<_> =
-        (0..n).flat_map(|i| quad([at(i, length), at(i + 1, length), at(i + 1, 0.0), at(i, 0.0)])).collect();
+    let mut triangles: Vec<_> = (0..n)
+        .flat_map(|i| quad([at(i, length), at(i + 1, length), at(i + 1, 0.0), at(i, 0.0)]))
+        .collect();
     for i in 1..n - 1 {
         triangles.extend([
             [at(0, 0.0), at(i, 0.0), at(i + 1, 0.0)],
@@ -222,15 +275,29 @@ fn edges_at_45_degrees_are_facets_only_in_rows() {
     let house = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.5], [1.0, 2.5], [0.0, 1.5]];
     assert_eq!(part(&prism(&house, 3.0)), (30.0, 15));
     let (c, l) = (0.2, 1.8);
-    let chamfered = [[c, 0.0], [l, 0.0], [2.0, c], [2.0, l], [l, 2.0], [c, 2.0], [0.0, l], [0.0, c]];
+    let chamfered = [
+        [c, 0.0],
+        [l, 0.0],
+        [2.0, c],
+        [2.0, l],
+        [l, 2.0],
+        [c, 2.0],
+        [0.0, l],
+        [0.0, c],
+    ];
     assert_eq!(part(&prism(&chamfered, 3.0)), (30.0, 24));
-    let octagon: Vec<[f64; 2]> =
-        facets(8).iter().map(|turn| (TAU * turn).sin_cos()).map(|(s, c)| [c, s]).collect();
+    let octagon: Vec<[f64; 2]> = facets(8)
+        .iter()
+        .map(|turn| (TAU * turn).sin_cos())
+        .map(|(s, c)| [c, s])
+        .collect();
     assert_eq!(part(&prism(&octagon, 3.0)), (65.0, 16));
     // An open tube of eight facets is as round as a closed one.
     let tube = prism(&octagon, 3.0);
-    let sides: Vec<[Point; 3]> =
-        tube.triangles()[..16].iter().map(|t| t.map(|v| tube.positions()[v as usize])).collect();
+    let sides: Vec<[Point; 3]> = tube.triangles()[..16]
+        .iter()
+        .map(|t| t.map(|v| tube.positions()[v as usize]))
+        .collect();
     assert_eq!(Look::of(&mesh(sides), &[]), Look::Smooth);
 }
 
@@ -244,14 +311,24 @@ fn one_far_vertex_does_not_decide_what_a_mesh_looks_like() {
         positions[0] = [0.0, 0.0, 1e6];
         mesh.clone().with_positions(positions).unwrap()
     };
-    assert_eq!([&round, &far(&round)].map(|mesh| Look::of(mesh, &[])), [Look::Smooth, Look::Smooth]);
-    assert_eq!([&block, &far(&block)].map(|mesh| part(mesh).0), [30.0, 30.0]);
+    assert_eq!(
+        [&round, &far(&round)].map(|mesh| Look::of(mesh, &[])),
+        [Look::Smooth, Look::Smooth]
+    );
+    assert_eq!(
+        [&block, &far(&block)].map(|mesh| part(mesh).0),
+        [30.0, 30.0]
+    );
 }
 
 #[test]
 fn voxels_of_round_shapes_are_stairs() {
     for radius in [3.0, 5.0, 10.0, 15.0] {
-        assert_eq!(Look::of(&voxels(&ball(radius)), &[]), Look::Stairs, "{radius}");
+        assert_eq!(
+            Look::of(&voxels(&ball(radius)), &[]),
+            Look::Stairs,
+            "{radius}"
+        );
     }
     let vessel = cells([30, 12, 12], |cell| {
         let [x, y, z] = cell.map(|x| f64::from(x) + 0.5);
@@ -259,12 +336,17 @@ fn voxels_of_round_shapes_are_stairs() {
     });
     assert_eq!(Look::of(&voxels(&vessel), &[]), Look::Stairs);
     // Real stairs are a part.
-    assert_eq!(part(&voxels(&cells([10, 10, 10], |[x, _, z]| z <= x))).0, 30.0);
+    assert_eq!(
+        part(&voxels(&cells([10, 10, 10], |[x, _, z]| z <= x))).0,
+        30.0
+    );
 }
 
 /// The surface of a part by default.
 fn smooth(mesh: Mesh) -> (Mesh, Unfolded) {
-    let Look::Part(part) = Look::of(&mesh, &[]) else { panic!("a part") };
+    let Look::Part(part) = Look::of(&mesh, &[]) else {
+        panic!("a part")
+    };
     let mesh = mesh.with_creases(&part.creases.edges);
     let found = interpolate_unfolded(&mesh, &Loop).unwrap();
     (mesh, found)
@@ -299,14 +381,26 @@ fn rings_close_together_would_fold_and_do_not() {
     for (turns, heights) in cases {
         let (mesh, found) = smooth(peg(&turns, &heights, 5.0));
         let through =
-            limitmesh::interpolate::interpolate(&mesh, &Loop, &InterpolateOptions::default()).unwrap();
+            limitmesh::interpolate::interpolate(&mesh, &Loop, &InterpolateOptions::default())
+                .unwrap();
         assert!(turned_over(&mesh, &through.mesh) > 0);
-        let Unfolded { interpolated, folded, .. } = found;
+        let Unfolded {
+            interpolated,
+            folded,
+            ..
+        } = found;
         assert_eq!(turned_over(&mesh, &interpolated.mesh), 0);
-        let refined = exact(&interpolated.mesh, &Loop, &ExactOptions::default().tolerance(0.01)).unwrap();
+        let refined = exact(
+            &interpolated.mesh,
+            &Loop,
+            &ExactOptions::default().tolerance(0.01),
+        )
+        .unwrap();
         assert_eq!(refined.inverted_triangles(), 0);
         // The regions have the faces that fold, and every vertex is passed through or named.
-        let limits = limitmesh::limit::LimitTable::new(&Loop).positions(&interpolated.mesh).unwrap();
+        let limits = limitmesh::limit::LimitTable::new(&Loop)
+            .positions(&interpolated.mesh)
+            .unwrap();
         for (v, (limit, vertex)) in limits.iter().zip(mesh.positions()).enumerate() {
             let is_passed_by = interpolated.passed_by.contains(&VertexId(v as u32));
             assert!(is_passed_by || distance(*limit, *vertex) < 1e-9, "{v}");
@@ -325,20 +419,42 @@ fn rings_close_together_would_fold_and_do_not() {
 /// Two pegs in one mesh: the one that folds does not take the other's radius.
 #[test]
 fn what_folds_does_not_change_the_rest() {
-    let (even, folding) =
-        (peg(&facets(16), &[0.0, 8.0], 5.0), peg(&facets(16), &[0.0, 3.95, 4.05, 8.0], 5.0));
+    let (even, folding) = (
+        peg(&facets(16), &[0.0, 8.0], 5.0),
+        peg(&facets(16), &[0.0, 3.95, 4.05, 8.0], 5.0),
+    );
     let corners = |mesh: &Mesh, x: f64| -> Vec<[Point; 3]> {
-        let moved = |face: usize| mesh.as_triangles().corners(face).map(|p| [p[0] + x, p[1], p[2]]);
+        let moved = |face: usize| {
+            mesh.as_triangles()
+                .corners(face)
+                .map(|p| [p[0] + x, p[1], p[2]])
+        };
         (0..mesh.face_count()).map(moved).collect()
     };
-    let (mesh, found) = smooth(mesh([corners(&even, 0.0), corners(&folding, 20.0)].concat()));
+    let (mesh, found) = smooth(mesh(
+        [corners(&even, 0.0), corners(&folding, 20.0)].concat(),
+    ));
     assert!(!found.folded.is_empty());
-    let surface = exact(&found.interpolated.mesh, &Loop, &ExactOptions::default().tolerance(1e-3)).unwrap();
+    let surface = exact(
+        &found.interpolated.mesh,
+        &Loop,
+        &ExactOptions::default().tolerance(1e-3),
+    )
+    .unwrap();
     let volume = |is_own: &dyn Fn(Point) -> bool| {
-        let own = (0..surface.mesh.face_count()).map(|face| surface.mesh.as_triangles().corners(face));
-        own.filter(|corners| is_own(corners[0])).map(|[a, b, c]| dot(a, cross(b, c))).sum::<f64>() / 6.0
+        let own =
+            (0..surface.mesh.face_count()).map(|face| surface.mesh.as_triangles().corners(face));
+        own.filter(|corners| is_own(corners[0]))
+            .map(|[a, b, c]| dot(a, cross(b, c)))
+            .sum::<f64>()
+            / 6.0
     };
     assert!((volume(&|p| p[0] < 10.0) / (PI * 200.0) - 1.0).abs() < 1e-3);
     let passed_by = &found.interpolated.passed_by;
-    assert!(!passed_by.is_empty() && passed_by.iter().all(|v| mesh.positions()[v.index()][0] > 10.0));
+    assert!(
+        !passed_by.is_empty()
+            && passed_by
+                .iter()
+                .all(|v| mesh.positions()[v.index()][0] > 10.0)
+    );
 }

@@ -34,9 +34,17 @@ impl Picture {
     fn of(camera: &Camera) -> Self {
         let forward = unit(plus(camera.target, camera.eye, -1.0));
         let right = unit(cross(forward, camera.up));
-        let half = [f64::from(camera.width) / 2.0, f64::from(camera.height) / 2.0];
+        let half = [
+            f64::from(camera.width) / 2.0,
+            f64::from(camera.height) / 2.0,
+        ];
         let focal = half[1] / (camera.fov_degrees / 2.0).to_radians().tan();
-        Self { eye: camera.eye, axes: [right, cross(right, forward), forward], focal, half }
+        Self {
+            eye: camera.eye,
+            axes: [right, cross(right, forward), forward],
+            focal,
+            half,
+        }
     }
 
     /// Where a point is seen, from the middle, in pixels; `None` behind the camera.
@@ -47,7 +55,8 @@ impl Picture {
     }
 
     fn shows(&self, point: Point) -> bool {
-        self.pixel(point).is_some_and(|at| at[0].abs() <= self.half[0] && at[1].abs() <= self.half[1])
+        self.pixel(point)
+            .is_some_and(|at| at[0].abs() <= self.half[0] && at[1].abs() <= self.half[1])
     }
 
     fn between(&self, a: Point, b: Point) -> f64 {
@@ -82,7 +91,13 @@ impl Model {
         // Each level leaves a quarter of the one before.
         let chords = steps.into_iter().fold(0.0, f64::max) / 3.0;
         let is_closed = control.topology().boundary_edge_count() == 0;
-        Self { name, control, limit, is_closed, chords }
+        Self {
+            name,
+            control,
+            limit,
+            is_closed,
+            chords,
+        }
     }
 
     /// The greatest distance that is found in a picture, from the surface to the mesh and back.
@@ -94,7 +109,9 @@ impl Model {
         let mut counts = vec![true; self.limit.vertex_count()];
         for face in 0..self.limit.face_count() {
             if self.is_closed && !picture.faces(limit.corners(face)) {
-                self.limit.triangles()[face].iter().for_each(|&v| counts[v as usize] = false);
+                self.limit.triangles()[face]
+                    .iter()
+                    .for_each(|&v| counts[v as usize] = false);
             }
         }
         let near_mesh = Bvh::new(mesh).unwrap();
@@ -119,7 +136,9 @@ impl Model {
                     weights = [0, 1, 2].map(|_| 1.0 + random.signed());
                 }
                 let sum: f64 = weights.iter().sum();
-                let point = (0..3).fold([0.0; 3], |point, i| plus(point, corners[i], weights[i] / sum));
+                let point = (0..3).fold([0.0; 3], |point, i| {
+                    plus(point, corners[i], weights[i] / sum)
+                });
                 if picture.shows(point) {
                     let nearest = near_limit.closest(point);
                     // The surface is a little farther or nearer than its triangles.
@@ -140,13 +159,23 @@ impl Model {
         let diagonal = self.control.diagonal();
         let distance = diagonal * 0.05 * 100f64.powf(0.5 + 0.5 * random.signed());
         let eye = plus(point, away, distance);
-        let fov_degrees =
-            if random.below(3) == 0 { 120.0 + 30.0 * random.signed() } else { 46.0 + 44.0 * random.signed() };
+        let fov_degrees = if random.below(3) == 0 {
+            120.0 + 30.0 * random.signed()
+        } else {
+            46.0 + 44.0 * random.signed()
+        };
         let (width, height) = (320, 240);
         let tilt = (0.5 * fov_degrees).to_radians().tan() * 1.25 * random.signed().abs();
         let across = unit(cross(away, aside));
         let target = plus(eye, plus(away.map(|x| -x), across, tilt), distance);
-        Camera { eye, target, up, fov_degrees, width, height }
+        Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+            width,
+            height,
+        }
     }
 
     /// A camera that has all of the model in its picture, half of which looks away.
@@ -158,7 +187,14 @@ impl Model {
         let diagonal = self.limit.diagonal();
         let distance = diagonal * 8f64.powf(0.5 + 0.5 * random.signed());
         let fov_degrees = 2.0 * (0.55 * diagonal / distance).atan().to_degrees();
-        Camera { eye: plus(target, away, distance), target, up, fov_degrees, width: 480, height: 480 }
+        Camera {
+            eye: plus(target, away, distance),
+            target,
+            up,
+            fov_degrees,
+            width: 480,
+            height: 480,
+        }
     }
 
     /// Refines for random cameras and looks at the pictures; gives the greatest share of the limit that was met.
@@ -176,7 +212,9 @@ impl Model {
         let mut random = Random::new(seed);
         let mut share = 0.0f64;
         for view in 0..views {
-            let cameras: Vec<Camera> = (0..1 + view % 2).map(|_| camera(self, &mut random)).collect();
+            let cameras: Vec<Camera> = (0..1 + view % 2)
+                .map(|_| camera(self, &mut random))
+                .collect();
             let limit = limits[view % 3];
             let options = ExactOptions::default().pixels(limit, cameras.clone());
             let result = exact(&self.control, &Loop, &options).unwrap();
@@ -187,7 +225,11 @@ impl Model {
                 "{}, view {view}: {said} of {limit}, {cameras:?}",
                 self.name
             );
-            assert!(said <= limit, "{}, view {view}: {said} of {limit} pixels", self.name);
+            assert!(
+                said <= limit,
+                "{}, view {view}: {said} of {limit} pixels",
+                self.name
+            );
             for camera in &cameras {
                 let found = self.greatest(&result, &Picture::of(camera), &mut random);
                 assert!(
@@ -203,13 +245,21 @@ impl Model {
 }
 
 fn built_in(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// A flat octagon with a boundary: seven triangles' worth of plane, whose outline is all there is to see.
 fn octagon() -> Mesh {
     let corner = |i: u32| (f64::from(i) * std::f64::consts::TAU / 8.0).sin_cos();
-    let mut positions: Vec<Point> = (0..8).map(corner).map(|(sine, cosine)| [cosine, sine, 0.0]).collect();
+    let mut positions: Vec<Point> = (0..8)
+        .map(corner)
+        .map(|(sine, cosine)| [cosine, sine, 0.0])
+        .collect();
     positions.push([0.0; 3]);
     Mesh::from_triangles(positions, (0..8).map(|i| [i, (i + 1) % 8, 8]).collect()).unwrap()
 }
@@ -234,7 +284,11 @@ fn drum() -> Mesh {
 }
 
 fn models() -> Vec<Model> {
-    let creased = |name, degrees: f64| built_in(name).with_creases_above(degrees.to_radians()).unwrap();
+    let creased = |name, degrees: f64| {
+        built_in(name)
+            .with_creases_above(degrees.to_radians())
+            .unwrap()
+    };
     vec![
         Model::new("octagon", octagon(), 7),
         Model::new("drum", drum(), 4),
@@ -258,7 +312,9 @@ fn no_view_shows_more_than_the_limit() {
 /// Closed models of which half looks away, at limits at which much of that stays as coarse as it came: outlines run between fine triangles
 /// and coarse ones.
 fn seen_from_outside() -> Vec<Model> {
-    let creased = built_in("cup").with_creases_above(40f64.to_radians()).unwrap();
+    let creased = built_in("cup")
+        .with_creases_above(40f64.to_radians())
+        .unwrap();
     vec![
         Model::new("torus", crate::support::torus(8, 6), 4),
         Model::new("octahedron", crate::support::octahedron(), 6),
@@ -291,7 +347,10 @@ fn no_frame_shows_more_than_is_told() {
     ] {
         let positions = control.positions().to_vec();
         let small = positions.iter().map(|p| p.map(|x| 0.1 * x)).collect();
-        let stretched = positions.iter().map(|&[x, y, z]| [x, 1.4 * y, 0.8 * z]).collect();
+        let stretched = positions
+            .iter()
+            .map(|&[x, y, z]| [x, 1.4 * y, 0.8 * z])
+            .collect();
         let frames = [small, positions, stretched];
         let models = frames.clone().map(|frame: Vec<Point>| {
             Model::new(name, control.clone().with_positions(frame).unwrap(), levels)
@@ -301,7 +360,10 @@ fn no_frame_shows_more_than_is_told() {
             let options = ExactOptions::default().pixels(limit, cameras.clone());
             let found = exact_frames(&control, &Loop, &frames, &options).unwrap();
             let said = found.refined.pixels.unwrap();
-            assert!(found.refined.stop == ExactStop::Met && said <= limit, "{name}: {said} of {limit}");
+            assert!(
+                found.refined.stop == ExactStop::Met && said <= limit,
+                "{name}: {said} of {limit}"
+            );
             let (mut frame, mut most) = (Frame::default(), 0.0f64);
             for (positions, model) in frames.iter().zip(&models) {
                 found.replay.frame(positions, &mut frame).unwrap();
@@ -336,7 +398,11 @@ fn no_view_of_tagged_models_shows_more_than_the_limit() {
         eprintln!("skipped: LIMITMESH_MODELS is not set");
         return;
     };
-    for (name, levels) in [("rook_creased", 3), ("mechpart_creased", 5), ("loop_icos_semisharp", 5)] {
+    for (name, levels) in [
+        ("rook_creased", 3),
+        ("mechpart_creased", 5),
+        ("loop_icos_semisharp", 5),
+    ] {
         let text = std::fs::read_to_string(format!("{folder}/{name}.obj")).unwrap();
         Model::new(name, crate::support::tagged_obj(&text), levels).check(3, 7);
     }
@@ -356,12 +422,21 @@ fn an_outline_seen_face_on_is_within_the_limit() {
             width: 1000,
             height: 1000,
         };
-        for camera in [camera, Camera { eye: [0.0, 0.0, -distance], ..camera }] {
+        for camera in [
+            camera,
+            Camera {
+                eye: [0.0, 0.0, -distance],
+                ..camera
+            },
+        ] {
             let options = ExactOptions::default().pixels(1.0, vec![camera]);
             let result = exact(&model.control, &Loop, &options).unwrap();
             let found = model.greatest(&result, &Picture::of(&camera), &mut Random::new(5));
             let said = result.pixels.unwrap();
-            assert!(found <= said && said <= 1.0 && found > 0.1, "{found} of {said}");
+            assert!(
+                found <= said && said <= 1.0 && found > 0.1,
+                "{found} of {said}"
+            );
         }
     }
 }

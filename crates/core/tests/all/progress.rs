@@ -7,7 +7,9 @@ use std::ops::ControlFlow;
 
 use crate::support::*;
 use limitmesh::criterion::{Camera, LimitNormal};
-use limitmesh::interpolate::{InterpolateError, InterpolateOptions, interpolate, interpolate_observed};
+use limitmesh::interpolate::{
+    InterpolateError, InterpolateOptions, interpolate, interpolate_observed,
+};
 use limitmesh::measure::*;
 use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
@@ -32,12 +34,17 @@ fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
     });
     assert_eq!(observed.unwrap(), unobserved, "{name}");
     assert!(
-        told.iter().all(|p| p.total.is_none_or(|total| p.done <= total)),
+        told.iter()
+            .all(|p| p.total.is_none_or(|total| p.done <= total)),
         "{name}: more than all is done"
     );
     assert!(told.iter().any(|p| p.triangles > 0), "{name}: no triangles");
     for run in told.chunk_by(|a, b| (a.stage, a.total) == (b.stage, b.total)) {
-        assert!(run.windows(2).all(|pair| pair[0].done <= pair[1].done || pair[1].done == 0), "{name}");
+        assert!(
+            run.windows(2)
+                .all(|pair| pair[0].done <= pair[1].done || pair[1].done == 0),
+            "{name}"
+        );
     }
     // How often it is called depends on how the threads share the work; fewer than ten times would be seldom.
     assert!(told.len() >= 10, "{name}: called {} times", told.len());
@@ -45,15 +52,28 @@ fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
         let mut calls = 0;
         let result = run(&mut |_: &Progress| {
             calls += 1;
-            if calls < last { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            if calls < last {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         });
-        assert!(result.as_ref().is_err_and(&is_cancelled), "{name}: {result:?} after {last} calls");
+        assert!(
+            result.as_ref().is_err_and(&is_cancelled),
+            "{name}: {result:?} after {last} calls"
+        );
         assert_eq!(calls, last, "{name}: called again after it said stop");
     }
 }
 
 fn sphere(levels: usize) -> Mesh {
-    uniform(&octahedron(), &Loop, &UniformOptions::default().levels(levels).limit(true)).unwrap().mesh
+    uniform(
+        &octahedron(),
+        &Loop,
+        &UniformOptions::default().levels(levels).limit(true),
+    )
+    .unwrap()
+    .mesh
 }
 
 #[test]
@@ -62,7 +82,9 @@ fn refinement_is_observed() {
     let options = UniformOptions::default().levels(6).limit(true);
     let points = |refinement: limitmesh::refine::Refinement| refinement.mesh.positions().to_vec();
     let plain = points(uniform(&octahedron(), &Loop, &options).unwrap());
-    watch("uniform", plain, cancelled, |o| uniform_observed(&octahedron(), &Loop, &options, o).map(points));
+    watch("uniform", plain, cancelled, |o| {
+        uniform_observed(&octahedron(), &Loop, &options, o).map(points)
+    });
 
     let options = StepwiseOptions::default().levels(6);
     let criterion = LimitNormal::new(0.02);
@@ -76,13 +98,19 @@ fn refinement_is_observed() {
 fn replays_are_observed() {
     let cancelled = |error: &ReplayError| matches!(error, ReplayError::Cancelled(_));
     let control = model("bunny");
-    let options = ExactOptions::default().tolerance(1e-3 * control.diagonal()).flat_regions(false);
+    let options = ExactOptions::default()
+        .tolerance(1e-3 * control.diagonal())
+        .flat_regions(false);
     let refined = exact(&control, &Loop, &options).unwrap();
     let points = |replay: Replay| {
         let mut frame = Frame::default();
-        replay.frame(control.positions(), &mut frame).map(|()| frame)
+        replay
+            .frame(control.positions(), &mut frame)
+            .map(|()| frame)
     };
-    let plain = Replay::new(&control, &Loop, &refined).and_then(points).unwrap();
+    let plain = Replay::new(&control, &Loop, &refined)
+        .and_then(points)
+        .unwrap();
     watch("replay", plain, cancelled, |o| {
         Replay::new_observed(&control, &Loop, &refined, o).and_then(points)
     });
@@ -95,7 +123,9 @@ fn interpolation_is_observed() {
     for within in [0.0, 1e-3] {
         let options = InterpolateOptions::default().within(within);
         let plain = interpolate(&mesh, &Loop, &options).unwrap();
-        watch("interpolate", plain, cancelled, |o| interpolate_observed(&mesh, &Loop, &options, o));
+        watch("interpolate", plain, cancelled, |o| {
+            interpolate_observed(&mesh, &Loop, &options, o)
+        });
     }
 }
 
@@ -107,24 +137,38 @@ fn measurement_is_observed() {
 
     let options = SamplingOptions::default().samples(20_000);
     let plain = hausdorff(a, b, &options).unwrap();
-    watch("hausdorff", plain, cancelled, |o| hausdorff_observed(a, b, &options, o));
+    watch("hausdorff", plain, cancelled, |o| {
+        hausdorff_observed(a, b, &options, o)
+    });
 
     let options = CertifiedOptions::default();
     let plain = certified_hausdorff(a, b, &options).unwrap();
-    watch("certified", plain, cancelled, |o| certified_hausdorff_observed(a, b, &options, o));
+    watch("certified", plain, cancelled, |o| {
+        certified_hausdorff_observed(a, b, &options, o)
+    });
 
     let plain = distances_to(fine.positions(), a).unwrap();
-    watch("distances", plain, cancelled, |o| distances_to_observed(fine.positions(), a, o));
+    watch("distances", plain, cancelled, |o| {
+        distances_to_observed(fine.positions(), a, o)
+    });
 }
 
 #[test]
 fn watertightness_is_observed() {
     // Open at one face, so that T-junctions are looked for as well.
     let fine = sphere(6);
-    let open = Triangles { positions: fine.positions(), triangles: &fine.triangles()[1..] };
+    let open = Triangles {
+        positions: fine.positions(),
+        triangles: &fine.triangles()[1..],
+    };
     let plain = watertightness(open);
     assert_eq!(plain.boundary_edges, 3);
-    watch("watertightness", plain, |_| true, |o| watertightness_observed(open, o));
+    watch(
+        "watertightness",
+        plain,
+        |_| true,
+        |o| watertightness_observed(open, o),
+    );
 }
 
 /// A stage, its rounds, and triangles.
@@ -132,7 +176,15 @@ type Event = (Stage, usize, usize);
 
 /// What is told of a run but for how often, which depends on how threads share the work: stages, rounds, triangles.
 fn event(told: &Progress) -> Event {
-    (told.stage, if told.stage == Stage::Refining { told.done } else { 0 }, told.triangles)
+    (
+        told.stage,
+        if told.stage == Stage::Refining {
+            told.done
+        } else {
+            0
+        },
+        told.triangles,
+    )
 }
 
 /// A run, and how often each event was told, in order.
@@ -141,7 +193,10 @@ fn calls_by_event<T: std::fmt::Debug>(
 ) -> (T, Vec<(Event, usize)>) {
     let mut calls: Vec<(Event, usize)> = Vec::new();
     let result = run(&mut |told: &Progress| {
-        assert!(told.total.is_none_or(|total| told.done <= total), "more than all is done: {told:?}");
+        assert!(
+            told.total.is_none_or(|total| told.done <= total),
+            "more than all is done: {told:?}"
+        );
         match calls.last_mut() {
             Some((last, count)) if *last == event(told) => *count += 1,
             _ => calls.push((event(told), 1)),
@@ -166,14 +221,26 @@ fn cancel_at<T: std::fmt::Debug>(
             None => {}
         }
         is_over = at == last_event && calls == last_call;
-        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if is_over {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     });
     let is_cancelled = matches!(result, Err(RefineError::Cancelled(_)));
-    assert!(is_over && is_cancelled, "{name}: call {last_call} of event {last_event}");
+    assert!(
+        is_over && is_cancelled,
+        "{name}: call {last_call} of event {last_event}"
+    );
 }
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// Every goal of exact refinement gives the same bytes observed, and ends wherever in its course the observer says so.
@@ -184,31 +251,50 @@ fn exact_refinement_is_observed_and_cancelled_everywhere() {
         let control = model(name);
         let eye = [0.3, 0.2, 3.0].map(|x| x * control.diagonal());
         let (target, up) = ([0.0; 3], [0.0, 1.0, 0.0]);
-        let camera = Camera { eye, target, up, fov_degrees: 40.0, width: 640, height: 480 };
+        let camera = Camera {
+            eye,
+            target,
+            up,
+            fov_degrees: 40.0,
+            width: 640,
+            height: 480,
+        };
         let within = options().tolerance(3e-3 * control.diagonal());
         let goals = [
             ("tolerance", within.clone()),
             ("balance", within.clone().balance(true)),
             ("optimise", within.optimize(true)),
-            ("triangles", options().triangles(4 * control.face_count() + 100)),
+            (
+                "triangles",
+                options().triangles(4 * control.face_count() + 100),
+            ),
             ("angle", options().angle(0.2)),
             ("pixels", options().pixels(1.0, vec![camera])),
         ];
         for (goal, options) in goals {
             let name = format!("{name}, {goal}");
             let plain = exact(&control, &Loop, &options).unwrap();
-            let mut run = |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
+            let mut run =
+                |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
             let (watched, calls) = calls_by_event(&mut run);
-            assert_eq!((&watched.mesh, &watched.normals), (&plain.mesh, &plain.normals), "{name}");
+            assert_eq!(
+                (&watched.mesh, &watched.normals),
+                (&plain.mesh, &plain.normals),
+                "{name}"
+            );
             assert_eq!(watched.error, plain.error, "{name}");
             assert!(calls.len() >= 5, "{name}: {calls:?}");
             // On one thread every run makes the same calls: with several, how many fall between two steps is chance.
-            rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| {
-                let (_, calls) = calls_by_event(&mut run);
-                for i in 0..8 {
-                    cancel_at(&name, (i * (calls.len() - 1) / 7, 0), &mut run);
-                }
-            });
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(1)
+                .build()
+                .unwrap()
+                .install(|| {
+                    let (_, calls) = calls_by_event(&mut run);
+                    for i in 0..8 {
+                        cancel_at(&name, (i * (calls.len() - 1) / 7, 0), &mut run);
+                    }
+                });
         }
     }
 }
@@ -217,66 +303,108 @@ fn exact_refinement_is_observed_and_cancelled_everywhere() {
 /// in the middle of a face. Calls at the ends of blocks of faces would be a dozen. On one thread every run makes the same calls.
 #[test]
 fn single_faces_that_take_long_are_observed() {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| {
-        let control = model("tetrahedron");
-        let balanced = ExactOptions::default().tolerance(3e-6 * control.diagonal()).balance(true);
-        for options in [balanced.clone().balance(false), balanced] {
-            let mut run = |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
-            let (result, calls) = calls_by_event(&mut run);
-            let triangles = result.mesh.face_count();
-            assert!(triangles > 100_000);
-            // Only what is balanced is bounded all over again.
-            let bounded = options.balance.then_some(Stage::Bounding);
-            for stage in [Stage::Refining, Stage::Assembling].into_iter().chain(bounded) {
-                let count: usize = calls.iter().filter(|(event, _)| event.0 == stage).map(|(_, n)| n).sum();
-                assert!(count >= triangles / 10_000, "{stage:?}: {count} calls for {triangles} triangles");
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .unwrap()
+        .install(|| {
+            let control = model("tetrahedron");
+            let balanced = ExactOptions::default()
+                .tolerance(3e-6 * control.diagonal())
+                .balance(true);
+            for options in [balanced.clone().balance(false), balanced] {
+                let mut run = |observer: &mut Observer<'_>| {
+                    exact_observed(&control, &Loop, &options, observer)
+                };
+                let (result, calls) = calls_by_event(&mut run);
+                let triangles = result.mesh.face_count();
+                assert!(triangles > 100_000);
+                // Only what is balanced is bounded all over again.
+                let bounded = options.balance.then_some(Stage::Bounding);
+                for stage in [Stage::Refining, Stage::Assembling]
+                    .into_iter()
+                    .chain(bounded)
+                {
+                    let count: usize = calls
+                        .iter()
+                        .filter(|(event, _)| event.0 == stage)
+                        .map(|(_, n)| n)
+                        .sum();
+                    assert!(
+                        count >= triangles / 10_000,
+                        "{stage:?}: {count} calls for {triangles} triangles"
+                    );
+                }
+                let mut most: Vec<(usize, usize)> =
+                    calls.iter().map(|(_, count)| *count).enumerate().collect();
+                most.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+                for &(i, count) in most.iter().take(4) {
+                    cancel_at("tetrahedron", (i, count / 2), &mut run);
+                }
             }
-            let mut most: Vec<(usize, usize)> = calls.iter().map(|(_, count)| *count).enumerate().collect();
-            most.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-            for &(i, count) in most.iter().take(4) {
-                cancel_at("tetrahedron", (i, count / 2), &mut run);
-            }
-        }
-    });
+        });
 }
 
 /// So are flat faces with very many vertices inside, which are triangulated as one, and ends wherever in that it is told to.
 #[test]
 fn large_flat_regions_are_observed() {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| {
-        const SIDE: u32 = 150;
-        let place = |i: u32| [f64::from(i % SIDE), f64::from(i / SIDE), 0.0];
-        let plate = Mesh::from_triangles((0..SIDE * SIDE).map(place).collect(), grid(SIDE, SIDE)).unwrap();
-        let options = ExactOptions::default().tolerance(1e-4 * plate.diagonal()).unfold(true);
-        let mut run = |observer: &mut Observer<'_>| exact_observed(&plate, &Loop, &options, observer);
-        let (result, calls) = calls_by_event(&mut run);
-        let triangles = result.mesh.face_count();
-        assert!(triangles > plate.face_count());
-        let of_stage =
-            |stage| calls.iter().filter(move |(event, _)| event.0 == stage).map(|(_, count)| count);
-        let count: usize = of_stage(Stage::Assembling).sum();
-        assert!(count >= triangles / 100, "{count} calls for {triangles} triangles");
-        for (i, &(_, count)) in calls.iter().enumerate() {
-            (0..count).step_by(count / 12 + 1).for_each(|at| cancel_at("plate", (i, at), &mut run));
-        }
-    });
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .unwrap()
+        .install(|| {
+            const SIDE: u32 = 150;
+            let place = |i: u32| [f64::from(i % SIDE), f64::from(i / SIDE), 0.0];
+            let plate =
+                Mesh::from_triangles((0..SIDE * SIDE).map(place).collect(), grid(SIDE, SIDE))
+                    .unwrap();
+            let options = ExactOptions::default()
+                .tolerance(1e-4 * plate.diagonal())
+                .unfold(true);
+            let mut run =
+                |observer: &mut Observer<'_>| exact_observed(&plate, &Loop, &options, observer);
+            let (result, calls) = calls_by_event(&mut run);
+            let triangles = result.mesh.face_count();
+            assert!(triangles > plate.face_count());
+            let of_stage = |stage| {
+                calls
+                    .iter()
+                    .filter(move |(event, _)| event.0 == stage)
+                    .map(|(_, count)| count)
+            };
+            let count: usize = of_stage(Stage::Assembling).sum();
+            assert!(
+                count >= triangles / 100,
+                "{count} calls for {triangles} triangles"
+            );
+            for (i, &(_, count)) in calls.iter().enumerate() {
+                (0..count)
+                    .step_by(count / 12 + 1)
+                    .for_each(|at| cancel_at("plate", (i, at), &mut run));
+            }
+        });
 }
 
 /// On one thread, where every run makes the same calls: with several, how many of them fall between two steps is chance.
 #[test]
 fn estimates_are_observed() {
-    rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap().install(|| {
-        let control = model("cup");
-        let tolerance = ExactOptions::default().tolerance(5e-4 * control.diagonal());
-        for options in [tolerance.clone(), tolerance.optimize(true)] {
-            let plain = exact_estimate(&control, &Loop, &options).unwrap();
-            let mut run =
-                |observer: &mut Observer<'_>| exact_estimate_observed(&control, &Loop, &options, observer);
-            let (watched, calls) = calls_by_event(&mut run);
-            assert_eq!(watched, plain);
-            for i in [0, calls.len() / 2, calls.len() - 1] {
-                cancel_at("estimate", (i, 0), &mut run);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .unwrap()
+        .install(|| {
+            let control = model("cup");
+            let tolerance = ExactOptions::default().tolerance(5e-4 * control.diagonal());
+            for options in [tolerance.clone(), tolerance.optimize(true)] {
+                let plain = exact_estimate(&control, &Loop, &options).unwrap();
+                let mut run = |observer: &mut Observer<'_>| {
+                    exact_estimate_observed(&control, &Loop, &options, observer)
+                };
+                let (watched, calls) = calls_by_event(&mut run);
+                assert_eq!(watched, plain);
+                for i in [0, calls.len() / 2, calls.len() - 1] {
+                    cancel_at("estimate", (i, 0), &mut run);
+                }
             }
-        }
-    });
+        });
 }

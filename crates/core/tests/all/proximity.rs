@@ -12,7 +12,12 @@ use limitmesh::{Closest, FaceId, LimitSurface, Membership, Mesh, Proximity, Prox
 use crate::support::{Point, cross, distance, dot, minus, octahedron};
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// A double cone over a polygon: tips of any valence, the others of four.
@@ -32,14 +37,31 @@ fn spindle(valence: u32) -> Mesh {
 fn tagged(mesh: &Mesh) -> Mesh {
     let [a, b, c] = mesh.triangles()[0];
     let [d, e, _] = mesh.triangles()[mesh.face_count() - 1];
-    let creases = [([a, b], f64::INFINITY), ([b, c], f64::INFINITY), ([d, e], 1.4)]
-        .map(|(vertices, sharpness)| CreaseTag { vertices, sharpness });
-    let corners = vec![CornerTag { vertex: c, sharpness: f64::INFINITY }];
-    mesh.clone().with_tags(Tags { creases: creases.to_vec(), corners }).unwrap()
+    let creases = [
+        ([a, b], f64::INFINITY),
+        ([b, c], f64::INFINITY),
+        ([d, e], 1.4),
+    ]
+    .map(|(vertices, sharpness)| CreaseTag {
+        vertices,
+        sharpness,
+    });
+    let corners = vec![CornerTag {
+        vertex: c,
+        sharpness: f64::INFINITY,
+    }];
+    mesh.clone()
+        .with_tags(Tags {
+            creases: creases.to_vec(),
+            corners,
+        })
+        .unwrap()
 }
 
 fn meshes() -> Vec<(String, Mesh)> {
-    let mut meshes: Vec<(String, Mesh)> = [3, 5, 7, 12].map(|n| (format!("spindle {n}"), spindle(n))).into();
+    let mut meshes: Vec<(String, Mesh)> = [3, 5, 7, 12]
+        .map(|n| (format!("spindle {n}"), spindle(n)))
+        .into();
     meshes.push(("octahedron".into(), octahedron()));
     meshes.push(("tagged spindle".into(), tagged(&spindle(6))));
     meshes.push(("sheet".into(), model("sheet")));
@@ -54,7 +76,9 @@ fn scattered(mesh: &Mesh, count: usize) -> Vec<Point> {
         [0.618_033_988_75, 0.754_877_666_25, 0.569_840_290_99]
             .map(|step| 1.6 * (0.5 + step * i as f64).fract() - 0.3)
     };
-    (0..count).map(|i| [0, 1, 2].map(|k| low[k] + at(i)[k] * (high[k] - low[k]))).collect()
+    (0..count)
+        .map(|i| [0, 1, 2].map(|k| low[k] + at(i)[k] * (high[k] - low[k])))
+        .collect()
 }
 
 /// Places on every face.
@@ -64,12 +88,17 @@ fn samples(mesh: &Mesh, parts: u32) -> Vec<(FaceId, [f64; 3])> {
         .map(|(j, k)| [j, k].map(|x| f64::from(x) / f64::from(parts)))
         .map(|[u, v]| [1.0 - u - v, u, v])
         .collect();
-    (0..mesh.face_count() as u32).flat_map(|face| weights.iter().map(move |&at| (FaceId(face), at))).collect()
+    (0..mesh.face_count() as u32)
+        .flat_map(|face| weights.iter().map(move |&at| (FaceId(face), at)))
+        .collect()
 }
 
 fn closest(mesh: &Mesh, points: &[Point], tolerance: f64) -> Vec<Closest> {
     let surface = LimitSurface::new(mesh, &Loop).unwrap();
-    Proximity::new(&surface).unwrap().closest(points, tolerance).unwrap()
+    Proximity::new(&surface)
+        .unwrap()
+        .closest(points, tolerance)
+        .unwrap()
 }
 
 #[test]
@@ -77,26 +106,45 @@ fn no_sample_is_nearer_and_the_point_is_on_the_surface() {
     for (name, mesh) in meshes() {
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let proximity = Proximity::new(&surface).unwrap();
-        let dense: Vec<Point> =
-            surface.at_all(&samples(&mesh, 24)).iter().map(|point| point.position).collect();
+        let dense: Vec<Point> = surface
+            .at_all(&samples(&mesh, 24))
+            .iter()
+            .map(|point| point.position)
+            .collect();
         let points = scattered(&mesh, 60);
         for tolerance in [1e-3, 1e-9] {
             let found = proximity.closest(&points, tolerance).unwrap();
             for (&point, found) in points.iter().zip(&found) {
-                let near = dense.iter().map(|&at| distance(at, point)).fold(f64::INFINITY, f64::min);
-                assert!(found.lower <= near + 1e-12, "{name}, {point:?}: {} and {near}", found.lower);
+                let near = dense
+                    .iter()
+                    .map(|&at| distance(at, point))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(
+                    found.lower <= near + 1e-12,
+                    "{name}, {point:?}: {} and {near}",
+                    found.lower
+                );
                 assert!(
                     found.distance <= near + tolerance,
                     "{name}, {point:?}: {} and {near}",
                     found.distance
                 );
                 // As dense as the samples are.
-                assert!(near - found.distance < 0.1, "{name}, {point:?}: {} and {near}", found.distance);
                 assert!(
-                    found.lower <= found.distance && found.distance - found.lower <= tolerance * 1.000_001
+                    near - found.distance < 0.1,
+                    "{name}, {point:?}: {} and {near}",
+                    found.distance
+                );
+                assert!(
+                    found.lower <= found.distance
+                        && found.distance - found.lower <= tolerance * 1.000_001
                 );
                 let there = surface.at(found.face, found.barycentric).position;
-                assert!(distance(there, found.point) < 1e-12, "{name}: {there:?} and {:?}", found.point);
+                assert!(
+                    distance(there, found.point) < 1e-12,
+                    "{name}: {there:?} and {:?}",
+                    found.point
+                );
                 assert!((distance(point, found.point) - found.distance).abs() < 1e-12);
             }
         }
@@ -108,12 +156,18 @@ fn where_the_nearest_point_is_smooth_the_way_there_is_along_the_normal() {
     let mesh = spindle(7);
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let points = scattered(&mesh, 100);
-    for (point, found) in
-        points.iter().zip(Proximity::new(&surface).unwrap().closest(&points, 1e-12).unwrap())
-    {
+    for (point, found) in points.iter().zip(
+        Proximity::new(&surface)
+            .unwrap()
+            .closest(&points, 1e-12)
+            .unwrap(),
+    ) {
         let normal = surface.at(found.face, found.barycentric).normal;
         let way = minus(*point, found.point);
-        assert!(distance(cross(way, normal), [0.0; 3]) < 1e-6, "{point:?}: {way:?} and {normal:?}");
+        assert!(
+            distance(cross(way, normal), [0.0; 3]) < 1e-6,
+            "{point:?}: {way:?} and {normal:?}"
+        );
     }
 }
 
@@ -124,7 +178,11 @@ fn the_octahedron_is_as_far_as_it_is() {
         unreachable!()
     };
     assert!((corner.distance - (3.0 - 24.0 / 55.0)).abs() < 1e-12);
-    assert!((centre.distance - 271.0 * 3f64.sqrt() / 1152.0).abs() < 1e-10, "{}", centre.distance);
+    assert!(
+        (centre.distance - 271.0 * 3f64.sqrt() / 1152.0).abs() < 1e-10,
+        "{}",
+        centre.distance
+    );
 }
 
 /// A surface in a plane: the foot of the perpendicular, or the rim, which is straight where the boundary is.
@@ -142,9 +200,17 @@ fn a_plane_is_as_far_as_it_is_high() {
         }
     }
     let mesh = Mesh::from_triangles(positions, triangles).unwrap();
-    let found = closest(&mesh, &[[1.3, 2.1, 5.0], [2.0, -4.0, 2.0], [2.0, -3.0, -2.0]], 1e-9);
+    let found = closest(
+        &mesh,
+        &[[1.3, 2.1, 5.0], [2.0, -4.0, 2.0], [2.0, -3.0, -2.0]],
+        1e-9,
+    );
     for (found, expected) in found.iter().zip([3.0, 4.0, 5.0]) {
-        assert!((found.distance - expected).abs() < 1e-9, "{} and {expected}", found.distance);
+        assert!(
+            (found.distance - expected).abs() < 1e-9,
+            "{} and {expected}",
+            found.distance
+        );
     }
     assert!(distance(found[0].point, [1.3, 2.1, 2.0]) < 1e-9);
 }
@@ -156,18 +222,32 @@ fn places_and_sizes_change_nothing() {
     let plain = closest(&mesh, &points, 1e-8);
     for size in [1e-250, 1e-9, 1e6, 1e250] {
         let scaled = |p: Point| p.map(|x| x * size);
-        let large =
-            mesh.clone().with_positions(mesh.positions().iter().map(|&p| scaled(p)).collect()).unwrap();
-        let found = closest(&large, &points.iter().map(|&p| scaled(p)).collect::<Vec<_>>(), 1e-8 * size);
+        let large = mesh
+            .clone()
+            .with_positions(mesh.positions().iter().map(|&p| scaled(p)).collect())
+            .unwrap();
+        let found = closest(
+            &large,
+            &points.iter().map(|&p| scaled(p)).collect::<Vec<_>>(),
+            1e-8 * size,
+        );
         for (plain, found) in plain.iter().zip(found) {
-            assert!((found.distance / size - plain.distance).abs() < 1e-8, "{size}");
+            assert!(
+                (found.distance / size - plain.distance).abs() < 1e-8,
+                "{size}"
+            );
         }
     }
     let moved = |p: Point| [p[0] + 1e6, p[1] - 3e6, p[2] + 2e6];
-    let far = mesh.clone().with_positions(mesh.positions().iter().map(|&p| moved(p)).collect()).unwrap();
-    for (plain, found) in
-        plain.iter().zip(closest(&far, &points.iter().map(|&p| moved(p)).collect::<Vec<_>>(), 1e-8))
-    {
+    let far = mesh
+        .clone()
+        .with_positions(mesh.positions().iter().map(|&p| moved(p)).collect())
+        .unwrap();
+    for (plain, found) in plain.iter().zip(closest(
+        &far,
+        &points.iter().map(|&p| moved(p)).collect::<Vec<_>>(),
+        1e-8,
+    )) {
         assert!((found.distance - plain.distance).abs() < 1e-7);
     }
 }
@@ -201,8 +281,10 @@ fn rays_through_a_fine_mesh_tell_the_same_inside() {
         let fine = limit_reference(&mesh, &Loop, 4).unwrap();
         // Also points that are near: some thousandths off the surface.
         let mut points = scattered(&mesh, 60);
-        for (at, offset) in
-            surface.at_all(&samples(&mesh, 3)).iter().zip([0.02, -0.02, 0.01, -0.01].into_iter().cycle())
+        for (at, offset) in surface
+            .at_all(&samples(&mesh, 3))
+            .iter()
+            .zip([0.02, -0.02, 0.01, -0.01].into_iter().cycle())
         {
             points.push([0, 1, 2].map(|k| at.position[k] + offset * at.normal[k]));
         }
@@ -214,7 +296,11 @@ fn rays_through_a_fine_mesh_tell_the_same_inside() {
             else {
                 continue;
             };
-            assert_eq!(proximity.winding_number(point).unwrap(), Some(count), "{name}, {point:?}");
+            assert_eq!(
+                proximity.winding_number(point).unwrap(),
+                Some(count),
+                "{name}, {point:?}"
+            );
             tested[usize::from(count != 0)] += 1;
         }
     }
@@ -224,25 +310,44 @@ fn rays_through_a_fine_mesh_tell_the_same_inside() {
 #[test]
 fn surfaces_that_are_turned_inside_out_or_nested_wind_as_they_should() {
     let mesh = octahedron();
-    let turned = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let turned = mesh
+        .triangles()
+        .iter()
+        .map(|&[a, b, c]| [a, c, b])
+        .collect();
     let turned = Mesh::from_triangles(mesh.positions().to_vec(), turned).unwrap();
     let surface = LimitSurface::new(&turned, &Loop).unwrap();
     let proximity = Proximity::new(&surface).unwrap();
-    assert_eq!(proximity.winding_number([0.1, 0.0, 0.05]).unwrap(), Some(-1));
-    assert_eq!(proximity.membership([0.1, 0.0, 0.05]).unwrap(), Membership::Inside);
+    assert_eq!(
+        proximity.winding_number([0.1, 0.0, 0.05]).unwrap(),
+        Some(-1)
+    );
+    assert_eq!(
+        proximity.membership([0.1, 0.0, 0.05]).unwrap(),
+        Membership::Inside
+    );
 
     // A shell: one octahedron within another, turned.
     let mut positions: Vec<Point> = mesh.positions().to_vec();
     positions.extend(mesh.positions().iter().map(|p| p.map(|x| 0.5 * x)));
     let mut triangles = mesh.triangles().to_vec();
-    triangles.extend(mesh.triangles().iter().map(|&[a, b, c]| [a + 6, c + 6, b + 6]));
+    triangles.extend(
+        mesh.triangles()
+            .iter()
+            .map(|&[a, b, c]| [a + 6, c + 6, b + 6]),
+    );
     let shell = Mesh::from_triangles(positions, triangles).unwrap();
     let surface = LimitSurface::new(&shell, &Loop).unwrap();
     let proximity = Proximity::new(&surface).unwrap();
     let along = [0.0, 0.1, 0.15, 0.25, 0.3, 0.42, 0.44, 2.0].map(|x| [x, 0.0, 0.0]);
     let found = proximity.memberships(&along).unwrap();
     use Membership::{Inside, Outside};
-    assert_eq!(found, [Outside, Outside, Outside, Inside, Inside, Inside, Outside, Outside]);
+    assert_eq!(
+        found,
+        [
+            Outside, Outside, Outside, Inside, Inside, Inside, Outside, Outside
+        ]
+    );
 }
 
 #[test]
@@ -251,7 +356,10 @@ fn points_on_the_surface_are_near_and_beside_it_they_are_not() {
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let proximity = Proximity::new(&surface).unwrap();
     let on = surface.at_all(&samples(&mesh, 5));
-    let near = on.iter().filter(|at| proximity.membership(at.position).unwrap() == Membership::Near).count();
+    let near = on
+        .iter()
+        .filter(|at| proximity.membership(at.position).unwrap() == Membership::Near)
+        .count();
     assert!(10 * near > 9 * on.len(), "{near} of {}", on.len());
     for at in &on {
         for (offset, expected) in [(1e-6, Membership::Outside), (-1e-6, Membership::Inside)] {
@@ -265,19 +373,30 @@ fn points_on_the_surface_are_near_and_beside_it_they_are_not() {
 fn errors_say_what_is_wrong() {
     let mesh = octahedron();
     let butterfly = LimitSurface::new(&mesh, &ModifiedButterfly).unwrap();
-    assert!(matches!(Proximity::new(&butterfly), Err(ProximityError::Scheme { .. })));
+    assert!(matches!(
+        Proximity::new(&butterfly),
+        Err(ProximityError::Scheme { .. })
+    ));
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let proximity = Proximity::new(&surface).unwrap();
-    let error = proximity.closest(&[[0.0; 3], [0.0, f64::NAN, 0.0]], 1e-3).unwrap_err();
+    let error = proximity
+        .closest(&[[0.0; 3], [0.0, f64::NAN, 0.0]], 1e-3)
+        .unwrap_err();
     assert_eq!(error.to_string(), "point 1 is not finite: (0, NaN, 0)");
     for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(proximity.closest(&[], tolerance), Err(ProximityError::Tolerance { .. })));
+        assert!(matches!(
+            proximity.closest(&[], tolerance),
+            Err(ProximityError::Tolerance { .. })
+        ));
     }
     let mut triangles = mesh.triangles().to_vec();
     triangles.pop();
     let open = Mesh::from_triangles(mesh.positions().to_vec(), triangles).unwrap();
     let surface = LimitSurface::new(&open, &Loop).unwrap();
-    let error = Proximity::new(&surface).unwrap().membership([0.0; 3]).unwrap_err();
+    let error = Proximity::new(&surface)
+        .unwrap()
+        .membership([0.0; 3])
+        .unwrap_err();
     assert!(matches!(error, ProximityError::Open { .. }), "{error}");
 }
 
@@ -289,7 +408,11 @@ fn observers_are_asked_and_can_stop_it() {
     let mut calls = 0;
     let mut stop = |_: &limitmesh::progress::Progress| {
         calls += 1;
-        if calls > 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if calls > 3 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
     // From the middle all of it is equally far.
     let found = proximity.closest_observed(&[[0.0; 3]; 4096], 1e-9, &mut stop);
@@ -304,11 +427,18 @@ fn observers_are_asked_and_can_stop_it() {
 fn points_whose_distance_is_no_number_are_named() {
     for (size, far) in [(1.0, 1e300), (1e-200, 1.0)] {
         let control = octahedron();
-        let positions = control.positions().iter().map(|p| p.map(|x| size * x)).collect();
+        let positions = control
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| size * x))
+            .collect();
         let control = Mesh::from_triangles(positions, control.triangles().to_vec()).unwrap();
         let surface = LimitSurface::new(&control, &Loop).unwrap();
         let proximity = Proximity::new(&surface).unwrap();
         let found = proximity.closest(&[[0.0; 3], [far, 0.0, 0.0]], 1e-6 * size);
-        assert!(matches!(found, Err(ProximityError::TooFar { index: 1, .. })), "{found:?}");
+        assert!(
+            matches!(found, Err(ProximityError::TooFar { index: 1, .. })),
+            "{found:?}"
+        );
     }
 }

@@ -11,21 +11,38 @@ use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Crossing, FaceId, Hit, LimitSurface, Mesh, Ray, RayCaster, RayError, RayOptions};
 
 fn tetrahedron() -> Mesh {
-    let positions = vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let positions = vec![
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
     Mesh::from_triangles(positions, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]).unwrap()
 }
 
 fn tagged(mesh: &Mesh, edges: &[[u32; 2]], sharpness: f64) -> Mesh {
-    let mut creases: Vec<CreaseTag> =
-        edges.iter().map(|&[a, b]| CreaseTag { vertices: [a.min(b), a.max(b)], sharpness }).collect();
+    let mut creases: Vec<CreaseTag> = edges
+        .iter()
+        .map(|&[a, b]| CreaseTag {
+            vertices: [a.min(b), a.max(b)],
+            sharpness,
+        })
+        .collect();
     creases.sort_by_key(|crease| crease.vertices);
-    mesh.clone().with_tags(Tags { creases, ..Tags::default() }).unwrap()
+    mesh.clone()
+        .with_tags(Tags {
+            creases,
+            ..Tags::default()
+        })
+        .unwrap()
 }
 
 /// Faces of valence 3, 5 and 7 among others: cones over rings of so many vertices, closed below by the mirror image.
 fn double_cone(valence: u32) -> Mesh {
     let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(valence);
-    let mut positions: Vec<[f64; 3]> = (0..valence).map(|i| [turn(i).cos(), turn(i).sin(), 0.0]).collect();
+    let mut positions: Vec<[f64; 3]> = (0..valence)
+        .map(|i| [turn(i).cos(), turn(i).sin(), 0.0])
+        .collect();
     positions.extend([[0.0, 0.0, 0.8], [0.1, 0.0, -0.7]]);
     let (top, bottom) = (valence, valence + 1);
     let triangles = (0..valence).flat_map(|i| {
@@ -40,7 +57,10 @@ fn random_ray(random: &mut Random, (middle, size): ([f64; 3], f64)) -> Ray {
     let (through, direction) = (place(0.5 * size), place(1.0));
     let through = [0, 1, 2].map(|i| middle[i] + through[i]);
     let length = dot(direction, direction).sqrt().max(1e-3);
-    Ray { origin: [0, 1, 2].map(|i| through[i] - 10.0 * size * direction[i] / length), direction }
+    Ray {
+        origin: [0, 1, 2].map(|i| through[i] - 10.0 * size * direction[i] / length),
+        direction,
+    }
 }
 
 /// Where a ray meets a triangle, by Möller and Trumbore's formula, and how far from its border that is, as a weight.
@@ -74,7 +94,9 @@ impl Fine {
     fn of(mesh: &Mesh) -> Self {
         let surface = mesh.as_triangles();
         let mut fine = Self {
-            corners: (0..mesh.face_count()).map(|face| surface.corners(face)).collect(),
+            corners: (0..mesh.face_count())
+                .map(|face| surface.corners(face))
+                .collect(),
             nodes: Vec::new(),
         };
         fine.node(0..mesh.face_count());
@@ -88,10 +110,17 @@ impl Fine {
             high = [0, 1, 2].map(|i| p[i].max(high[i]));
         }
         let own = self.nodes.len();
-        self.nodes.push(BoxNode { low, high, range: range.clone(), children: None });
+        self.nodes.push(BoxNode {
+            low,
+            high,
+            range: range.clone(),
+            children: None,
+        });
         if range.len() > 8 {
             let sides = minus(high, low);
-            let axis = (0..3).max_by(|&a, &b| sides[a].total_cmp(&sides[b])).unwrap();
+            let axis = (0..3)
+                .max_by(|&a, &b| sides[a].total_cmp(&sides[b]))
+                .unwrap();
             self.corners[range.clone()].sort_by(|a, b| a[0][axis].total_cmp(&b[0][axis]));
             let half = range.start + range.len() / 2;
             let children = [self.node(range.start..half), self.node(half..range.end)];
@@ -104,7 +133,12 @@ impl Fine {
     fn count(&self, ray: &Ray) -> (usize, bool) {
         let (mut count, mut is_close, mut waiting) = (0, false, vec![0]);
         while let Some(node) = waiting.pop() {
-            let BoxNode { low, high, range, children } = &self.nodes[node];
+            let BoxNode {
+                low,
+                high,
+                range,
+                children,
+            } = &self.nodes[node];
             let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
             for i in 0..3 {
                 let [a, b] = [low, high].map(|end| (end[i] - ray.origin[i]) / ray.direction[i]);
@@ -122,7 +156,9 @@ impl Fine {
                 let normal = cross(minus(b, a), minus(c, a));
                 let slope = dot(normal, ray.direction).abs()
                     / (dot(normal, normal) * dot(ray.direction, ray.direction)).sqrt();
-                let Some((_, inside)) = on_triangle(ray, corners) else { continue };
+                let Some((_, inside)) = on_triangle(ray, corners) else {
+                    continue;
+                };
                 count += 1;
                 // Nearly edge-on: the fine mesh may be on the other side of the surface's outline.
                 is_close |= slope < 0.03 || inside < 1e-9;
@@ -138,7 +174,11 @@ fn checked(surface: &LimitSurface<'_>, ray: &Ray, hits: &[Hit], name: &str) {
         let off = minus(on_ray, hit.position);
         assert!(dot(off, off).sqrt() < 1e-7, "{name}: {hit:?} {ray:?}");
         let there = surface.at(hit.face, hit.barycentric);
-        assert_eq!((there.position, there.normal), (hit.position, hit.normal), "{name}");
+        assert_eq!(
+            (there.position, there.normal),
+            (hit.position, hit.normal),
+            "{name}"
+        );
         let along = dot(hit.normal, ray.direction);
         match hit.crossing {
             Crossing::Entering => assert!(along < 0.0, "{name}: {hit:?}"),
@@ -167,7 +207,12 @@ fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
         if is_closed {
             assert!(hits.len().is_multiple_of(2), "{name}: {hits:?}");
             let alternate = |(i, hit): (usize, &Hit)| {
-                hit.crossing == if i % 2 == 0 { Crossing::Entering } else { Crossing::Leaving }
+                hit.crossing
+                    == if i % 2 == 0 {
+                        Crossing::Entering
+                    } else {
+                        Crossing::Leaving
+                    }
             };
             assert!(hits.iter().enumerate().all(alternate), "{name}: {hits:?}");
         }
@@ -175,18 +220,30 @@ fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
         // A ray that passes an outline by little meets the one and not the other.
         let may_differ = is_close
             || hits.iter().any(|hit| {
-                dot(hit.normal, ray.direction).abs() < 0.05 * dot(ray.direction, ray.direction).sqrt()
+                dot(hit.normal, ray.direction).abs()
+                    < 0.05 * dot(ray.direction, ray.direction).sqrt()
             });
-        assert!(may_differ || hits.len() == expected, "{name}: {} {expected} {ray:?}", hits.len());
+        assert!(
+            may_differ || hits.len() == expected,
+            "{name}: {} {expected} {ray:?}",
+            hits.len()
+        );
         close += usize::from(hits.len() != expected);
         hit += hits.len();
         let first = rays.first(&ray, &RayOptions::default());
-        assert_eq!(first.map(|hit| hit.t), hits.first().map(|hit| hit.t), "{name}");
+        assert_eq!(
+            first.map(|hit| hit.t),
+            hits.first().map(|hit| hit.t),
+            "{name}"
+        );
     }
     println!(
         "{name}: {count} rays, {hit} hits, {grazed} grazing, {close} at outlines where the counts differ"
     );
-    assert!(hit > count / 10 && close <= count / 100 && grazed == 0, "{name}: {hit} {close} {grazed}");
+    assert!(
+        hit > count / 10 && close <= count / 100 && grazed == 0,
+        "{name}: {hit} {close} {grazed}"
+    );
 }
 
 /// In all.
@@ -195,7 +252,12 @@ const RAYS: usize = 10_000;
 #[test]
 fn random_rays_agree_with_a_mesh_five_levels_finer() {
     for valence in [3, 5, 7] {
-        agrees(&format!("double cone of {valence}"), &double_cone(valence), RAYS / 5, 5);
+        agrees(
+            &format!("double cone of {valence}"),
+            &double_cone(valence),
+            RAYS / 5,
+            5,
+        );
     }
     agrees("lumpy", &lumpy(12, 7), RAYS / 5, 5);
     agrees("torus", &torus(5, 4), RAYS / 5, 5);
@@ -205,15 +267,33 @@ fn random_rays_agree_with_a_mesh_five_levels_finer() {
 fn boundaries_and_creases_are_met_as_well() {
     agrees("sheet", &sheet(4, 5, 3), 400, 5);
     let edges = [[0, 2], [2, 1], [1, 3], [3, 0]];
-    agrees("octahedron with a crease all round", &tagged(&octahedron(), &edges, f64::INFINITY), 400, 5);
-    agrees("one that fades", &tagged(&octahedron(), &edges, 1.7), 300, 5);
-    agrees("a dart", &tagged(&octahedron(), &edges[..1], f64::INFINITY), 300, 5);
+    agrees(
+        "octahedron with a crease all round",
+        &tagged(&octahedron(), &edges, f64::INFINITY),
+        400,
+        5,
+    );
+    agrees(
+        "one that fades",
+        &tagged(&octahedron(), &edges, 1.7),
+        300,
+        5,
+    );
+    agrees(
+        "a dart",
+        &tagged(&octahedron(), &edges[..1], f64::INFINITY),
+        300,
+        5,
+    );
 }
 
 /// By closed forms of Loop's limits: vertices, middles of edges and of faces of the solids.
 #[test]
 fn rays_through_known_points_of_solids() {
-    let far = |p: [f64; 3]| Ray { origin: p.map(|x| 10.0 * x), direction: p.map(|x| -x) };
+    let far = |p: [f64; 3]| Ray {
+        origin: p.map(|x| 10.0 * x),
+        direction: p.map(|x| -x),
+    };
     let radii = |mesh: &Mesh, towards: [f64; 3]| {
         let surface = LimitSurface::new(mesh, &Loop).unwrap();
         let length = dot(towards, towards).sqrt();
@@ -228,8 +308,10 @@ fn rays_through_known_points_of_solids() {
         );
         [10.0 - first.t, last.t - 10.0]
     };
-    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-    let near_all = |found: [f64; 2], expected: f64| found.into_iter().for_each(|found| near(found, expected));
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    let near_all =
+        |found: [f64; 2], expected: f64| found.into_iter().for_each(|found| near(found, expected));
     let octahedron = octahedron();
     for axis in 0..3 {
         let towards = [0, 1, 2].map(|i| if i == axis { 1.0 } else { 0.0 });
@@ -250,7 +332,10 @@ fn the_search_can_be_cancelled_while_it_is_prepared() {
     let mesh = lumpy(12, 7);
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let mut never = |_: &limitmesh::progress::Progress| ControlFlow::Break(());
-    assert!(matches!(RayCaster::new_observed(&surface, &mut never), Err(RayError::Cancelled(_))));
+    assert!(matches!(
+        RayCaster::new_observed(&surface, &mut never),
+        Err(RayError::Cancelled(_))
+    ));
 }
 
 #[test]
@@ -258,10 +343,25 @@ fn ranges_of_rays_count() {
     let mesh = octahedron();
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
-    let ray = Ray { origin: [0.0, 0.01, 0.02], direction: [2.0, 0.1, 0.0] };
-    let count = |from, to| rays.intersections(&ray, &RayOptions::default().between(from, to)).len();
-    assert_eq!((count(0.0, f64::INFINITY), count(f64::NEG_INFINITY, f64::INFINITY)), (1, 2));
-    assert_eq!((count(0.0, 0.1), count(0.3, 9.0), count(-0.1, 0.1)), (0, 0, 0));
+    let ray = Ray {
+        origin: [0.0, 0.01, 0.02],
+        direction: [2.0, 0.1, 0.0],
+    };
+    let count = |from, to| {
+        rays.intersections(&ray, &RayOptions::default().between(from, to))
+            .len()
+    };
+    assert_eq!(
+        (
+            count(0.0, f64::INFINITY),
+            count(f64::NEG_INFINITY, f64::INFINITY)
+        ),
+        (1, 2)
+    );
+    assert_eq!(
+        (count(0.0, 0.1), count(0.3, 9.0), count(-0.1, 0.1)),
+        (0, 0, 0)
+    );
     let hit = rays.first(&ray, &RayOptions::default()).unwrap();
     assert!(hit.crossing == Crossing::Leaving && (hit.position[0] - 2.0 * hit.t).abs() < 1e-9);
 }
@@ -275,18 +375,35 @@ fn sizes_and_places_do_not_matter() {
         let mesh = Mesh::from_triangles(positions.collect(), base.triangles().to_vec()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let at = |p: [f64; 3]| p.map(|x| size * x + shift);
-        let ray = Ray { origin: at([-away, 0.03, 0.05]), direction: [size * 1e3, 0.0, 0.0] };
+        let ray = Ray {
+            origin: at([-away, 0.03, 0.05]),
+            direction: [size * 1e3, 0.0, 0.0],
+        };
         let hits = surface.intersections(&ray, &RayOptions::default()).unwrap();
-        hits.iter().map(|hit| (hit.face, hit.crossing, hit.barycentric)).collect::<Vec<_>>()
+        hits.iter()
+            .map(|hit| (hit.face, hit.crossing, hit.barycentric))
+            .collect::<Vec<_>>()
     };
     let plain = hits(1.0, 0.0, 3.0);
     assert!(plain.len() >= 2);
-    for (size, shift, away) in [(1e-120, 0.0, 3.0), (1e120, 0.0, 3.0), (1.0, 1000.0, 3.0), (1.0, 0.0, 1e5)] {
+    for (size, shift, away) in [
+        (1e-120, 0.0, 3.0),
+        (1e120, 0.0, 3.0),
+        (1.0, 1000.0, 3.0),
+        (1.0, 0.0, 1e5),
+    ] {
         let found = hits(size, shift, away);
         assert_eq!(found.len(), plain.len(), "{size} {shift} {away}");
         for (found, plain) in found.iter().zip(&plain) {
-            assert_eq!((found.0, found.1), (plain.0, plain.1), "{size} {shift} {away}");
-            assert!((0..3).all(|i| (found.2[i] - plain.2[i]).abs() < 1e-6), "{found:?} {plain:?}");
+            assert_eq!(
+                (found.0, found.1),
+                (plain.0, plain.1),
+                "{size} {shift} {away}"
+            );
+            assert!(
+                (0..3).all(|i| (found.2[i] - plain.2[i]).abs() < 1e-6),
+                "{found:?} {plain:?}"
+            );
         }
     }
 }
@@ -301,11 +418,23 @@ fn what_is_grazed_is_told() {
     };
     let surface = LimitSurface::new(&flat, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
-    let ray = Ray { origin: [-5.0, 1.43, 0.0], direction: [1.0, 0.013, 0.0] };
+    let ray = Ray {
+        origin: [-5.0, 1.43, 0.0],
+        direction: [1.0, 0.013, 0.0],
+    };
     let hits = rays.intersections(&ray, &RayOptions::default());
-    assert!(!hits.is_empty() && hits.iter().all(|hit| hit.crossing == Crossing::Grazing), "{hits:?}");
-    let above = Ray { origin: [-5.0, 1.43, 1e-6], direction: [1.0, 0.013, 0.0] };
-    assert!(rays.intersections(&above, &RayOptions::default()).is_empty());
+    assert!(
+        !hits.is_empty() && hits.iter().all(|hit| hit.crossing == Crossing::Grazing),
+        "{hits:?}"
+    );
+    let above = Ray {
+        origin: [-5.0, 1.43, 1e-6],
+        direction: [1.0, 0.013, 0.0],
+    };
+    assert!(
+        rays.intersections(&above, &RayOptions::default())
+            .is_empty()
+    );
 
     // The outline of a smooth body: from a point of it along a tangent.
     let mesh = lumpy(7, 4);
@@ -315,8 +444,13 @@ fn what_is_grazed_is_told() {
     let curvature = at.curvature().unwrap();
     let direction = curvature.directions[0];
     let origin = [0, 1, 2].map(|i| at.position[i] - direction[i]);
-    let hits = rays.intersections(&Ray { origin, direction }, &RayOptions::default().tolerance(1e-8));
-    let grazes = hits.iter().any(|hit| hit.crossing == Crossing::Grazing && (hit.t - 1.0).abs() < 1e-3);
+    let hits = rays.intersections(
+        &Ray { origin, direction },
+        &RayOptions::default().tolerance(1e-8),
+    );
+    let grazes = hits
+        .iter()
+        .any(|hit| hit.crossing == Crossing::Grazing && (hit.t - 1.0).abs() < 1e-3);
     assert!(grazes, "{hits:?}");
 }
 
@@ -326,17 +460,25 @@ fn many_rays_at_once_are_each_one_by_one() {
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
     let (mut random, options) = (Random::new(2), RayOptions::default());
-    let many: Vec<Ray> = (0..300).map(|_| random_ray(&mut random, ([0.0; 3], 1.0))).collect();
+    let many: Vec<Ray> = (0..300)
+        .map(|_| random_ray(&mut random, ([0.0; 3], 1.0)))
+        .collect();
     let all = rays.intersections_of_all(&many, &options);
     assert!(all.iter().any(|hits| hits.is_empty()) && all.iter().any(|hits| hits.len() > 1));
-    assert_eq!(all, many.iter().map(|ray| rays.intersections(ray, &options)).collect::<Vec<_>>());
+    assert_eq!(
+        all,
+        many.iter()
+            .map(|ray| rays.intersections(ray, &options))
+            .collect::<Vec<_>>()
+    );
     let mut told = 0;
     let found = rays.intersections_of_all_observed(&many, &options, &mut |progress| {
         told = progress.done;
         ControlFlow::Continue(())
     });
     assert!(found.is_ok() && told == many.len(), "{told}");
-    let stopped = rays.intersections_of_all_observed(&many, &options, &mut |_| ControlFlow::Break(()));
+    let stopped =
+        rays.intersections_of_all_observed(&many, &options, &mut |_| ControlFlow::Break(()));
     assert!(stopped.is_err());
 }
 
@@ -344,7 +486,10 @@ fn many_rays_at_once_are_each_one_by_one() {
 fn what_cannot_be_met_is_not() {
     let mesh = octahedron();
     let butterfly = LimitSurface::new(&mesh, &ModifiedButterfly).unwrap();
-    assert!(matches!(RayCaster::new(&butterfly), Err(RayError::Scheme { .. })));
+    assert!(matches!(
+        RayCaster::new(&butterfly),
+        Err(RayError::Scheme { .. })
+    ));
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
     for (origin, direction) in [
@@ -354,13 +499,28 @@ fn what_cannot_be_met_is_not() {
         ([f64::INFINITY; 3], [1.0; 3]),
         ([9.0; 3], [1.0; 3]),
     ] {
-        assert!(rays.intersections(&Ray { origin, direction }, &RayOptions::default()).is_empty());
+        assert!(
+            rays.intersections(&Ray { origin, direction }, &RayOptions::default())
+                .is_empty()
+        );
     }
-    let ray = Ray { origin: [9.0; 3], direction: [-1.0; 3] };
+    let ray = Ray {
+        origin: [9.0; 3],
+        direction: [-1.0; 3],
+    };
     for tolerance in [f64::NAN, -1.0, 0.0] {
-        assert_eq!(rays.intersections(&ray, &RayOptions::default().tolerance(tolerance)).len(), 2);
+        assert_eq!(
+            rays.intersections(&ray, &RayOptions::default().tolerance(tolerance))
+                .len(),
+            2
+        );
     }
     let empty = Mesh::from_triangles(Vec::new(), Vec::new()).unwrap();
     let surface = LimitSurface::new(&empty, &Loop).unwrap();
-    assert!(surface.intersections(&ray, &RayOptions::default()).unwrap().is_empty());
+    assert!(
+        surface
+            .intersections(&ray, &RayOptions::default())
+            .unwrap()
+            .is_empty()
+    );
 }

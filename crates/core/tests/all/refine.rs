@@ -5,12 +5,15 @@
 use std::ops::ControlFlow;
 
 use crate::support::*;
-use limitmesh::criterion::{Criterion, CriterionError, LimitNormal, NeighbourNormal, View, Viewpoint};
+use limitmesh::criterion::{
+    Criterion, CriterionError, LimitNormal, NeighbourNormal, View, Viewpoint,
+};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::progress::{Cancelled, Progress, Stage};
 use limitmesh::refine::{
-    RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform, uniform_observed,
+    RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform,
+    uniform_observed,
 };
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, Mesh};
@@ -31,12 +34,22 @@ impl Criterion for Arbitrary {
 
     fn ratios(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
         let mut random = Random::new((self.seed + mesh.face_count()) as u64);
-        Ok((0..mesh.face_count()).map(|_| if random.below(self.one_in) == 0 { 1.1 } else { 1.0 }).collect())
+        Ok((0..mesh.face_count())
+            .map(|_| {
+                if random.below(self.one_in) == 0 {
+                    1.1
+                } else {
+                    1.0
+                }
+            })
+            .collect())
     }
 }
 
 fn refined(mesh: &Mesh, levels: usize) -> Mesh {
-    uniform(mesh, &Loop, &UniformOptions::default().levels(levels)).unwrap().mesh
+    uniform(mesh, &Loop, &UniformOptions::default().levels(levels))
+        .unwrap()
+        .mesh
 }
 
 #[test]
@@ -49,8 +62,14 @@ fn uniform_loop_is_brute_force_loop() {
             let ours = refined(&mesh, level);
             ours.validate().unwrap();
             let oracle = Mesh::from_triangles(positions.clone(), triangles.clone()).unwrap();
-            assert_eq!(ours.face_count(), 4usize.pow(level as u32) * mesh.face_count());
-            assert!(unnumbered(&ours, 10) == unnumbered(&oracle, 10), "{name}, level {level}");
+            assert_eq!(
+                ours.face_count(),
+                4usize.pow(level as u32) * mesh.face_count()
+            );
+            assert!(
+                unnumbered(&ours, 10) == unnumbered(&oracle, 10),
+                "{name}, level {level}"
+            );
         }
     }
 }
@@ -60,12 +79,16 @@ fn uniform_loop_is_the_other_implementation_s() {
     use opensubdiv_rs::{far, sdc};
     for (name, mesh) in samples() {
         let corners = vec![3usize; mesh.face_count()];
-        let descriptor =
-            far::TopologyDescriptor::new(mesh.vertex_count(), &corners, mesh.triangles().as_flattened());
-        let options =
-            sdc::Options::default().with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
+        let descriptor = far::TopologyDescriptor::new(
+            mesh.vertex_count(),
+            &corners,
+            mesh.triangles().as_flattened(),
+        );
+        let options = sdc::Options::default()
+            .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
         let mut refiner =
-            far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options).unwrap();
+            far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options)
+                .unwrap();
         refiner.refine_uniform(far::UniformOptions::new(2));
         let primvars = far::PrimvarRefiner::new(&refiner);
         let mut theirs = mesh.positions().to_vec();
@@ -79,11 +102,18 @@ fn uniform_loop_is_the_other_implementation_s() {
         // Its weights are f32: 1e-6 of the mesh's size is its precision.
         let tolerance = 1e-6 * mesh.diagonal();
         for &p in ours.positions() {
-            let nearest = theirs.iter().map(|&q| distance(p, q)).fold(f64::MAX, f64::min);
+            let nearest = theirs
+                .iter()
+                .map(|&q| distance(p, q))
+                .fold(f64::MAX, f64::min);
             assert!(nearest < tolerance, "{name}: {p:?} is {nearest} away");
         }
         for &q in &theirs {
-            let nearest = ours.positions().iter().map(|&p| distance(p, q)).fold(f64::MAX, f64::min);
+            let nearest = ours
+                .positions()
+                .iter()
+                .map(|&p| distance(p, q))
+                .fold(f64::MAX, f64::min);
             assert!(nearest < tolerance, "{name}: {q:?} is {nearest} away");
         }
     }
@@ -94,7 +124,12 @@ fn stepwise_with_every_face_divisible_is_uniform() {
     // A cone of no width divides every face of a curved surface.
     for seam in [SeamRule::All, SeamRule::Any, SeamRule::Inner] {
         let options = StepwiseOptions::default().levels(2).seam(seam);
-        let found = stepwise(&octahedron(), &Loop, &Arbitrary { seed: 0, one_in: 1 }, &options);
+        let found = stepwise(
+            &octahedron(),
+            &Loop,
+            &Arbitrary { seed: 0, one_in: 1 },
+            &options,
+        );
         assert_eq!(found.unwrap().mesh, refined(&octahedron(), 2));
     }
 }
@@ -108,7 +143,9 @@ fn seam_rules_move_the_vertices_they_name() {
             "first"
         }
         fn ratios(&self, mesh: &Mesh, _: &LimitTable<'_>) -> Result<Vec<f64>, CriterionError> {
-            Ok((0..mesh.face_count()).map(|f| if f == 0 { 2.0 } else { 0.0 }).collect())
+            Ok((0..mesh.face_count())
+                .map(|f| if f == 0 { 2.0 } else { 0.0 })
+                .collect())
         }
     }
     let mesh = lumpy(20, 5);
@@ -143,7 +180,9 @@ fn points_come_from_the_old_positions_whatever_else_is_split() {
     let mesh = lumpy(20, 9);
     let oracle = brute_force_loop(mesh.positions(), mesh.triangles());
     let options = StepwiseOptions::default().levels(1);
-    let found = stepwise(&mesh, &Loop, &Arbitrary { seed: 1, one_in: 3 }, &options).unwrap().mesh;
+    let found = stepwise(&mesh, &Loop, &Arbitrary { seed: 1, one_in: 3 }, &options)
+        .unwrap()
+        .mesh;
     for &p in found.positions() {
         assert!(oracle.positions.iter().any(|&q| distance(p, q) < 1e-14));
     }
@@ -153,7 +192,13 @@ fn points_come_from_the_old_positions_whatever_else_is_split() {
 fn the_report_counts_figure_5() {
     let mesh = lumpy(40, 2);
     let criterion = Arbitrary { seed: 4, one_in: 4 };
-    let found = stepwise(&mesh, &Loop, &criterion, &StepwiseOptions::default().levels(3)).unwrap();
+    let found = stepwise(
+        &mesh,
+        &Loop,
+        &criterion,
+        &StepwiseOptions::default().levels(3),
+    )
+    .unwrap();
     assert_eq!(found.steps.len(), 3);
     let mut faces = mesh.face_count();
     for step in &found.steps {
@@ -163,15 +208,25 @@ fn the_report_counts_figure_5() {
         faces = 4 * (step.divisible + d) + 3 * c + 2 * b + a;
         assert_eq!(step.faces_after, faces);
     }
-    assert!(found.steps.iter().all(|step| step.closure[1] > 0 && step.closure[2] > 0));
+    assert!(
+        found
+            .steps
+            .iter()
+            .all(|step| step.closure[1] > 0 && step.closure[2] > 0)
+    );
     assert_eq!(found.mesh.face_count(), faces);
 }
 
 #[test]
 fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
     // One triangle beside two divisible ones.
-    let positions =
-        vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0], [5.0, 5.0, 0.0], [-4.0, 1.0, 0.0]];
+    let positions = vec![
+        [0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [0.0, 3.0, 0.0],
+        [5.0, 5.0, 0.0],
+        [-4.0, 1.0, 0.0],
+    ];
     let mesh = Mesh::from_triangles(positions, vec![[0, 1, 2], [2, 1, 3], [0, 2, 4]]).unwrap();
     struct Others;
     impl Criterion for Others {
@@ -188,15 +243,32 @@ fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
     // The first face gives three triangles; vertices 5 and above are new.
     let first_three = &found.triangles()[..3];
     let new: Vec<u32> = {
-        let mut all: Vec<u32> = first_three.iter().flatten().copied().filter(|&v| v > 4).collect();
+        let mut all: Vec<u32> = first_three
+            .iter()
+            .flatten()
+            .copied()
+            .filter(|&v| v > 4)
+            .collect();
         all.sort_unstable();
         all.dedup();
         all
     };
-    let [p, q] = new[..] else { panic!("two new vertices expected, found {new:?}") };
-    let uses = |a: u32, b: u32| first_three.iter().filter(|t| t.contains(&a) && t.contains(&b)).count() == 2;
+    let [p, q] = new[..] else {
+        panic!("two new vertices expected, found {new:?}")
+    };
+    let uses = |a: u32, b: u32| {
+        first_three
+            .iter()
+            .filter(|t| t.contains(&a) && t.contains(&b))
+            .count()
+            == 2
+    };
     // p and q lie on edges 1-2 and 2-0 in some order.
-    let on_12 = if distance(at(p), [2.0, 1.5, 0.0]) < distance(at(q), [2.0, 1.5, 0.0]) { p } else { q };
+    let on_12 = if distance(at(p), [2.0, 1.5, 0.0]) < distance(at(q), [2.0, 1.5, 0.0]) {
+        p
+    } else {
+        q
+    };
     let on_20 = if on_12 == p { q } else { p };
     let from_0 = distance(at(0), at(on_12));
     let from_1 = distance(at(1), at(on_20));
@@ -206,8 +278,14 @@ fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
 #[test]
 fn caps_and_satisfaction_are_told() {
     let mesh = torus(6, 5);
-    let capped =
-        uniform(&mesh, &Loop, &UniformOptions::default().levels(5).max_triangles(Some(1000))).unwrap();
+    let capped = uniform(
+        &mesh,
+        &Loop,
+        &UniformOptions::default()
+            .levels(5)
+            .max_triangles(Some(1000)),
+    )
+    .unwrap();
     assert_eq!(capped.stop, Stop::TriangleCap { needed: 3840 });
     assert_eq!(capped.mesh.face_count(), 960);
     let criterion = LimitNormal::new(20.0 * DEGREE);
@@ -216,7 +294,13 @@ fn caps_and_satisfaction_are_told() {
     assert_eq!(satisfied.stop, Stop::Satisfied);
     // Satisfied means that no face leaves the cone any more.
     let limits = LimitTable::new(&Loop);
-    assert!(criterion.divisible(&satisfied.mesh, &limits).unwrap().iter().all(|&d| !d));
+    assert!(
+        criterion
+            .divisible(&satisfied.mesh, &limits)
+            .unwrap()
+            .iter()
+            .all(|&d| !d)
+    );
     let normals = limits.normals(&satisfied.mesh).unwrap();
     for (f, t) in satisfied.mesh.triangles().iter().enumerate() {
         let n = satisfied.mesh.face_normal(FaceId(f as u32));
@@ -239,7 +323,13 @@ fn the_observer_sees_each_step_and_can_cancel() {
         ControlFlow::Continue(())
     };
     let watched = uniform_observed(&octahedron(), &Loop, &options, &mut watch).unwrap();
-    assert_eq!(watched.mesh.positions(), uniform(&octahedron(), &Loop, &options).unwrap().mesh.positions());
+    assert_eq!(
+        watched.mesh.positions(),
+        uniform(&octahedron(), &Loop, &options)
+            .unwrap()
+            .mesh
+            .positions()
+    );
     assert!(triangles.is_sorted());
     triangles.dedup();
     assert_eq!(triangles, [8, 32, 128, 512, 2048]);
@@ -249,7 +339,11 @@ fn the_observer_sees_each_step_and_can_cancel() {
         let mut calls = 0;
         let mut observer = |_: &Progress| {
             calls += 1;
-            if calls == last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if calls == last {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let cancelled = uniform_observed(&octahedron(), &Loop, &options, &mut observer);
         assert_eq!(cancelled.unwrap_err(), RefineError::Cancelled(Cancelled));
@@ -260,7 +354,10 @@ fn the_observer_sees_each_step_and_can_cancel() {
 #[test]
 fn a_view_leaves_back_faces_and_divides_the_silhouette() {
     let mesh = refined(&octahedron(), 3);
-    let view = View { viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]), dilatation: 1.0 };
+    let view = View {
+        viewpoint: Viewpoint::Direction([0.0, 0.0, -1.0]),
+        dilatation: 1.0,
+    };
     let criterion = LimitNormal::new(20.0 * DEGREE).view(view);
     let flags = criterion.divisible(&mesh, &LimitTable::new(&Loop)).unwrap();
     let z: Vec<f64> = (0..mesh.face_count())
@@ -269,26 +366,49 @@ fn a_view_leaves_back_faces_and_divides_the_silhouette() {
             n[2] / distance(n, [0.0; 3])
         })
         .collect();
-    assert!((0..z.len()).all(|f| z[f] >= 0.0 || !flags[f]), "a back face is divided");
+    assert!(
+        (0..z.len()).all(|f| z[f] >= 0.0 || !flags[f]),
+        "a back face is divided"
+    );
     let steep = |low: f64, high: f64| {
-        let band: Vec<bool> =
-            (0..z.len()).filter(|&f| z[f] >= low && z[f] < high).map(|f| flags[f]).collect();
+        let band: Vec<bool> = (0..z.len())
+            .filter(|&f| z[f] >= low && z[f] < high)
+            .map(|f| flags[f])
+            .collect();
         band.iter().filter(|&&d| d).count() as f64 / band.len() as f64
     };
-    assert!(steep(0.0, 0.1) > steep(0.5, 1.0), "the silhouette is not preferred");
+    assert!(
+        steep(0.0, 0.1) > steep(0.5, 1.0),
+        "the silhouette is not preferred"
+    );
     // From far away an eye point is a direction.
-    let eye = View { viewpoint: Viewpoint::Eye([0.0, 0.0, 1e9]), dilatation: 1.0 };
+    let eye = View {
+        viewpoint: Viewpoint::Eye([0.0, 0.0, 1e9]),
+        dilatation: 1.0,
+    };
     let far = LimitNormal::new(20.0 * DEGREE).view(eye);
-    assert_eq!(far.divisible(&mesh, &LimitTable::new(&Loop)).unwrap(), flags);
+    assert_eq!(
+        far.divisible(&mesh, &LimitTable::new(&Loop)).unwrap(),
+        flags
+    );
 }
 
 #[test]
 fn overflow_is_an_error_and_not_an_infinite_mesh() {
     let mesh = octahedron();
-    let huge = mesh.positions().iter().map(|p| p.map(|x| x * f64::MAX)).collect();
+    let huge = mesh
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| x * f64::MAX))
+        .collect();
     let mesh = mesh.with_positions(huge).unwrap();
     // Either all sums stay in range or the vertex is named; never NaN in a mesh.
-    match stepwise(&mesh, &ModifiedButterfly, &NeighbourNormal::new(0.1), &StepwiseOptions::default()) {
+    match stepwise(
+        &mesh,
+        &ModifiedButterfly,
+        &NeighbourNormal::new(0.1),
+        &StepwiseOptions::default(),
+    ) {
         Ok(found) => found.mesh.validate().unwrap(),
         Err(error) => assert!(error.to_string().contains("no finite number")),
     }
@@ -341,9 +461,13 @@ fn cut_sheets_stay_together() {
     for z in 0..5 {
         soup.positions.push([0.0, 0.0, f64::from(z)]);
     }
-    for (strip, [x, y]) in [[1.0, 0.0], [-0.5, 0.9], [-0.4, -0.8]].into_iter().enumerate() {
+    for (strip, [x, y]) in [[1.0, 0.0], [-0.5, 0.9], [-0.4, -0.8]]
+        .into_iter()
+        .enumerate()
+    {
         for z in 0..5 {
-            soup.positions.push([x, y, f64::from(z) + 0.1 * f64::from(strip as u32)]);
+            soup.positions
+                .push([x, y, f64::from(z) + 0.1 * f64::from(strip as u32)]);
         }
         let outer = 5 * (strip as u32 + 1);
         for z in 0..4 {
@@ -358,7 +482,10 @@ fn cut_sheets_stay_together() {
         for seam in [SeamRule::All, SeamRule::Any, SeamRule::Inner] {
             for seed in 0..8 {
                 let criterion = Arbitrary { seed, one_in: 3 };
-                let options = StepwiseOptions::default().levels(3).seam(seam).limit(seed % 2 == 0);
+                let options = StepwiseOptions::default()
+                    .levels(3)
+                    .seam(seam)
+                    .limit(seed % 2 == 0);
                 let found = stepwise(&mesh, scheme, &criterion, &options).unwrap().mesh;
                 // `validate` checks that copies stand at one place; each edge group must keep three members.
                 found.validate().unwrap();
@@ -374,28 +501,57 @@ fn cut_sheets_stay_together() {
 
 #[test]
 fn tags_go_to_the_pieces_of_what_they_name() {
-    let crease = |a, b, sharpness| CreaseTag { vertices: [a, b], sharpness };
+    let crease = |a, b, sharpness| CreaseTag {
+        vertices: [a, b],
+        sharpness,
+    };
     let tags = Tags {
-        creases: vec![crease(0, 2, 2.5), crease(2, 4, INFINITELY_SHARP), crease(4, 0, 1.0)],
+        creases: vec![
+            crease(0, 2, 2.5),
+            crease(2, 4, INFINITELY_SHARP),
+            crease(4, 0, 1.0),
+        ],
         corners: vec![
-            CornerTag { vertex: 1, sharpness: f64::INFINITY },
-            CornerTag { vertex: 5, sharpness: 2.0 },
+            CornerTag {
+                vertex: 1,
+                sharpness: f64::INFINITY,
+            },
+            CornerTag {
+                vertex: 5,
+                sharpness: 2.0,
+            },
         ],
     };
     let mesh = octahedron().with_tags(tags).unwrap();
     let found = refined(&mesh, 2);
     // Each crease that has not faded now runs along four edges between its old ends.
     let ends = |of: f64| -> Vec<u32> {
-        let tags = found.tags().creases.iter().filter(|tag| tag.sharpness == of);
+        let tags = found
+            .tags()
+            .creases
+            .iter()
+            .filter(|tag| tag.sharpness == of);
         let all: Vec<u32> = tags.flat_map(|tag| tag.vertices).collect();
-        let mut once: Vec<u32> =
-            all.iter().copied().filter(|v| all.iter().filter(|u| *u == v).count() == 1).collect();
+        let mut once: Vec<u32> = all
+            .iter()
+            .copied()
+            .filter(|v| all.iter().filter(|u| *u == v).count() == 1)
+            .collect();
         once.sort_unstable();
         once
     };
     assert_eq!(found.tags().creases.len(), 8);
-    assert_eq!((ends(0.5), ends(INFINITELY_SHARP)), (vec![0, 2], vec![2, 4]));
-    assert_eq!(found.tags().corners, [CornerTag { vertex: 1, sharpness: f64::INFINITY }]);
+    assert_eq!(
+        (ends(0.5), ends(INFINITELY_SHARP)),
+        (vec![0, 2], vec![2, 4])
+    );
+    assert_eq!(
+        found.tags().corners,
+        [CornerTag {
+            vertex: 1,
+            sharpness: f64::INFINITY
+        }]
+    );
     assert_eq!(found.positions()[1], mesh.positions()[1]);
     found.validate().unwrap();
 }
@@ -403,17 +559,29 @@ fn tags_go_to_the_pieces_of_what_they_name() {
 #[test]
 fn parameters_out_of_range_are_errors() {
     let options = StepwiseOptions::default();
-    let named = |criterion: &dyn Criterion| match stepwise(&octahedron(), &Loop, criterion, &options) {
-        Err(RefineError::Criterion(CriterionError::BadParameter { name, .. })) => name,
-        other => panic!("expected an error, found {other:?}"),
-    };
+    let named =
+        |criterion: &dyn Criterion| match stepwise(&octahedron(), &Loop, criterion, &options) {
+            Err(RefineError::Criterion(CriterionError::BadParameter { name, .. })) => name,
+            other => panic!("expected an error, found {other:?}"),
+        };
     for angle in [f64::NAN, -0.1, 3.2, f64::INFINITY] {
         assert_eq!(named(&LimitNormal::new(angle)), "angle");
         assert_eq!(named(&NeighbourNormal::new(angle)), "angle");
     }
-    let seen = |viewpoint, dilatation| LimitNormal::new(0.1).view(View { viewpoint, dilatation });
-    assert_eq!(named(&seen(Viewpoint::Direction([0.0; 3]), 1.0)), "direction of sight");
-    assert_eq!(named(&seen(Viewpoint::Eye([0.0, f64::NAN, 0.0]), 1.0)), "eye point");
+    let seen = |viewpoint, dilatation| {
+        LimitNormal::new(0.1).view(View {
+            viewpoint,
+            dilatation,
+        })
+    };
+    assert_eq!(
+        named(&seen(Viewpoint::Direction([0.0; 3]), 1.0)),
+        "direction of sight"
+    );
+    assert_eq!(
+        named(&seen(Viewpoint::Eye([0.0, f64::NAN, 0.0]), 1.0)),
+        "eye point"
+    );
     assert_eq!(named(&seen(Viewpoint::Eye([0.0; 3]), -1.0)), "dilatation");
 }
 
@@ -421,11 +589,21 @@ fn parameters_out_of_range_are_errors() {
 fn the_size_of_a_mesh_does_not_matter() {
     let mesh = lumpy(20, 3);
     let count = |size: f64, criterion: &dyn Criterion| {
-        let positions = mesh.positions().iter().map(|p| p.map(|x| x * size)).collect();
+        let positions = mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| x * size))
+            .collect();
         let scaled = mesh.clone().with_positions(positions).unwrap();
-        stepwise(&scaled, &Loop, criterion, &StepwiseOptions::default()).unwrap().mesh.face_count()
+        stepwise(&scaled, &Loop, criterion, &StepwiseOptions::default())
+            .unwrap()
+            .mesh
+            .face_count()
     };
-    let view = View { viewpoint: Viewpoint::Direction([0.0, 1e-200, -1e-200]), dilatation: 1.0 };
+    let view = View {
+        viewpoint: Viewpoint::Direction([0.0, 1e-200, -1e-200]),
+        dilatation: 1.0,
+    };
     let criteria: [&dyn Criterion; 3] = [
         &LimitNormal::new(10.0 * DEGREE),
         &NeighbourNormal::new(10.0 * DEGREE),
@@ -436,7 +614,11 @@ fn the_size_of_a_mesh_does_not_matter() {
         assert!(usual > mesh.face_count());
         // Powers of two: scaling is exact, so that the flags are the same.
         for exponent in [-600, -200, 200, 600] {
-            assert_eq!(count(2f64.powi(exponent), criterion), usual, "size 2^{exponent}");
+            assert_eq!(
+                count(2f64.powi(exponent), criterion),
+                usual,
+                "size 2^{exponent}"
+            );
         }
     }
 }

@@ -11,7 +11,12 @@ use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_re
 use limitmesh::scheme::Loop;
 
 fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 fn simplified(control: &Mesh, options: ExactOptions) -> Exact {
@@ -26,8 +31,12 @@ fn within(tolerance: f64) -> ExactOptions {
 fn check_interval(control: &Mesh, result: &Exact) {
     let nearer = exact(control, &Loop, &within(0.2 * result.error.upper)).unwrap();
     let options = CertifiedOptions::default();
-    let enclosed =
-        certified_hausdorff(result.mesh.as_triangles(), nearer.mesh.as_triangles(), &options).unwrap();
+    let enclosed = certified_hausdorff(
+        result.mesh.as_triangles(),
+        nearer.mesh.as_triangles(),
+        &options,
+    )
+    .unwrap();
     let enclosed = enclosed.widened(nearer.error.upper);
     assert!(enclosed.lower() <= result.error.upper);
     assert!(result.error.lower <= enclosed.upper());
@@ -43,10 +52,16 @@ fn a_cap_holds_for_the_result() {
     let count = free.mesh.face_count();
     // It fits, though the finer mesh that it comes from does not.
     let fitting = simplified(&control, within(tolerance).max_triangles(Some(count + 100)));
-    assert_eq!((fitting.stop, fitting.mesh == free.mesh), (ExactStop::Met, true));
+    assert_eq!(
+        (fitting.stop, fitting.mesh == free.mesh),
+        (ExactStop::Met, true)
+    );
     let capped = simplified(&control, within(tolerance).max_triangles(Some(count / 2)));
     assert_eq!(capped.stop, ExactStop::TriangleCap);
-    let below = ExactOptions::default().optimize(true).triangles(count).max_triangles(Some(count / 2));
+    let below = ExactOptions::default()
+        .optimize(true)
+        .triangles(count)
+        .max_triangles(Some(count / 2));
     let below = exact(&control, &Loop, &below).unwrap();
     assert_eq!(below.stop, ExactStop::TriangleCap);
     assert!(below.mesh.face_count() <= count / 2);
@@ -67,10 +82,16 @@ fn a_number_of_triangles_holds_within_a_tolerance_too() {
         assert!(count <= number, "{number} within {share}: {count}");
         if share == 0.01 {
             let free = simplified(&control, within(tolerance));
-            assert_eq!((found.stop, found.mesh == free.mesh), (ExactStop::Met, true));
+            assert_eq!(
+                (found.stop, found.mesh == free.mesh),
+                (ExactStop::Met, true)
+            );
         } else {
             assert_eq!(found.stop, ExactStop::Triangles);
-            assert!(count + 2 >= number && found.error.upper > tolerance, "{number} within {share}: {count}");
+            assert!(
+                count + 2 >= number && found.error.upper > tolerance,
+                "{number} within {share}: {count}"
+            );
         }
     }
 }
@@ -86,10 +107,21 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
         if name == "icosphere" {
             // Beside edges that are sharp for a while hardly any can be collapsed.
             let topology = control.topology();
-            let edges = topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h.0 < twin.0));
-            let crease = |h| CreaseTag { vertices: topology.ends(h).map(|v| v.0), sharpness: 2.4 };
+            let edges = topology
+                .half_edges()
+                .filter(|&h| topology.twin(h).is_some_and(|twin| h.0 < twin.0));
+            let crease = |h| CreaseTag {
+                vertices: topology.ends(h).map(|v| v.0),
+                sharpness: 2.4,
+            };
             let creases = edges.step_by(3).map(crease).collect();
-            control = control.clone().with_tags(Tags { creases, ..Tags::default() }).unwrap();
+            control = control
+                .clone()
+                .with_tags(Tags {
+                    creases,
+                    ..Tags::default()
+                })
+                .unwrap();
         }
         for share in shares {
             let tolerance = share * control.diagonal();
@@ -105,14 +137,21 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
 
 #[test]
 fn estimates_come_near() {
-    for (name, shares) in [("cup", [0.003, 0.0008]), ("bunny", [0.003, 0.0008]), ("shoe", [0.01, 0.0015])] {
+    for (name, shares) in [
+        ("cup", [0.003, 0.0008]),
+        ("bunny", [0.003, 0.0008]),
+        ("shoe", [0.01, 0.0015]),
+    ] {
         let control = model(name);
         for share in shares {
             let options = within(share * control.diagonal()).optimize(true);
             let expected = exact_estimate(&control, &Loop, &options).unwrap();
             let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
             let ratio = expected.triangles as f64 / found as f64;
-            assert!((1.0 / 1.3..1.3).contains(&ratio), "{name} at {share}: {expected:?} for {found}");
+            assert!(
+                (1.0 / 1.3..1.3).contains(&ratio),
+                "{name} at {share}: {expected:?} for {found}"
+            );
         }
     }
 }
@@ -120,7 +159,9 @@ fn estimates_come_near() {
 /// The greatest distance that dense points find, either way, between a mesh and one of uniform refinement, which knows nothing of collapses.
 fn sampled(mesh: &Mesh, reference: &Mesh) -> f64 {
     let samples = SamplingOptions::default().samples(60_000);
-    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples).unwrap().symmetric()
+    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples)
+        .unwrap()
+        .symmetric()
 }
 
 /// On flat faces collapses cost exactly nothing. They are proven like others: without a bound the result would be that of refinement alone.
@@ -136,8 +177,16 @@ fn parts_lose_triangles_too() {
         let counts = [&result, &plain].map(|found| found.mesh.face_count());
         assert!(2 * counts[0] <= counts[1], "{share}: {counts:?}");
         let found = sampled(&result.mesh, &reference);
-        assert!(result.stop == ExactStop::Met && result.error.upper <= tolerance, "{:?}", result.error);
-        assert!(found <= result.error.upper + chords, "{found} {:?}", result.error);
+        assert!(
+            result.stop == ExactStop::Met && result.error.upper <= tolerance,
+            "{:?}",
+            result.error
+        );
+        assert!(
+            found <= result.error.upper + chords,
+            "{found} {:?}",
+            result.error
+        );
     }
 }
 
@@ -150,7 +199,10 @@ fn little_of_the_tolerance_is_left() {
         let tolerance = share * control.diagonal();
         let result = simplified(&control, within(tolerance));
         let found = sampled(&result.mesh, &reference);
-        assert!((0.8..=1.0).contains(&(found / tolerance)), "{name}: {found} of {tolerance}");
+        assert!(
+            (0.8..=1.0).contains(&(found / tolerance)),
+            "{name}: {found} of {tolerance}"
+        );
     }
 }
 
@@ -158,7 +210,10 @@ fn little_of_the_tolerance_is_left() {
 fn triangles_fall_with_the_tolerance_on_a_scanned_mesh() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
         return;
     };
     let control = tagged_obj(&std::fs::read_to_string(folder.join("bunny_3674.obj")).unwrap());
@@ -168,9 +223,18 @@ fn triangles_fall_with_the_tolerance_on_a_scanned_mesh() {
         let result = simplified(&control, within(tolerance));
         assert!(result.error.upper <= tolerance);
         let count = result.mesh.face_count();
-        assert!(count as f64 <= 1.05 * before as f64, "{count} at {percent} %, {before} before");
-        let plain = exact(&control, &Loop, &within(tolerance)).unwrap().mesh.face_count();
-        assert!(count < plain * 4 / 5, "{count} at {percent} %, alone {plain}");
+        assert!(
+            count as f64 <= 1.05 * before as f64,
+            "{count} at {percent} %, {before} before"
+        );
+        let plain = exact(&control, &Loop, &within(tolerance))
+            .unwrap()
+            .mesh
+            .face_count();
+        assert!(
+            count < plain * 4 / 5,
+            "{count} at {percent} %, alone {plain}"
+        );
         before = count;
     }
 }

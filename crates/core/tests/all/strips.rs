@@ -22,7 +22,14 @@ fn spline(t: f64, points: [Point; 4]) -> Point {
         1.0 + 3.0 * (t + t * t - t * t * t),
         t * t * t,
     ];
-    [0, 1, 2].map(|axis| weights.iter().zip(points).map(|(w, p)| w * p[axis]).sum::<f64>() / 6.0)
+    [0, 1, 2].map(|axis| {
+        weights
+            .iter()
+            .zip(points)
+            .map(|(w, p)| w * p[axis])
+            .sum::<f64>()
+            / 6.0
+    })
 }
 
 /// The distance of a point to a segment.
@@ -38,7 +45,9 @@ fn area(result: &Exact) -> f64 {
         let normal = cross(minus(b, a), minus(c, a));
         0.5 * dot(normal, normal).sqrt()
     };
-    (0..result.mesh.face_count()).map(|face| area(surface.corners(face))).sum()
+    (0..result.mesh.face_count())
+        .map(|face| area(surface.corners(face)))
+        .sum()
 }
 
 /// The limit of the control polygon at one end of a peg is a spline: all of a rim's corners are on it, no chord is farther from it than
@@ -62,8 +71,8 @@ fn pegs_follow_their_rims() {
                 .collect();
             let curve: Vec<Point> = (0..facets)
                 .flat_map(|i| {
-                    let points =
-                        [0, 1, 2, 3].map(|k| control[(first + (i + facets - 1 + k) % facets) as usize]);
+                    let points = [0, 1, 2, 3]
+                        .map(|k| control[(first + (i + facets - 1 + k) % facets) as usize]);
                     (0..512).map(move |step| spline(f64::from(step) / 512.0, points))
                 })
                 .collect();
@@ -81,24 +90,43 @@ fn pegs_follow_their_rims() {
                 .collect();
             along.sort_by_key(|&(at, _)| at);
             let chord = |i: usize| [along[i].1, along[(i + 1) % along.len()].1];
-            let lengths: Vec<f64> = (0..along.len()).map(chord).map(|[a, b]| distance(a, b)).collect();
-            let [least, most] = [f64::min, f64::max].map(|of| lengths.iter().copied().reduce(of).unwrap());
+            let lengths: Vec<f64> = (0..along.len())
+                .map(chord)
+                .map(|[a, b]| distance(a, b))
+                .collect();
+            let [least, most] =
+                [f64::min, f64::max].map(|of| lengths.iter().copied().reduce(of).unwrap());
             assert!(most < 1.1 * least, "{facets}, {tolerance}: {least} {most}");
             for (at, &p) in curve.iter().enumerate() {
-                let off = (0..along.len()).map(|i| to_segment(p, chord(i))).fold(f64::INFINITY, f64::min);
+                let off = (0..along.len())
+                    .map(|i| to_segment(p, chord(i)))
+                    .fold(f64::INFINITY, f64::min);
                 assert!(off <= tolerance, "{facets}, {tolerance}: {off} at {at}");
             }
             per_rim.push(along.len());
         }
         assert_eq!(per_rim[0], per_rim[1]);
         // But for some where leaves are divided beside others of the same line that are not.
-        assert!(positions.len() <= 2 * per_rim[0] + 8, "{} {per_rim:?}", positions.len());
+        assert!(
+            positions.len() <= 2 * per_rim[0] + 8,
+            "{} {per_rim:?}",
+            positions.len()
+        );
         assert_eq!(result.mesh.face_count(), 2 * positions.len() - 4);
         let reference = limit_reference(&mesh, &Loop, 6).unwrap();
         let samples = SamplingOptions::default().samples(50_000);
-        let apart = hausdorff(result.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        let apart = hausdorff(
+            result.mesh.as_triangles(),
+            reference.as_triangles(),
+            &samples,
+        )
+        .unwrap();
         // The reference's own chords leave the rims by less than this.
-        assert!(apart.symmetric() <= tolerance + 2e-5, "{}", apart.symmetric());
+        assert!(
+            apart.symmetric() <= tolerance + 2e-5,
+            "{}",
+            apart.symmetric()
+        );
     }
 }
 
@@ -106,15 +134,23 @@ fn pegs_follow_their_rims() {
 fn corrugated(columns: u32, rows: u32, numbers: &mut Random) -> Mesh {
     let turn = numbers.signed();
     let slant = 0.4 * numbers.signed();
-    let profile: Vec<[f64; 2]> =
-        (0..columns).map(|i| [f64::from(i) + 0.2 * numbers.signed(), 1.5 * numbers.signed()]).collect();
+    let profile: Vec<[f64; 2]> = (0..columns)
+        .map(|i| {
+            [
+                f64::from(i) + 0.2 * numbers.signed(),
+                1.5 * numbers.signed(),
+            ]
+        })
+        .collect();
     let at = |i: u32, j: u32| {
         let ([x, z], y) = (profile[i as usize], f64::from(j));
         let (s, c) = turn.sin_cos();
         [c * x - s * y + slant * z, s * x + c * y, z + slant * y]
     };
-    let positions =
-        (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
+    let positions = (0..rows)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .map(|(i, j)| at(i, j))
+        .collect();
     Mesh::from_triangles(positions, crate::support::grid(columns, rows)).unwrap()
 }
 
@@ -130,23 +166,42 @@ fn strips_are_the_same_points() {
         let merged = exact(&mesh, &Loop, &options).unwrap();
         let kept = exact(&mesh, &Loop, &options.clone().flat_regions(false)).unwrap();
         merged.mesh.validate().unwrap();
-        assert_eq!((merged.stop, kept.stop), (ExactStop::Met, ExactStop::Met), "{case}");
+        assert_eq!(
+            (merged.stop, kept.stop),
+            (ExactStop::Met, ExactStop::Met),
+            "{case}"
+        );
         assert!(merged.mesh.face_count() <= kept.mesh.face_count(), "{case}");
         saved += kept.mesh.face_count() - merged.mesh.face_count();
-        assert!((area(&merged) - area(&kept)).abs() < 1e-11 * area(&kept), "{case}");
+        assert!(
+            (area(&merged) - area(&kept)).abs() < 1e-11 * area(&kept),
+            "{case}"
+        );
         let samples = SamplingOptions::default().samples(20_000);
-        let apart = hausdorff(merged.mesh.as_triangles(), kept.mesh.as_triangles(), &samples).unwrap();
+        let apart = hausdorff(
+            merged.mesh.as_triangles(),
+            kept.mesh.as_triangles(),
+            &samples,
+        )
+        .unwrap();
         assert!(apart.symmetric() < 1e-11, "{case}: {}", apart.symmetric());
         assert_eq!(merged.mesh.topology().euler_characteristic(), 1);
         let corners = mesh.vertex_count();
-        assert_eq!(merged.mesh.positions()[..corners], kept.mesh.positions()[..corners]);
+        assert_eq!(
+            merged.mesh.positions()[..corners],
+            kept.mesh.positions()[..corners]
+        );
         assert!(merged.parents.is_sorted());
         let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
         assert_eq!(estimate.triangles, merged.mesh.face_count(), "{case}");
         let most = merged.mesh.face_count();
         let budget = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
         assert!(budget.mesh.face_count() <= most);
-        assert!(budget.error.upper <= 1.15 * merged.error.upper.max(tolerance), "{case}: {:?}", budget.error);
+        assert!(
+            budget.error.upper <= 1.15 * merged.error.upper.max(tolerance),
+            "{case}: {:?}",
+            budget.error
+        );
     }
     assert!(saved > 1000, "{saved}");
 }
@@ -165,7 +220,10 @@ fn flat_sides_may_go_over_into_round_ones() {
         profile.extend([1.5, 0.0, -1.5].map(|x| [side * x, side]));
     }
     let count = profile.len() as u32;
-    let positions = [0.0, 2.0].iter().flat_map(|&z| profile.iter().map(move |&[x, y]| [x, y, z])).collect();
+    let positions = [0.0, 2.0]
+        .iter()
+        .flat_map(|&z| profile.iter().map(move |&[x, y]| [x, y, z]))
+        .collect();
     let mut triangles = Vec::new();
     for i in 0..count {
         let next = (i + 1) % count;
@@ -179,7 +237,8 @@ fn flat_sides_may_go_over_into_round_ones() {
     let mesh = creased(positions, triangles);
     for tolerance in [1e-2, 1e-3] {
         let [merged, folded] = [true, false].map(|unfold| within(tolerance).unfold(unfold));
-        let [merged, folded] = [merged, folded].map(|options| exact(&mesh, &Loop, &options).unwrap());
+        let [merged, folded] =
+            [merged, folded].map(|options| exact(&mesh, &Loop, &options).unwrap());
         let kept = exact(&mesh, &Loop, &within(tolerance).flat_regions(false)).unwrap();
         for result in [&merged, &folded] {
             result.mesh.validate().unwrap();
@@ -189,13 +248,27 @@ fn flat_sides_may_go_over_into_round_ones() {
         }
         // Hardly anything but the rims has vertices: where curvature changes some leaves are divided beside others that are not.
         assert_eq!(merged.mesh.face_count(), 2 * merged.mesh.vertex_count() - 4);
-        let inside = merged.mesh.positions().iter().filter(|p| p[2] != 0.0 && p[2] != 2.0).count();
+        let inside = merged
+            .mesh
+            .positions()
+            .iter()
+            .filter(|p| p[2] != 0.0 && p[2] != 2.0)
+            .count();
         assert!(8 * inside < merged.mesh.vertex_count(), "{inside}");
         assert!(4 * merged.mesh.face_count() < kept.mesh.face_count());
         let reference = limit_reference(&mesh, &Loop, 5).unwrap();
         let samples = SamplingOptions::default().samples(50_000);
-        let apart = hausdorff(merged.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
-        assert!(apart.symmetric() <= tolerance + 5e-5, "{}", apart.symmetric());
+        let apart = hausdorff(
+            merged.mesh.as_triangles(),
+            reference.as_triangles(),
+            &samples,
+        )
+        .unwrap();
+        assert!(
+            apart.symmetric() <= tolerance + 5e-5,
+            "{}",
+            apart.symmetric()
+        );
     }
 }
 
@@ -203,14 +276,24 @@ fn flat_sides_may_go_over_into_round_ones() {
 #[test]
 fn rounded_coordinates_have_strips_too() {
     let mesh = peg(16);
-    let rounded = mesh.positions().iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let rounded = mesh
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| f64::from(x as f32)))
+        .collect();
     let rounded = mesh.clone().with_positions(rounded).unwrap();
-    let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &within(1e-3)).unwrap());
+    let [exactly, single] =
+        [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &within(1e-3)).unwrap());
     assert_eq!(single.mesh.face_count(), exactly.mesh.face_count());
     assert!(single.error.upper <= 1e-3);
     let reference = limit_reference(&rounded, &Loop, 6).unwrap();
     let samples = SamplingOptions::default().samples(50_000);
-    let apart = hausdorff(single.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+    let apart = hausdorff(
+        single.mesh.as_triangles(),
+        reference.as_triangles(),
+        &samples,
+    )
+    .unwrap();
     assert!(apart.symmetric() <= 1e-3 + 2e-5, "{}", apart.symmetric());
 }
 
@@ -219,7 +302,8 @@ fn doubled(columns: u32, rows: u32, numbers: &mut Random) -> Mesh {
     let sheet = corrugated(columns, rows, numbers);
     let (mut positions, mut behind) = (sheet.positions().to_vec(), Vec::new());
     for v in 0..columns * rows {
-        let is_inside = (1..columns - 1).contains(&(v % columns)) && (1..rows - 1).contains(&(v / columns));
+        let is_inside =
+            (1..columns - 1).contains(&(v % columns)) && (1..rows - 1).contains(&(v / columns));
         behind.push(if is_inside { positions.len() as u32 } else { v });
         positions.extend(is_inside.then_some(positions[v as usize]));
     }
@@ -246,7 +330,10 @@ fn sheets_may_touch_along_straight_lines() {
         let merged = exact(&mesh, &Loop, &options).unwrap();
         let kept = exact(&mesh, &Loop, &options.flat_regions(false)).unwrap();
         merged.mesh.validate().unwrap();
-        let again = Mesh::from_triangles(merged.mesh.positions().to_vec(), merged.mesh.triangles().to_vec());
+        let again = Mesh::from_triangles(
+            merged.mesh.positions().to_vec(),
+            merged.mesh.triangles().to_vec(),
+        );
         assert!(again.is_ok(), "{case}: {again:?}");
         assert_eq!(merged.mesh.topology().euler_characteristic(), 2, "{case}");
         assert_eq!(merged.mesh.topology().boundary_edge_count(), 0, "{case}");
@@ -262,7 +349,10 @@ fn threads_change_nothing() {
     let run = || exact(&mesh, &Loop, &within(1e-4)).unwrap();
     let here = run();
     for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         let there = pool.install(run);
         assert_eq!(here.mesh.positions(), there.mesh.positions());
         assert_eq!(here.mesh.triangles(), there.mesh.triangles());
@@ -287,8 +377,14 @@ fn sides_may_be_cut_either_way() {
                 assert_eq!(result.stop, ExactStop::Met);
                 result.mesh.face_count()
             });
-        assert!(irregular <= 3 * regular, "within {tolerance}: {irregular}, not {regular}");
-        assert!(2 * irregular <= whole, "within {tolerance}: {irregular} of {whole}");
+        assert!(
+            irregular <= 3 * regular,
+            "within {tolerance}: {irregular}, not {regular}"
+        );
+        assert!(
+            2 * irregular <= whole,
+            "within {tolerance}: {irregular} of {whole}"
+        );
     }
 }
 
@@ -311,14 +407,28 @@ fn what_is_curved_both_ways_has_no_strips() {
 fn balanced_pegs_take_no_more_triangles() {
     for (facets, tolerance) in [(13, 1e-2), (16, 1e-3), (32, 1e-4)] {
         let mesh = peg(facets);
-        for options in [within(tolerance), ExactOptions::default().tolerance(tolerance)] {
+        for options in [
+            within(tolerance),
+            ExactOptions::default().tolerance(tolerance),
+        ] {
             let plain = exact(&mesh, &Loop, &options).unwrap();
             let balanced = exact(&mesh, &Loop, &options.clone().balance(true)).unwrap();
-            assert_eq!((plain.stop, balanced.stop), (ExactStop::Met, ExactStop::Met));
+            assert_eq!(
+                (plain.stop, balanced.stop),
+                (ExactStop::Met, ExactStop::Met)
+            );
             let [plain, count] = [&plain, &balanced].map(|result| result.mesh.face_count());
-            assert!(count <= plain, "{facets}, {tolerance}: {count} balanced, {plain}");
-            let told = exact_estimate(&mesh, &Loop, &options.balance(true)).unwrap().triangles;
-            assert!(4 * told <= 6 * count && 4 * count <= 6 * told, "{facets}, {tolerance}: {told}, {count}");
+            assert!(
+                count <= plain,
+                "{facets}, {tolerance}: {count} balanced, {plain}"
+            );
+            let told = exact_estimate(&mesh, &Loop, &options.balance(true))
+                .unwrap()
+                .triangles;
+            assert!(
+                4 * told <= 6 * count && 4 * count <= 6 * told,
+                "{facets}, {tolerance}: {told}, {count}"
+            );
         }
     }
 }
@@ -334,11 +444,19 @@ fn nearer_meshes_with_too_many_triangles_are_given_up() {
         [2.5, 0.250000001, 1.5e-7],
         [1.0, 3.25, 3.1e-7],
     ];
-    let mut soup = PolygonSoup { positions: at.to_vec(), ..PolygonSoup::default() };
+    let mut soup = PolygonSoup {
+        positions: at.to_vec(),
+        ..PolygonSoup::default()
+    };
     soup.faces.push(&[4, 3, 2, 1, 0]);
     let (mesh, _) = Mesh::from_soup(&soup, &Default::default()).unwrap();
-    let (mesh, _) = mesh.with_boundary(BoundaryRule::Fixed).with_divided_concave_corners().unwrap();
-    let options = ExactOptions::default().tolerance(0.01 * mesh.diagonal()).unfold(true);
+    let (mesh, _) = mesh
+        .with_boundary(BoundaryRule::Fixed)
+        .with_divided_concave_corners()
+        .unwrap();
+    let options = ExactOptions::default()
+        .tolerance(0.01 * mesh.diagonal())
+        .unfold(true);
     // Rounds, not calls, of which there are more where another program is at work.
     let mut rounds = std::collections::HashSet::new();
     let mut count = |at: &limitmesh::progress::Progress| {

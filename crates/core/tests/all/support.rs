@@ -20,7 +20,11 @@ pub fn dot(a: Point, b: Point) -> f64 {
 }
 
 pub fn cross(a: Point, b: Point) -> Point {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// A small deterministic generator, so that tests do not depend on a crate's stream of random numbers.
@@ -67,15 +71,30 @@ pub fn octahedron() -> Mesh {
         [0.0, 0.0, 1.0],
         [0.0, 0.0, -1.0],
     ];
-    let triangles =
-        vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+    let triangles = vec![
+        [0, 2, 4],
+        [2, 1, 4],
+        [1, 3, 4],
+        [3, 0, 4],
+        [2, 0, 5],
+        [1, 2, 5],
+        [3, 1, 5],
+        [0, 3, 5],
+    ];
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
 /// The triangles of a grid of so many columns and rows of vertices, row by row.
 pub fn grid(columns: u32, rows: u32) -> Vec<[u32; 3]> {
     let quads = (0..rows - 1).flat_map(|j| (0..columns - 1).map(move |i| j * columns + i));
-    quads.flat_map(|v| [[v, v + 1, v + columns + 1], [v, v + columns + 1, v + columns]]).collect()
+    quads
+        .flat_map(|v| {
+            [
+                [v, v + 1, v + columns + 1],
+                [v, v + columns + 1, v + columns],
+            ]
+        })
+        .collect()
 }
 
 /// A torus-like grid of `m` by `n` quads, each cut in two: every vertex has valence 6.
@@ -84,7 +103,10 @@ pub fn torus(m: u32, n: u32) -> Mesh {
     let mut positions = Vec::new();
     for i in 0..m {
         for j in 0..n {
-            let (u, v) = (tau * f64::from(i) / f64::from(m), tau * f64::from(j) / f64::from(n));
+            let (u, v) = (
+                tau * f64::from(i) / f64::from(m),
+                tau * f64::from(j) / f64::from(n),
+            );
             let r = 2.0 + 0.7 * v.cos();
             positions.push([r * u.cos(), r * u.sin(), 0.7 * v.sin()]);
         }
@@ -107,7 +129,11 @@ pub fn sheet(m: u32, n: u32, seed: u64) -> Mesh {
     for i in 0..=m {
         for j in 0..=n {
             let mut jitter = || 0.2 * random.signed();
-            positions.push([f64::from(i) + jitter(), f64::from(j) + jitter(), 3.0 * jitter()]);
+            positions.push([
+                f64::from(i) + jitter(),
+                f64::from(j) + jitter(),
+                3.0 * jitter(),
+            ]);
         }
     }
     let at = |i: u32, j: u32| i * (n + 1) + j;
@@ -137,7 +163,11 @@ pub fn lumpy(splits: usize, seed: u64) -> Mesh {
         let [a, b, c] = triangles[f];
         let middle = positions.len() as u32;
         let centre: Point = std::array::from_fn(|axis| {
-            [a, b, c].iter().map(|&v| positions[v as usize][axis]).sum::<f64>() / 2.4
+            [a, b, c]
+                .iter()
+                .map(|&v| positions[v as usize][axis])
+                .sum::<f64>()
+                / 2.4
         });
         positions.push(centre);
         triangles[f] = [a, b, middle];
@@ -165,7 +195,12 @@ pub fn brute_force_loop(positions: &[Point], triangles: &[[u32; 3]]) -> BruteFor
         }
     }
     let combine = |terms: &[(f64, u32)]| -> Point {
-        std::array::from_fn(|axis| terms.iter().map(|&(w, v)| w * positions[v as usize][axis]).sum())
+        std::array::from_fn(|axis| {
+            terms
+                .iter()
+                .map(|&(w, v)| w * positions[v as usize][axis])
+                .sum()
+        })
     };
     let mut neighbours = vec![Vec::new(); positions.len()];
     let mut boundary = vec![Vec::new(); positions.len()];
@@ -207,7 +242,11 @@ pub fn brute_force_loop(positions: &[Point], triangles: &[[u32; 3]]) -> BruteFor
             [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
         })
         .collect();
-    BruteForceLoop { positions: refined, triangles: split, edge_vertices }
+    BruteForceLoop {
+        positions: refined,
+        triangles: split,
+        edge_vertices,
+    }
 }
 
 pub fn distance(a: Point, b: Point) -> f64 {
@@ -222,7 +261,8 @@ pub fn unnumbered(mesh: &Mesh, digits: i32) -> Vec<[[i64; 3]; 3]> {
         .triangles()
         .iter()
         .map(|t| {
-            let mut corners = t.map(|v| mesh.positions()[v as usize].map(|x| (x * scale).round() as i64));
+            let mut corners =
+                t.map(|v| mesh.positions()[v as usize].map(|x| (x * scale).round() as i64));
             let least = (0..3).min_by_key(|&i| corners[i]).unwrap();
             corners.rotate_left(least);
             corners
@@ -241,26 +281,41 @@ pub fn tagged_obj(text: &str) -> Mesh {
         match words.first() {
             Some(&"v") => positions.push([number(1), number(2), number(3)]),
             Some(&"f") => {
-                let corner = |i: usize| words[i].split('/').next().unwrap().parse::<u32>().unwrap() - 1;
+                let corner =
+                    |i: usize| words[i].split('/').next().unwrap().parse::<u32>().unwrap() - 1;
                 triangles.push([corner(1), corner(2), corner(3)]);
             }
             Some(&"t") if words[1] == "crease" => {
                 let vertices = [number(3) as u32, number(4) as u32];
-                tags.creases.push(CreaseTag { vertices, sharpness: number(5) });
+                tags.creases.push(CreaseTag {
+                    vertices,
+                    sharpness: number(5),
+                });
             }
             Some(&"t") if words[1] == "corner" => {
-                tags.corners.push(CornerTag { vertex: number(3) as u32, sharpness: number(4) });
+                tags.corners.push(CornerTag {
+                    vertex: number(3) as u32,
+                    sharpness: number(4),
+                });
             }
             _ => {}
         }
     }
     tags.corners.sort_by_key(|tag| tag.vertex);
-    Mesh::from_triangles(positions, triangles).unwrap().with_tags(tags).unwrap()
+    Mesh::from_triangles(positions, triangles)
+        .unwrap()
+        .with_tags(tags)
+        .unwrap()
 }
 
 /// Every vertex of an exact refinement is a vertex of the uniform refinement that is as deep (five levels at most), with its
 /// limit at the same place.
-pub fn vertices_are_of_uniform_refinement(control: &Mesh, scheme: &dyn Scheme, result: &Exact, name: &str) {
+pub fn vertices_are_of_uniform_refinement(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    result: &Exact,
+    name: &str,
+) {
     let levels = result.levels.min(5);
     let reference = limit_reference(control, scheme, levels).unwrap();
     let scale = 1e-9 * control.diagonal();
@@ -275,8 +330,8 @@ pub fn vertices_are_of_uniform_refinement(control: &Mesh, scheme: &dyn Scheme, r
             continue;
         }
         let [x, y, z] = key(p);
-        let cells =
-            (-1..=1).flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])));
+        let cells = (-1..=1)
+            .flat_map(|i| (-1..=1).flat_map(move |j| (-1..=1).map(move |k| [x + i, y + j, z + k])));
         let found = cells
             .filter_map(|cell| near.get(&cell))
             .flatten()
@@ -296,14 +351,23 @@ pub fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
     let topology = mesh.topology();
     let mut creases = Vec::new();
     for h in topology.half_edges() {
-        let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else { continue };
+        let Some(twin) = topology.twin(h).filter(|twin| h < *twin) else {
+            continue;
+        };
         let [a, b] = [h, twin].map(|h| unit(h.face()));
         if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
             let [from, to] = topology.ends(h);
-            creases.push(CreaseTag { vertices: [from.0, to.0], sharpness: INFINITELY_SHARP });
+            creases.push(CreaseTag {
+                vertices: [from.0, to.0],
+                sharpness: INFINITELY_SHARP,
+            });
         }
     }
-    mesh.with_tags(Tags { creases, ..Tags::default() }).unwrap()
+    mesh.with_tags(Tags {
+        creases,
+        ..Tags::default()
+    })
+    .unwrap()
 }
 
 /// A peg of so many facets, radius 1 and height 3, turned in space by a rotation that leaves no coordinate whole; its ends are fans
@@ -336,9 +400,14 @@ pub fn peg(facets: u32) -> Mesh {
 const MOST_CHECKED: usize = 20_000;
 
 /// [`limitmesh::refine::exact`], what is certified being checked by the program that shares nothing with the library.
-pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions) -> Result<Exact, RefineError> {
+pub fn exact(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+) -> Result<Exact, RefineError> {
     let found = limitmesh::refine::exact(control, scheme, options)?;
-    let has_places = !found.origins.is_empty() && found.error.certified && found.error.upper.is_finite();
+    let has_places =
+        !found.origins.is_empty() && found.error.certified && found.error.upper.is_finite();
     if has_places && found.mesh.face_count() <= MOST_CHECKED {
         crate::certificate::proofs::check(control, scheme, &found).unwrap();
     }

@@ -48,7 +48,9 @@ fn voxels(n: i32, is_inside: impl Fn([i32; 3]) -> bool) -> Mesh {
 }
 
 fn ball(radius: i32) -> Mesh {
-    voxels(radius + 1, |[x, y, z]| x * x + y * y + z * z <= radius * radius)
+    voxels(radius + 1, |[x, y, z]| {
+        x * x + y * y + z * z <= radius * radius
+    })
 }
 
 /// A bent tube of the radius 3 around a part of a circle of the radius 14; open where its ends are left out.
@@ -95,7 +97,9 @@ fn distance_to_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
 /// Points on all triangles of a surface, on a grid of so many steps on each.
 fn points(surface: Triangles<'_>, steps: usize) -> Vec<Point> {
     let weights = (0..=steps).flat_map(|i| (0..=steps - i).map(move |j| [i, j, steps - i - j]));
-    let weights: Vec<[f64; 3]> = weights.map(|w| w.map(|w| w as f64 / steps as f64)).collect();
+    let weights: Vec<[f64; 3]> = weights
+        .map(|w| w.map(|w| w as f64 / steps as f64))
+        .collect();
     let on = |face: usize| {
         let corners = surface.corners(face);
         let at = |w: [f64; 3]| [0, 1, 2].map(|axis| (0..3).map(|c| w[c] * corners[c][axis]).sum());
@@ -111,9 +115,12 @@ fn greatest_distance(points: &[Point], surface: Triangles<'_>, most: f64) -> f64
     let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
     for face in 0..surface.triangles.len() {
         let corners = surface.corners(face);
-        let end = |by: f64, pick: fn(f64, f64) -> f64| {
-            cell([0, 1, 2].map(|axis| pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) + by))
-        };
+        let end =
+            |by: f64, pick: fn(f64, f64) -> f64| {
+                cell([0, 1, 2].map(|axis| {
+                    pick(pick(corners[0][axis], corners[1][axis]), corners[2][axis]) + by
+                }))
+            };
         let (low, high) = (end(-most, f64::min), end(most, f64::max));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
@@ -125,7 +132,8 @@ fn greatest_distance(points: &[Point], surface: Triangles<'_>, most: f64) -> f64
     }
     let distance = |&p: &Point| {
         let near = cells.get(&cell(p)).into_iter().flatten();
-        near.map(|&face| distance_to_triangle(p, surface.corners(face))).fold(f64::INFINITY, f64::min)
+        near.map(|&face| distance_to_triangle(p, surface.corners(face)))
+            .fold(f64::INFINITY, f64::min)
     };
     points.iter().map(distance).fold(0.0, f64::max)
 }
@@ -135,18 +143,31 @@ fn check_distance(mesh: &Mesh, found: &Within, most: f64) {
     let (input, output) = (mesh.as_triangles(), found.refined.mesh.as_triangles());
     let there = greatest_distance(&points(output, 3), input, most);
     let back = greatest_distance(&points(input, 8), output, most);
-    assert!(there <= most && back <= most, "{there} and {back} of {most}");
+    assert!(
+        there <= most && back <= most,
+        "{there} and {back} of {most}"
+    );
     // What is told is no more than what is sampled, give or take what lies between samples.
     let sampled = there.max(back);
-    assert!(found.distance.lower <= sampled * 1.02 + 1e-9, "{:?}, {sampled} was sampled", found.distance);
-    assert!(sampled <= found.distance.upper + 1e-9, "{:?}, {sampled} was sampled", found.distance);
+    assert!(
+        found.distance.lower <= sampled * 1.02 + 1e-9,
+        "{:?}, {sampled} was sampled",
+        found.distance
+    );
+    assert!(
+        sampled <= found.distance.upper + 1e-9,
+        "{:?}, {sampled} was sampled",
+        found.distance
+    );
 }
 
 /// By the divergence theorem.
 fn volume(mesh: &Mesh) -> f64 {
     let surface = mesh.as_triangles();
     let of = |[a, b, c]: [Point; 3]| dot(a, cross(b, c)) / 6.0;
-    (0..surface.triangles.len()).map(|face| of(surface.corners(face))).sum()
+    (0..surface.triangles.len())
+        .map(|face| of(surface.corners(face)))
+        .sum()
 }
 
 fn is_inverted_nowhere(found: &Within) {
@@ -158,7 +179,10 @@ fn is_inverted_nowhere(found: &Within) {
 fn spread(numbers: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let count = numbers.clone().count() as f64;
     let mean = numbers.clone().sum::<f64>() / count;
-    (mean, (numbers.map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt())
+    (
+        mean,
+        (numbers.map(|x| (x - mean).powi(2)).sum::<f64>() / count).sqrt(),
+    )
 }
 
 fn length(p: Point) -> f64 {
@@ -175,13 +199,19 @@ fn a_ball_of_voxels_becomes_round() {
     let (mean, deviation) = spread(radii.clone());
     assert!(deviation <= 0.07, "{deviation}");
     let of_volume = (4169.0 * 3.0 / (4.0 * std::f64::consts::PI)).cbrt();
-    assert!((mean - of_volume).abs() < 0.05, "{mean}, {of_volume} by the volume");
+    assert!(
+        (mean - of_volume).abs() < 0.05,
+        "{mean}, {of_volume} by the volume"
+    );
     assert!((volume(&found.refined.mesh) / 4169.0 - 1.0).abs() < 0.01);
     check_distance(&mesh, &found, 0.87);
     is_inverted_nowhere(&found);
     // The plain limit surface keeps the steps.
-    let plain =
-        limitmesh::refine::exact(&mesh, &Loop, &limitmesh::refine::ExactOptions::default().tolerance(0.02));
+    let plain = limitmesh::refine::exact(
+        &mesh,
+        &Loop,
+        &limitmesh::refine::ExactOptions::default().tolerance(0.02),
+    );
     let (_, of_plain) = spread(plain.unwrap().mesh.positions().iter().map(|&p| length(p)));
     assert!(of_plain > 0.19, "{of_plain}");
 }
@@ -214,11 +244,19 @@ fn each_component_keeps_its_own_volume() {
     // Two balls, one of them far away and inside out: with normals inwards its volume is negative.
     let (near, far) = (ball(5), ball(3));
     let count = near.vertex_count() as u32;
-    let positions =
-        near.positions().iter().copied().chain(far.positions().iter().map(|p| [p[0] + 30.0, p[1], p[2]]));
-    let turned = far.triangles().iter().map(|&[a, b, c]| [a + count, c + count, b + count]);
-    let mesh =
-        Mesh::from_triangles(positions.collect(), near.triangles().iter().copied().chain(turned).collect());
+    let positions = near
+        .positions()
+        .iter()
+        .copied()
+        .chain(far.positions().iter().map(|p| [p[0] + 30.0, p[1], p[2]]));
+    let turned = far
+        .triangles()
+        .iter()
+        .map(|&[a, b, c]| [a + count, c + count, b + count]);
+    let mesh = Mesh::from_triangles(
+        positions.collect(),
+        near.triangles().iter().copied().chain(turned).collect(),
+    );
     let mesh = mesh.unwrap();
     let found = asked(&mesh, 0.8);
     assert!(found.is_kept());
@@ -230,7 +268,11 @@ fn each_component_keeps_its_own_volume() {
         own.map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum::<f64>()
     };
     for (is_far, whole) in [(false, volume(&near)), (true, -volume(&far))] {
-        assert!((of_part(is_far) / whole - 1.0).abs() < 0.01, "{} of {whole}", of_part(is_far));
+        assert!(
+            (of_part(is_far) / whole - 1.0).abs() < 0.01,
+            "{} of {whole}",
+            of_part(is_far)
+        );
     }
 }
 
@@ -238,8 +280,17 @@ fn each_component_keeps_its_own_volume() {
 fn box_of(sizes: Point) -> Mesh {
     let mut soup = PolygonSoup::default();
     let side = |c: u32, axis: usize| if c >> axis & 1 == 0 { 0.0 } else { sizes[axis] };
-    soup.positions = (0..8u32).map(|c| [0, 1, 2].map(|axis| side(c, axis))).collect();
-    for face in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+    soup.positions = (0..8u32)
+        .map(|c| [0, 1, 2].map(|axis| side(c, axis)))
+        .collect();
+    for face in [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ] {
         soup.faces.push(&face);
     }
     Mesh::from_soup(&soup, &Default::default()).unwrap().0
@@ -271,13 +322,22 @@ fn column(sides: u32, height: f64, is_cone: bool) -> Mesh {
 fn looking_away(mesh: &Mesh, surface: Triangles<'_>, near: f64) -> usize {
     let normal = |[a, b, c]: [Point; 3]| cross(minus(b, a), minus(c, a));
     let input = mesh.as_triangles();
-    let faces: Vec<_> = (0..input.triangles.len()).map(|face| input.corners(face)).collect();
+    let faces: Vec<_> = (0..input.triangles.len())
+        .map(|face| input.corners(face))
+        .collect();
     let looks_away = |own: [Point; 3]| {
         let middle = [0, 1, 2].map(|i| (own[0][i] + own[1][i] + own[2][i]) / 3.0);
-        let close = faces.iter().filter(|&&face| distance_to_triangle(middle, face) <= near);
-        close.map(|&face| dot(normal(own), normal(face))).fold(f64::MIN, f64::max) < 0.0
+        let close = faces
+            .iter()
+            .filter(|&&face| distance_to_triangle(middle, face) <= near);
+        close
+            .map(|&face| dot(normal(own), normal(face)))
+            .fold(f64::MIN, f64::max)
+            < 0.0
     };
-    (0..surface.triangles.len()).filter(|&face| looks_away(surface.corners(face))).count()
+    (0..surface.triangles.len())
+        .filter(|&face| looks_away(surface.corners(face)))
+        .count()
 }
 
 /// Parts, cages and needles, coarse beside the distance: what cannot be round stays as sharp as it was.
@@ -289,13 +349,19 @@ fn parts_and_cages_stay_within_any_distance() {
         octahedron(),
         column(32, 4.0, false),
         column(6, 40.0, true),
-        voxels(2, |[x, y, z]| z == 0 && x.abs() < 2 && y.abs() < 2 && !(x > 0 && y > 0)),
+        voxels(2, |[x, y, z]| {
+            z == 0 && x.abs() < 2 && y.abs() < 2 && !(x > 0 && y > 0)
+        }),
     ];
     for (number, mesh) in meshes.iter().enumerate() {
         for part in [1e-3, 1e-2] {
             let most = part * mesh.diagonal();
             let found = asked(mesh, most);
-            assert!(found.is_kept(), "{number} within {most}: {:?}", found.distance);
+            assert!(
+                found.is_kept(),
+                "{number} within {most}: {:?}",
+                found.distance
+            );
             check_distance(mesh, &found, most);
             assert_eq!(
                 looking_away(mesh, found.refined.mesh.as_triangles(), most),
@@ -311,7 +377,12 @@ fn parts_and_cages_stay_within_any_distance() {
 fn a_box_that_no_smooth_surface_is_near_stays_a_box() {
     let mesh = box_of([40.0, 20.0, 5.0]);
     let found = asked(&mesh, 0.04);
-    assert!(found.is_kept() && found.sharpened == 12, "{:?}, {}", found.distance, found.sharpened);
+    assert!(
+        found.is_kept() && found.sharpened == 12,
+        "{:?}, {}",
+        found.distance,
+        found.sharpened
+    );
     check_distance(&mesh, &found, 0.04);
     assert!((volume(&found.refined.mesh) - 4000.0).abs() < 1e-6);
     // Round where there is room.
@@ -325,11 +396,21 @@ fn a_box_that_no_smooth_surface_is_near_stays_a_box() {
 fn only_what_has_to_be_sharp_is() {
     let mesh = column(64, 4.0, false);
     let found = asked(&mesh, 0.01);
-    assert!(found.is_kept() && found.sharpened == 128, "{:?}, {}", found.distance, found.sharpened);
+    assert!(
+        found.is_kept() && found.sharpened == 128,
+        "{:?}, {}",
+        found.distance,
+        found.sharpened
+    );
     check_distance(&mesh, &found, 0.01);
     // Rounder than the polygon, whose sides are 1.2e-3 nearer to the axis in their middle.
     let radius = |p: &Point| p[0].hypot(p[1]);
-    let side = found.refined.mesh.positions().iter().filter(|p| p[2] > 0.1 && p[2] < 3.9);
+    let side = found
+        .refined
+        .mesh
+        .positions()
+        .iter()
+        .filter(|p| p[2] > 0.1 && p[2] < 3.9);
     let off = side.map(|p| (radius(p) - 1.0).abs()).fold(0.0, f64::max);
     assert!(off < 4e-4, "{off}");
 }
@@ -341,7 +422,11 @@ fn a_tiny_distance_does_not_take_millions_of_triangles() {
         let found = asked(&mesh, most);
         assert!(found.is_kept(), "{:?}", found.distance);
         let triangles = found.refined.mesh.face_count();
-        assert!(triangles <= 4 * mesh.face_count(), "{triangles} of {}", mesh.face_count());
+        assert!(
+            triangles <= 4 * mesh.face_count(),
+            "{triangles} of {}",
+            mesh.face_count()
+        );
         check_distance(&mesh, &found, most);
     }
 }
@@ -353,7 +438,11 @@ fn corners_and_creases_of_the_file_stay() {
     let found = asked(&mesh, 0.3);
     // Faces are divided, and creases with them: as many at least lead to each vertex of the file as did.
     let creases_at = |mesh: &Mesh, v: u32| {
-        mesh.tags().creases.iter().filter(|crease| crease.vertices.contains(&v)).count()
+        mesh.tags()
+            .creases
+            .iter()
+            .filter(|crease| crease.vertices.contains(&v))
+            .count()
     };
     for v in 0..mesh.vertex_count() as u32 {
         assert!(creases_at(&found.control, v) >= creases_at(&mesh, v), "{v}");
@@ -366,9 +455,15 @@ fn corners_and_creases_of_the_file_stay() {
 fn the_same_comes_out_for_any_number_of_threads() {
     let mesh = ball(6);
     let of = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         let found = pool.install(|| asked(&mesh, 0.8));
-        (found.refined.mesh.positions().to_vec(), found.refined.mesh.triangles().to_vec())
+        (
+            found.refined.mesh.positions().to_vec(),
+            found.refined.mesh.triangles().to_vec(),
+        )
     };
     assert!(of(1) == of(3));
 }
@@ -387,14 +482,24 @@ fn smoothing_is_observed_and_ends_when_it_is_told_to() {
         ControlFlow::Continue(())
     });
     assert!(whole.is_ok() && calls > 100, "{calls}");
-    assert!(longest < Duration::from_secs(2), "{longest:?} without a word");
+    assert!(
+        longest < Duration::from_secs(2),
+        "{longest:?} without a word"
+    );
     for stop in [1, 50, calls / 2] {
         let mut calls = 0;
         let found = within_observed(&mesh, &Loop, &options, &mut |_: &Progress| {
             calls += 1;
-            if calls < stop { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+            if calls < stop {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         });
-        assert!(matches!(found, Err(RefineError::Cancelled(_))) && calls == stop, "{calls} of {stop}");
+        assert!(
+            matches!(found, Err(RefineError::Cancelled(_))) && calls == stop,
+            "{calls} of {stop}"
+        );
     }
 }
 
@@ -405,8 +510,16 @@ fn what_makes_no_sense_is_refused() {
         let refused = within(&mesh, &Loop, &WithinOptions::default().within(length));
         assert!(matches!(refused, Err(RefineError::Mesh(_))), "{length}");
     }
-    let refused = within(&mesh, &Loop, &WithinOptions::default().within(0.1).tolerance(Some(0.2)));
+    let refused = within(
+        &mesh,
+        &Loop,
+        &WithinOptions::default().within(0.1).tolerance(Some(0.2)),
+    );
     assert!(matches!(refused, Err(RefineError::Mesh(_))));
-    let refused = within(&mesh, &ModifiedButterfly, &WithinOptions::default().within(0.1));
+    let refused = within(
+        &mesh,
+        &ModifiedButterfly,
+        &WithinOptions::default().within(0.1),
+    );
     assert!(refused.is_err_and(|error| error.to_string().contains("butterfly")));
 }

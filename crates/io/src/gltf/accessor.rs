@@ -28,7 +28,11 @@ impl Numbers {
     pub(super) fn points(&self, at: &At<'_>) -> Result<Vec<[f64; 3]>> {
         let (points, rest) = self.values.as_chunks::<3>();
         if self.components != 3 || !rest.is_empty() {
-            return Err(GltfFlaw::new(at.place(), self.components.to_string(), "3 numbers for each vertex"));
+            return Err(GltfFlaw::new(
+                at.place(),
+                self.components.to_string(),
+                "3 numbers for each vertex",
+            ));
         }
         match self.values.iter().position(|x| !x.is_finite()) {
             None => Ok(points.to_vec()),
@@ -90,13 +94,18 @@ impl Source {
     pub(super) fn numbers(&self, at: &At<'_>, expected: Option<usize>) -> Result<Numbers> {
         let (_, accessor) = at.item_of(&self.root(), "accessors")?;
         let layout = layout(&accessor)?;
-        let Layout { count, components, .. } = layout;
+        let Layout {
+            count, components, ..
+        } = layout;
         if let Some(expected) = expected.filter(|&expected| expected != count) {
             let found = format!("{count}, from {}", accessor.place());
             let expected = format!("{expected} elements (as many as there are vertices)");
             return Err(GltfFlaw::new(at.place(), found, expected));
         }
-        let place = |flaw: GltfFlaw| GltfFlaw { place: format!("{} ({})", at.place(), flaw.place), ..flaw };
+        let place = |flaw: GltfFlaw| GltfFlaw {
+            place: format!("{} ({})", at.place(), flaw.place),
+            ..flaw
+        };
         let values = match accessor.get("bufferView") {
             Some(view) => self.elements(&accessor, &view, layout).map_err(place)?,
             None => {
@@ -105,7 +114,11 @@ impl Source {
             }
         };
         let is_integer = layout.component != Component::F32 && !layout.is_normalized;
-        let mut numbers = Numbers { components, values, is_integer };
+        let mut numbers = Numbers {
+            components,
+            values,
+            is_integer,
+        };
         if let Some(sparse) = accessor.get("sparse") {
             self.replace(&sparse, layout, &mut numbers).map_err(place)?;
         }
@@ -116,30 +129,46 @@ impl Source {
     pub(super) fn integers(&self, at: &At<'_>) -> Result<Vec<u32>> {
         let (_, accessor) = at.item_of(&self.root(), "accessors")?;
         let layout = layout(&accessor)?;
-        let is_index = matches!(layout.component, Component::U8 | Component::U16 | Component::U32);
+        let is_index = matches!(
+            layout.component,
+            Component::U8 | Component::U16 | Component::U32
+        );
         if !is_index || layout.components != 1 {
             return Err(GltfFlaw::saying(
                 accessor.place(),
                 "indices are unsigned whole numbers, one an element",
             ));
         }
-        Ok(self.numbers(at, None)?.values.into_iter().map(|x| x as u32).collect())
+        Ok(self
+            .numbers(at, None)?
+            .values
+            .into_iter()
+            .map(|x| x as u32)
+            .collect())
     }
 
     /// Elements in a view, from the `byteOffset` of what names it.
     fn elements(&self, owner: &At<'_>, view: &At<'_>, layout: Layout) -> Result<Vec<f64>> {
-        let Layout { count, components, component, is_normalized } = layout;
+        let Layout {
+            count,
+            components,
+            component,
+            is_normalized,
+        } = layout;
         let found = self.view(view)?;
         let size = components * component.size();
         let stride = found.stride.unwrap_or(size);
         if stride < size {
-            let problem = format!("its elements of {size} bytes overlap: the view has a stride of {stride}");
+            let problem =
+                format!("its elements of {size} bytes overlap: the view has a stride of {stride}");
             return Err(GltfFlaw::saying(owner.place(), problem));
         }
         let start = owner.count_or("byteOffset", 0)?;
-        let end = count
-            .checked_sub(1)
-            .map_or(Some(start), |last| last.checked_mul(stride)?.checked_add(size)?.checked_add(start));
+        let end = count.checked_sub(1).map_or(Some(start), |last| {
+            last.checked_mul(stride)?
+                .checked_add(size)?
+                .checked_add(start)
+        });
         let bytes = end.and_then(|end| found.bytes.get(start..end)).ok_or_else(|| {
             let problem = format!(
                 "it has {count} elements of {size} bytes, {stride} apart, from byte {start} on, but the view has {} bytes",
@@ -147,7 +176,13 @@ impl Source {
             );
             GltfFlaw::saying(owner.place(), problem)
         })?;
-        Ok(decode(bytes, count, components, stride, (component, is_normalized)))
+        Ok(decode(
+            bytes,
+            count,
+            components,
+            stride,
+            (component, is_normalized),
+        ))
     }
 
     /// Puts sparse values in their places.
@@ -155,23 +190,39 @@ impl Source {
         let count = sparse.require("count")?;
         let many = count.count()?;
         if many > layout.count {
-            return Err(count.unexpected(format!("at most {} (the accessor's count)", layout.count)));
+            return Err(
+                count.unexpected(format!("at most {} (the accessor's count)", layout.count))
+            );
         }
         let (places, values) = (sparse.require("indices")?, sparse.require("values")?);
         let kind = component(&places)?;
         if !matches!(kind, Component::U8 | Component::U16 | Component::U32) {
-            return Err(places.require("componentType")?.unexpected("unsigned whole numbers"));
+            return Err(places
+                .require("componentType")?
+                .unexpected("unsigned whole numbers"));
         }
-        let of_places = Layout { count: many, components: 1, component: kind, is_normalized: false };
+        let of_places = Layout {
+            count: many,
+            components: 1,
+            component: kind,
+            is_normalized: false,
+        };
         let indices = self.elements(&places, &places.require("bufferView")?, of_places)?;
-        let of_values = Layout { count: many, ..layout };
+        let of_values = Layout {
+            count: many,
+            ..layout
+        };
         let new = self.elements(&values, &values.require("bufferView")?, of_values)?;
         let width = layout.components;
         for (i, index) in indices.into_iter().enumerate() {
             let index = index as usize;
             let Some(old) = numbers.values.get_mut(index * width..(index + 1) * width) else {
                 let found = format!("{index} in element {i}");
-                return Err(GltfFlaw::new(places.place(), found, format!("indices below {}", layout.count)));
+                return Err(GltfFlaw::new(
+                    places.place(),
+                    found,
+                    format!("indices below {}", layout.count),
+                ));
             };
             old.copy_from_slice(&new[i * width..(i + 1) * width]);
         }
@@ -181,7 +232,8 @@ impl Source {
 
 fn component(at: &At<'_>) -> Result<Component> {
     let code = at.require("componentType")?;
-    Component::of(code.count()?).ok_or_else(|| code.unexpected("5120, 5121, 5122, 5123, 5125 or 5126"))
+    Component::of(code.count()?)
+        .ok_or_else(|| code.unexpected("5120, 5121, 5122, 5123, 5125 or 5126"))
 }
 
 fn layout(accessor: &At<'_>) -> Result<Layout> {
@@ -201,7 +253,12 @@ fn layout(accessor: &At<'_>) -> Result<Layout> {
     if count > u32::MAX as usize {
         return Err(at.unexpected(format!("at most {}", u32::MAX)));
     }
-    Ok(Layout { count, components, component, is_normalized: accessor.flag("normalized")? })
+    Ok(Layout {
+        count,
+        components,
+        component,
+        is_normalized: accessor.flag("normalized")?,
+    })
 }
 
 /// Numbers of elements that are `stride` bytes apart; `bytes` are known to hold them all.
@@ -212,13 +269,29 @@ pub(super) fn decode(
     stride: usize,
     (component, is_normalized): (Component, bool),
 ) -> Vec<f64> {
-    let scaled = |most: f64| move |c: f64| if is_normalized { (c / most).max(-1.0) } else { c };
+    let scaled = |most: f64| {
+        move |c: f64| {
+            if is_normalized {
+                (c / most).max(-1.0)
+            } else {
+                c
+            }
+        }
+    };
     let shape = (count, components, stride);
     match component {
-        Component::I8 => read(bytes, shape, |b| scaled(127.0)(f64::from(i8::from_le_bytes(b)))),
-        Component::U8 => read(bytes, shape, |b| scaled(255.0)(f64::from(u8::from_le_bytes(b)))),
-        Component::I16 => read(bytes, shape, |b| scaled(32_767.0)(f64::from(i16::from_le_bytes(b)))),
-        Component::U16 => read(bytes, shape, |b| scaled(65_535.0)(f64::from(u16::from_le_bytes(b)))),
+        Component::I8 => read(bytes, shape, |b| {
+            scaled(127.0)(f64::from(i8::from_le_bytes(b)))
+        }),
+        Component::U8 => read(bytes, shape, |b| {
+            scaled(255.0)(f64::from(u8::from_le_bytes(b)))
+        }),
+        Component::I16 => read(bytes, shape, |b| {
+            scaled(32_767.0)(f64::from(i16::from_le_bytes(b)))
+        }),
+        Component::U16 => read(bytes, shape, |b| {
+            scaled(65_535.0)(f64::from(u16::from_le_bytes(b)))
+        }),
         Component::U32 => read(bytes, shape, |b| f64::from(u32::from_le_bytes(b))),
         Component::F32 => read(bytes, shape, |b| f64::from(f32::from_le_bytes(b))),
     }

@@ -52,12 +52,22 @@ pub(super) fn normals(primitives: &[Primitive], wanted: &[usize]) -> Option<Chan
     }
     let (mut values, mut indices) = (vec![0.0; 3], Vec::new());
     for &part in wanted {
-        let Primitive { normals, triangles, .. } = &primitives[part];
+        let Primitive {
+            normals, triangles, ..
+        } = &primitives[part];
         let first = (values.len() / 3) as u32;
         let is_number = |n: &[f64; 3]| n.iter().all(|x| x.is_finite());
-        values.extend(normals.iter().flat_map(|n| if is_number(n) { *n } else { [0.0; 3] }));
-        indices
-            .extend(triangles.as_flattened().iter().map(|v| if normals.is_empty() { 0 } else { first + v }));
+        values.extend(
+            normals
+                .iter()
+                .flat_map(|n| if is_number(n) { *n } else { [0.0; 3] }),
+        );
+        indices.extend(
+            triangles
+                .as_flattened()
+                .iter()
+                .map(|v| if normals.is_empty() { 0 } else { first + v }),
+        );
     }
     Some(Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3).with(values, indices))
 }
@@ -89,7 +99,10 @@ pub(super) fn tables(
         // Colours without alpha are opaque; what is added to them is not.
         let missing = if target.is_none() { 1.0 } else { 0.0 };
         let mut table = CornerAttribute {
-            name: target.map_or_else(|| name.clone(), |target| format!("targets[{target}].{name}")),
+            name: target.map_or_else(
+                || name.clone(),
+                |target| format!("targets[{target}].{name}"),
+            ),
             target: *target,
             width,
             values: Vec::new(),
@@ -114,11 +127,15 @@ pub(super) fn tables(
                     if let Some(own) = own {
                         value.fill(if own.components < width { missing } else { 0.0 });
                         let start = v as usize * own.components;
-                        value[..own.components].copy_from_slice(&own.values[start..start + own.components]);
+                        value[..own.components]
+                            .copy_from_slice(&own.values[start..start + own.components]);
                     }
                     let at = vertex(part, names[part].of_vertex[v as usize]);
-                    let bits =
-                        value.iter().filter(|_| !is_displacement).map(|x| (x + 0.0).to_bits()).collect();
+                    let bits = value
+                        .iter()
+                        .filter(|_| !is_displacement)
+                        .map(|x| (x + 0.0).to_bits())
+                        .collect();
                     let next = (table.values.len() / width) as u32;
                     let index = *known.entry((at, bits)).or_insert(next);
                     if index == next {

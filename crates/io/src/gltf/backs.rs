@@ -27,7 +27,10 @@ impl Backs {
         let faces = Faces::of(primitives, kinds);
         let mut sheets = Sheets::of(&faces, Poses::new(primitives));
         let backs = sheets.backs(&faces);
-        let none = primitives.iter().map(|primitive| vec![0; primitive.triangles.len()]).collect();
+        let none = primitives
+            .iter()
+            .map(|primitive| vec![0; primitive.triangles.len()])
+            .collect();
         let mut found = Self { sheets: none };
         if backs.is_empty() {
             return found;
@@ -48,7 +51,10 @@ impl Backs {
 
     /// How many triangles of a primitive are in backs.
     pub(super) fn count(&self, part: usize) -> usize {
-        self.sheets[part].iter().filter(|&&sheet| sheet != 0).count()
+        self.sheets[part]
+            .iter()
+            .filter(|&&sheet| sheet != 0)
+            .count()
     }
 
     /// Gives each sheet vertices of its own, and says of all vertices in which back they are.
@@ -98,7 +104,12 @@ impl<'a> Faces<'a> {
             first.push(count);
             count += primitive.triangles.len() as u32;
         }
-        Self { primitives, kinds, first, count }
+        Self {
+            primitives,
+            kinds,
+            first,
+            count,
+        }
     }
 
     /// The primitive of a triangle.
@@ -110,7 +121,10 @@ impl<'a> Faces<'a> {
     fn vertex(&self, Corner { face, at }: Corner, steps: usize) -> Local {
         let part = self.part(face);
         let triangle = self.primitives[part].triangles[(face - self.first[part]) as usize];
-        Local { part, vertex: triangle[(at + steps) % 3] }
+        Local {
+            part,
+            vertex: triangle[(at + steps) % 3],
+        }
     }
 
     fn kind(&self, corner: Corner, steps: usize) -> u32 {
@@ -126,7 +140,8 @@ impl<'a> Faces<'a> {
     /// Whether two triangles at an edge, which run oppositely along it, are on the same side of it.
     fn is_folded(&self, a: Corner, b: Corner, poses: Poses<'_>) -> bool {
         let [from, to, tip] = [0, 1, 2].map(|steps| self.vertex(a, steps));
-        self.tip(a) == self.tip(b) || poses.always([from, to, tip, self.vertex(b, 2)], is_one_half_plane)
+        self.tip(a) == self.tip(b)
+            || poses.always([from, to, tip, self.vertex(b, 2)], is_one_half_plane)
     }
 }
 
@@ -153,7 +168,10 @@ struct Sheets {
 
 impl Sheets {
     fn of(faces: &Faces<'_>, poses: Poses<'_>) -> Self {
-        let mut sheets = Self { parents: (0..faces.count).collect(), folds: Vec::new() };
+        let mut sheets = Self {
+            parents: (0..faces.count).collect(),
+            folds: Vec::new(),
+        };
         // The kinds of its ends from the lower to the higher, and the corner that it starts at.
         let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * faces.count as usize);
         for face in 0..faces.count {
@@ -167,12 +185,22 @@ impl Sheets {
         }
         sides.sort_unstable();
         let (mut up, mut down) = (Vec::new(), Vec::new());
-        for edge in sides.chunk_by(|a, b| a.0 == b.0).filter(|edge| edge.len() <= MOST_AROUND) {
+        for edge in sides
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|edge| edge.len() <= MOST_AROUND)
+        {
             up.clear();
             down.clear();
             for &([low, _], side) in edge {
-                let corner = Corner { face: side / 3, at: (side % 3) as usize };
-                let same_way = if faces.kind(corner, 0) == low { &mut up } else { &mut down };
+                let corner = Corner {
+                    face: side / 3,
+                    at: (side % 3) as usize,
+                };
+                let same_way = if faces.kind(corner, 0) == low {
+                    &mut up
+                } else {
+                    &mut down
+                };
                 sheets.add_side(faces, corner, same_way);
             }
             sheets.connect(faces, poses, [&up, &down]);
@@ -182,7 +210,10 @@ impl Sheets {
 
     /// Adds a side to those that run the same way, unless its triangle repeats one of theirs, with which it is then connected.
     fn add_side(&mut self, faces: &Faces<'_>, corner: Corner, same_way: &mut Vec<Corner>) {
-        match same_way.iter().find(|&&other| faces.tip(other) == faces.tip(corner)) {
+        match same_way
+            .iter()
+            .find(|&&other| faces.tip(other) == faces.tip(corner))
+        {
             Some(other) => unite(&mut self.parents, other.face, corner.face),
             None => same_way.push(corner),
         }
@@ -192,7 +223,11 @@ impl Sheets {
     fn connect(&mut self, faces: &Faces<'_>, poses: Poses<'_>, [up, down]: [&[Corner]; 2]) {
         let goes_on = |&a: &Corner, &b: &Corner| !faces.is_folded(a, b, poses);
         for a in up {
-            self.folds.extend(down.iter().filter(|b| !goes_on(a, b)).map(|b| [a.face, b.face]));
+            self.folds.extend(
+                down.iter()
+                    .filter(|b| !goes_on(a, b))
+                    .map(|b| [a.face, b.face]),
+            );
             let mut others = down.iter().filter(|b| goes_on(a, b));
             if let (Some(b), None) = (others.next(), others.next())
                 && up.iter().filter(|other| goes_on(other, b)).count() == 1
@@ -225,7 +260,11 @@ impl Sheets {
         }
         let of = |[a, b]: [u32; 2]| {
             let (own, other) = (vertices.get(&a)?, vertices.get(&b)?);
-            if other.is_subset(own) { Some(b) } else { own.is_subset(other).then_some(a) }
+            if other.is_subset(own) {
+                Some(b)
+            } else {
+                own.is_subset(other).then_some(a)
+            }
         };
         pairs.into_iter().filter_map(of).collect()
     }

@@ -43,7 +43,12 @@ pub(super) struct Written {
 
 impl Changes {
     /// The document with the changes; `way` is put before the names of images.
-    pub(super) fn apply(&self, source: &Source, place: &Place<'_>, way: Option<&str>) -> Result<Written> {
+    pub(super) fn apply(
+        &self,
+        source: &Source,
+        place: &Place<'_>,
+        way: Option<&str>,
+    ) -> Result<Written> {
         let text = &source.container.text;
         let top = Members::of(text)?;
         let mut edits = Edits::new(text);
@@ -55,12 +60,22 @@ impl Changes {
         };
         let idle = Idle::of(source, (self, &rest, &unused));
         let mut new = Cow::from(&self.appended.bytes);
-        let starts = if idle.has_views() { idle.append_to(new.to_mut()) } else { Vec::new() };
+        let starts = if idle.has_views() {
+            idle.append_to(new.to_mut())
+        } else {
+            Vec::new()
+        };
         let (buffer, start, bytes) = buffer(&new, (source, &unused), place, (&top, &mut edits))?;
         let starts: Vec<usize> = starts.into_iter().map(|own| start + own).collect();
         idle.edit((text, &top), &mut edits, (buffer, &starts))?;
         unused.edit(&top, &mut edits, |view| idle.makes_plain(view))?;
-        let count = |key: &str| source.json.get(key).and_then(Value::as_array).map_or(0, Vec::len);
+        let count = |key: &str| {
+            source
+                .json
+                .get(key)
+                .and_then(Value::as_array)
+                .map_or(0, Vec::len)
+        };
         let (views, accessors) = (count("bufferViews"), count("accessors"));
         let new_views = self.appended.views.iter().map(|view| {
             let mut members = json!({
@@ -75,18 +90,26 @@ impl Changes {
             members.to_string()
         });
         append(&mut edits, text, &top, "bufferViews", new_views.collect())?;
-        let new_accessors = self.appended.accessors.iter().enumerate().map(|(i, accessor)| {
-            let mut accessor = accessor.clone();
-            accessor["bufferView"] = Value::from(views + i);
-            accessor.to_string()
-        });
+        let new_accessors = self
+            .appended
+            .accessors
+            .iter()
+            .enumerate()
+            .map(|(i, accessor)| {
+                let mut accessor = accessor.clone();
+                accessor["bufferView"] = Value::from(views + i);
+                accessor.to_string()
+            });
         append(&mut edits, text, &top, "accessors", new_accessors.collect())?;
         self.primitives_in(&top, &mut edits, (accessors, &rest))?;
         rest.edit(&top, &mut edits)?;
         if let Some(way) = way.filter(|way| !way.is_empty()) {
             link_images(&top, &mut edits, way)?;
         }
-        let mut container = Container { text: edits.apply(), ..Container::default() };
+        let mut container = Container {
+            text: edits.apply(),
+            ..Container::default()
+        };
         let beside = match place {
             Place::Chunk => {
                 container.bin = (!bytes.is_empty()).then_some(bytes);
@@ -118,15 +141,23 @@ impl Changes {
             let primitives = items_of(primitives.get("primitives").ok_or_else(missing)?)?;
             let old = primitives.get(primitive).copied().ok_or_else(missing)?;
             let members = Members::of(old)?;
-            let named = |(name, accessor): &(String, usize)| format!("{}:{}", quoted(name), first + accessor);
+            let named = |(name, accessor): &(String, usize)| {
+                format!("{}:{}", quoted(name), first + accessor)
+            };
             let object = |all: &Vec<(String, usize)>| {
-                format!("{{{}}}", all.iter().map(named).collect::<Vec<_>>().join(","))
+                format!(
+                    "{{{}}}",
+                    all.iter().map(named).collect::<Vec<_>>().join(",")
+                )
             };
             let targets: Vec<String> = new.targets.iter().map(object).collect();
             let mut changes = vec![
                 ("attributes", Some(object(&new.attributes))),
                 ("indices", Some((first + new.indices).to_string())),
-                ("targets", (!targets.is_empty()).then(|| format!("[{}]", targets.join(",")))),
+                (
+                    "targets",
+                    (!targets.is_empty()).then(|| format!("[{}]", targets.join(","))),
+                ),
             ];
             // Triangles are what a primitive without a mode has.
             if members.get("mode").is_some_and(|mode| mode != "4") {
@@ -148,17 +179,23 @@ fn buffer<'a>(
     (top, edits): (&Members<'a>, &mut Edits<'a>),
 ) -> Result<(usize, usize, Vec<u8>)> {
     let text = &source.container.text;
-    let buffers = top.get("buffers").map_or_else(|| Ok(Vec::new()), items_of)?;
+    let buffers = top
+        .get("buffers")
+        .map_or_else(|| Ok(Vec::new()), items_of)?;
     let uri = |bytes: &[u8]| match place {
         Place::Chunk => None,
         Place::File(name) => Some(quoted(&uri::escaped(name))),
-        Place::Inside => {
-            Some(quoted(&format!("data:application/octet-stream;base64,{}", uri::to_base64(bytes))))
-        }
+        Place::Inside => Some(quoted(&format!(
+            "data:application/octet-stream;base64,{}",
+            uri::to_base64(bytes)
+        ))),
     };
     // The first buffer is the chunk's, or was and has to go elsewhere.
     let is_in_chunk = source.is_in_chunk();
-    if let (Some(&first), true) = (buffers.first(), matches!(place, Place::Chunk) || is_in_chunk) {
+    if let (Some(&first), true) = (
+        buffers.first(),
+        matches!(place, Place::Chunk) || is_in_chunk,
+    ) {
         let mut bytes = unused.cut(source.first_buffer()?);
         if !new.is_empty() {
             bytes.resize(bytes.len().next_multiple_of(4), 0);
@@ -173,12 +210,17 @@ fn buffer<'a>(
                 edits.replace(old, length);
             }
         } else {
-            edits.replace(first, members.with(&[("uri", uri), ("byteLength", Some(length))]));
+            edits.replace(
+                first,
+                members.with(&[("uri", uri), ("byteLength", Some(length))]),
+            );
         }
         return Ok((0, start, bytes));
     }
     if !new.is_empty() {
-        let uri = uri(new).map(|uri| format!("\"uri\":{uri},")).unwrap_or_default();
+        let uri = uri(new)
+            .map(|uri| format!("\"uri\":{uri},"))
+            .unwrap_or_default();
         let item = format!("{{{uri}\"byteLength\":{}}}", new.len());
         append(edits, text, top, "buffers", vec![item])?;
     }
@@ -188,7 +230,9 @@ fn buffer<'a>(
 /// Puts a way before the names of image files.
 fn link_images<'a>(top: &Members<'a>, edits: &mut Edits<'a>, way: &str) -> Result<()> {
     for image in top.get("images").map_or_else(|| Ok(Vec::new()), items_of)? {
-        let Some(text) = Members::of(image)?.get("uri") else { continue };
+        let Some(text) = Members::of(image)?.get("uri") else {
+            continue;
+        };
         if let Ok(Value::String(name)) = serde_json::from_str(text)
             && let Ok(Uri::File(_)) = uri::parse(&name)
         {
@@ -209,7 +253,11 @@ fn append<'a>(
     match top.get(key) {
         _ if items.is_empty() => Ok(()),
         Some(array) => edits.append(array, &items),
-        None => edits.insert(text.trim_ascii_end(), key, &format!("[{}]", items.join(","))),
+        None => edits.insert(
+            text.trim_ascii_end(),
+            key,
+            &format!("[{}]", items.join(",")),
+        ),
     }
 }
 
@@ -230,16 +278,26 @@ impl Source {
     /// those of images if they `are_linked`.
     pub(super) fn files(&self, is_taken: bool, are_linked: bool) -> BTreeSet<PathBuf> {
         let mut found = BTreeSet::new();
-        let first = self.json.get("buffers").and_then(|buffers| buffers.get(0)).filter(|_| is_taken);
-        let linked = self.json.get("images").and_then(Value::as_array).filter(|_| are_linked);
-        let is_linked =
-            |value: &Value| linked.is_some_and(|all| all.iter().any(|own| std::ptr::eq(own, value)));
+        let first = self
+            .json
+            .get("buffers")
+            .and_then(|buffers| buffers.get(0))
+            .filter(|_| is_taken);
+        let linked = self
+            .json
+            .get("images")
+            .and_then(Value::as_array)
+            .filter(|_| are_linked);
+        let is_linked = |value: &Value| {
+            linked.is_some_and(|all| all.iter().any(|own| std::ptr::eq(own, value)))
+        };
         let mut waiting = vec![&self.json];
         while let Some(value) = waiting.pop() {
             match value {
                 Value::Array(items) => waiting.extend(items),
                 Value::Object(members)
-                    if !is_linked(value) && !first.is_some_and(|first| std::ptr::eq(first, value)) =>
+                    if !is_linked(value)
+                        && !first.is_some_and(|first| std::ptr::eq(first, value)) =>
                 {
                     if let Some(Value::String(uri)) = members.get("uri")
                         && let Ok(Uri::File(file)) = uri::parse(uri)

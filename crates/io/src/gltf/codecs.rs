@@ -9,7 +9,8 @@ use super::accessor::{self, Component, Numbers};
 use super::flaw::{GltfFlaw, Result};
 use super::json::At;
 use draco_gltf::{
-    DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension, JsonValue, MeshoptFilter, MeshoptMode,
+    DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension, JsonValue, MeshoptFilter,
+    MeshoptMode,
 };
 
 /// Vertices and faces at most for each byte of a Draco stream.
@@ -24,13 +25,18 @@ pub(super) fn meshopt(
     source: &[u8],
     take_room: impl FnOnce(usize) -> Result<()>,
 ) -> Result<Vec<u8>> {
-    let (count, stride) = (at.require("count")?.count()?, at.require("byteStride")?.count()?);
+    let (count, stride) = (
+        at.require("count")?.count()?,
+        at.require("byteStride")?.count()?,
+    );
     let mode = at.require("mode")?;
     let filter = at.get("filter");
     let kind = MeshoptMode::from_name(mode.text()?).map_err(|_| mode.unexpected("a known mode"))?;
     let filter = match &filter {
         None => MeshoptFilter::None,
-        Some(at) => MeshoptFilter::from_name(at.text()?).map_err(|_| at.unexpected("a known filter"))?,
+        Some(at) => {
+            MeshoptFilter::from_name(at.text()?).map_err(|_| at.unexpected("a known filter"))?
+        }
     };
     let strides_fit = match kind {
         MeshoptMode::Attributes => (1..=64).contains(&(stride / 4)) && stride.is_multiple_of(4),
@@ -45,15 +51,24 @@ pub(super) fn meshopt(
         return Err(at.require("count")?.unexpected("a multiple of 3"));
     }
     let most = source.len().saturating_mul(MOST_RATIO);
-    let size = count.checked_mul(stride).filter(|&size| size <= most).ok_or_else(|| {
-        let there = source.len();
-        let problem = format!("a stream of {there} bytes cannot hold {count} elements of {stride} bytes");
-        GltfFlaw::saying(at.place(), problem)
-    })?;
+    let size = count
+        .checked_mul(stride)
+        .filter(|&size| size <= most)
+        .ok_or_else(|| {
+            let there = source.len();
+            let problem =
+                format!("a stream of {there} bytes cannot hold {count} elements of {stride} bytes");
+            GltfFlaw::saying(at.place(), problem)
+        })?;
     take_room(size)?;
     let mut bytes = vec![0; size];
     draco_gltf::meshopt::decode_buffer_view(&mut bytes, source, kind, filter, count, stride)
-        .map_err(|error| GltfFlaw::saying(at.place(), format!("the meshopt stream is damaged: {error}")))?;
+        .map_err(|error| {
+            GltfFlaw::saying(
+                at.place(),
+                format!("the meshopt stream is damaged: {error}"),
+            )
+        })?;
     Ok(bytes)
 }
 
@@ -83,11 +98,13 @@ pub(super) fn draco(
     limits.max_points = most;
     limits.max_faces = most;
     limits.max_decoded_bytes = room as u64;
-    let contract =
-        normalized.iter().fold(DracoPrimitiveContract::new().with_limits(limits), |contract, (name, is)| {
-            contract.with_attribute(name.as_str(), 0, *is)
-        });
-    let geometry = extension.decode(stream, &contract).map_err(|error| failed(&error))?;
+    let contract = normalized.iter().fold(
+        DracoPrimitiveContract::new().with_limits(limits),
+        |contract, (name, is)| contract.with_attribute(name.as_str(), 0, *is),
+    );
+    let geometry = extension
+        .decode(stream, &contract)
+        .map_err(|error| failed(&error))?;
     let attributes = geometry.attributes().iter().map(|attribute| {
         let component = Component::of(attribute.component_type().to_gltf() as usize)
             .ok_or_else(|| failed(&"numbers of a kind that glTF does not have"))?;
@@ -100,11 +117,24 @@ pub(super) fn draco(
             components * component.size(),
             (component, attribute.normalized()),
         );
-        Ok((attribute.semantic().to_owned(), Numbers { components, values, is_integer }))
+        Ok((
+            attribute.semantic().to_owned(),
+            Numbers {
+                components,
+                values,
+                is_integer,
+            },
+        ))
     });
     let attributes = attributes.collect::<Result<_>>()?;
-    let indices = geometry.indices().map_or(&[][..], |indices| indices.bytes());
-    let indices =
-        indices.chunks_exact(4).map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]]));
-    Ok(Compressed { attributes, indices: indices.collect() })
+    let indices = geometry
+        .indices()
+        .map_or(&[][..], |indices| indices.bytes());
+    let indices = indices
+        .chunks_exact(4)
+        .map(|four| u32::from_le_bytes([four[0], four[1], four[2], four[3]]));
+    Ok(Compressed {
+        attributes,
+        indices: indices.collect(),
+    })
 }

@@ -28,18 +28,31 @@ impl Container {
     pub(super) fn parse(bytes: &[u8]) -> Result<Self> {
         if !bytes.starts_with(MAGIC) {
             let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
-            return Ok(Self { text: text_of(bytes)?, ..Self::default() });
+            return Ok(Self {
+                text: text_of(bytes)?,
+                ..Self::default()
+            });
         }
         let version = word(bytes, 4)?;
         if version != 2 {
-            return Err(GltfFlaw::new("the GLB header", version.to_string(), "version 2"));
+            return Err(GltfFlaw::new(
+                "the GLB header",
+                version.to_string(),
+                "version 2",
+            ));
         }
         let length = word(bytes, 8)? as usize;
         if length > bytes.len() || length < 12 {
-            let problem = format!("it names a length of {length} bytes, but the file has {}", bytes.len());
+            let problem = format!(
+                "it names a length of {length} bytes, but the file has {}",
+                bytes.len()
+            );
             return Err(GltfFlaw::saying("the GLB header", problem));
         }
-        let mut found = Self { is_glb: true, ..Self::default() };
+        let mut found = Self {
+            is_glb: true,
+            ..Self::default()
+        };
         let mut rest = &bytes[12..length];
         let mut place = 12;
         for number in 0.. {
@@ -49,10 +62,19 @@ impl Container {
             let name = format!("chunk {number} of the GLB, at byte {place}");
             let (size, kind) = match (word(rest, 0), word(rest, 4)) {
                 (Ok(size), Ok(kind)) => (size as usize, kind),
-                _ => return Err(GltfFlaw::new(name, rest.len().to_string(), "a header of 8 bytes")),
+                _ => {
+                    return Err(GltfFlaw::new(
+                        name,
+                        rest.len().to_string(),
+                        "a header of 8 bytes",
+                    ));
+                }
             };
             let Some(content) = rest[8..].get(..size) else {
-                let problem = format!("it names a length of {size} bytes, but {} are left", rest.len() - 8);
+                let problem = format!(
+                    "it names a length of {size} bytes, but {} are left",
+                    rest.len() - 8
+                );
                 return Err(GltfFlaw::saying(name, problem));
             };
             match kind {
@@ -86,7 +108,11 @@ impl Container {
         let padded = |length: usize| 8 + length.next_multiple_of(4);
         let length = 12
             + padded(text.len())
-            + bin.clone().chain(others.clone()).map(|c| padded(c.1.len())).sum::<usize>();
+            + bin
+                .clone()
+                .chain(others.clone())
+                .map(|c| padded(c.1.len()))
+                .sum::<usize>();
         let mut out = Vec::with_capacity(length);
         out.extend(MAGIC);
         out.extend(2u32.to_le_bytes());
@@ -99,7 +125,8 @@ impl Container {
             out.resize(out.len() + padded - content.len(), pad);
         };
         push(JSON, text, b' ');
-        bin.chain(others).for_each(|(kind, bytes, pad)| push(kind, bytes, pad));
+        bin.chain(others)
+            .for_each(|(kind, bytes, pad)| push(kind, bytes, pad));
         Some(out)
     }
 }

@@ -17,7 +17,10 @@ pub(super) struct Edits<'a> {
 
 impl<'a> Edits<'a> {
     pub(super) fn new(text: &'a str) -> Self {
-        Self { text, changes: Vec::new() }
+        Self {
+            text,
+            changes: Vec::new(),
+        }
     }
 
     /// Puts `new` in the place of `old`, which is a part of the text.
@@ -31,15 +34,21 @@ impl<'a> Edits<'a> {
         let first = items_of(array)?.is_empty();
         let end = self.offset(array) + array.len() - 1;
         let joined = items.join(",");
-        self.changes.push((end..end, if first { joined } else { format!(",{joined}") }));
+        self.changes
+            .push((end..end, if first { joined } else { format!(",{joined}") }));
         Ok(())
     }
 
     /// Adds a member at the end of an object that is a part of the text.
     pub(super) fn insert(&mut self, object: &'a str, key: &str, value: &str) -> Result<()> {
         let end = self.offset(object) + object.len() - 1;
-        let before = if Members::of(object)?.0.is_empty() { "" } else { "," };
-        self.changes.push((end..end, format!("{before}\"{key}\":{value}")));
+        let before = if Members::of(object)?.0.is_empty() {
+            ""
+        } else {
+            ","
+        };
+        self.changes
+            .push((end..end, format!("{before}\"{key}\":{value}")));
         Ok(())
     }
 
@@ -63,7 +72,8 @@ impl<'a> Edits<'a> {
                 && let Some(comma) = self.text[start..].find(|c: char| !c.is_ascii_whitespace())
                 && self.text[start + comma..].starts_with(',')
             {
-                self.changes.push((start + comma..start + comma + 1, String::new()));
+                self.changes
+                    .push((start + comma..start + comma + 1, String::new()));
             }
             start = end;
         }
@@ -102,7 +112,11 @@ impl<'a> Members<'a> {
 
     /// The text of a member's value. Of several with one key the last counts, as it does when the document is read.
     pub(super) fn get(&self, key: &str) -> Option<&'a str> {
-        self.0.iter().rev().find(|(own, _)| own == key).map(|&(_, text)| text)
+        self.0
+            .iter()
+            .rev()
+            .find(|(own, _)| own == key)
+            .map(|&(_, text)| text)
     }
 
     /// An object in which members are replaced, or added at the end, or left out where there is `None`; all others stay.
@@ -135,7 +149,10 @@ impl<'de> Deserialize<'de> for Members<'de> {
                 out.write_str("an object")
             }
 
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> std::result::Result<Self::Value, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(
+                self,
+                mut map: A,
+            ) -> std::result::Result<Self::Value, A::Error> {
                 let mut members = Vec::new();
                 while let Some((key, value)) = map.next_entry::<String, &'de RawValue>()? {
                     members.push((key, value.get()));
@@ -168,13 +185,18 @@ mod tests {
 
     #[test]
     fn all_but_the_changes_stays() {
-        let text = "{ \"a\" : [ 1.50 , {\"x\":1e+2} ],\n \"\\u0062\": {\"c\":\"\\/\",\"d\":[]}, \"e\":7 }";
+        let text =
+            "{ \"a\" : [ 1.50 , {\"x\":1e+2} ],\n \"\\u0062\": {\"c\":\"\\/\",\"d\":[]}, \"e\":7 }";
         let members = Members::of(text).expect("members");
         assert_eq!(members.get("b"), Some("{\"c\":\"\\/\",\"d\":[]}"));
         let inner = Members::of(members.get("b").expect("b")).expect("members");
         let mut edits = Edits::new(text);
-        edits.append(members.get("a").expect("a"), &["3".into(), "4".into()]).expect("appended");
-        edits.append(inner.get("d").expect("d"), &["5".into()]).expect("appended");
+        edits
+            .append(members.get("a").expect("a"), &["3".into(), "4".into()])
+            .expect("appended");
+        edits
+            .append(inner.get("d").expect("d"), &["5".into()])
+            .expect("appended");
         edits.replace(members.get("e").expect("e"), "8.0".into());
         edits.insert(text, "f", "[]").expect("inserted");
         assert_eq!(
@@ -189,10 +211,16 @@ mod tests {
             edits.remove(text, keys).expect("removed");
             edits.apply()
         };
-        assert_eq!(removed(&["a"]), text.replace(" \"a\" : [ 1.50 , {\"x\":1e+2} ],", ""));
+        assert_eq!(
+            removed(&["a"]),
+            text.replace(" \"a\" : [ 1.50 , {\"x\":1e+2} ],", "")
+        );
         assert_eq!(removed(&["e", "none"]), text.replace(", \"e\":7", ""));
         assert_eq!(removed(&["a", "b"]), "{ \"e\":7 }");
         assert_eq!(removed(&["a", "b", "e"]), "{ }");
-        assert_eq!(inner.with(&[("d", None), ("g", Some("1".into()))]), "{\"c\":\"\\/\",\"g\":1}");
+        assert_eq!(
+            inner.with(&[("d", None), ("g", Some("1".into()))]),
+            "{\"c\":\"\\/\",\"g\":1}"
+        );
     }
 }

@@ -17,13 +17,20 @@ pub struct GltfFlaw {
 
 impl GltfFlaw {
     /// Something was found where glTF asks for something else.
-    pub(super) fn new(place: impl Into<String>, found: impl AsRef<str>, expected: impl AsRef<str>) -> Self {
+    pub(super) fn new(
+        place: impl Into<String>,
+        found: impl AsRef<str>,
+        expected: impl AsRef<str>,
+    ) -> Self {
         Self::saying(place, expected_but_found(expected.as_ref(), found.as_ref()))
     }
 
     /// A problem in words.
     pub(super) fn saying(place: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self { place: place.into(), problem: problem.into() }
+        Self {
+            place: place.into(),
+            problem: problem.into(),
+        }
     }
 }
 

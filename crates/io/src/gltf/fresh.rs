@@ -28,14 +28,24 @@ pub(crate) fn write_fresh(
 ) -> Result<Vec<u8>, WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
     let groups = Groups::of(output);
-    let names: Vec<&str> = groups.names.iter().map(String::as_str).filter(|name| !name.is_empty()).collect();
+    let names: Vec<&str> = groups
+        .names
+        .iter()
+        .map(String::as_str)
+        .filter(|name| !name.is_empty())
+        .collect();
     let looks = Looks::of(&names, Some(output), Pictures::of(format, path)).map_err(flawed)?;
     let document = groups.document(options.unit, &looks).to_string();
     let folder = output.materials.map(|found| found.folder.as_path());
     let mut source = Source::parse(document.as_bytes(), folder).map_err(flawed)?;
     looks.fill(&mut source);
     let scene = source.scene().map_err(flawed)?;
-    let mut asset = Asset { path: None, source, scene, changes: Changes::default() };
+    let mut asset = Asset {
+        path: None,
+        source,
+        scene,
+        changes: Changes::default(),
+    };
     fill(&mut asset, 0, &groups, output, None).map_err(flawed)?;
     match path {
         Some(path) => asset.write(path, format).map(|_| Vec::new()),
@@ -56,12 +66,24 @@ pub(super) fn fill(
     let mut known = vec![NOWHERE; output.surface.positions.len()];
     for (primitive, triangles) in groups.triangles.iter().enumerate() {
         let own = Part::of(output, &channels, triangles, &mut known);
-        let at = |points: &[[f64; 3]]| own.vertices.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
+        let at = |points: &[[f64; 3]]| {
+            own.vertices
+                .iter()
+                .map(|&v| points[v as usize])
+                .collect::<Vec<_>>()
+        };
         // Where vertices have several normals, the writer is given a vertex for each.
-        let (positions, normals) = (at(output.surface.positions), output.vertex_normals().map(at));
+        let (positions, normals) = (
+            at(output.surface.positions),
+            output.vertex_normals().map(at),
+        );
         let target = coarser.map(|[places, shaded]| {
-            let shaded = normals.as_ref().map(|normals| displaced("NORMAL", normals, &at(shaded)));
-            core::iter::once(displaced("POSITION", &positions, &at(places))).chain(shaded).collect()
+            let shaded = normals
+                .as_ref()
+                .map(|normals| displaced("NORMAL", normals, &at(shaded)));
+            core::iter::once(displaced("POSITION", &positions, &at(places)))
+                .chain(shaded)
+                .collect()
         });
         let targets: Vec<Vec<VertexAttribute>> = target.into_iter().collect();
         let geometry = Geometry {
@@ -78,8 +100,17 @@ pub(super) fn fill(
 
 /// What a morph target adds.
 fn displaced(name: &str, from: &[[f64; 3]], to: &[[f64; 3]]) -> VertexAttribute {
-    let values = from.iter().zip(to).flat_map(|(from, to)| [0, 1, 2].map(|i| to[i] - from[i])).collect();
-    VertexAttribute { name: name.to_owned(), width: 3, values, is_integer: false }
+    let values = from
+        .iter()
+        .zip(to)
+        .flat_map(|(from, to)| [0, 1, 2].map(|i| to[i] - from[i]))
+        .collect();
+    VertexAttribute {
+        name: name.to_owned(),
+        width: 3,
+        values,
+        is_integer: false,
+    }
 }
 
 /// A document that holds nothing.
@@ -110,7 +141,11 @@ impl Groups {
         let is_material = |own: &&Channel| own.name == MATERIAL && own.domain == Domain::Face;
         let Some(channel) = output.channels.iter().find(is_material) else {
             // A mesh needs some triangles.
-            let triangles = if count > 0 { vec![(0..count).collect()] } else { Vec::new() };
+            let triangles = if count > 0 {
+                vec![(0..count).collect()]
+            } else {
+                Vec::new()
+            };
             return Self {
                 names: vec![String::new(); triangles.len()],
                 labels: vec![0; triangles.len()],
@@ -121,7 +156,10 @@ impl Groups {
         let mut numbers = HashMap::new();
         for (triangle, &label) in channel.indices.iter().enumerate() {
             let number = *numbers.entry(label).or_insert_with(|| {
-                let value = channel.values.get(label as usize).map_or(0, |&value| value as usize);
+                let value = channel
+                    .values
+                    .get(label as usize)
+                    .map_or(0, |&value| value as usize);
                 names.push(channel.labels.get(value).cloned().unwrap_or_default());
                 labels.push(value);
                 triangles.push(Vec::new());
@@ -129,7 +167,11 @@ impl Groups {
             });
             triangles[number].push(triangle);
         }
-        Self { names, labels, triangles }
+        Self {
+            names,
+            labels,
+            triangles,
+        }
     }
 
     /// What geometry is put into.
@@ -165,7 +207,10 @@ impl Groups {
 /// The channels that become attributes, by their names in the document.
 pub(super) fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> {
     let options = WriteOptions::default();
-    let held = output.channels.iter().filter(|own| own.domain != Domain::Face && own.value_count() > 0);
+    let held = output
+        .channels
+        .iter()
+        .filter(|own| own.domain != Domain::Face && own.value_count() > 0);
     let mut named: Vec<(String, &Channel)> = Vec::new();
     for channel in held.filter(|own| crate::holds(Format::Glb, &options, own)) {
         let usual = match channel.semantic {
@@ -175,7 +220,10 @@ pub(super) fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> 
         };
         let name = match usual {
             Some(kind) => {
-                let count = named.iter().filter(|(name, _)| name.starts_with(kind)).count();
+                let count = named
+                    .iter()
+                    .filter(|(name, _)| name.starts_with(kind))
+                    .count();
                 format!("{kind}{count}")
             }
             None => own_name(&channel.name),
@@ -189,9 +237,19 @@ pub(super) fn attributes<'a>(output: &Output<'a>) -> Vec<(String, &'a Channel)> 
 
 /// A name that is no name of the specification's: these begin with a line below.
 fn own_name(name: &str) -> String {
-    let visible = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' });
+    let visible = name.chars().map(|c| {
+        if c.is_ascii_alphanumeric() {
+            c.to_ascii_uppercase()
+        } else {
+            '_'
+        }
+    });
     let visible: String = visible.collect();
-    if visible.starts_with('_') { visible } else { format!("_{visible}") }
+    if visible.starts_with('_') {
+        visible
+    } else {
+        format!("_{visible}")
+    }
 }
 
 /// The vertices of a primitive, in the order of the file.
@@ -216,7 +274,9 @@ impl Part {
         triangles: &[usize],
         known: &mut [u32],
     ) -> Self {
-        let Triangles { triangles: corners, .. } = output.surface;
+        let Triangles {
+            triangles: corners, ..
+        } = output.surface;
         let mut vertices: Vec<u32> = Vec::new();
         let mut values: Vec<Vec<u32>> = vec![Vec::new(); channels.len()];
         // By vertex of the file, another one at the same vertex of the surface; and those beside which there are too many to look at.
@@ -248,15 +308,28 @@ impl Part {
                 others.push(NOWHERE);
             }
             vertices.push(vertex);
-            channels.iter().zip(&mut values).for_each(|((_, channel), values)| values.push(index(channel)));
+            channels
+                .iter()
+                .zip(&mut values)
+                .for_each(|((_, channel), values)| values.push(index(channel)));
             new
         };
-        let triangles = triangles.iter().map(|&triangle| [0, 1, 2].map(|corner| number(triangle, corner)));
+        let triangles = triangles
+            .iter()
+            .map(|&triangle| [0, 1, 2].map(|corner| number(triangle, corner)));
         let triangles = triangles.collect();
-        vertices.iter().for_each(|&vertex| known[vertex as usize] = NOWHERE);
-        let attributes =
-            channels.iter().zip(&values).map(|((name, channel), values)| attribute(name, channel, values));
-        Self { vertices, triangles, attributes: attributes.collect() }
+        vertices
+            .iter()
+            .for_each(|&vertex| known[vertex as usize] = NOWHERE);
+        let attributes = channels
+            .iter()
+            .zip(&values)
+            .map(|((name, channel), values)| attribute(name, channel, values));
+        Self {
+            vertices,
+            triangles,
+            attributes: attributes.collect(),
+        }
     }
 }
 
@@ -271,5 +344,10 @@ fn attribute(name: &str, channel: &Channel, indices: &[u32]) -> VertexAttribute 
             false => values.extend(value),
         }
     }
-    VertexAttribute { name: name.to_owned(), width, values, is_integer: false }
+    VertexAttribute {
+        name: name.to_owned(),
+        width,
+        values,
+        is_integer: false,
+    }
 }

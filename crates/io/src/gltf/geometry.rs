@@ -74,7 +74,13 @@ pub(super) struct NewPrimitive {
 impl Appended {
     /// Appends a primitive's geometry; `place` names it.
     pub(super) fn add(&mut self, geometry: &Geometry<'_>, place: &str) -> Result<NewPrimitive> {
-        let Geometry { positions, normals, triangles, attributes: others, targets } = *geometry;
+        let Geometry {
+            positions,
+            normals,
+            triangles,
+            attributes: others,
+            targets,
+        } = *geometry;
         let normal_count = normals.map_or(positions.len(), <[_]>::len);
         if positions.is_empty() || triangles.is_empty() || normal_count != positions.len() {
             let (points, faces) = (positions.len(), triangles.len());
@@ -84,7 +90,11 @@ impl Appended {
             );
             return Err(GltfFlaw::saying(place, problem));
         }
-        if let Some(v) = triangles.as_flattened().iter().find(|&&v| v as usize >= positions.len()) {
+        if let Some(v) = triangles
+            .as_flattened()
+            .iter()
+            .find(|&&v| v as usize >= positions.len())
+        {
             let count = positions.len();
             return Err(GltfFlaw::saying(
                 place,
@@ -92,24 +102,35 @@ impl Appended {
             ));
         }
         let rounded: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
-        if let Some(v) = rounded.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
-            let problem =
-                format!("32-bit floats cannot hold the coordinates of vertex {v}: {:?}", positions[v]);
+        if let Some(v) = rounded
+            .iter()
+            .position(|p| p.iter().any(|x| !x.is_finite()))
+        {
+            let problem = format!(
+                "32-bit floats cannot hold the coordinates of vertex {v}: {:?}",
+                positions[v]
+            );
             return Err(GltfFlaw::saying(place, problem));
         }
         let (low, high) = bounds(positions.as_flattened(), 3);
-        let bounded =
-            json!({"componentType": FLOAT, "count": rounded.len(), "type": "VEC3", "min": low, "max": high});
+        let bounded = json!({"componentType": FLOAT, "count": rounded.len(), "type": "VEC3", "min": low, "max": high});
         let position = self.push(floats(&rounded), OF_VERTICES, bounded);
         let mut attributes = vec![("POSITION".to_owned(), position)];
         if let Some(normals) = normals {
             let directions: Vec<[f32; 3]> = normals.iter().map(|&n| unit(n)).collect();
             let plain = json!({"componentType": FLOAT, "count": directions.len(), "type": "VEC3"});
-            attributes.push(("NORMAL".to_owned(), self.push(floats(&directions), OF_VERTICES, plain)));
+            attributes.push((
+                "NORMAL".to_owned(),
+                self.push(floats(&directions), OF_VERTICES, plain),
+            ));
         }
         let mut add = |all: &[VertexAttribute], place: &str| -> Result<Vec<(String, usize)>> {
-            let number =
-                |own: &VertexAttribute| Ok((own.name.clone(), self.attribute(own, positions.len(), place)?));
+            let number = |own: &VertexAttribute| {
+                Ok((
+                    own.name.clone(),
+                    self.attribute(own, positions.len(), place)?,
+                ))
+            };
             all.iter().map(number).collect()
         };
         attributes.extend(add(others, &format!("{place}.attributes"))?);
@@ -124,29 +145,61 @@ impl Appended {
         let corners = triangles.as_flattened();
         let is_short = positions.len() <= usize::from(u16::MAX);
         let bytes = match is_short {
-            true => corners.iter().flat_map(|&v| (v as u16).to_le_bytes()).collect(),
+            true => corners
+                .iter()
+                .flat_map(|&v| (v as u16).to_le_bytes())
+                .collect(),
             false => corners.iter().flat_map(|&v| v.to_le_bytes()).collect(),
         };
         let component = if is_short { SHORT } else { INT };
-        let of_indices = json!({"componentType": component, "count": corners.len(), "type": "SCALAR"});
+        let of_indices =
+            json!({"componentType": component, "count": corners.len(), "type": "SCALAR"});
         let indices = self.push(bytes, OF_INDICES, of_indices);
-        Ok(NewPrimitive { attributes, targets, indices })
+        Ok(NewPrimitive {
+            attributes,
+            targets,
+            indices,
+        })
     }
 
     /// Appends values at vertices.
-    fn attribute(&mut self, attribute: &VertexAttribute, vertices: usize, place: &str) -> Result<usize> {
-        let VertexAttribute { name, width, values, is_integer } = attribute;
+    fn attribute(
+        &mut self,
+        attribute: &VertexAttribute,
+        vertices: usize,
+        place: &str,
+    ) -> Result<usize> {
+        let VertexAttribute {
+            name,
+            width,
+            values,
+            is_integer,
+        } = attribute;
         let place = || format!("{place}.{name}");
-        let Some(kind) = width.checked_sub(1).and_then(|at| ["SCALAR", "VEC2", "VEC3", "VEC4"].get(at))
+        let Some(kind) = width
+            .checked_sub(1)
+            .and_then(|at| ["SCALAR", "VEC2", "VEC3", "VEC4"].get(at))
         else {
-            return Err(GltfFlaw::new(place(), width.to_string(), "1 to 4 numbers a value"));
+            return Err(GltfFlaw::new(
+                place(),
+                width.to_string(),
+                "1 to 4 numbers a value",
+            ));
         };
         if values.len() != vertices * width {
             let found = format!("{} for {vertices} vertices", values.len());
-            return Err(GltfFlaw::new(place(), found, format!("{width} numbers for each vertex")));
+            return Err(GltfFlaw::new(
+                place(),
+                found,
+                format!("{width} numbers for each vertex"),
+            ));
         }
         if let Some(x) = values.iter().find(|&&x| !(x as f32).is_finite()) {
-            return Err(GltfFlaw::new(place(), x.to_string(), "a number that 32-bit floats can hold"));
+            return Err(GltfFlaw::new(
+                place(),
+                x.to_string(),
+                "a number that 32-bit floats can hold",
+            ));
         }
         let most = values.iter().fold(0.0f64, |most, x| most.max(*x));
         let is_whole = *is_integer && most <= 65_535.0 && values.iter().all(|x| *x >= 0.0);
@@ -185,7 +238,12 @@ impl Appended {
 
     fn push(&mut self, bytes: Vec<u8>, target: u32, accessor: serde_json::Value) -> usize {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.push(NewView { start: self.bytes.len(), length: bytes.len(), target, stride: None });
+        self.views.push(NewView {
+            start: self.bytes.len(),
+            length: bytes.len(),
+            target,
+            stride: None,
+        });
         self.bytes.extend(bytes);
         self.accessors.push(accessor);
         self.accessors.len() - 1
@@ -205,12 +263,19 @@ fn bounds(values: &[f64], width: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 fn floats(rows: &[[f32; 3]]) -> Vec<u8> {
-    rows.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect()
+    rows.as_flattened()
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect()
 }
 
 /// Of length 1 after rounding, as near as can be; upwards where there is no direction.
 fn unit(n: [f64; 3]) -> [f32; 3] {
     let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
     let has_direction = length > 0.0 && length.is_finite();
-    if has_direction { n.map(|x| (x / length) as f32) } else { [0.0, 0.0, 1.0] }
+    if has_direction {
+        n.map(|x| (x / length) as f32)
+    } else {
+        [0.0, 0.0, 1.0]
+    }
 }

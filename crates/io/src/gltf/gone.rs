@@ -14,10 +14,26 @@ use super::levels::LOD;
 use super::rest::names_in;
 
 /// The arrays that the document has others of.
-const ARRAYS: [&str; 6] = ["nodes", "meshes", "skins", "animations", "cameras", "scenes"];
+const ARRAYS: [&str; 6] = [
+    "nodes",
+    "meshes",
+    "skins",
+    "animations",
+    "cameras",
+    "scenes",
+];
 
 /// What members are called, in part and in whatever case, that name items of these, or bones.
-const NAMING: [&str; 8] = ["node", "mesh", "skin", "animation", "camera", "scene", "joint", "bone"];
+const NAMING: [&str; 8] = [
+    "node",
+    "mesh",
+    "skin",
+    "animation",
+    "camera",
+    "scene",
+    "joint",
+    "bone",
+];
 
 /// What goes.
 #[derive(Default)]
@@ -31,22 +47,45 @@ pub(super) struct Gone {
 impl Gone {
     /// What goes of a document.
     pub(super) fn of(json: &Value) -> Self {
-        let own = json.get("extensions").and_then(Value::as_object).into_iter().flatten();
+        let own = json
+            .get("extensions")
+            .and_then(Value::as_object)
+            .into_iter()
+            .flatten();
         let (root, kept): (Vec<_>, Vec<_>) = own.partition(|(_, value)| names_some(value));
         let root: Vec<String> = root.into_iter().map(|(name, _)| name.clone()).collect();
         let mut names: BTreeSet<String> = root.iter().cloned().chain([LOD.to_owned()]).collect();
         let mut needed = BTreeSet::new();
         needed.extend(kept.iter().map(|(name, _)| (*name).clone()));
-        kept.iter().for_each(|(_, value)| names_in(value, &mut needed));
-        for (key, value) in json.as_object().into_iter().flatten().filter(|(key, _)| *key != "extensions") {
-            names_in(value, if ARRAYS.contains(&&key[..]) { &mut names } else { &mut needed });
+        kept.iter()
+            .for_each(|(_, value)| names_in(value, &mut needed));
+        for (key, value) in json
+            .as_object()
+            .into_iter()
+            .flatten()
+            .filter(|(key, _)| *key != "extensions")
+        {
+            names_in(
+                value,
+                if ARRAYS.contains(&&key[..]) {
+                    &mut names
+                } else {
+                    &mut needed
+                },
+            );
         }
-        Self { root, names: &names - &needed }
+        Self {
+            root,
+            names: &names - &needed,
+        }
     }
 
     /// The document's own extensions without those that go; `None` where none is left.
     pub(super) fn left_of_root(&self, top: &Members<'_>) -> Result<Option<String>> {
-        without(top, &self.root.iter().map(|name| &name[..]).collect::<Vec<_>>())
+        without(
+            top,
+            &self.root.iter().map(|name| &name[..]).collect::<Vec<_>>(),
+        )
     }
 }
 

@@ -44,13 +44,18 @@ impl Idle {
     /// What nothing uses any more of a document in which primitives are replaced.
     pub(super) fn of(source: &Source, (changes, rest, unused): (&Changes, &Rest, &Unused)) -> Self {
         let json = &rest.json;
-        let mut idle =
-            Self { names: rest.gone.iter().cloned().collect(), views: Vec::new(), hollow: Vec::new() };
+        let mut idle = Self {
+            names: rest.gone.iter().cloned().collect(),
+            views: Vec::new(),
+            hollow: Vec::new(),
+        };
         if changes.primitives.is_empty() {
             return idle;
         }
-        let kept: Vec<&Value> =
-            items(json, "meshes").iter().flat_map(|mesh| items(mesh, "primitives")).collect();
+        let kept: Vec<&Value> = items(json, "meshes")
+            .iter()
+            .flat_map(|mesh| items(mesh, "primitives"))
+            .collect();
         let used = used_views(json, &kept);
         for name in listed(json) {
             let is_used = match name {
@@ -79,7 +84,10 @@ impl Idle {
         let hollow: Vec<usize> = (0..buffers.len())
             .filter(|&i| has(&buffers[i], name) && buffers[i].get("uri").is_none())
             .collect();
-        if buffers.iter().any(|buffer| has(buffer, name) && buffer.get("uri").is_some()) {
+        if buffers
+            .iter()
+            .any(|buffer| has(buffer, name) && buffer.get("uri").is_some())
+        {
             return false;
         }
         if compressed.is_empty() && hollow.is_empty() {
@@ -87,7 +95,9 @@ impl Idle {
         }
         let is_read_plainly = |i: usize| {
             let (view, of) = (&views[i], views[i].get("buffer").and_then(index));
-            !has(view, name) && !unused.has_view(i) && of.is_some_and(|buffer| hollow.contains(&buffer))
+            !has(view, name)
+                && !unused.has_view(i)
+                && of.is_some_and(|buffer| hollow.contains(&buffer))
         };
         let is_required = items(json, LISTS[1]).iter().any(|own| own == name);
         if !is_required
@@ -100,7 +110,13 @@ impl Idle {
             let number = Value::from(i);
             Some((i, source.view(&At::root(&number)).ok()?.bytes.to_vec()))
         };
-        let Some(plain) = compressed.into_iter().map(bytes).collect::<Option<Vec<_>>>() else { return false };
+        let Some(plain) = compressed
+            .into_iter()
+            .map(bytes)
+            .collect::<Option<Vec<_>>>()
+        else {
+            return false;
+        };
         self.views.extend(plain);
         self.hollow.extend(hollow);
         true
@@ -148,7 +164,10 @@ impl Idle {
         }
         let buffers = texts("buffers")?;
         let is_hollow = |&i: &usize| self.hollow.contains(&i);
-        let end = (1..=buffers.len()).rev().find(|end| *end == 1 || !is_hollow(&(end - 1))).unwrap_or(0);
+        let end = (1..=buffers.len())
+            .rev()
+            .find(|end| *end == 1 || !is_hollow(&(end - 1)))
+            .unwrap_or(0);
         // None is appended where the new bytes are in the first: numbers stay.
         let is_cut = buffer == 0 && end < buffers.len();
         if is_cut {
@@ -183,7 +202,9 @@ impl Idle {
 
 /// The extensions of an object without some of them; `None` where none is left.
 pub(super) fn without(members: &Members<'_>, names: &[&str]) -> Result<Option<String>> {
-    let Some(text) = members.get("extensions") else { return Ok(None) };
+    let Some(text) = members.get("extensions") else {
+        return Ok(None);
+    };
     let own = Members::of(text)?;
     let changes: Vec<(&str, Option<String>)> = names.iter().map(|&name| (name, None)).collect();
     let is_left = own.0.iter().any(|(key, _)| !names.contains(&&key[..]));
@@ -193,7 +214,11 @@ pub(super) fn without(members: &Members<'_>, names: &[&str]) -> Result<Option<St
 /// Extensions that are looked after here and that one of the document's lists has.
 fn listed(json: &Value) -> Vec<&'static str> {
     let known = STORING.into_iter().chain([QUANTIZATION]).chain(MESHOPT);
-    let is_listed = |name: &&str| LISTS.iter().any(|list| items(json, list).iter().any(|own| own == name));
+    let is_listed = |name: &&str| {
+        LISTS
+            .iter()
+            .any(|list| items(json, list).iter().any(|own| own == name))
+    };
     known.filter(is_listed).collect()
 }
 
@@ -213,13 +238,21 @@ pub(super) fn used_accessors(json: &Value, primitives: &[&Value]) -> impl Iterat
     }
     for animation in items(json, "animations") {
         let samplers = items(animation, "samplers").iter();
-        accessors
-            .extend(samplers.flat_map(|sampler| ["input", "output"].map(|key| sampler.get(key))).flatten());
+        accessors.extend(
+            samplers
+                .flat_map(|sampler| ["input", "output"].map(|key| sampler.get(key)))
+                .flatten(),
+        );
     }
-    accessors.extend(items(json, "skins").iter().filter_map(|skin| skin.get("inverseBindMatrices")));
+    accessors.extend(
+        items(json, "skins")
+            .iter()
+            .filter_map(|skin| skin.get("inverseBindMatrices")),
+    );
     for node in items(json, "nodes") {
-        let instances =
-            node.get("extensions").and_then(|own| own.get(INSTANCING)?.get("attributes")?.as_object());
+        let instances = node
+            .get("extensions")
+            .and_then(|own| own.get(INSTANCING)?.get("attributes")?.as_object());
         accessors.extend(instances.into_iter().flat_map(|own| own.values()));
     }
     let numbers: Vec<usize> = accessors.into_iter().filter_map(index).collect();
@@ -229,13 +262,20 @@ pub(super) fn used_accessors(json: &Value, primitives: &[&Value]) -> impl Iterat
 /// The views that an accessor names.
 pub(super) fn views_of(accessor: &Value) -> impl Iterator<Item = usize> {
     let sparse = |key: &str| accessor.get("sparse")?.get(key)?.get("bufferView");
-    let views = [accessor.get("bufferView"), sparse("indices"), sparse("values")];
+    let views = [
+        accessor.get("bufferView"),
+        sparse("indices"),
+        sparse("values"),
+    ];
     views.into_iter().flatten().filter_map(index)
 }
 
 /// By attribute of a primitive and of its morph targets: name, accessor, and whether it is a target's.
 fn attributes(primitive: &Value) -> impl Iterator<Item = (&str, &Value, bool)> {
-    let own = primitive.get("attributes").into_iter().map(|own| (own, false));
+    let own = primitive
+        .get("attributes")
+        .into_iter()
+        .map(|own| (own, false));
     let all = own.chain(items(primitive, "targets").iter().map(|own| (own, true)));
     all.flat_map(|(own, is_target)| {
         let members = own.as_object().into_iter().flatten();
@@ -247,13 +287,20 @@ fn attributes(primitive: &Value) -> impl Iterator<Item = (&str, &Value, bool)> {
 fn is_quantized(json: &Value, primitive: &Value) -> bool {
     attributes(primitive).any(|(name, number, is_target)| {
         let accessor = index(number).and_then(|number| items(json, "accessors").get(number));
-        let Some(accessor) = accessor else { return false };
-        let kind = accessor.get("componentType").and_then(Value::as_u64).unwrap_or(FLOAT);
+        let Some(accessor) = accessor else {
+            return false;
+        };
+        let kind = accessor
+            .get("componentType")
+            .and_then(Value::as_u64)
+            .unwrap_or(FLOAT);
         let is_normalized = accessor.get("normalized").is_some_and(|own| own == true);
         match name.split_once('_').map_or(name, |(kind, _)| kind) {
             "POSITION" | "NORMAL" | "TANGENT" => kind != FLOAT,
             // Unsigned fractions are in the specification itself, for targets signed ones, too.
-            "TEXCOORD" => kind != FLOAT && !(is_normalized && (is_target || matches!(kind, 5121 | 5123))),
+            "TEXCOORD" => {
+                kind != FLOAT && !(is_normalized && (is_target || matches!(kind, 5121 | 5123)))
+            }
             _ => false,
         }
     })
@@ -261,12 +308,17 @@ fn is_quantized(json: &Value, primitive: &Value) -> bool {
 
 /// Whether an object has an extension.
 fn has(object: &Value, name: &str) -> bool {
-    object.get("extensions").is_some_and(|own| own.get(name).is_some())
+    object
+        .get("extensions")
+        .is_some_and(|own| own.get(name).is_some())
 }
 
 /// The items of an array; none where there is none.
 pub(super) fn items<'a>(object: &'a Value, key: &str) -> &'a [Value] {
-    object.get(key).and_then(Value::as_array).map_or(&[], Vec::as_slice)
+    object
+        .get(key)
+        .and_then(Value::as_array)
+        .map_or(&[], Vec::as_slice)
 }
 
 /// A number of an item, if it is one.

@@ -23,24 +23,35 @@ const LONGEST: usize = 40;
 impl<'a> At<'a> {
     /// The whole document.
     pub(super) fn root(value: &'a Value) -> Self {
-        Self { value, place: String::new() }
+        Self {
+            value,
+            place: String::new(),
+        }
     }
 
     /// Where this stands.
     pub(super) fn place(&self) -> &str {
-        if self.place.is_empty() { "the document" } else { &self.place }
+        if self.place.is_empty() {
+            "the document"
+        } else {
+            &self.place
+        }
     }
 
     /// A member of an object; `None` where there is none.
     pub(super) fn get(&self, key: &str) -> Option<Self> {
         let value = self.value.get(key)?;
         let dot = if self.place.is_empty() { "" } else { "." };
-        Some(Self { value, place: format!("{}{dot}{key}", self.place) })
+        Some(Self {
+            value,
+            place: format!("{}{dot}{key}", self.place),
+        })
     }
 
     /// A member that has to be there.
     pub(super) fn require(&self, key: &str) -> Result<Self> {
-        self.get(key).ok_or_else(|| GltfFlaw::saying(self.place(), format!("'{key}' is missing")))
+        self.get(key)
+            .ok_or_else(|| GltfFlaw::saying(self.place(), format!("'{key}' is missing")))
     }
 
     /// A value on the way through objects; `None` where the way ends.
@@ -50,28 +61,45 @@ impl<'a> At<'a> {
 
     /// The members of an object.
     pub(super) fn members(&self) -> Result<impl Iterator<Item = (&'a str, Self)> + use<'a>> {
-        let Value::Object(map) = self.value else { return Err(self.unexpected("an object")) };
+        let Value::Object(map) = self.value else {
+            return Err(self.unexpected("an object"));
+        };
         let place = self.place.clone();
-        Ok(map
-            .iter()
-            .map(move |(key, value)| (key.as_str(), Self { value, place: format!("{place}.{key}") })))
+        Ok(map.iter().map(move |(key, value)| {
+            (
+                key.as_str(),
+                Self {
+                    value,
+                    place: format!("{place}.{key}"),
+                },
+            )
+        }))
     }
 
     /// The items of an array.
     pub(super) fn items(&self) -> Result<impl ExactSizeIterator<Item = Self> + use<'a>> {
-        let Value::Array(items) = self.value else { return Err(self.unexpected("an array")) };
+        let Value::Array(items) = self.value else {
+            return Err(self.unexpected("an array"));
+        };
         let place = self.place.clone();
-        Ok(items.iter().enumerate().map(move |(i, value)| Self { value, place: format!("{place}[{i}]") }))
+        Ok(items.iter().enumerate().map(move |(i, value)| Self {
+            value,
+            place: format!("{place}[{i}]"),
+        }))
     }
 
     /// An item of an array; `None` where there is none.
     pub(super) fn item(&self, index: usize) -> Option<Self> {
-        Some(Self { value: self.value.get(index)?, place: format!("{}[{index}]", self.place) })
+        Some(Self {
+            value: self.value.get(index)?,
+            place: format!("{}[{index}]", self.place),
+        })
     }
 
     /// The items of an array that may be missing.
     pub(super) fn list(&self, key: &str) -> Result<Vec<Self>> {
-        self.get(key).map_or_else(|| Ok(Vec::new()), |at| Ok(at.items()?.collect()))
+        self.get(key)
+            .map_or_else(|| Ok(Vec::new()), |at| Ok(at.items()?.collect()))
     }
 
     /// An item of one of the document's arrays, which this value names by its index.
@@ -80,11 +108,20 @@ impl<'a> At<'a> {
         let list = root.get(array);
         let items = list.as_ref().and_then(|list| list.value.as_array());
         match items.and_then(|items| items.get(index)) {
-            Some(value) => Ok((index, Self { value, place: format!("{array}[{index}]") })),
+            Some(value) => Ok((
+                index,
+                Self {
+                    value,
+                    place: format!("{array}[{index}]"),
+                },
+            )),
             None => Err(GltfFlaw::new(
                 self.place(),
                 index.to_string(),
-                format!("an index below {} (the number of {array})", items.map_or(0, Vec::len)),
+                format!(
+                    "an index below {} (the number of {array})",
+                    items.map_or(0, Vec::len)
+                ),
             )),
         }
     }
@@ -93,7 +130,10 @@ impl<'a> At<'a> {
     pub(super) fn count(&self) -> Result<usize> {
         // Some writers give whole numbers a point.
         let whole = self.value.as_u64().or_else(|| {
-            self.value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64)
+            self.value
+                .as_f64()
+                .filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x))
+                .map(|x| x as u64)
         });
         whole
             .and_then(|count| usize::try_from(count).ok())
@@ -107,13 +147,21 @@ impl<'a> At<'a> {
 
     /// A number.
     pub(super) fn number(&self) -> Result<f64> {
-        self.value.as_f64().filter(|x| x.is_finite()).ok_or_else(|| self.unexpected("a number"))
+        self.value
+            .as_f64()
+            .filter(|x| x.is_finite())
+            .ok_or_else(|| self.unexpected("a number"))
     }
 
     /// As many numbers as asked for.
     pub(super) fn numbers<const N: usize>(&self) -> Result<[f64; N]> {
-        let numbers = self.items()?.map(|at| at.number()).collect::<Result<Vec<f64>>>()?;
-        numbers.try_into().map_err(|_| self.unexpected(format!("{N} numbers")))
+        let numbers = self
+            .items()?
+            .map(|at| at.number())
+            .collect::<Result<Vec<f64>>>()?;
+        numbers
+            .try_into()
+            .map_err(|_| self.unexpected(format!("{N} numbers")))
     }
 
     /// A text.
@@ -123,8 +171,12 @@ impl<'a> At<'a> {
 
     /// True or false; false where the member is missing.
     pub(super) fn flag(&self, key: &str) -> Result<bool> {
-        let Some(at) = self.get(key) else { return Ok(false) };
-        at.value.as_bool().ok_or_else(|| at.unexpected("true or false"))
+        let Some(at) = self.get(key) else {
+            return Ok(false);
+        };
+        at.value
+            .as_bool()
+            .ok_or_else(|| at.unexpected("true or false"))
     }
 
     /// The value's `name`, if it has one.

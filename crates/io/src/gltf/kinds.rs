@@ -37,7 +37,11 @@ impl Kinds {
         let (skins_count, morphs_count, distance) = match joining {
             Joining::Never => return Ok(Self::apart(primitives)),
             Joining::Together => (true, true, 0.0),
-            Joining::Ignoring { skins, morphs, distance } => (!skins, !morphs, distance),
+            Joining::Ignoring {
+                skins,
+                morphs,
+                distance,
+            } => (!skins, !morphs, distance),
         };
         if !(distance >= 0.0 && distance.is_finite()) {
             let expected = "a finite number of at least 0";
@@ -47,37 +51,77 @@ impl Kinds {
                 expected,
             ));
         }
-        let nothing: Numbers =
-            primitives.iter().map(|primitive| vec![0; primitive.positions.len()]).collect();
+        let nothing: Numbers = primitives
+            .iter()
+            .map(|primitive| vec![0; primitive.positions.len()])
+            .collect();
         let places = alike(&nothing, distance, |part, v| primitives[part].positions[v])?;
         let with_morphs = |kinds: &Numbers| -> Result<Numbers> {
-            let count = primitives.iter().map(|primitive| primitive.targets.len()).max().unwrap_or(0);
+            let count = primitives
+                .iter()
+                .map(|primitive| primitive.targets.len())
+                .max()
+                .unwrap_or(0);
             (0..count).try_fold(kinds.clone(), |kinds, target| {
                 alike(&kinds, distance, |part, v| {
                     let target = primitives[part].targets.get(target);
-                    target.and_then(|target| target.displacements.get(v)).copied().unwrap_or_default()
+                    target
+                        .and_then(|target| target.displacements.get(v))
+                        .copied()
+                        .unwrap_or_default()
                 })
             })
         };
         let with_skins = |kinds: &Numbers| joints_alike(kinds, primitives, distance);
-        let is_skinned = skins_count && primitives.iter().any(|primitive| !primitive.influences.is_empty());
-        let without_skins = if morphs_count { with_morphs(&places)? } else { places.clone() };
-        let without_morphs = if is_skinned { with_skins(&places)? } else { places.clone() };
-        let all = if is_skinned { with_skins(&without_skins)? } else { without_skins.clone() };
-        Ok(Self { all, places, without_skins, without_morphs })
+        let is_skinned = skins_count
+            && primitives
+                .iter()
+                .any(|primitive| !primitive.influences.is_empty());
+        let without_skins = if morphs_count {
+            with_morphs(&places)?
+        } else {
+            places.clone()
+        };
+        let without_morphs = if is_skinned {
+            with_skins(&places)?
+        } else {
+            places.clone()
+        };
+        let all = if is_skinned {
+            with_skins(&without_skins)?
+        } else {
+            without_skins.clone()
+        };
+        Ok(Self {
+            all,
+            places,
+            without_skins,
+            without_morphs,
+        })
     }
 
     /// Each vertex of a kind of its own.
     fn apart(primitives: &[Primitive]) -> Self {
         let mut numbers = 0..;
-        let own = |primitive: &Primitive| numbers.by_ref().take(primitive.positions.len()).collect();
+        let own =
+            |primitive: &Primitive| numbers.by_ref().take(primitive.positions.len()).collect();
         let all: Numbers = primitives.iter().map(own).collect();
-        Self { places: all.clone(), without_skins: all.clone(), without_morphs: all.clone(), all }
+        Self {
+            places: all.clone(),
+            without_skins: all.clone(),
+            without_morphs: all.clone(),
+            all,
+        }
     }
 
     /// Tells vertices apart that have different numbers here.
     pub(super) fn tell_apart(&mut self, by: &Numbers) {
-        let Self { all, places, without_skins, without_morphs } = self;
+        let Self {
+            all,
+            places,
+            without_skins,
+            without_morphs,
+        } = self;
         for kinds in [all, places, without_skins, without_morphs] {
             *kinds = told_apart(kinds, |part, v| by[part][v]);
         }
@@ -85,14 +129,23 @@ impl Kinds {
 }
 
 /// Kinds of vertices that are of one kind, and whose points are the same within a distance.
-fn alike(kinds: &Numbers, distance: f64, point: impl Fn(usize, usize) -> [f64; 3]) -> Result<Numbers> {
+fn alike(
+    kinds: &Numbers,
+    distance: f64,
+    point: impl Fn(usize, usize) -> [f64; 3],
+) -> Result<Numbers> {
     if distance == 0.0 {
         return Ok(told_apart(kinds, |part, v| point(part, v).map(bits)));
     }
     let of_part = |(part, kinds): (usize, &Vec<u32>)| -> Vec<(u32, usize, usize)> {
-        kinds.iter().enumerate().map(|(v, &kind)| (kind, part, v)).collect()
+        kinds
+            .iter()
+            .enumerate()
+            .map(|(v, &kind)| (kind, part, v))
+            .collect()
     };
-    let mut vertices: Vec<(u32, usize, usize)> = kinds.iter().enumerate().flat_map(of_part).collect();
+    let mut vertices: Vec<(u32, usize, usize)> =
+        kinds.iter().enumerate().flat_map(of_part).collect();
     vertices.sort_unstable();
     let mut nearby: Numbers = kinds.iter().map(|kinds| vec![0; kinds.len()]).collect();
     for run in vertices.chunk_by(|a, b| a.0 == b.0) {
@@ -109,21 +162,45 @@ fn alike(kinds: &Numbers, distance: f64, point: impl Fn(usize, usize) -> [f64; 3
 /// Kinds of vertices that are of one kind and are moved by the same joints, with weights that are the same within a distance's share of the
 /// diagonal.
 fn joints_alike(kinds: &Numbers, primitives: &[Primitive], distance: f64) -> Result<Numbers> {
-    let influences = |part: usize, v: usize| primitives[part].influences.get(v).into_iter().flatten();
+    let influences =
+        |part: usize, v: usize| primitives[part].influences.get(v).into_iter().flatten();
     if distance == 0.0 {
         return Ok(told_apart(kinds, |part, v| {
-            influences(part, v).map(|&(joint, weight)| (joint, bits(weight))).collect::<Vec<_>>()
+            influences(part, v)
+                .map(|&(joint, weight)| (joint, bits(weight)))
+                .collect::<Vec<_>>()
         }));
     }
     let all = primitives.iter().flat_map(|primitive| &primitive.positions);
-    let [low, high] = all.fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], p| {
-        [std::array::from_fn(|i| low[i].min(p[i])), std::array::from_fn(|i| high[i].max(p[i]))]
+    let [low, high] = all.fold(
+        [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]],
+        |[low, high], p| {
+            [
+                std::array::from_fn(|i| low[i].min(p[i])),
+                std::array::from_fn(|i| high[i].max(p[i])),
+            ]
+        },
+    );
+    let diagonal = (0..3)
+        .map(|i| (high[i] - low[i]).powi(2))
+        .sum::<f64>()
+        .sqrt();
+    let share = if diagonal > 0.0 {
+        distance / diagonal
+    } else {
+        0.0
+    };
+    let joints = told_apart(kinds, |part, v| {
+        influences(part, v)
+            .map(|&(joint, _)| joint)
+            .collect::<Vec<_>>()
     });
-    let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>().sqrt();
-    let share = if diagonal > 0.0 { distance / diagonal } else { 0.0 };
-    let joints =
-        told_apart(kinds, |part, v| influences(part, v).map(|&(joint, _)| joint).collect::<Vec<_>>());
-    let most = primitives.iter().flat_map(|primitive| &primitive.influences).map(Vec::len).max().unwrap_or(0);
+    let most = primitives
+        .iter()
+        .flat_map(|primitive| &primitive.influences)
+        .map(Vec::len)
+        .max()
+        .unwrap_or(0);
     // Three weights at a time are a point.
     (0..most).step_by(3).try_fold(joints, |kinds, start| {
         alike(&kinds, share, |part, v| {
@@ -141,10 +218,13 @@ fn told_apart<K: Eq + Hash>(kinds: &Numbers, key: impl Fn(usize, usize) -> K) ->
         let next = known.len() as u32;
         *known.entry((kind, key)).or_insert(next)
     };
-    let parts = kinds
-        .iter()
-        .enumerate()
-        .map(|(part, kinds)| kinds.iter().enumerate().map(|(v, &kind)| number(kind, key(part, v))).collect());
+    let parts = kinds.iter().enumerate().map(|(part, kinds)| {
+        kinds
+            .iter()
+            .enumerate()
+            .map(|(v, &kind)| number(kind, key(part, v)))
+            .collect()
+    });
     parts.collect()
 }
 

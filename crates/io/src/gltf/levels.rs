@@ -36,7 +36,11 @@ pub struct DetailLevel<'a> {
 impl<'a> DetailLevel<'a> {
     /// A level that is shown at any size.
     pub fn new(output: Output<'a>) -> Self {
-        Self { output, coarser: None, least_coverage: 0.0 }
+        Self {
+            output,
+            coarser: None,
+            least_coverage: 0.0,
+        }
     }
 
     /// Sets [`Self::coarser`].
@@ -55,12 +59,19 @@ impl<'a> DetailLevel<'a> {
     fn check(&self, format: Format) -> core::result::Result<(), WriteError> {
         check(&self.output, format, &WriteOptions::default())?;
         let vertices = self.output.surface.positions.len();
-        let [places, normals] = self.coarser.map_or([vertices; 2], |own| own.map(<[_]>::len));
-        for (what, count) in
-            [("places on the coarser level", places), ("normals on the coarser level", normals)]
-        {
+        let [places, normals] = self
+            .coarser
+            .map_or([vertices; 2], |own| own.map(<[_]>::len));
+        for (what, count) in [
+            ("places on the coarser level", places),
+            ("normals on the coarser level", normals),
+        ] {
             if count != vertices {
-                return Err(WriteError::AttributeCount { what, count, vertices });
+                return Err(WriteError::AttributeCount {
+                    what,
+                    count,
+                    vertices,
+                });
             }
         }
         Ok(())
@@ -82,7 +93,10 @@ pub fn write_levels(
 ) -> core::result::Result<(), WriteError> {
     let flawed = |flaw| WriteError::Gltf { flaw };
     levels.iter().try_for_each(|level| level.check(format))?;
-    let groups: Vec<Groups> = levels.iter().map(|level| Groups::of(&level.output)).collect();
+    let groups: Vec<Groups> = levels
+        .iter()
+        .map(|level| Groups::of(&level.output))
+        .collect();
     let pictures = Pictures::of(format, Some(path));
     let mut asset = document((name, levels), &groups, of, unit, pictures).map_err(flawed)?;
     for (mesh, (level, groups)) in levels.iter().zip(&groups).enumerate() {
@@ -99,7 +113,12 @@ fn document(
     unit: Option<LengthUnit>,
     pictures: Pictures,
 ) -> Result<Asset> {
-    let known = of.map_or_else(|| Ok(Vec::new()), |asset| asset.source.root().list("materials"))?.len();
+    let known = of
+        .map_or_else(
+            || Ok(Vec::new()),
+            |asset| asset.source.root().list("materials"),
+        )?
+        .len();
     let mut materials: Vec<&str> = Vec::new();
     let mut meshes: Vec<Value> = Vec::new();
     for (i, (level, groups)) in levels.iter().zip(groups).enumerate() {
@@ -136,11 +155,15 @@ fn document(
     let mut nodes: Vec<Value> = (0..levels.len()).map(named).collect();
     if levels.len() > 1 {
         let coverage: Vec<f64> = levels.iter().map(|level| level.least_coverage).collect();
-        nodes[0]["extensions"] = json!({"MSFT_lod": {"ids": (1..levels.len()).collect::<Vec<_>>()}});
+        nodes[0]["extensions"] =
+            json!({"MSFT_lod": {"ids": (1..levels.len()).collect::<Vec<_>>()}});
         nodes[0]["extras"] = json!({ "MSFT_screencoverage": coverage });
     }
     // An asset has pictures of its own.
-    let finest = levels.first().map(|level| &level.output).filter(|_| of.is_none());
+    let finest = levels
+        .first()
+        .map(|level| &level.output)
+        .filter(|_| of.is_none());
     let looks = Looks::of(&materials, finest, pictures)?;
     let fresh: Vec<String> = looks.materials.iter().map(Value::to_string).collect();
     let empty = empty().to_string();
@@ -149,15 +172,22 @@ fn document(
     let gone = of.map_or_else(Gone::default, |asset| Gone::of(&asset.source.json));
     let list = |key: &str, new: Vec<String>| -> Result<Option<String>> {
         let old = top.get(key).map_or_else(|| Ok(Vec::new()), items_of)?;
-        let is_left =
-            |item: &&str| key == "materials" || !gone.names.iter().any(|name| **item == quoted(name));
+        let is_left = |item: &&str| {
+            key == "materials" || !gone.names.iter().any(|name| **item == quoted(name))
+        };
         let mut all: Vec<String> = old.into_iter().filter(is_left).map(str::to_owned).collect();
-        let new: Vec<String> =
-            new.into_iter().filter(|item| key == "materials" || !all.contains(item)).collect();
+        let new: Vec<String> = new
+            .into_iter()
+            .filter(|item| key == "materials" || !all.contains(item))
+            .collect();
         all.extend(new);
         Ok((!all.is_empty()).then(|| format!("[{}]", all.join(","))))
     };
-    let used = if levels.len() > 1 { vec![quoted(LOD)] } else { Vec::new() };
+    let used = if levels.len() > 1 {
+        vec![quoted(LOD)]
+    } else {
+        Vec::new()
+    };
     let array = |items: Vec<Value>| Some(Value::from(items).to_string());
     let mut changes = vec![
         ("scene", Some("0".to_owned())),
@@ -166,16 +196,26 @@ fn document(
         ("meshes", array(meshes)),
         ("materials", list("materials", fresh)?),
         ("extensionsUsed", list("extensionsUsed", used)?),
-        ("extensionsRequired", list("extensionsRequired", Vec::new())?),
+        (
+            "extensionsRequired",
+            list("extensionsRequired", Vec::new())?,
+        ),
         ("extensions", gone.left_of_root(&top)?),
         ("skins", None),
         ("animations", None),
         ("cameras", None),
     ];
-    changes.extend(looks.others().into_iter().map(|(key, value)| (key, Some(value.to_string()))));
+    changes.extend(
+        looks
+            .others()
+            .into_iter()
+            .map(|(key, value)| (key, Some(value.to_string()))),
+    );
     let folder = match of {
         Some(asset) => asset.source.folder(),
-        None => finest.and_then(|output| output.materials).map(|found| found.folder.as_path()),
+        None => finest
+            .and_then(|output| output.materials)
+            .map(|found| found.folder.as_path()),
     };
     let mut source = Source::parse(top.with(&changes).as_bytes(), folder)?;
     looks.fill(&mut source);
@@ -184,7 +224,12 @@ fn document(
         (source.container.bin, source.container.is_glb) = (own.bin.clone(), own.is_glb);
     }
     let scene = source.scene()?;
-    Ok(Asset { path: of.and_then(|asset| asset.path.clone()), source, scene, changes: Changes::default() })
+    Ok(Asset {
+        path: of.and_then(|asset| asset.path.clone()),
+        source,
+        scene,
+        changes: Changes::default(),
+    })
 }
 
 /// The extension.

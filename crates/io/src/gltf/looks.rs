@@ -51,17 +51,27 @@ impl Looks {
     ///
     /// # Errors
     /// A picture cannot be read.
-    pub(super) fn of(names: &[&str], output: Option<&Output<'_>>, pictures: Pictures) -> Result<Self> {
+    pub(super) fn of(
+        names: &[&str],
+        output: Option<&Output<'_>>,
+        pictures: Pictures,
+    ) -> Result<Self> {
         let mut looks = Self::default();
         let named = |name: &&str| json!({ "name": name });
-        let Some((output, found)) = output.and_then(|output| Some((output, output.materials?))) else {
+        let Some((output, found)) = output.and_then(|output| Some((output, output.materials?)))
+        else {
             looks.materials = names.iter().map(named).collect();
             return Ok(looks);
         };
-        let has_places = attributes(output).iter().any(|(name, _)| name == "TEXCOORD_0");
+        let has_places = attributes(output)
+            .iter()
+            .any(|(name, _)| name == "TEXCOORD_0");
         // Of several of one name the last holds, as later statements do.
-        let described: HashMap<&str, &Material> =
-            found.materials.iter().map(|own| (own.name.as_str(), own)).collect();
+        let described: HashMap<&str, &Material> = found
+            .materials
+            .iter()
+            .map(|own| (own.name.as_str(), own))
+            .collect();
         let mut textures: HashMap<&Path, usize> = HashMap::new();
         for name in names {
             let Some(own) = described.get(name) else {
@@ -69,7 +79,10 @@ impl Looks {
                 continue;
             };
             let mut texture = None;
-            if let Some(Picture { file, mime_type: Some(kind) }) = own.picture.as_ref().filter(|_| has_places)
+            if let Some(Picture {
+                file,
+                mime_type: Some(kind),
+            }) = own.picture.as_ref().filter(|_| has_places)
             {
                 let number = *textures.entry(file).or_insert(looks.textures.len());
                 if number == looks.textures.len() {
@@ -83,8 +96,17 @@ impl Looks {
     }
 
     /// Adds a picture and its texture.
-    fn add_picture(&mut self, folder: &Path, file: &Path, kind: &str, pictures: Pictures) -> Result<()> {
-        let names: Vec<String> = file.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    fn add_picture(
+        &mut self,
+        folder: &Path,
+        file: &Path,
+        kind: &str,
+        pictures: Pictures,
+    ) -> Result<()> {
+        let names: Vec<String> = file
+            .iter()
+            .map(|part| part.to_string_lossy().into_owned())
+            .collect();
         let name = names.join("/");
         let read = || {
             std::fs::read(folder.join(file)).map_err(|why| {
@@ -97,19 +119,26 @@ impl Looks {
             Pictures::InChunk => {
                 self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
                 let (start, own) = (self.bytes.len(), read()?);
-                self.views.push(json!({"buffer": 0, "byteOffset": start, "byteLength": own.len()}));
+                self.views
+                    .push(json!({"buffer": 0, "byteOffset": start, "byteLength": own.len()}));
                 self.bytes.extend(own);
                 json!({"bufferView": self.views.len() - 1, "mimeType": kind})
             }
             Pictures::Files => json!({"uri": uri::escaped(&name)}),
-            Pictures::InText => json!({"uri": format!("data:{kind};base64,{}", uri::to_base64(&read()?))}),
+            Pictures::InText => {
+                json!({"uri": format!("data:{kind};base64,{}", uri::to_base64(&read()?))})
+            }
         });
         Ok(())
     }
 
     /// The lists by their members' names, but for the materials; and the buffer that the views are of.
     pub(super) fn others(&self) -> Vec<(&'static str, Value)> {
-        let lists = [("textures", &self.textures), ("images", &self.images), ("bufferViews", &self.views)];
+        let lists = [
+            ("textures", &self.textures),
+            ("images", &self.images),
+            ("bufferViews", &self.views),
+        ];
         let mut all: Vec<(&str, Value)> = lists
             .into_iter()
             .filter(|(_, list)| !list.is_empty())

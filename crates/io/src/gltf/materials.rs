@@ -43,23 +43,40 @@ impl Asset {
 
 impl Source {
     fn base_colours(&self) -> Result<Vec<BaseColour>> {
-        self.root().list("materials")?.iter().map(|material| self.base_colour(material)).collect()
+        self.root()
+            .list("materials")?
+            .iter()
+            .map(|material| self.base_colour(material))
+            .collect()
     }
 
     fn base_colour(&self, material: &At<'_>) -> Result<BaseColour> {
         let Some(model) = material.get("pbrMetallicRoughness") else {
-            return Ok(BaseColour { factor: [1.0; 4], texture: None });
+            return Ok(BaseColour {
+                factor: [1.0; 4],
+                texture: None,
+            });
         };
-        let factor = model.get("baseColorFactor").map_or(Ok([1.0; 4]), |factor| factor.numbers())?;
-        let texture = model.get("baseColorTexture").map(|info| self.base_texture(&info)).transpose()?;
-        Ok(BaseColour { factor, texture: texture.flatten() })
+        let factor = model
+            .get("baseColorFactor")
+            .map_or(Ok([1.0; 4]), |factor| factor.numbers())?;
+        let texture = model
+            .get("baseColorTexture")
+            .map(|info| self.base_texture(&info))
+            .transpose()?;
+        Ok(BaseColour {
+            factor,
+            texture: texture.flatten(),
+        })
     }
 
     /// `None` if the texture has no picture of its own, as extensions for other kinds of files allow.
     fn base_texture(&self, info: &At<'_>) -> Result<Option<BaseTexture>> {
         let root = self.root();
         let (_, texture) = info.require("index")?.item_of(&root, "textures")?;
-        let Some(image) = texture.get("source") else { return Ok(None) };
+        let Some(image) = texture.get("source") else {
+            return Ok(None);
+        };
         let (_, image) = image.item_of(&root, "images")?;
         let file = match image.get("bufferView") {
             Some(view) => self.view(&view)?.bytes.to_vec(),
@@ -69,11 +86,19 @@ impl Source {
         let (mut set, mut transform) = (set, [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]);
         if let Some(extension) = info.path(&["extensions", TRANSFORM]) {
             set = extension.count_or("texCoord", set)?;
-            let pair = |key: &str, otherwise| extension.get(key).map_or(Ok(otherwise), |at| at.numbers());
+            let pair =
+                |key: &str, otherwise| extension.get(key).map_or(Ok(otherwise), |at| at.numbers());
             let (offset, [x, y]) = (pair("offset", [0.0; 2])?, pair("scale", [1.0; 2])?);
-            let (sine, cosine) = extension.get("rotation").map_or(Ok(0.0), |at| at.number())?.sin_cos();
+            let (sine, cosine) = extension
+                .get("rotation")
+                .map_or(Ok(0.0), |at| at.number())?
+                .sin_cos();
             transform = [[cosine * x, -sine * x], [sine * y, cosine * y], offset];
         }
-        Ok(Some(BaseTexture { file, set, transform }))
+        Ok(Some(BaseTexture {
+            file,
+            set,
+            transform,
+        }))
     }
 }

@@ -122,8 +122,15 @@ pub struct PrimitiveContents {
     pub extensions: Vec<String>,
 }
 
-const MODES: [&str; 7] =
-    ["points", "lines", "line loop", "line strip", "triangles", "triangle strip", "triangle fan"];
+const MODES: [&str; 7] = [
+    "points",
+    "lines",
+    "line loop",
+    "line strip",
+    "triangles",
+    "triangle strip",
+    "triangle fan",
+];
 
 impl Asset {
     /// Opens a `.gltf` or `.glb` file; which of them it is, its content tells.
@@ -132,10 +139,16 @@ impl Asset {
     /// The file cannot be read, or its JSON, its chunks or its tree of nodes break the rules. Meshes are looked at
     /// when they are asked for.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
+        let bytes = read_all(path).map_err(|reason| ReadError::Io {
+            path: path.to_owned(),
+            reason,
+        })?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let asset = Self::from_bytes(&bytes, Some(folder)).map_err(|error| error.in_file(path))?;
-        Ok(Self { path: Some(path.to_owned()), ..asset })
+        Ok(Self {
+            path: Some(path.to_owned()),
+            ..asset
+        })
     }
 
     /// A document from the bytes of its file, and the folder that files are below which it names; without one it may
@@ -145,11 +158,19 @@ impl Asset {
     /// As for [`Self::open`].
     pub fn from_bytes(bytes: &[u8], folder: Option<&Path>) -> Result<Self, ReadError> {
         if bytes.is_empty() {
-            return Err(ReadError::Empty { path: None, format: Format::Gltf });
+            return Err(ReadError::Empty {
+                path: None,
+                format: Format::Gltf,
+            });
         }
         let source = Source::parse(bytes, folder)?;
         let scene = source.scene()?;
-        Ok(Self { path: None, source, scene, changes: Changes::default() })
+        Ok(Self {
+            path: None,
+            source,
+            scene,
+            changes: Changes::default(),
+        })
     }
 
     /// Number of meshes.
@@ -196,17 +217,22 @@ impl Asset {
         joining: Joining,
         is_wanted: impl Fn(usize) -> bool,
     ) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, joining, true, is_wanted).map_err(|flaw| self.told(flaw))
+        self.read_mesh(mesh, joining, true, is_wanted)
+            .map_err(|flaw| self.told(flaw))
     }
 
     /// A flaw as an error with the file's name.
     fn told(&self, flaw: GltfFlaw) -> ReadError {
-        ReadError::Gltf { path: self.path.clone(), flaw }
+        ReadError::Gltf {
+            path: self.path.clone(),
+            flaw,
+        }
     }
 
     /// A mesh's shape alone.
     fn shape(&self, mesh: usize) -> Result<MeshSoup, ReadError> {
-        self.read_mesh(mesh, Joining::Together, false, |_| true).map_err(|flaw| self.told(flaw))
+        self.read_mesh(mesh, Joining::Together, false, |_| true)
+            .map_err(|flaw| self.told(flaw))
     }
 
     fn read_mesh(
@@ -216,7 +242,12 @@ impl Asset {
         with_attributes: bool,
         is_wanted: impl Fn(usize) -> bool,
     ) -> Flawed<MeshSoup> {
-        let Some(at) = self.source.root().get("meshes").and_then(|all| all.item(mesh)) else {
+        let Some(at) = self
+            .source
+            .root()
+            .get("meshes")
+            .and_then(|all| all.item(mesh))
+        else {
             let expected = format!("a number below {}", self.mesh_count());
             return Err(GltfFlaw::new("meshes", mesh.to_string(), expected));
         };
@@ -279,14 +310,21 @@ impl Asset {
         for mesh in 0..self.mesh_count() {
             let own = self.mesh(mesh, Joining::Together)?;
             let materials = self.materials_of(mesh).map_err(|flaw| self.told(flaw))?;
-            names
-                .extend(own.parts.iter().flat_map(|part| &part.attributes).filter_map(|name| left_out(name)));
+            names.extend(
+                own.parts
+                    .iter()
+                    .flat_map(|part| &part.attributes)
+                    .filter_map(|name| left_out(name)),
+            );
             names.extend(own.has_targets().then_some("morph targets"));
             for placement in self.scene.shown(mesh) {
                 let (first, is_mirrored) = (all.positions.len(), placement.mirrors());
-                if own.soup.positions.len() + first > MOST || own.soup.faces.len() + all.faces.len() > MOST {
-                    let problem =
-                        format!("with all instances there are more than {MOST} vertices or triangles");
+                if own.soup.positions.len() + first > MOST
+                    || own.soup.faces.len() + all.faces.len() > MOST
+                {
+                    let problem = format!(
+                        "with all instances there are more than {MOST} vertices or triangles"
+                    );
                     return Err(self.told(GltfFlaw::saying("the scene", problem)));
                 }
                 for v in 0..own.soup.positions.len() {
@@ -302,10 +340,13 @@ impl Asset {
                 channels.add(&own, &materials, placement);
             }
         }
-        all.channels = channels.into_channels(&self.source).map_err(|flaw| self.told(flaw))?;
+        all.channels = channels
+            .into_channels(&self.source)
+            .map_err(|flaw| self.told(flaw))?;
         all.left_out = names.into_iter().map(str::to_owned).collect();
         if self.source.json.get("materials").is_some() {
-            all.left_out.push("colours and textures of materials".to_owned());
+            all.left_out
+                .push("colours and textures of materials".to_owned());
         }
         Ok(all)
     }
@@ -313,7 +354,9 @@ impl Asset {
     /// By primitive of a mesh, the number of its material.
     fn materials_of(&self, mesh: usize) -> Flawed<Vec<Option<usize>>> {
         let root = self.source.root();
-        let Some(mesh) = root.get("meshes").and_then(|all| all.item(mesh)) else { return Ok(Vec::new()) };
+        let Some(mesh) = root.get("meshes").and_then(|all| all.item(mesh)) else {
+            return Ok(Vec::new());
+        };
         let of = |primitive: &json::At<'_>| match primitive.get("material") {
             None => Ok(None),
             Some(material) => Ok(Some(material.item_of(&root, "materials")?.0)),
@@ -336,11 +379,21 @@ impl Asset {
             let primitives = mesh.list("primitives")?;
             contents.meshes.push(MeshContents {
                 name: mesh.name().map(str::to_owned),
-                primitives: primitives.iter().map(|at| self.primitive_contents(at)).collect::<Flawed<_>>()?,
+                primitives: primitives
+                    .iter()
+                    .map(|at| self.primitive_contents(at))
+                    .collect::<Flawed<_>>()?,
                 shown: self.scene.shown(i).count(),
             });
         }
-        for key in ["nodes", "materials", "images", "skins", "animations", "cameras"] {
+        for key in [
+            "nodes",
+            "materials",
+            "images",
+            "skins",
+            "animations",
+            "cameras",
+        ] {
             let count = root.list(key)?.len();
             if count > 0 {
                 contents.counts.push((key.to_owned(), count));
@@ -354,27 +407,43 @@ impl Asset {
 
     fn primitive_contents(&self, at: &json::At<'_>) -> Flawed<PrimitiveContents> {
         let root = self.source.root();
-        let count =
-            |accessor: &json::At<'_>| accessor.item_of(&root, "accessors")?.1.require("count")?.count();
+        let count = |accessor: &json::At<'_>| {
+            accessor
+                .item_of(&root, "accessors")?
+                .1
+                .require("count")?
+                .count()
+        };
         let attributes = at.require("attributes")?;
-        let vertices = attributes.get("POSITION").map_or(Ok(0), |accessor| count(&accessor))?;
+        let vertices = attributes
+            .get("POSITION")
+            .map_or(Ok(0), |accessor| count(&accessor))?;
         let mode = at.count_or("mode", 4)?;
         let material = match at.get("material") {
             None => None,
             Some(at) => {
                 let (index, material) = at.item_of(&root, "materials")?;
-                Some(material.name().map_or_else(|| format!("materials[{index}]"), str::to_owned))
+                Some(
+                    material
+                        .name()
+                        .map_or_else(|| format!("materials[{index}]"), str::to_owned),
+                )
             }
         };
-        let names = |at: &json::At<'_>| Ok(at.members()?.map(|(name, _)| name.to_owned()).collect());
+        let names =
+            |at: &json::At<'_>| Ok(at.members()?.map(|(name, _)| name.to_owned()).collect());
         Ok(PrimitiveContents {
             mode: MODES.get(mode).copied().unwrap_or("of an unknown mode"),
             vertices,
-            corners: at.get("indices").map_or(Ok(vertices), |accessor| count(&accessor))?,
+            corners: at
+                .get("indices")
+                .map_or(Ok(vertices), |accessor| count(&accessor))?,
             attributes: names(&attributes)?,
             targets: at.list("targets")?.len(),
             material,
-            extensions: at.get("extensions").map_or_else(|| Ok(Vec::new()), |at| names(&at))?,
+            extensions: at
+                .get("extensions")
+                .map_or_else(|| Ok(Vec::new()), |at| names(&at))?,
         })
     }
 
@@ -398,13 +467,19 @@ impl Asset {
     /// The names of extensions that said something of triangles and vertices that were replaced, and go with these when the document is
     /// written.
     pub fn left_out(&self) -> Vec<String> {
-        Rest::of(&self.source.json, &self.changes).left_out.into_iter().collect()
+        Rest::of(&self.source.json, &self.changes)
+            .left_out
+            .into_iter()
+            .collect()
     }
 }
 
 /// An attribute that a soup of the scene hasn't, in words.
 fn left_out(attribute: &str) -> Option<&'static str> {
-    match attribute.split_once('_').map_or(attribute, |(kind, _)| kind) {
+    match attribute
+        .split_once('_')
+        .map_or(attribute, |(kind, _)| kind)
+    {
         "NORMAL" => Some("normals"),
         "TANGENT" => Some("tangents"),
         "JOINTS" | "WEIGHTS" => Some("joints and weights"),

@@ -117,8 +117,11 @@ pub(super) fn join(
         kinds.tell_apart(&sides);
     }
     let primitives = &primitives[..];
-    let names: Vec<Names> =
-        primitives.iter().zip(&kinds.all).map(|(primitive, kinds)| Names::of(primitive, kinds)).collect();
+    let names: Vec<Names> = primitives
+        .iter()
+        .zip(&kinds.all)
+        .map(|(primitive, kinds)| Names::of(primitive, kinds))
+        .collect();
     let mut first = Vec::with_capacity(names.len());
     let mut count = 0;
     for names in &names {
@@ -127,7 +130,10 @@ pub(super) fn join(
     }
     let number = |(part, v): Local| first[part] + v as usize;
     let mut roots: Vec<usize> = (0..count).collect();
-    let is_wanted: Vec<bool> = primitives.iter().map(|primitive| is_wanted(primitive.index)).collect();
+    let is_wanted: Vec<bool> = primitives
+        .iter()
+        .map(|primitive| is_wanted(primitive.index))
+        .collect();
     let mut ends = Vec::new();
     if joining != Joining::Never && names.len() > 1 {
         for (a, b) in shared_edges(primitives, &names, &kinds.all) {
@@ -138,10 +144,15 @@ pub(super) fn join(
         }
     }
     // Two ends an edge.
-    let mut result = MeshSoup { borders: ends.len() / 2, ..MeshSoup::default() };
+    let mut result = MeshSoup {
+        borders: ends.len() / 2,
+        ..MeshSoup::default()
+    };
     let mut numbers = vec![u32::MAX; count];
     let poses = Poses::new(primitives);
-    let is_skinned = primitives.iter().any(|primitive| !primitive.influences.is_empty());
+    let is_skinned = primitives
+        .iter()
+        .any(|primitive| !primitive.influences.is_empty());
     for (part, (primitive, names)) in primitives.iter().zip(&names).enumerate() {
         if !is_wanted[part] {
             continue;
@@ -150,7 +161,10 @@ pub(super) fn join(
             let root = root(&mut roots, number((part, v as u32)));
             if numbers[root] == u32::MAX {
                 numbers[root] = result.soup.positions.len() as u32;
-                result.soup.positions.push(primitive.positions[vertex as usize]);
+                result
+                    .soup
+                    .positions
+                    .push(primitive.positions[vertex as usize]);
                 if is_skinned {
                     let list = primitive.influences.get(vertex as usize);
                     result.influences.push(list.cloned().unwrap_or_default());
@@ -172,15 +186,27 @@ pub(super) fn join(
             primitive: primitive.index,
             faces: start..result.soup.faces.len(),
             attributes: primitive.names.clone(),
-            targets: primitive.targets.iter().map(|target| target.names.clone()).collect(),
+            targets: primitive
+                .targets
+                .iter()
+                .map(|target| target.names.clone())
+                .collect(),
         });
     }
-    let mut ends: Vec<u32> = ends.into_iter().map(|end| numbers[root(&mut roots, end)]).collect();
+    let mut ends: Vec<u32> = ends
+        .into_iter()
+        .map(|end| numbers[root(&mut roots, end)])
+        .collect();
     ends.sort_unstable();
     ends.dedup();
-    let corner = |vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP };
+    let corner = |vertex| CornerTag {
+        vertex,
+        sharpness: INFINITELY_SHARP,
+    };
     result.soup.corners = ends.into_iter().map(corner).collect();
-    let wanted: Vec<usize> = (0..primitives.len()).filter(|&part| is_wanted[part]).collect();
+    let wanted: Vec<usize> = (0..primitives.len())
+        .filter(|&part| is_wanted[part])
+        .collect();
     result.normals = attributes::normals(primitives, &wanted);
     result.attributes = attributes::tables(primitives, &names, &wanted, |part, v| {
         numbers[root(&mut roots, number((part, v)))]
@@ -217,12 +243,19 @@ impl Names {
             }
             of_vertex[v as usize] = name;
         }
-        Self { vertices, of_vertex }
+        Self {
+            vertices,
+            of_vertex,
+        }
     }
 }
 
 /// Pairs of vertices at both ends of edges that are open in two primitives, run oppositely, and in no third.
-fn shared_edges(primitives: &[Primitive], names: &[Names], kinds: &[Vec<u32>]) -> Vec<(Local, Local)> {
+fn shared_edges(
+    primitives: &[Primitive],
+    names: &[Names],
+    kinds: &[Vec<u32>],
+) -> Vec<(Local, Local)> {
     // By the kinds of its ends from the lower to the higher: the primitives on each side.
     let mut sides: HashMap<[u32; 2], [Vec<(Local, Local)>; 2]> = HashMap::new();
     let mut order = Vec::new();
@@ -240,7 +273,9 @@ fn shared_edges(primitives: &[Primitive], names: &[Names], kinds: &[Vec<u32>]) -
     }
     let mut pairs = Vec::new();
     for edge in order {
-        let Some([forward, backward]) = sides.get(&edge) else { continue };
+        let Some([forward, backward]) = sides.get(&edge) else {
+            continue;
+        };
         if let ([one], [other]) = (&forward[..], &backward[..]) {
             pairs.extend([(one.0, other.0), (one.1, other.1)]);
         }

@@ -54,7 +54,11 @@ impl Primitive {
     pub(super) fn repeat_vertex(&mut self, v: u32) -> u32 {
         let (own, new) = (v as usize, self.positions.len() as u32);
         self.positions.push(self.positions[own]);
-        for target in self.targets.iter_mut().filter(|target| !target.displacements.is_empty()) {
+        for target in self
+            .targets
+            .iter_mut()
+            .filter(|target| !target.displacements.is_empty())
+        {
             target.displacements.push(target.displacements[own]);
         }
         if !self.influences.is_empty() {
@@ -65,7 +69,9 @@ impl Primitive {
         }
         for (_, numbers) in &mut self.attributes {
             let start = own * numbers.components;
-            numbers.values.extend_from_within(start..start + numbers.components);
+            numbers
+                .values
+                .extend_from_within(start..start + numbers.components);
         }
         new
     }
@@ -83,7 +89,9 @@ pub(super) enum Mode {
 
 /// The mode of a primitive.
 pub(super) fn mode(primitive: &At<'_>) -> Result<Mode> {
-    let Some(mode) = primitive.get("mode") else { return Ok(Mode::Triangles) };
+    let Some(mode) = primitive.get("mode") else {
+        return Ok(Mode::Triangles);
+    };
     match mode.count()? {
         0..=3 => Ok(Mode::Other),
         4 => Ok(Mode::Triangles),
@@ -103,14 +111,22 @@ impl Source {
     ) -> Result<Option<Primitive>> {
         let mode = mode(at)?;
         let attributes = at.require("attributes")?;
-        let names: Vec<String> = attributes.members()?.map(|(name, _)| name.to_owned()).collect();
+        let names: Vec<String> = attributes
+            .members()?
+            .map(|(name, _)| name.to_owned())
+            .collect();
         if mode == Mode::Other || attributes.get("POSITION").is_none() {
             return Ok(None);
         }
         let mut compressed = self.compressed(at, &attributes)?;
         let mut read = |name: &str, expected: Option<usize>| -> Result<Option<Numbers>> {
-            let Some(accessor) = attributes.get(name) else { return Ok(None) };
-            match compressed.as_mut().and_then(|stream| stream.attributes.remove(name)) {
+            let Some(accessor) = attributes.get(name) else {
+                return Ok(None);
+            };
+            match compressed
+                .as_mut()
+                .and_then(|stream| stream.attributes.remove(name))
+            {
                 Some(numbers) => Ok(Some(numbers)),
                 None => self.numbers(&accessor, expected).map(Some),
             }
@@ -124,7 +140,8 @@ impl Source {
         let mut influences = Vec::new();
         for set in 0.. {
             let (joints, weights) = (format!("JOINTS_{set}"), format!("WEIGHTS_{set}"));
-            let (Some(joints), Some(weights)) = (read(&joints, Some(count))?, read(&weights, Some(count))?)
+            let (Some(joints), Some(weights)) =
+                (read(&joints, Some(count))?, read(&weights, Some(count))?)
             else {
                 break;
             };
@@ -133,20 +150,37 @@ impl Source {
         }
         sort_influences(&mut influences);
         // They are found anew, and only say which edges were meant to be sharp: a document is none the worse without.
-        let normals = if with_attributes { read("NORMAL", Some(count)).ok().flatten() } else { None };
+        let normals = if with_attributes {
+            read("NORMAL", Some(count)).ok().flatten()
+        } else {
+            None
+        };
         let normals = normals.filter(|own| own.components == 3);
         let normals = normals.map_or_else(Vec::new, |own| own.values.as_chunks::<3>().0.to_vec());
-        let normals = if normals.len() == count { normals } else { Vec::new() };
+        let normals = if normals.len() == count {
+            normals
+        } else {
+            Vec::new()
+        };
         let mut others = Vec::new();
-        for name in names.iter().filter(|name| with_attributes && is_carried(name)) {
-            let own = AttributeName { target: None, name: name.clone() };
+        for name in names
+            .iter()
+            .filter(|name| with_attributes && is_carried(name))
+        {
+            let own = AttributeName {
+                target: None,
+                name: name.clone(),
+            };
             others.extend(read(name, Some(count))?.map(|numbers| (own, numbers)));
         }
         let mut targets = Vec::new();
         for (number, target) in at.list("targets")?.iter().enumerate() {
             let (target, added) = self.target(target, count, with_attributes)?;
             targets.push(target);
-            let name = |name| AttributeName { target: Some(number), name };
+            let name = |name| AttributeName {
+                target: Some(number),
+                name,
+            };
             others.extend(added.into_iter().map(|(own, numbers)| (name(own), numbers)));
         }
         let corners = match (compressed, at.get("indices")) {
@@ -197,7 +231,9 @@ impl Source {
 
     /// What is in the primitive's Draco stream, if it has one.
     fn compressed(&self, at: &At<'_>, attributes: &At<'_>) -> Result<Option<Stream>> {
-        let Some(extension) = at.path(&["extensions", DRACO]) else { return Ok(None) };
+        let Some(extension) = at.path(&["extensions", DRACO]) else {
+            return Ok(None);
+        };
         let mut normalized = Vec::new();
         for (name, accessor) in attributes.members()? {
             let (_, accessor) = accessor.item_of(&self.root(), "accessors")?;
@@ -205,17 +241,27 @@ impl Source {
         }
         let view = self.view(&extension.require("bufferView")?)?;
         let found = codecs::draco(&extension, view.bytes, &normalized, self.room())?;
-        let bytes = found.attributes.iter().map(|(_, numbers)| 8 * numbers.values.len()).sum();
+        let bytes = found
+            .attributes
+            .iter()
+            .map(|(_, numbers)| 8 * numbers.values.len())
+            .sum();
         self.take_room(&extension, bytes)?;
         let attributes = found.attributes.into_iter().collect();
-        Ok(Some(Stream { attributes, indices: found.indices }))
+        Ok(Some(Stream {
+            attributes,
+            indices: found.indices,
+        }))
     }
 }
 
 /// Whether an attribute is a value of its own: normals and tangents follow from the surface, joints and weights move it.
 fn is_carried(name: &str) -> bool {
     let kind = name.split_once('_').map_or(name, |(kind, _)| kind);
-    !matches!(kind, "POSITION" | "NORMAL" | "TANGENT" | "JOINTS" | "WEIGHTS")
+    !matches!(
+        kind,
+        "POSITION" | "NORMAL" | "TANGENT" | "JOINTS" | "WEIGHTS"
+    )
 }
 
 /// What a Draco stream held.
@@ -229,7 +275,11 @@ fn checked(corners: Vec<u32>, count: usize, at: &At<'_>) -> Result<Vec<u32>> {
         None => Ok(corners),
         Some(i) => {
             let found = format!("{} in element {i}", corners[i]);
-            Err(GltfFlaw::new(at.place(), found, format!("indices below {count} (the number of vertices)")))
+            Err(GltfFlaw::new(
+                at.place(),
+                found,
+                format!("indices below {count} (the number of vertices)"),
+            ))
         }
     }
 }
@@ -241,13 +291,28 @@ fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
         Mode::Other => Vec::new(),
         Mode::Triangles => corners.as_chunks::<3>().0.to_vec(),
         Mode::Strip => {
-            let turned =
-                |(i, w): (usize, &[u32])| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] };
-            corners.windows(3).enumerate().map(turned).filter(has_area).collect()
+            let turned = |(i, w): (usize, &[u32])| {
+                if i % 2 == 0 {
+                    [w[0], w[1], w[2]]
+                } else {
+                    [w[0], w[2], w[1]]
+                }
+            };
+            corners
+                .windows(3)
+                .enumerate()
+                .map(turned)
+                .filter(has_area)
+                .collect()
         }
         Mode::Fan => {
-            let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
-            rest.windows(2).map(|w| [w[0], w[1], first]).filter(has_area).collect()
+            let Some((&first, rest)) = corners.split_first() else {
+                return Vec::new();
+            };
+            rest.windows(2)
+                .map(|w| [w[0], w[1], first])
+                .filter(has_area)
+                .collect()
         }
     }
 }

@@ -56,7 +56,10 @@ pub(super) struct Rest {
 impl Rest {
     /// What stays of a document in which primitives are replaced.
     pub(super) fn of(json: &Value, changes: &Changes) -> Self {
-        let mut rest = Self { json: json.clone(), ..Self::default() };
+        let mut rest = Self {
+            json: json.clone(),
+            ..Self::default()
+        };
         if changes.primitives.is_empty() {
             return rest;
         }
@@ -65,7 +68,9 @@ impl Rest {
             for (j, primitive) in list(mesh, "primitives").iter_mut().enumerate() {
                 if changes.primitives.contains_key(&(i, j)) {
                     if let Some(members) = primitive.as_object_mut() {
-                        members.retain(|key, _| !["attributes", "indices", "targets"].contains(&&key[..]));
+                        members.retain(|key, _| {
+                            !["attributes", "indices", "targets"].contains(&&key[..])
+                        });
                     }
                     take(primitive, |name, _| STORING.contains(&name));
                     removed.extend(take(primitive, |name, _| is_stale(name)));
@@ -73,10 +78,16 @@ impl Rest {
                 }
             }
             let is_new = |primitive: &Value| {
-                index(primitive).is_some_and(|primitive| changes.primitives.contains_key(&(i, primitive)))
+                index(primitive)
+                    .is_some_and(|primitive| changes.primitives.contains_key(&(i, primitive)))
             };
-            let is_changed =
-                |mesh: usize| changes.primitives.range((mesh, 0)..=(mesh, usize::MAX)).next().is_some();
+            let is_changed = |mesh: usize| {
+                changes
+                    .primitives
+                    .range((mesh, 0)..=(mesh, usize::MAX))
+                    .next()
+                    .is_some()
+            };
             removed.extend(take(mesh, |name, own| match name {
                 LINKING => is_changed(i) || own.get("mesh").and_then(index).is_some_and(is_changed),
                 name if RESTART.contains(&name) => groups(own).any(is_new),
@@ -95,10 +106,17 @@ impl Rest {
 
     /// The new text of a mesh's, a primitive's or a scene's extensions, given its members and what stays of it, if they change; `None` in
     /// it if none are left.
-    pub(super) fn extensions(rest: &Value, members: &Members<'_>) -> Result<Option<Option<String>>> {
-        let Some(text) = members.get("extensions") else { return Ok(None) };
+    pub(super) fn extensions(
+        rest: &Value,
+        members: &Members<'_>,
+    ) -> Result<Option<Option<String>>> {
+        let Some(text) = members.get("extensions") else {
+            return Ok(None);
+        };
         // Whatever else stands there is not ours to judge.
-        let Ok(own) = Members::of(text) else { return Ok(None) };
+        let Ok(own) = Members::of(text) else {
+            return Ok(None);
+        };
         let mut changes = Vec::new();
         for (name, text) in &own.0 {
             match rest.get("extensions").and_then(|own| own.get(name)) {
@@ -109,7 +127,10 @@ impl Rest {
                 Some(_) => {}
             }
         }
-        let is_left = own.0.iter().any(|(name, _)| !changes.contains(&(&name[..], None)));
+        let is_left = own
+            .0
+            .iter()
+            .any(|(name, _)| !changes.contains(&(&name[..], None)));
         Ok((!changes.is_empty()).then(|| is_left.then(|| own.with(&changes))))
     }
 
@@ -144,9 +165,14 @@ fn is_stale(name: &str) -> bool {
 
 /// Takes from an object the extensions that are to go; gives their names.
 fn take(object: &mut Value, goes: impl Fn(&str, &Value) -> bool) -> Vec<String> {
-    let Some(own) = object.get_mut("extensions").and_then(Value::as_object_mut) else { return Vec::new() };
-    let names: Vec<String> =
-        own.iter().filter(|(name, own)| goes(name, own)).map(|(name, _)| name.clone()).collect();
+    let Some(own) = object.get_mut("extensions").and_then(Value::as_object_mut) else {
+        return Vec::new();
+    };
+    let names: Vec<String> = own
+        .iter()
+        .filter(|(name, own)| goes(name, own))
+        .map(|(name, _)| name.clone())
+        .collect();
     for name in &names {
         own.remove(name);
     }
@@ -155,14 +181,28 @@ fn take(object: &mut Value, goes: impl Fn(&str, &Value) -> bool) -> Vec<String> 
 
 /// The numbers of the primitives in the groups of a mesh.
 fn groups(extension: &Value) -> impl Iterator<Item = &Value> {
-    let all = extension.get("primitiveGroups").and_then(Value::as_array).into_iter().flatten();
-    all.flat_map(|group| group.get("primitives").and_then(Value::as_array).into_iter().flatten())
+    let all = extension
+        .get("primitiveGroups")
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten();
+    all.flat_map(|group| {
+        group
+            .get("primitives")
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten()
+    })
 }
 
 /// Takes from a primitive the sets of features that go by the numbers of its vertices, and the extension if it has no others; gives what is
 /// told.
 fn without_numbered(primitive: &mut Value) -> Option<String> {
-    let sets = primitive.get_mut("extensions")?.get_mut(FEATURES)?.get_mut("featureIds")?.as_array_mut()?;
+    let sets = primitive
+        .get_mut("extensions")?
+        .get_mut(FEATURES)?
+        .get_mut("featureIds")?
+        .as_array_mut()?;
     let before = sets.len();
     sets.retain(|set| !is_numbered(set));
     let (is_changed, is_empty) = (sets.len() < before, sets.is_empty());
@@ -180,15 +220,23 @@ fn is_numbered(set: &Value) -> bool {
 /// The text of an extension without the sets that go by numbers, if it had any.
 fn numbered_taken(rest: &Value, text: &str) -> Result<Option<String>> {
     let members = Members::of(text)?;
-    let Some(list) = members.get("featureIds") else { return Ok(None) };
+    let Some(list) = members.get("featureIds") else {
+        return Ok(None);
+    };
     let sets = items_of(list)?;
-    let stay = rest.get("featureIds").and_then(Value::as_array).map_or(sets.len(), Vec::len);
+    let stay = rest
+        .get("featureIds")
+        .and_then(Value::as_array)
+        .map_or(sets.len(), Vec::len);
     if stay == sets.len() {
         return Ok(None);
     }
     let is_kept = |set: &&str| serde_json::from_str(set).is_ok_and(|set: Value| !is_numbered(&set));
     let kept: Vec<&str> = sets.into_iter().filter(is_kept).collect();
-    Ok(Some(members.with(&[("featureIds", Some(format!("[{}]", kept.join(","))))])))
+    Ok(Some(members.with(&[(
+        "featureIds",
+        Some(format!("[{}]", kept.join(","))),
+    )])))
 }
 
 /// Adds the names of all extensions of a value and of what is in it.
@@ -209,5 +257,8 @@ pub(super) fn names_in(value: &Value, names: &mut BTreeSet<String>) {
 
 /// The items of an array; none where there is none.
 fn list<'a>(object: &'a mut Value, key: &str) -> &'a mut [Value] {
-    object.get_mut(key).and_then(Value::as_array_mut).map_or(&mut [], Vec::as_mut_slice)
+    object
+        .get_mut(key)
+        .and_then(Value::as_array_mut)
+        .map_or(&mut [], Vec::as_mut_slice)
 }

@@ -33,7 +33,10 @@ impl Placement {
     fn stretch(&self) -> f64 {
         match self {
             Self::Rigid(m) => affine::greatest_stretch(m),
-            Self::Skinned(joints) => joints.iter().map(affine::greatest_stretch).fold(0.0, f64::max),
+            Self::Skinned(joints) => joints
+                .iter()
+                .map(affine::greatest_stretch)
+                .fold(0.0, f64::max),
         }
     }
 
@@ -47,7 +50,9 @@ impl Placement {
                 let total: f64 = influences.iter().map(|&(_, weight)| weight).sum();
                 let mut moved = [0.0; 3];
                 for &(joint, weight) in influences {
-                    let Some(m) = joints.get(joint as usize) else { continue };
+                    let Some(m) = joints.get(joint as usize) else {
+                        continue;
+                    };
                     let share = affine::apply(m, point);
                     (0..3).for_each(|i| moved[i] += weight / total * share[i]);
                 }
@@ -63,12 +68,18 @@ impl Placement {
             Self::Skinned(joints) => {
                 let mut mixture: Affine = [[0.0; 4]; 3];
                 for &(joint, weight) in mesh.influences.get(v).into_iter().flatten() {
-                    let Some(m) = joints.get(joint as usize) else { continue };
+                    let Some(m) = joints.get(joint as usize) else {
+                        continue;
+                    };
                     let sum = mixture.as_flattened_mut().iter_mut().zip(m.as_flattened());
                     sum.for_each(|(sum, own)| *sum += weight * own);
                 }
                 let is_moved = mixture != [[0.0; 4]; 3];
-                if is_moved { affine::apply_to_normal(&mixture, normal) } else { normal }
+                if is_moved {
+                    affine::apply_to_normal(&mixture, normal)
+                } else {
+                    normal
+                }
             }
         }
     }
@@ -86,15 +97,32 @@ impl Scene {
     /// What tolerances for a mesh are divided by; 1 if nothing shows it.
     pub(super) fn stretch(&self, mesh: usize) -> f64 {
         let all = self.placements.get(mesh).into_iter().flatten();
-        let most = all.map(|(placement, _)| placement.stretch()).fold(0.0, f64::max);
-        if most > 0.0 && most.is_finite() { most } else { 1.0 }
+        let most = all
+            .map(|(placement, _)| placement.stretch())
+            .fold(0.0, f64::max);
+        if most > 0.0 && most.is_finite() {
+            most
+        } else {
+            1.0
+        }
     }
 
     /// What the placement by which a mesh is largest does to vectors, by rows. A skin does what all its joints do, or else it makes all
     /// vectors as long as the worst of them.
     pub(super) fn largest(&self, mesh: usize) -> [[f64; 3]; 3] {
-        let all = self.placements.get(mesh).into_iter().flatten().map(|(placement, _)| placement);
-        let largest = all.reduce(|most, own| if own.stretch() > most.stretch() { own } else { most });
+        let all = self
+            .placements
+            .get(mesh)
+            .into_iter()
+            .flatten()
+            .map(|(placement, _)| placement);
+        let largest = all.reduce(|most, own| {
+            if own.stretch() > most.stretch() {
+                own
+            } else {
+                most
+            }
+        });
         let evenly = |stretch: f64| {
             std::array::from_fn(|i| std::array::from_fn(|j| if i == j { stretch } else { 0.0 }))
         };
@@ -102,9 +130,13 @@ impl Scene {
             None => evenly(1.0),
             Some(Placement::Rigid(m)) => affine::linear(m),
             Some(skin @ Placement::Skinned(joints)) => {
-                let is_one =
-                    joints.windows(2).all(|pair| affine::linear(&pair[0]) == affine::linear(&pair[1]));
-                joints.first().filter(|_| is_one).map_or_else(|| evenly(skin.stretch()), affine::linear)
+                let is_one = joints
+                    .windows(2)
+                    .all(|pair| affine::linear(&pair[0]) == affine::linear(&pair[1]));
+                joints
+                    .first()
+                    .filter(|_| is_one)
+                    .map_or_else(|| evenly(skin.stretch()), affine::linear)
             }
         }
     }
@@ -112,7 +144,8 @@ impl Scene {
     /// How the scene that is shown has a mesh; once as it is if the document has no nodes.
     pub(super) fn shown(&self, mesh: usize) -> impl Iterator<Item = &Placement> {
         let all = self.placements.get(mesh).into_iter().flatten();
-        all.filter(|(_, is_shown)| *is_shown).map(|(placement, _)| placement)
+        all.filter(|(_, is_shown)| *is_shown)
+            .map(|(placement, _)| placement)
     }
 }
 
@@ -124,13 +157,17 @@ impl Source {
         let mut placements = vec![Vec::new(); meshes];
         let nodes = root.list("nodes")?;
         if nodes.is_empty() {
-            placements.iter_mut().for_each(|all| all.push((Placement::Rigid(IDENTITY), true)));
+            placements
+                .iter_mut()
+                .for_each(|all| all.push((Placement::Rigid(IDENTITY), true)));
             return Ok(Scene { placements });
         }
         let tree = self.tree(&nodes)?;
         let shown = self.shown_roots(&tree)?;
         for (i, node) in nodes.iter().enumerate() {
-            let Some(mesh) = node.get("mesh") else { continue };
+            let Some(mesh) = node.get("mesh") else {
+                continue;
+            };
             let (mesh, _) = mesh.item_of(&root, "meshes")?;
             let is_shown = shown[tree.roots[i]];
             if let Some(skin) = node.get("skin") {
@@ -142,8 +179,9 @@ impl Source {
                 None => vec![IDENTITY],
             };
             let world = &tree.world[i];
-            let placed =
-                instances.iter().map(|own| (Placement::Rigid(affine::product(world, own)), is_shown));
+            let placed = instances
+                .iter()
+                .map(|own| (Placement::Rigid(affine::product(world, own)), is_shown));
             placements[mesh].extend(placed);
         }
         Ok(Scene { placements })
@@ -164,7 +202,10 @@ impl Source {
             }
             children.push(own);
         }
-        let mut tree = Tree { world: vec![IDENTITY; nodes.len()], roots: vec![usize::MAX; nodes.len()] };
+        let mut tree = Tree {
+            world: vec![IDENTITY; nodes.len()],
+            roots: vec![usize::MAX; nodes.len()],
+        };
         let mut waiting: Vec<(usize, usize, Affine)> = Vec::new();
         for start in (0..nodes.len()).filter(|&node| !has_parent[node]) {
             waiting.push((start, start, IDENTITY));
@@ -193,7 +234,9 @@ impl Source {
             Some(scene) => Some(scene.item_of(&root, "scenes")?.1),
             None => scenes.into_iter().next(),
         };
-        let Some(scene) = scene else { return Ok(vec![true; tree.roots.len()]) };
+        let Some(scene) = scene else {
+            return Ok(vec![true; tree.roots.len()]);
+        };
         let mut shown = vec![false; tree.roots.len()];
         for node in scene.list("nodes")? {
             let (node, _) = node.item_of(&root, "nodes")?;
@@ -217,8 +260,12 @@ impl Source {
             let bind = match &inverse {
                 None => IDENTITY,
                 Some(numbers) => {
-                    let columns =
-                        numbers.values.as_chunks::<16>().0.get(i).filter(|_| numbers.components == 16);
+                    let columns = numbers
+                        .values
+                        .as_chunks::<16>()
+                        .0
+                        .get(i)
+                        .filter(|_| numbers.components == 16);
                     affine::of_columns(columns.ok_or_else(|| {
                         let problem = format!("joint {i} has no inverse bind matrix");
                         GltfFlaw::saying(skin.place(), problem)
@@ -235,7 +282,9 @@ impl Source {
         let attributes = extension.require("attributes")?;
         let mut count = None;
         let mut read = |name: &str, width: usize| -> Result<Option<Vec<f64>>> {
-            let Some(accessor) = attributes.get(name) else { return Ok(None) };
+            let Some(accessor) = attributes.get(name) else {
+                return Ok(None);
+            };
             let numbers = self.numbers(&accessor, count)?;
             if numbers.components != width {
                 let problem = format!("{name} needs {width} numbers an element");
@@ -244,13 +293,21 @@ impl Source {
             count = Some(numbers.len());
             Ok(Some(numbers.values))
         };
-        let (moved, turned, scaled) = (read("TRANSLATION", 3)?, read("ROTATION", 4)?, read("SCALE", 3)?);
+        let (moved, turned, scaled) = (
+            read("TRANSLATION", 3)?,
+            read("ROTATION", 4)?,
+            read("SCALE", 3)?,
+        );
         let matrix = |i: usize| {
             let three = |values: &Option<Vec<f64>>, otherwise: f64| {
-                let own = values.as_deref().and_then(|values| values.as_chunks::<3>().0.get(i).copied());
+                let own = values
+                    .as_deref()
+                    .and_then(|values| values.as_chunks::<3>().0.get(i).copied());
                 own.unwrap_or([otherwise; 3])
             };
-            let rotation = turned.as_deref().and_then(|values| values.as_chunks::<4>().0.get(i).copied());
+            let rotation = turned
+                .as_deref()
+                .and_then(|values| values.as_chunks::<4>().0.get(i).copied());
             affine::of_parts(
                 three(&moved, 0.0),
                 rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]),
@@ -272,8 +329,12 @@ fn local(node: &At<'_>) -> Result<Affine> {
     if let Some(matrix) = node.get("matrix") {
         return Ok(affine::of_columns(&matrix.numbers::<16>()?));
     }
-    let translation = node.get("translation").map_or(Ok([0.0; 3]), |at| at.numbers())?;
-    let rotation = node.get("rotation").map_or(Ok([0.0, 0.0, 0.0, 1.0]), |at| at.numbers())?;
+    let translation = node
+        .get("translation")
+        .map_or(Ok([0.0; 3]), |at| at.numbers())?;
+    let rotation = node
+        .get("rotation")
+        .map_or(Ok([0.0, 0.0, 0.0, 1.0]), |at| at.numbers())?;
     let scale = node.get("scale").map_or(Ok([1.0; 3]), |at| at.numbers())?;
     Ok(affine::of_parts(translation, rotation, scale))
 }

@@ -22,10 +22,19 @@ pub(super) struct SceneChannels {
 
 impl SceneChannels {
     /// Adds a mesh once more, where it is placed; `materials` are those of its primitives.
-    pub(super) fn add(&mut self, mesh: &MeshSoup, materials: &[Option<usize>], placement: &Placement) {
+    pub(super) fn add(
+        &mut self,
+        mesh: &MeshSoup,
+        materials: &[Option<usize>],
+        placement: &Placement,
+    ) {
         let is_mirrored = placement.mirrors();
         let corners = 3 * mesh.soup.faces.len();
-        for attribute in mesh.attributes.iter().filter(|attribute| attribute.target.is_none()) {
+        for attribute in mesh
+            .attributes
+            .iter()
+            .filter(|attribute| attribute.target.is_none())
+        {
             let channel = self.channel(attribute);
             let first = channel.value_count() as u32;
             let values = attribute.values.chunks_exact(attribute.width.max(1));
@@ -73,12 +82,16 @@ impl SceneChannels {
                 *normal = placement.apply_to_normal(mesh, v as usize, *normal);
             }
         }
-        let at = self.channels.iter().position(|channel| channel.name == NORMALS).unwrap_or_else(|| {
-            let mut channel = Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3);
-            pad(&mut channel, self.corners);
-            self.channels.push(channel);
-            self.channels.len() - 1
-        });
+        let at = self
+            .channels
+            .iter()
+            .position(|channel| channel.name == NORMALS)
+            .unwrap_or_else(|| {
+                let mut channel = Channel::new(NORMALS, Semantic::Other, Domain::Corner, 3);
+                pad(&mut channel, self.corners);
+                self.channels.push(channel);
+                self.channels.len() - 1
+            });
         let channel = &mut self.channels[at];
         let first = channel.value_count() as u32;
         channel.values.extend(values);
@@ -100,7 +113,11 @@ impl SceneChannels {
             name if attribute.is_integer => (name, Semantic::Label),
             name => (name, Semantic::Other),
         };
-        if let Some(at) = self.channels.iter().position(|channel| channel.name == name) {
+        if let Some(at) = self
+            .channels
+            .iter()
+            .position(|channel| channel.name == name)
+        {
             let channel = &mut self.channels[at];
             if channel.arity < attribute.width {
                 widen(channel, attribute.width);
@@ -137,7 +154,9 @@ impl SceneChannels {
 fn pad(channel: &mut Channel, corners: usize) {
     if channel.indices.len() < corners {
         let zero = channel.value_count() as u32;
-        channel.values.extend(std::iter::repeat_n(0.0, channel.arity));
+        channel
+            .values
+            .extend(std::iter::repeat_n(0.0, channel.arity));
         channel.indices.resize(corners, zero);
     }
 }
@@ -147,7 +166,9 @@ fn widen(channel: &mut Channel, arity: usize) {
     let values = std::mem::take(&mut channel.values);
     for value in values.chunks_exact(channel.arity.max(1)) {
         channel.values.extend(value);
-        channel.values.extend(std::iter::repeat_n(1.0, arity - channel.arity));
+        channel
+            .values
+            .extend(std::iter::repeat_n(1.0, arity - channel.arity));
     }
     channel.arity = arity;
 }

@@ -50,8 +50,9 @@ impl Source {
     /// Takes a file apart and reads its JSON.
     pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Self> {
         let container = Container::parse(bytes)?;
-        let json: Value = serde_json::from_str(&container.text)
-            .map_err(|error| GltfFlaw::saying("the JSON text", format!("it cannot be read: {error}")))?;
+        let json: Value = serde_json::from_str(&container.text).map_err(|error| {
+            GltfFlaw::saying("the JSON text", format!("it cannot be read: {error}"))
+        })?;
         let root = At::root(&json);
         if !json.is_object() {
             return Err(root.unexpected("an object"));
@@ -60,11 +61,23 @@ impl Source {
         if !version.text()?.starts_with("2.") {
             return Err(version.unexpected("2.0"));
         }
-        let cells = |key: &str| Ok((0..root.list(key)?.len()).map(|_| OnceCell::new()).collect());
+        let cells = |key: &str| {
+            Ok((0..root.list(key)?.len())
+                .map(|_| OnceCell::new())
+                .collect())
+        };
         let (buffers, views) = (cells("buffers")?, cells("bufferViews")?);
         let room = Cell::new(MOST_DECODED);
         let zeros_are_few = OnceCell::new();
-        Ok(Self { json, container, folder: folder.map(Path::to_owned), buffers, views, zeros_are_few, room })
+        Ok(Self {
+            json,
+            container,
+            folder: folder.map(Path::to_owned),
+            buffers,
+            views,
+            zeros_are_few,
+            room,
+        })
     }
 
     /// Where files beside the document are.
@@ -85,7 +98,10 @@ impl Source {
         if buffer.get("uri").is_none() && index == 0 && self.container.bin.is_some() {
             let bin = self.container.bin.as_deref().unwrap_or_default();
             return bin.get(..size).ok_or_else(|| {
-                length.unexpected(format!("at most {} (the length of the GLB's binary chunk)", bin.len()))
+                length.unexpected(format!(
+                    "at most {} (the length of the GLB's binary chunk)",
+                    bin.len()
+                ))
             });
         }
         let loaded = self.buffers[index].get_or_init(|| self.load(&buffer, &length, size));
@@ -94,7 +110,10 @@ impl Source {
 
     fn load(&self, buffer: &At<'_>, length: &At<'_>, size: usize) -> Result<Vec<u8>> {
         let Some(uri) = buffer.get("uri") else {
-            return Err(GltfFlaw::saying(buffer.place(), "it has neither a 'uri' nor a binary chunk"));
+            return Err(GltfFlaw::saying(
+                buffer.place(),
+                "it has neither a 'uri' nor a binary chunk",
+            ));
         };
         let too_short =
             |there: usize| length.unexpected(format!("at most {there} (the bytes that there are)"));
@@ -104,12 +123,21 @@ impl Source {
                 if data.len() / 4 * 3 + 3 < size {
                     return Err(too_short(data.len() / 4 * 3));
                 }
-                let bytes = uri::from_base64(data, size).ok_or_else(|| uri.unexpected("base 64"))?;
-                if bytes.len() < size { Err(too_short(bytes.len())) } else { Ok(bytes) }
+                let bytes =
+                    uri::from_base64(data, size).ok_or_else(|| uri.unexpected("base 64"))?;
+                if bytes.len() < size {
+                    Err(too_short(bytes.len()))
+                } else {
+                    Ok(bytes)
+                }
             }
             Uri::File(file) => {
                 let bytes = self.file_bytes(&uri, &file, size)?;
-                if bytes.len() < size { Err(too_short(bytes.len())) } else { Ok(bytes) }
+                if bytes.len() < size {
+                    Err(too_short(bytes.len()))
+                } else {
+                    Ok(bytes)
+                }
             }
         }
     }
@@ -117,7 +145,9 @@ impl Source {
     /// The bytes of a picture that a `uri` names.
     pub(super) fn picture(&self, at: &At<'_>) -> Result<Vec<u8>> {
         match self.parse_uri(at)? {
-            Uri::Base64(data) => uri::from_base64(data, MOST_DECODED).ok_or_else(|| at.unexpected("base 64")),
+            Uri::Base64(data) => {
+                uri::from_base64(data, MOST_DECODED).ok_or_else(|| at.unexpected("base 64"))
+            }
             Uri::File(file) => self.file_bytes(at, &file, MOST_DECODED),
         }
     }
@@ -131,7 +161,10 @@ impl Source {
     fn file_bytes(&self, at: &At<'_>, file: &Path, most: usize) -> Result<Vec<u8>> {
         let refused = |why: &dyn std::fmt::Display| {
             let name = shortened(&file.display().to_string());
-            GltfFlaw::saying(at.place(), format!("the file '{name}' cannot be read: {why}"))
+            GltfFlaw::saying(
+                at.place(),
+                format!("the file '{name}' cannot be read: {why}"),
+            )
         };
         let path = self.file(file).map_err(|why| refused(&why))?;
         let opened = std::fs::File::open(path).and_then(|file| {
@@ -147,7 +180,10 @@ impl Source {
     /// # Errors
     /// There is no such file, or a link leads out of the folder.
     pub(super) fn file(&self, file: &Path) -> io::Result<PathBuf> {
-        let folder = self.folder.as_ref().ok_or_else(|| io::Error::other("the document has no folder"))?;
+        let folder = self
+            .folder
+            .as_ref()
+            .ok_or_else(|| io::Error::other("the document has no folder"))?;
         file_below(folder, file)
     }
 
@@ -161,11 +197,20 @@ impl Source {
                 bytes => Some(bytes),
             },
         };
-        let compressed = MESHOPT.iter().find_map(|name| view.path(&["extensions", name]));
-        let Some(compressed) = compressed else { return Ok(View { bytes: self.range(&view)?, stride }) };
+        let compressed = MESHOPT
+            .iter()
+            .find_map(|name| view.path(&["extensions", name]));
+        let Some(compressed) = compressed else {
+            return Ok(View {
+                bytes: self.range(&view)?,
+                stride,
+            });
+        };
         let decoded = self.views[index].get_or_init(|| {
             let source = self.range(&compressed)?;
-            codecs::meshopt(&compressed, source, |bytes| self.take_room(&compressed, bytes))
+            codecs::meshopt(&compressed, source, |bytes| {
+                self.take_room(&compressed, bytes)
+            })
         });
         match decoded {
             Ok(bytes) => Ok(View { bytes, stride }),
@@ -176,12 +221,20 @@ impl Source {
     /// The part of a buffer that a view, or the extension of one, names.
     fn range(&self, view: &At<'_>) -> Result<&[u8]> {
         let buffer = self.buffer(&view.require("buffer")?)?;
-        let (start, length) = (view.count_or("byteOffset", 0)?, view.require("byteLength")?.count()?);
-        start.checked_add(length).and_then(|end| buffer.get(start..end)).ok_or_else(|| {
-            let there = buffer.len();
-            let problem = format!("it names {length} bytes from byte {start} on, but its buffer has {there}");
-            GltfFlaw::saying(view.place(), problem)
-        })
+        let (start, length) = (
+            view.count_or("byteOffset", 0)?,
+            view.require("byteLength")?.count()?,
+        );
+        start
+            .checked_add(length)
+            .and_then(|end| buffer.get(start..end))
+            .ok_or_else(|| {
+                let there = buffer.len();
+                let problem = format!(
+                    "it names {length} bytes from byte {start} on, but its buffer has {there}"
+                );
+                GltfFlaw::saying(view.place(), problem)
+            })
     }
 
     /// Bytes that may still be decoded.
@@ -192,8 +245,9 @@ impl Source {
     /// Notes that so many bytes will be decoded.
     pub(super) fn take_room(&self, at: &At<'_>, bytes: usize) -> Result<()> {
         let Some(left) = self.room.get().checked_sub(bytes) else {
-            let problem =
-                format!("with these {bytes} bytes the document has more than 2 GiB of compressed data");
+            let problem = format!(
+                "with these {bytes} bytes the document has more than 2 GiB of compressed data"
+            );
             return Err(GltfFlaw::saying(at.place(), problem));
         };
         self.room.set(left);

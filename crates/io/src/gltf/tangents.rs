@@ -27,19 +27,43 @@ impl WithTangents {
     /// Adds tangents to a geometry by the texture coordinates `texture`, such as `TEXCOORD_0`, and what the morph targets `moved` add to
     /// them. `None` if it has no normals or no such texture coordinates, without which there are no tangents.
     pub fn of(geometry: &Geometry<'_>, texture: &str, moved: &[usize]) -> Option<Self> {
-        let places = geometry.attributes.iter().find(|own| own.name == texture && own.width == 2)?;
+        let places = geometry
+            .attributes
+            .iter()
+            .find(|own| own.name == texture && own.width == 2)?;
         let base = Surface {
-            positions: geometry.positions.iter().map(|p| p.map(|x| x as f32)).collect(),
-            normals: geometry.normals?.iter().map(|n| n.map(|x| x as f32)).collect(),
-            places: places.values.as_chunks::<2>().0.iter().map(|p| p.map(|x| x as f32)).collect(),
+            positions: geometry
+                .positions
+                .iter()
+                .map(|p| p.map(|x| x as f32))
+                .collect(),
+            normals: geometry
+                .normals?
+                .iter()
+                .map(|n| n.map(|x| x as f32))
+                .collect(),
+            places: places
+                .values
+                .as_chunks::<2>()
+                .0
+                .iter()
+                .map(|p| p.map(|x| x as f32))
+                .collect(),
             triangles: geometry.triangles,
         };
         let tangents = base.tangents()?;
-        let moved = moved.iter().filter_map(|&target| Some((target, geometry.targets.get(target)?)));
+        let moved = moved
+            .iter()
+            .filter_map(|&target| Some((target, geometry.targets.get(target)?)));
         let added = moved.map(|(target, own)| {
             let found = base.moved(own).tangents()?;
             let pairs = found.iter().zip(&tangents);
-            Some((target, pairs.map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i])).collect()))
+            Some((
+                target,
+                pairs
+                    .map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i]))
+                    .collect(),
+            ))
         });
         let added: Vec<(usize, Vec<[f32; 3]>)> = added.collect::<Option<_>>()?;
         Some(Self::split(geometry, &tangents, &added))
@@ -57,7 +81,11 @@ impl WithTangents {
     }
 
     /// Vertices for all corners whose tangents differ, and by target what it adds to them.
-    fn split(geometry: &Geometry<'_>, tangents: &[[f32; 4]], added: &[(usize, Vec<[f32; 3]>)]) -> Self {
+    fn split(
+        geometry: &Geometry<'_>,
+        tangents: &[[f32; 4]],
+        added: &[(usize, Vec<[f32; 3]>)],
+    ) -> Self {
         // By vertex the first corner that has it and its number; further ones follow by the last of these.
         let is_same = |a: usize, b: usize| {
             let bits = |corner: usize| tangents[corner].map(f32::to_bits);
@@ -68,9 +96,11 @@ impl WithTangents {
         let (mut sources, mut corners): (Vec<u32>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut number = |corner: usize, vertex: u32| {
             let known = of_vertex.get_mut(vertex as usize);
-            let found = known
-                .as_ref()
-                .and_then(|all| all.iter().copied().find(|&own| is_same(corners[own as usize], corner)));
+            let found = known.as_ref().and_then(|all| {
+                all.iter()
+                    .copied()
+                    .find(|&own| is_same(corners[own as usize], corner))
+            });
             found.unwrap_or_else(|| {
                 let new = sources.len() as u32;
                 known.into_iter().for_each(|all| all.push(new));
@@ -80,28 +110,54 @@ impl WithTangents {
             })
         };
         let triangles = geometry.triangles.iter().enumerate();
-        let triangles =
-            triangles.map(|(t, own)| [0, 1, 2].map(|corner| number(3 * t + corner, own[corner]))).collect();
+        let triangles = triangles
+            .map(|(t, own)| [0, 1, 2].map(|corner| number(3 * t + corner, own[corner])))
+            .collect();
         let rows = |own: &VertexAttribute| {
-            let rows = sources.iter().flat_map(|&v| &own.values[v as usize * own.width..][..own.width]);
-            VertexAttribute { values: rows.copied().collect(), ..own.clone() }
+            let rows = sources
+                .iter()
+                .flat_map(|&v| &own.values[v as usize * own.width..][..own.width]);
+            VertexAttribute {
+                values: rows.copied().collect(),
+                ..own.clone()
+            }
         };
         let at = |points: &[[f64; 3]]| sources.iter().map(|&v| points[v as usize]).collect();
         let mut attributes: Vec<VertexAttribute> = geometry.attributes.iter().map(rows).collect();
-        attributes.push(attribute(corners.iter().map(|&corner| &tangents[corner][..]), 4));
-        let mut targets: Vec<Vec<VertexAttribute>> =
-            geometry.targets.iter().map(|own| own.iter().map(rows).collect()).collect();
+        attributes.push(attribute(
+            corners.iter().map(|&corner| &tangents[corner][..]),
+            4,
+        ));
+        let mut targets: Vec<Vec<VertexAttribute>> = geometry
+            .targets
+            .iter()
+            .map(|own| own.iter().map(rows).collect())
+            .collect();
         for (target, own) in added {
             targets[*target].push(attribute(corners.iter().map(|&corner| &own[corner][..]), 3));
         }
-        let (positions, normals) = (at(geometry.positions), at(geometry.normals.unwrap_or_default()));
-        Self { positions, normals, triangles, attributes, targets }
+        let (positions, normals) = (
+            at(geometry.positions),
+            at(geometry.normals.unwrap_or_default()),
+        );
+        Self {
+            positions,
+            normals,
+            triangles,
+            attributes,
+            targets,
+        }
     }
 }
 
 fn attribute<'a>(values: impl Iterator<Item = &'a [f32]>, width: usize) -> VertexAttribute {
     let values = values.flatten().map(|&x| f64::from(x)).collect();
-    VertexAttribute { name: TANGENT.to_owned(), width, values, is_integer: false }
+    VertexAttribute {
+        name: TANGENT.to_owned(),
+        width,
+        values,
+        is_integer: false,
+    }
 }
 
 /// What tangents are found from.
@@ -121,7 +177,10 @@ impl Surface<'_> {
                 return base.to_vec();
             };
             let rows = own.values.as_chunks::<3>().0;
-            base.iter().zip(rows).map(|(x, d)| [0, 1, 2].map(|i| x[i] + d[i] as f32)).collect()
+            base.iter()
+                .zip(rows)
+                .map(|(x, d)| [0, 1, 2].map(|i| x[i] + d[i] as f32))
+                .collect()
         };
         Self {
             positions: added("POSITION", &self.positions),
@@ -136,23 +195,43 @@ impl Surface<'_> {
         let count = self.positions.len();
         let is_whole = self.normals.len() == count
             && self.places.len() == count
-            && self.triangles.as_flattened().iter().all(|&v| (v as usize) < count);
+            && self
+                .triangles
+                .as_flattened()
+                .iter()
+                .all(|&v| (v as usize) < count);
         if !is_whole {
             return None;
         }
-        let mut found = Tangents { surface: self, scale: self.scale(), corners: Vec::new() };
+        let mut found = Tangents {
+            surface: self,
+            scale: self.scale(),
+            corners: Vec::new(),
+        };
         found.corners = vec![None; 3 * self.triangles.len()];
         // There are no errors.
         generate_tangents(&mut found).ok()?;
         let normal = |corner: usize| self.normals[self.triangles.as_flattened()[corner] as usize];
         let corners = found.corners.into_iter().enumerate();
-        Some(corners.map(|(corner, own)| own.unwrap_or_else(|| across(normal(corner)))).collect())
+        Some(
+            corners
+                .map(|(corner, own)| own.unwrap_or_else(|| across(normal(corner))))
+                .collect(),
+        )
     }
 
     /// A power of two that brings positions between -1 and 1, so that no product overflows and equal ones stay equal.
     fn scale(&self) -> f32 {
-        let most = self.positions.as_flattened().iter().fold(0.0f32, |most, x| most.max(x.abs()));
-        if most > 0.0 && most.is_finite() { (-f64::from(most).log2().ceil()).exp2() as f32 } else { 1.0 }
+        let most = self
+            .positions
+            .as_flattened()
+            .iter()
+            .fold(0.0f32, |most, x| most.max(x.abs()));
+        if most > 0.0 && most.is_finite() {
+            (-f64::from(most).log2().ceil()).exp2() as f32
+        } else {
+            1.0
+        }
     }
 }
 
@@ -202,11 +281,17 @@ impl Corners for Tangents<'_> {
 
 /// Some tangent, where the texture has no direction: across a normal.
 fn across(normal: [f32; 3]) -> [f32; 4] {
-    let least = (0..3).min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs())).unwrap_or(0);
+    let least = (0..3)
+        .min_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))
+        .unwrap_or(0);
     let mut axis = [0.0; 3];
     axis[least] = 1.0;
     let [a, b] = [normal, axis];
-    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cross = [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ];
     let length = cross.iter().map(|x| x * x).sum::<f32>().sqrt();
     if length > 0.0 && length.is_finite() {
         let [x, y, z] = cross.map(|x| x / length);
@@ -224,13 +309,22 @@ impl Asset {
     /// There is no such primitive, or its material breaks the rules.
     pub fn tangent_coordinates(&self, mesh: usize, primitive: usize) -> Result<String, ReadError> {
         let set = || -> Flawed<usize> {
-            let Some(Some(material)) = self.materials_of(mesh)?.get(primitive).copied() else { return Ok(0) };
+            let Some(Some(material)) = self.materials_of(mesh)?.get(primitive).copied() else {
+                return Ok(0);
+            };
             let materials = self.source.root().list("materials")?;
-            let Some(material) = materials.get(material) else { return Ok(0) };
-            let Some(map) = material.get("normalTexture") else { return Ok(0) };
+            let Some(material) = materials.get(material) else {
+                return Ok(0);
+            };
+            let Some(map) = material.get("normalTexture") else {
+                return Ok(0);
+            };
             let set = map.count_or("texCoord", 0)?;
-            map.path(&["extensions", TRANSFORM]).map_or(Ok(set), |own| own.count_or("texCoord", set))
+            map.path(&["extensions", TRANSFORM])
+                .map_or(Ok(set), |own| own.count_or("texCoord", set))
         };
-        set().map(|set| format!("TEXCOORD_{set}")).map_err(|flaw| self.told(flaw))
+        set()
+            .map(|set| format!("TEXCOORD_{set}"))
+            .map_err(|flaw| self.told(flaw))
     }
 }

@@ -20,7 +20,13 @@ use std::ops::Range;
 const ALIGNMENT: usize = 16;
 
 /// Beginnings of the names of extensions that name textures, nodes and numbers, but neither accessors nor views.
-const HARMLESS: [&str; 5] = ["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", LOD];
+const HARMLESS: [&str; 5] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "EXT_texture_",
+    LOD,
+];
 
 /// Members of a document that the specification knows, but for those that may hold anything.
 const KNOWN: [&str; 17] = [
@@ -62,33 +68,52 @@ impl Unused {
     fn found(json: &Value, rest: &Value) -> Option<Self> {
         let mut named = Named::default();
         named.in_document(rest);
-        if named.is_all || rest.get("buffers")?.get(0)?.get("extensions").is_some_and(|own| !is_meshopt(own))
+        if named.is_all
+            || rest
+                .get("buffers")?
+                .get(0)?
+                .get("extensions")
+                .is_some_and(|own| !is_meshopt(own))
         {
             return None;
         }
         let (all, views) = (items(rest, "accessors"), items(rest, "bufferViews"));
-        let primitives: Vec<&Value> =
-            items(rest, "meshes").iter().flat_map(|mesh| items(mesh, "primitives")).collect();
+        let primitives: Vec<&Value> = items(rest, "meshes")
+            .iter()
+            .flat_map(|mesh| items(mesh, "primitives"))
+            .collect();
         let mut used: BTreeSet<usize> = used_accessors(rest, &primitives).collect();
         used.extend(&named.numbers);
         let of = |used: &BTreeSet<usize>| {
-            used.iter().filter_map(|&i| all.get(i)).flat_map(views_of).collect::<BTreeSet<usize>>()
+            used.iter()
+                .filter_map(|&i| all.get(i))
+                .flat_map(views_of)
+                .collect::<BTreeSet<usize>>()
         };
         let mut needed = of(&used);
-        needed.extend(items(rest, "images").iter().filter_map(|image| index(image.get("bufferView")?)));
+        needed.extend(
+            items(rest, "images")
+                .iter()
+                .filter_map(|image| index(image.get("bufferView")?)),
+        );
         needed.extend(&named.numbers);
         let unused: BTreeSet<usize> = (0..all.len()).filter(|i| !used.contains(i)).collect();
         let mut free = of(&unused);
         free.extend(draco_views(json));
         // Where none of its bytes are in the first buffer, nothing is gained.
-        let is_in_first =
-            |view: &Value| parts(view).is_some_and(|all| all.iter().any(|(buffer, _)| *buffer == 0));
+        let is_in_first = |view: &Value| {
+            parts(view).is_some_and(|all| all.iter().any(|(buffer, _)| *buffer == 0))
+        };
         free.retain(|i| !needed.contains(i) && views.get(*i).is_some_and(is_in_first));
         let has_free = |i: &usize| views_of(&all[*i]).any(|view| free.contains(&view));
         let accessors = unused.into_iter().filter(has_free).collect();
         let length = index(rest.get("buffers")?.get(0)?.get("byteLength")?)?;
         let cuts = cuts(views, &free, length)?;
-        Some(Self { accessors, views: free, cuts })
+        Some(Self {
+            accessors,
+            views: free,
+            cuts,
+        })
     }
 
     /// Whether a view is one of a byte.
@@ -110,7 +135,11 @@ impl Unused {
 
     /// Where a byte of the first buffer is after the cuts.
     fn moved(&self, at: usize) -> usize {
-        at - self.cuts.iter().map(|cut| at.min(cut.end) - at.min(cut.start)).sum::<usize>()
+        at - self
+            .cuts
+            .iter()
+            .map(|cut| at.min(cut.end) - at.min(cut.start))
+            .sum::<usize>()
     }
 
     /// Changes accessors and views; those of `made_plain` are looked after elsewhere.
@@ -143,7 +172,9 @@ impl Unused {
                 edits.replace(view, members.with(&changes));
             } else if !made_plain(i) {
                 self.shift(&members, edits);
-                let Some(Ok(own)) = members.get("extensions").map(Members::of) else { continue };
+                let Some(Ok(own)) = members.get("extensions").map(Members::of) else {
+                    continue;
+                };
                 for text in MESHOPT.iter().filter_map(|name| own.get(name)) {
                     self.shift(&Members::of(text)?, edits);
                 }
@@ -155,9 +186,11 @@ impl Unused {
     /// Changes the offset of a part of the first buffer.
     fn shift<'a>(&self, part: &Members<'a>, edits: &mut Edits<'a>) {
         let number = |key: &str| part.get(key).and_then(|text| text.parse::<usize>().ok());
-        if let (Some(0), Some(at), Some(text)) =
-            (number("buffer"), number("byteOffset"), part.get("byteOffset"))
-            && self.moved(at) != at
+        if let (Some(0), Some(at), Some(text)) = (
+            number("buffer"),
+            number("byteOffset"),
+            part.get("byteOffset"),
+        ) && self.moved(at) != at
         {
             edits.replace(text, self.moved(at).to_string());
         }
@@ -187,8 +220,14 @@ fn cuts(views: &[Value], free: &BTreeSet<usize>, length: usize) -> Option<Vec<Ra
             }
         }
     }
-    let aligned = |cut: Range<usize>| cut.start.next_multiple_of(ALIGNMENT)..cut.end / ALIGNMENT * ALIGNMENT;
-    Some(cuts.into_iter().map(aligned).filter(|cut| !cut.is_empty()).collect())
+    let aligned =
+        |cut: Range<usize>| cut.start.next_multiple_of(ALIGNMENT)..cut.end / ALIGNMENT * ALIGNMENT;
+    Some(
+        cuts.into_iter()
+            .map(aligned)
+            .filter(|cut| !cut.is_empty())
+            .collect(),
+    )
 }
 
 /// The buffers and bytes that a view has, those of its compressed form included; `None` if they cannot be understood.
@@ -198,19 +237,26 @@ fn parts(view: &Value) -> Option<Vec<(usize, Range<usize>)>> {
         let end = start.checked_add(index(own.get("byteLength")?)?)?;
         Some((index(own.get("buffer")?)?, start..end))
     };
-    let compressed = MESHOPT.iter().filter_map(|name| view.get("extensions")?.get(name));
+    let compressed = MESHOPT
+        .iter()
+        .filter_map(|name| view.get("extensions")?.get(name));
     core::iter::once(view).chain(compressed).map(part).collect()
 }
 
 /// The views of compressed primitives.
 fn draco_views(json: &Value) -> impl Iterator<Item = usize> {
-    let primitives = items(json, "meshes").iter().flat_map(|mesh| items(mesh, "primitives"));
-    primitives.filter_map(|primitive| index(primitive.get("extensions")?.get(DRACO)?.get("bufferView")?))
+    let primitives = items(json, "meshes")
+        .iter()
+        .flat_map(|mesh| items(mesh, "primitives"));
+    primitives
+        .filter_map(|primitive| index(primitive.get("extensions")?.get(DRACO)?.get("bufferView")?))
 }
 
 /// Whether extensions are those of compression alone.
 fn is_meshopt(extensions: &Value) -> bool {
-    extensions.as_object().is_some_and(|own| own.keys().all(|name| MESHOPT.contains(&&name[..])))
+    extensions
+        .as_object()
+        .is_some_and(|own| own.keys().all(|name| MESHOPT.contains(&&name[..])))
 }
 
 /// What is named by something that nobody here knows.
@@ -280,6 +326,8 @@ impl Named {
     /// A name, or the way to something.
     fn word(&mut self, text: &str) {
         self.numbers.extend(text.parse::<usize>());
-        self.is_all |= ["/accessors", "/buffer"].iter().any(|way| text.contains(way));
+        self.is_all |= ["/accessors", "/buffer"]
+            .iter()
+            .any(|way| text.contains(way));
     }
 }

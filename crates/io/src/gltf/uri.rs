@@ -34,7 +34,11 @@ pub(super) fn parse(uri: &str) -> Result<Uri<'_>, &'static str> {
             part => file.push(part),
         }
     }
-    if file.as_os_str().is_empty() { Err(below) } else { Ok(Uri::File(file)) }
+    if file.as_os_str().is_empty() {
+        Err(below)
+    } else {
+        Ok(Uri::File(file))
+    }
 }
 
 fn percent_decoded(uri: &str) -> Option<String> {
@@ -92,7 +96,11 @@ pub(super) fn to_base64(bytes: &[u8]) -> String {
         for letter in 0..4 {
             let is_there = letter <= three.len();
             let digit = (word >> (18 - 6 * letter)) as usize & 63;
-            text.push(if is_there { char::from(LETTERS[digit]) } else { '=' });
+            text.push(if is_there {
+                char::from(LETTERS[digit])
+            } else {
+                '='
+            });
         }
     }
     text
@@ -101,7 +109,15 @@ pub(super) fn to_base64(bytes: &[u8]) -> String {
 /// A file name as it stands in a URI.
 pub(super) fn escaped(name: &str) -> String {
     let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"-_.~/".contains(&byte);
-    name.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect()
+    name.bytes()
+        .map(|b| {
+            if plain(b) {
+                char::from(b).to_string()
+            } else {
+                format!("%{b:02X}")
+            }
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -140,7 +156,13 @@ mod tests {
 
     #[test]
     fn base_64_of_rfc_4648() {
-        let cases = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
+        let cases = [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foobar", "Zm9vYmFy"),
+        ];
         for (plain, coded) in cases {
             assert_eq!(to_base64(plain.as_bytes()), coded);
             assert_eq!(from_base64(coded, 99).as_deref(), Some(plain.as_bytes()));

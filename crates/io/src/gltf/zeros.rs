@@ -29,8 +29,9 @@ impl Source {
             .get_or_init(|| {
                 let zeros = self.zeros()?;
                 let flaw = |count: usize, most: usize, what: &str| {
-                    let met =
-                        format!("{count} {what} in accessors without a buffer view, over all that name them");
+                    let met = format!(
+                        "{count} {what} in accessors without a buffer view, over all that name them"
+                    );
                     Err(GltfFlaw::new("accessors", met, format!("at most {most}")))
                 };
                 match zeros {
@@ -67,11 +68,21 @@ impl Source {
                 if let Some(indices) = primitive.get("indices").filter(|_| compressed.is_none()) {
                     add(&mut zeros.alone, &indices)?;
                 }
-                let is_compressed =
-                    |name: &str| compressed.as_ref().is_some_and(|own| own.get(name).is_some());
+                let is_compressed = |name: &str| {
+                    compressed
+                        .as_ref()
+                        .is_some_and(|own| own.get(name).is_some())
+                };
                 for (name, at) in primitive.require("attributes")?.members()? {
                     if !is_compressed(name) {
-                        add(if name == "POSITION" { &mut zeros.alone } else { &mut zeros.beside }, &at)?;
+                        add(
+                            if name == "POSITION" {
+                                &mut zeros.alone
+                            } else {
+                                &mut zeros.beside
+                            },
+                            &at,
+                        )?;
                     }
                 }
                 for target in primitive.list("targets")? {

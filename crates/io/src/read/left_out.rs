@@ -53,8 +53,12 @@ impl LeftOut {
 
     /// All that was met.
     pub(super) fn in_words(self) -> Vec<String> {
-        let met = KINDS.iter().filter(|&&(kind, _)| self.is_met[kind as usize]);
-        met.map(|&(_, words)| words.to_owned()).chain(self.others).collect()
+        let met = KINDS
+            .iter()
+            .filter(|&&(kind, _)| self.is_met[kind as usize]);
+        met.map(|&(_, words)| words.to_owned())
+            .chain(self.others)
+            .collect()
     }
 }
 

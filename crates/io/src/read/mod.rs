@@ -29,7 +29,10 @@ pub fn read(path: impl AsRef<Path>) -> Result<PolygonSoup, ReadError> {
 /// # Errors
 /// The same, but for unknown extensions.
 pub fn read_as(path: &Path, format: Format) -> Result<PolygonSoup, ReadError> {
-    let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
+    let bytes = read_all(path).map_err(|reason| ReadError::Io {
+        path: path.to_owned(),
+        reason,
+    })?;
     let soup = match format {
         Format::Gltf | Format::Glb => {
             check_content(&bytes, format).and_then(|()| read_gltf(&bytes, path.parent()))
@@ -51,7 +54,10 @@ pub(crate) fn read_all(path: &Path) -> io::Result<Vec<u8>> {
         use std::os::unix::fs::FileTypeExt;
         let kind = std::fs::metadata(path)?.file_type();
         if kind.is_char_device() || kind.is_block_device() {
-            return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device, not a file"));
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "it is a device, not a file",
+            ));
         }
     }
     std::fs::read(path)
@@ -80,7 +86,11 @@ fn check_content(bytes: &[u8], format: Format) -> Result<(), ReadError> {
         return Err(ReadError::Empty { path: None, format });
     }
     match looks_like_other(bytes, format) {
-        Some(looks_like) => Err(ReadError::OtherContent { path: None, format, looks_like }),
+        Some(looks_like) => Err(ReadError::OtherContent {
+            path: None,
+            format,
+            looks_like,
+        }),
         None => Ok(()),
     }
 }
@@ -92,16 +102,28 @@ const MOST: usize = u32::MAX as usize;
 fn check_count(count: u64, what: &str, place: Place) -> Result<usize, Flaw> {
     match usize::try_from(count) {
         Ok(count) if count <= MOST => Ok(count),
-        _ => Err(Flaw::new(place, count.to_string(), format!("at most {MOST} {what}"))),
+        _ => Err(Flaw::new(
+            place,
+            count.to_string(),
+            format!("at most {MOST} {what}"),
+        )),
     }
 }
 
 /// Adds a face, unless all faces together would have more corners than can be counted.
 #[inline]
-fn push_face(faces: &mut PolygonFaces, corners: &[u32], place: impl Fn() -> Place) -> Result<(), Flaw> {
+fn push_face(
+    faces: &mut PolygonFaces,
+    corners: &[u32],
+    place: impl Fn() -> Place,
+) -> Result<(), Flaw> {
     if corners.len() > MOST - faces.corner_count() {
         let found = format!("more than {MOST}");
-        return Err(Flaw::new(place(), found, format!("at most {MOST} face corners")));
+        return Err(Flaw::new(
+            place(),
+            found,
+            format!("at most {MOST} face corners"),
+        ));
     }
     faces.push(corners);
     Ok(())

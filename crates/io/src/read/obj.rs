@@ -17,7 +17,13 @@ use attributes::{Attributes, LabelKind};
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonFaces, PolygonSoup};
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
-    let scanner = Scanner::new(bytes, Syntax { comments: true, continuations: true });
+    let scanner = Scanner::new(
+        bytes,
+        Syntax {
+            comments: true,
+            continuations: true,
+        },
+    );
     let (vertices, faces) = count_statements(bytes);
     let soup = PolygonSoup {
         positions: Vec::with_capacity(vertices),
@@ -64,7 +70,10 @@ impl Latest {
     fn note(&mut self, index: u32, line: usize) {
         let needed = index as usize + 1;
         if needed > self.count_needed {
-            *self = Self { count_needed: needed, line };
+            *self = Self {
+                count_needed: needed,
+                line,
+            };
         }
     }
 }
@@ -104,21 +113,33 @@ impl Reader<'_> {
         self.check_indices()?;
         self.soup.positions.shrink_to_fit();
         if self.attributes.has_wrong_textures() {
-            self.left_out.other("texture coordinates: some corners name others than there are".to_owned());
+            self.left_out
+                .other("texture coordinates: some corners name others than there are".to_owned());
         } else if self.attributes.has_unused_textures() {
             self.left_out.note(Kind::TextureCoordinates);
         }
-        if !self.soup.material_libraries.is_empty() && !self.attributes.has_materials(self.soup.faces.len()) {
+        if !self.soup.material_libraries.is_empty()
+            && !self.attributes.has_materials(self.soup.faces.len())
+        {
             self.left_out.note(Kind::Materials);
         }
         let (vertices, faces) = (self.soup.positions.len(), &self.soup.faces);
-        let bare = self.attributes.corners_without_textures(faces.corner_count());
+        let bare = self
+            .attributes
+            .corners_without_textures(faces.corner_count());
         if bare > 0 {
-            let corners = if bare == 1 { "corner has" } else { "corners have" };
-            self.left_out
-                .other(format!("that {bare} {corners} no texture coordinates: 0 0 takes their place"));
+            let corners = if bare == 1 {
+                "corner has"
+            } else {
+                "corners have"
+            };
+            self.left_out.other(format!(
+                "that {bare} {corners} no texture coordinates: 0 0 takes their place"
+            ));
         }
-        self.soup.channels = self.attributes.channels(vertices, faces.len(), faces.corner_count());
+        self.soup.channels = self
+            .attributes
+            .channels(vertices, faces.len(), faces.corner_count());
         self.soup.left_out = self.left_out.in_words();
         Ok(self.soup)
     }
@@ -137,7 +158,10 @@ impl Reader<'_> {
     fn vertex(&mut self) -> Result<(), Flaw> {
         let index = self.soup.positions.len();
         super::check_count(index as u64 + 1, "vertices", self.scanner.place())?;
-        let point = self.scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
+        let point = self
+            .scanner
+            .point()
+            .map_err(|flaw| flaw.element("vertex", index))?;
         self.soup.positions.push(point);
         self.more_numbers(index);
         Ok(())
@@ -146,7 +170,9 @@ impl Reader<'_> {
     /// After x, y and z: a weight, or red, green and blue, as some programs write them, or both.
     #[inline]
     fn more_numbers(&mut self, vertex: usize) {
-        let Some(first) = self.scanner.word() else { return };
+        let Some(first) = self.scanner.word() else {
+            return;
+        };
         let mut numbers = [number(first).unwrap_or(f64::NAN), 0.0, 0.0, 0.0];
         let mut count = 1;
         while let Some(word) = self.scanner.word() {
@@ -165,7 +191,9 @@ impl Reader<'_> {
             self.left_out.note(Kind::Weights);
         }
         match colour {
-            Some(colour) if colour.iter().all(|x| x.is_finite()) => self.attributes.colour(vertex, colour),
+            Some(colour) if colour.iter().all(|x| x.is_finite()) => {
+                self.attributes.colour(vertex, colour)
+            }
             Some(_) => self.left_out.note(Kind::Colours),
             None => {}
         }
@@ -179,12 +207,16 @@ impl Reader<'_> {
             let found = number(word).filter(|x: &f64| x.is_finite());
             place[count] = found.ok_or_else(|| {
                 let index = self.attributes.texture_count();
-                self.scanner.unexpected(Some(word), "a finite number").element("texture coordinate", index)
+                self.scanner
+                    .unexpected(Some(word), "a finite number")
+                    .element("texture coordinate", index)
             })?;
             count += 1;
         }
         if count == 0 {
-            return Err(self.scanner.unexpected(None, "one to three numbers after vt"));
+            return Err(self
+                .scanner
+                .unexpected(None, "one to three numbers after vt"));
         }
         super::check_count(
             self.attributes.texture_count() as u64 + 1,
@@ -198,8 +230,17 @@ impl Reader<'_> {
     /// `vn X Y Z`; one that is no direction says nothing.
     fn normal(&mut self) {
         self.left_out.note(Kind::Normals);
-        let numbers = [(); 3].map(|()| self.scanner.word().and_then(number).filter(|x: &f64| x.is_finite()));
-        let normal = if let [Some(x), Some(y), Some(z)] = numbers { [x, y, z] } else { [0.0; 3] };
+        let numbers = [(); 3].map(|()| {
+            self.scanner
+                .word()
+                .and_then(number)
+                .filter(|x: &f64| x.is_finite())
+        });
+        let normal = if let [Some(x), Some(y), Some(z)] = numbers {
+            [x, y, z]
+        } else {
+            [0.0; 3]
+        };
         self.attributes.normal(normal);
     }
 
@@ -287,7 +328,10 @@ impl Reader<'_> {
         for (i, place) in vertices.chunks_exact(ends).enumerate() {
             let sharpness = sharpness[if sharpness.len() == 1 { 0 } else { i }];
             match *place {
-                [a, b] => self.soup.creases.push(CreaseTag { vertices: [a, b], sharpness }),
+                [a, b] => self.soup.creases.push(CreaseTag {
+                    vertices: [a, b],
+                    sharpness,
+                }),
                 [vertex] => self.soup.corners.push(CornerTag { vertex, sharpness }),
                 _ => {}
             }
@@ -298,20 +342,29 @@ impl Reader<'_> {
     fn tag_counts(&mut self) -> Result<(usize, usize), Flaw> {
         let word = self.scanner.word();
         let parse = |word: &[u8]| {
-            let mut counts =
-                word.split(|&b| b == b'/').map(|w| integer(w).and_then(|n| usize::try_from(n).ok()));
+            let mut counts = word
+                .split(|&b| b == b'/')
+                .map(|w| integer(w).and_then(|n| usize::try_from(n).ok()));
             Some((counts.next()??, counts.next()??))
         };
-        word.and_then(parse).ok_or_else(|| self.scanner.unexpected(word, "the tag's counts, as in 2/1/0"))
+        word.and_then(parse).ok_or_else(|| {
+            self.scanner
+                .unexpected(word, "the tag's counts, as in 2/1/0")
+        })
     }
 
     fn tag_vertices(&mut self, count: usize) -> Result<Vec<u32>, Flaw> {
         let mut vertices = Vec::new();
         for _ in 0..count {
             let word = self.scanner.word();
-            let index = word.and_then(integer).and_then(|i| u32::try_from(i).ok()).filter(|&i| i < u32::MAX);
+            let index = word
+                .and_then(integer)
+                .and_then(|i| u32::try_from(i).ok())
+                .filter(|&i| i < u32::MAX);
             let Some(index) = index else {
-                return Err(self.scanner.unexpected(word, "a vertex index from 0 in a tag"));
+                return Err(self
+                    .scanner
+                    .unexpected(word, "a vertex index from 0 in a tag"));
             };
             self.highest_tag.note(index, self.scanner.line());
             vertices.push(index);
@@ -335,19 +388,29 @@ impl Reader<'_> {
     fn check_indices(&self) -> Result<(), Flaw> {
         let count = self.soup.positions.len();
         if count == 0 {
-            return Err(self.scanner.unexpected(None, "at least one vertex (v X Y Z)"));
+            return Err(self
+                .scanner
+                .unexpected(None, "at least one vertex (v X Y Z)"));
         }
         if self.highest_corner.count_needed > count {
             let named = self.highest_corner.count_needed;
-            let problem =
-                format!("a face names vertex {named}, but the last vertex is {count} (faces count from 1)");
-            return Err(Flaw::saying(crate::Place::Line(self.highest_corner.line), problem));
+            let problem = format!(
+                "a face names vertex {named}, but the last vertex is {count} (faces count from 1)"
+            );
+            return Err(Flaw::saying(
+                crate::Place::Line(self.highest_corner.line),
+                problem,
+            ));
         }
         if self.highest_tag.count_needed > count {
             let (named, last) = (self.highest_tag.count_needed - 1, count - 1);
-            let problem =
-                format!("a tag names vertex {named}, but the last vertex is {last} (tags count from 0)");
-            return Err(Flaw::saying(crate::Place::Line(self.highest_tag.line), problem));
+            let problem = format!(
+                "a tag names vertex {named}, but the last vertex is {last} (tags count from 0)"
+            );
+            return Err(Flaw::saying(
+                crate::Place::Line(self.highest_tag.line),
+                problem,
+            ));
         }
         Ok(())
     }
@@ -356,12 +419,19 @@ impl Reader<'_> {
 /// What a corner such as `7/2/3` names in its part `place`, counted from 0, if it does; so many there are so far.
 #[inline]
 fn named(corner: &[u8], place: usize, count: usize) -> Option<u32> {
-    let part = corner.split(|&b| b == b'/').nth(place).filter(|part| !part.is_empty())?;
+    let part = corner
+        .split(|&b| b == b'/')
+        .nth(place)
+        .filter(|part| !part.is_empty())?;
     let index = match integer(part) {
         Some(index) if index > 0 => Some(index - 1),
         Some(index) if index < 0 => Some(count as i64 + index),
         _ => None,
     };
     // What names nothing is found with what names too much.
-    Some(index.and_then(|i| u32::try_from(i).ok()).unwrap_or(u32::MAX - 1))
+    Some(
+        index
+            .and_then(|i| u32::try_from(i).ok())
+            .unwrap_or(u32::MAX - 1),
+    )
 }

@@ -25,7 +25,13 @@ const LEAST_FACE: usize = 2;
 const LEAST_INDEX: usize = 2;
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
-    let mut scanner = Scanner::new(bytes, Syntax { comments: true, continuations: false });
+    let mut scanner = Scanner::new(
+        bytes,
+        Syntax {
+            comments: true,
+            continuations: false,
+        },
+    );
     let (keyword, vertices, faces) = read_header(&mut scanner)?;
     let mut left_out = LeftOut::default();
     let mut columns = VertexColumns::new(&keyword);
@@ -41,7 +47,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
         Ok(channel) => channels.extend(channel),
         Err(_) => left_out.note(Kind::FaceColours),
     }
-    Ok(PolygonSoup { positions, faces, channels, left_out: left_out.in_words(), ..PolygonSoup::default() })
+    Ok(PolygonSoup {
+        positions,
+        faces,
+        channels,
+        left_out: left_out.in_words(),
+        ..PolygonSoup::default()
+    })
 }
 
 /// The keyword and the counts, on one line or several; gives the keyword and the numbers of vertices and faces.
@@ -51,11 +63,20 @@ fn read_header<'a>(scanner: &mut Scanner<'a>) -> Result<(OffKeyword<'a>, usize, 
     let mut keyword = OffKeyword::default();
     if let Some(found) = first.and_then(off_keyword) {
         if found.has_other_dimension {
-            return Err(scanner.unexpected(first, "three coordinates a vertex (OFF, COFF, NOFF, STOFF)"));
+            return Err(
+                scanner.unexpected(first, "three coordinates a vertex (OFF, COFF, NOFF, STOFF)")
+            );
         }
-        vertices = if found.glued.is_empty() { scanner.first_word() } else { Some(found.glued) };
+        vertices = if found.glued.is_empty() {
+            scanner.first_word()
+        } else {
+            Some(found.glued)
+        };
         if vertices == Some(b"BINARY") {
-            return Err(Flaw::saying(scanner.place(), "binary OFF files are not read"));
+            return Err(Flaw::saying(
+                scanner.place(),
+                "binary OFF files are not read",
+            ));
         }
         keyword = found;
     } else if first.and_then(integer).is_none() {
@@ -93,7 +114,9 @@ fn read_vertices<'a>(
     let mut words: Vec<&'a [u8]> = Vec::new();
     for index in 0..count {
         scanner.skip_empty_lines();
-        let point = scanner.point().map_err(|flaw| flaw.element("vertex", index))?;
+        let point = scanner
+            .point()
+            .map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
         words_of_line(scanner, &mut words);
         columns.read(&words, index);
@@ -132,7 +155,11 @@ fn read_faces(
     Ok(faces)
 }
 
-fn read_face(scanner: &mut Scanner<'_>, vertices: usize, polygon: &mut Vec<u32>) -> Result<(), Flaw> {
+fn read_face(
+    scanner: &mut Scanner<'_>,
+    vertices: usize,
+    polygon: &mut Vec<u32>,
+) -> Result<(), Flaw> {
     polygon.clear();
     let word = scanner.first_word();
     let Some(corners) = word.and_then(integer).filter(|&n| n >= 0) else {
@@ -140,7 +167,9 @@ fn read_face(scanner: &mut Scanner<'_>, vertices: usize, polygon: &mut Vec<u32>)
     };
     for _ in 0..corners {
         let word = scanner.word();
-        let index = word.and_then(integer).filter(|&i| 0 <= i && i < vertices as i64);
+        let index = word
+            .and_then(integer)
+            .filter(|&i| 0 <= i && i < vertices as i64);
         match (word, index.and_then(|i| u32::try_from(i).ok())) {
             (_, Some(index)) => polygon.push(index),
             (Some(word), None) if integer(word).is_some() => {

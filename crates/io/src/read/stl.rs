@@ -18,23 +18,36 @@ const HEADER: usize = 84;
 const FACET: usize = 50;
 
 pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
-    if !is_binary_stl(bytes) && is_ascii_stl(bytes) { read_ascii(bytes) } else { read_binary(bytes) }
+    if !is_binary_stl(bytes) && is_ascii_stl(bytes) {
+        read_ascii(bytes)
+    } else {
+        read_binary(bytes)
+    }
 }
 
 fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let Some(promised) = stl_facet_count(bytes) else {
         let expected = format!("'solid', or the {HEADER} bytes that begin a binary file");
-        return Err(Flaw::new(Place::Byte(bytes.len()), "the end of the file", expected));
+        return Err(Flaw::new(
+            Place::Byte(bytes.len()),
+            "the end of the file",
+            expected,
+        ));
     };
     let count = promised as usize;
     let facets = &bytes[HEADER..];
     if facets.len() / FACET < count {
         let expected = format!("{promised} facets of {FACET} bytes, as byte 80 promises");
-        return Err(Flaw::new(Place::Byte(bytes.len()), "the end of the file", expected)
-            .element("facet", facets.len() / FACET));
+        return Err(
+            Flaw::new(Place::Byte(bytes.len()), "the end of the file", expected)
+                .element("facet", facets.len() / FACET),
+        );
     }
     if count == 0 && !facets.is_empty() {
-        let problem = format!("the file promises no facet, but {} bytes follow", facets.len());
+        let problem = format!(
+            "the file promises no facet, but {} bytes follow",
+            facets.len()
+        );
         return Err(Flaw::saying(Place::Byte(80), problem));
     }
     check_count(3 * u64::from(promised), "vertices", Place::Byte(80))?;
@@ -47,7 +60,9 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
             let value = f32::from_le_bytes(*bytes);
             if !value.is_finite() {
                 let place = Place::Byte(HEADER + index * FACET + 12 + 4 * i);
-                return Err(Flaw::new(place, value.to_string(), "a finite number").element("facet", index));
+                return Err(
+                    Flaw::new(place, value.to_string(), "a finite number").element("facet", index)
+                );
             }
             corners[i / 3][i % 3] = f64::from(value);
         }
@@ -62,9 +77,11 @@ fn read_binary(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     if !attributes.is_empty() {
         let channel = Channel::new(channels::ATTRIBUTE, Semantic::Label, Domain::Face, 1);
         let channel = channel.stored(Storage::Uint16);
-        soup.channels.push(channel.with(attributes, (0..promised).collect()));
+        soup.channels
+            .push(channel.with(attributes, (0..promised).collect()));
     }
-    soup.left_out.extend(trailing_bytes(facets.len() - FACET * count, "facet"));
+    soup.left_out
+        .extend(trailing_bytes(facets.len() - FACET * count, "facet"));
     Ok(soup)
 }
 
@@ -76,7 +93,11 @@ fn with_room(facets: usize) -> PolygonSoup {
     }
 }
 
-fn push_facet(soup: &mut PolygonSoup, corners: [[f64; 3]; 3], place: impl Fn() -> Place) -> Result<(), Flaw> {
+fn push_facet(
+    soup: &mut PolygonSoup,
+    corners: [[f64; 3]; 3],
+    place: impl Fn() -> Place,
+) -> Result<(), Flaw> {
     let first = soup.positions.len() as u32;
     soup.positions.extend(corners);
     push_face(&mut soup.faces, &[first, first + 1, first + 2], place)
@@ -84,7 +105,9 @@ fn push_facet(soup: &mut PolygonSoup, corners: [[f64; 3]; 3], place: impl Fn() -
 
 fn read_ascii(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
     let facets = memchr::memmem::find_iter(bytes, b"outer").count();
-    let mut text = Text { scanner: Scanner::new(bytes, Syntax::default()) };
+    let mut text = Text {
+        scanner: Scanner::new(bytes, Syntax::default()),
+    };
     let mut soup = with_room(facets);
     text.keyword(&["solid"])?;
     let mut solids = Solids::default();
@@ -130,7 +153,11 @@ impl Solids {
     /// The names of all faces' solids, if any has one.
     fn channel(self, faces: usize) -> Option<Channel> {
         let Self { names, starts, .. } = self;
-        if faces == 0 || names.iter().all(|name| name.is_empty() || name == channels::UNNAMED_SOLID) {
+        if faces == 0
+            || names
+                .iter()
+                .all(|name| name.is_empty() || name == channels::UNNAMED_SOLID)
+        {
             return None;
         }
         let mut indices = Vec::with_capacity(faces);
@@ -154,8 +181,12 @@ impl Text<'_> {
     /// Which of `keywords` the next word is, in capitals or small letters.
     fn keyword(&mut self, keywords: &[&str]) -> Result<usize, Flaw> {
         let word = self.scanner.first_word();
-        word.and_then(|w| keywords.iter().position(|k| w.eq_ignore_ascii_case(k.as_bytes())))
-            .ok_or_else(|| self.scanner.unexpected(word, keywords.join(" or ")))
+        word.and_then(|w| {
+            keywords
+                .iter()
+                .position(|k| w.eq_ignore_ascii_case(k.as_bytes()))
+        })
+        .ok_or_else(|| self.scanner.unexpected(word, keywords.join(" or ")))
     }
 
     /// The corners of a facet whose keyword has been read.

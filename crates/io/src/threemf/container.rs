@@ -40,12 +40,19 @@ impl Container {
     pub(super) fn parse(bytes: Vec<u8>) -> flaw::Result<Self> {
         let archive = ZipArchive::new(Cursor::new(bytes.as_slice())).map_err(broken)?;
         if archive.len() > MOST_PARTS {
-            let problem = format!("it has {} parts; at most {MOST_PARTS} are read", archive.len());
+            let problem = format!(
+                "it has {} parts; at most {MOST_PARTS} are read",
+                archive.len()
+            );
             return Err(PackageFlaw::of_archive(problem));
         }
         // A part whose name cannot be read is copied, and never asked for.
-        let name =
-            |i| archive.name_for_index(i).and_then(Result::ok).map_or_else(String::new, Cow::into_owned);
+        let name = |i| {
+            archive
+                .name_for_index(i)
+                .and_then(Result::ok)
+                .map_or_else(String::new, Cow::into_owned)
+        };
         let names = (0..archive.len()).map(name).collect();
         drop(archive);
         Ok(Self { bytes, names })
@@ -67,12 +74,15 @@ impl Container {
     pub(super) fn text(&self, part: usize, read: &mut u64) -> flaw::Result<String> {
         let name = &self.names[part];
         let mut archive = ZipArchive::new(Cursor::new(self.bytes.as_slice())).map_err(broken)?;
-        let flaw =
-            |why: &dyn std::fmt::Display| PackageFlaw::new(name, format!("it cannot be unpacked: {why}"));
+        let flaw = |why: &dyn std::fmt::Display| {
+            PackageFlaw::new(name, format!("it cannot be unpacked: {why}"))
+        };
         let file = archive.by_index(part).map_err(|why| flaw(&why))?;
         let most = MOST_BYTES.min(ALWAYS.saturating_add(MOST_TIMES * self.bytes.len() as u64));
         let mut bytes = Vec::new();
-        file.take(most - *read + 1).read_to_end(&mut bytes).map_err(|why| flaw(&why))?;
+        file.take(most - *read + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|why| flaw(&why))?;
         *read += bytes.len() as u64;
         if *read > most {
             let problem = format!(
@@ -101,7 +111,9 @@ impl Container {
         let mut reader = quick_xml::Reader::from_str(&text);
         loop {
             let at = reader.buffer_position() as usize;
-            let event = reader.read_event().map_err(|why| PackageFlaw::not_xml(name, &why).at(&text, at))?;
+            let event = reader
+                .read_event()
+                .map_err(|why| PackageFlaw::not_xml(name, &why).at(&text, at))?;
             let (Event::Start(tag) | Event::Empty(tag)) = event else {
                 if event == Event::Eof {
                     return Err(PackageFlaw::new(name, "it names no 3D model"));
@@ -114,14 +126,18 @@ impl Container {
             }
             let target = attribute(element.attributes, "Target").unwrap_or_default();
             return self.find(target).ok_or_else(|| {
-                let problem = format!("it names the model '{target}', which is no part of the package");
+                let problem =
+                    format!("it names the model '{target}', which is no part of the package");
                 PackageFlaw::new(name, problem).at(&text, at)
             });
         }
     }
 
     /// The package with other texts for some of its parts; all others are copied as they are.
-    pub(super) fn with(&self, changed: &BTreeMap<usize, String>) -> zip::result::ZipResult<Vec<u8>> {
+    pub(super) fn with(
+        &self,
+        changed: &BTreeMap<usize, String>,
+    ) -> zip::result::ZipResult<Vec<u8>> {
         let mut archive = ZipArchive::new(Cursor::new(self.bytes.as_slice()))?;
         let mut writer = ZipWriter::new(Cursor::new(Vec::with_capacity(self.bytes.len())));
         for part in 0..archive.len() {

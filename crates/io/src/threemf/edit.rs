@@ -40,19 +40,29 @@ impl Replacement {
         let beyond = |&&v: &&u32| v as usize >= new.positions.len();
         if let Some(vertex) = new.triangles.as_flattened().iter().find(beyond) {
             let count = new.positions.len();
-            return Err(flaw(format!("a triangle names vertex {vertex}, but there are {count}")));
+            return Err(flaw(format!(
+                "a triangle names vertex {vertex}, but there are {count}"
+            )));
         }
         if let Some(x) = new.positions.as_flattened().iter().find(|x| !x.is_finite()) {
-            return Err(flaw(format!("a coordinate is {x}, which is no finite number")));
+            return Err(flaw(format!(
+                "a coordinate is {x}, which is no finite number"
+            )));
         }
         let needs_sources = !mesh.attributes.is_empty() || !volumes.is_empty();
         let sources: Vec<Source> = match needs_sources {
             true => (0..new.triangles.len()).map(new.source).collect(),
             false => Vec::new(),
         };
-        if let Some(source) = sources.iter().find(|source| source.face >= mesh.triangles.len()) {
+        if let Some(source) = sources
+            .iter()
+            .find(|source| source.face >= mesh.triangles.len())
+        {
             let count = mesh.triangles.len();
-            return Err(flaw(format!("triangle {} is named, but there are {count}", source.face)));
+            return Err(flaw(format!(
+                "triangle {} is named, but there are {count}",
+                source.face
+            )));
         }
         // Volumes are ranges: triangles stand in the order of those that they came from.
         let mut order: Vec<u32> = (0..new.triangles.len() as u32).collect();
@@ -61,12 +71,15 @@ impl Replacement {
         }
         let mut ranges = BTreeMap::new();
         for volume in volumes {
-            let before =
-                |face: u32| order.partition_point(|&t| (sources[t as usize].face as u32) < face) as u32;
+            let before = |face: u32| {
+                order.partition_point(|&t| (sources[t as usize].face as u32) < face) as u32
+            };
             let (first, end) = (before(volume.first), before(volume.last.saturating_add(1)));
             if first >= end {
                 let (first, last) = (volume.first, volume.last);
-                return Err(flaw(format!("the volume from triangle {first} to {last} has no triangle left")));
+                return Err(flaw(format!(
+                    "the volume from triangle {first} to {last} has no triangle left"
+                )));
             }
             ranges.insert([volume.first, volume.last], [first, end - 1]);
         }
@@ -82,7 +95,10 @@ impl Replacement {
         let triangles = between(&model.text[mesh.triangles_at.clone()], |out, lead| {
             for &number in &order {
                 let [a, b, c] = new.triangles[number as usize];
-                let _ = write!(out, "{lead}<{prefix}triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"");
+                let _ = write!(
+                    out,
+                    "{lead}<{prefix}triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\""
+                );
                 if let Some(source) = sources.get(number as usize)
                     && let Some(at) = mesh.attributes.get(source.face)
                 {
@@ -92,7 +108,14 @@ impl Replacement {
                 out.push_str("/>");
             }
         });
-        Ok((Self { vertices, triangles, volumes: ranges }, told))
+        Ok((
+            Self {
+                vertices,
+                triangles,
+                volumes: ranges,
+            },
+            told,
+        ))
     }
 }
 
@@ -121,7 +144,9 @@ impl Numbers {
 pub(super) fn edited(model: &Model, replaced: &BTreeMap<usize, &Replacement>) -> String {
     let (mut out, mut at) = (String::with_capacity(model.text.len()), 0);
     for (&object, new) in replaced {
-        let Some(mesh) = &model.objects[object].mesh else { continue };
+        let Some(mesh) = &model.objects[object].mesh else {
+            continue;
+        };
         out.push_str(&model.text[at..mesh.vertices_at.start]);
         out.push_str(&new.vertices);
         out.push_str(&model.text[mesh.vertices_at.end..mesh.triangles_at.start]);

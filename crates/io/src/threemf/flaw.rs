@@ -19,7 +19,12 @@ pub struct PackageFlaw {
 impl PackageFlaw {
     /// A problem of a part, in words.
     pub(super) fn new(part: &str, problem: impl Into<String>) -> Self {
-        Self { part: part.to_owned(), place: None, element: String::new(), problem: problem.into() }
+        Self {
+            part: part.to_owned(),
+            place: None,
+            element: String::new(),
+            problem: problem.into(),
+        }
     }
 
     /// A problem of the archive itself, in words.

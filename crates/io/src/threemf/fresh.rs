@@ -21,21 +21,35 @@ const TRIANGLE: usize = 64;
 
 /// Triangles as a package whose numbers are measured in this.
 pub(crate) fn write_fresh(surface: Triangles<'_>, unit: LengthUnit) -> Result<Vec<u8>, WriteError> {
-    let Triangles { positions, triangles } = surface;
+    let Triangles {
+        positions,
+        triangles,
+    } = surface;
     let of = |bytes: usize, count: usize| bytes.saturating_mul(count);
     let length = of(VERTEX, positions.len()).saturating_add(of(TRIANGLE, triangles.len()));
     let mut package = Fresh::new();
     let written = package
-        .part("[Content_Types].xml", TYPES.len(), |out| out.write_all(TYPES))
-        .and_then(|()| package.part("_rels/.rels", RELATIONSHIPS.len(), |out| out.write_all(RELATIONSHIPS)))
+        .part("[Content_Types].xml", TYPES.len(), |out| {
+            out.write_all(TYPES)
+        })
+        .and_then(|()| {
+            package.part("_rels/.rels", RELATIONSHIPS.len(), |out| {
+                out.write_all(RELATIONSHIPS)
+            })
+        })
         .and_then(|()| package.part("3D/3dmodel.model", length, |out| model(out, surface, unit)))
         .and_then(|()| package.finish());
-    written.map_err(|why| WriteError::Writer { reason: std::io::Error::other(why) })
+    written.map_err(|why| WriteError::Writer {
+        reason: std::io::Error::other(why),
+    })
 }
 
 /// The text of the one model.
 fn model(writer: &mut dyn Write, surface: Triangles<'_>, unit: LengthUnit) -> io::Result<()> {
-    let Triangles { positions, triangles } = surface;
+    let Triangles {
+        positions,
+        triangles,
+    } = surface;
     let mut out = Pieces::new(writer);
     let (unit, version) = (unit.name(), env!("CARGO_PKG_VERSION"));
     let head = format!(

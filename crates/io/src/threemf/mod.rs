@@ -119,9 +119,15 @@ impl Package {
     /// # Errors
     /// The file cannot be read, or the archive, the XML of a model, or what it names breaks the rules.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let bytes = read_all(path).map_err(|reason| ReadError::Io { path: path.to_owned(), reason })?;
+        let bytes = read_all(path).map_err(|reason| ReadError::Io {
+            path: path.to_owned(),
+            reason,
+        })?;
         let package = Self::from_bytes(bytes).map_err(|error| error.in_file(path))?;
-        Ok(Self { path: Some(path.to_owned()), ..package })
+        Ok(Self {
+            path: Some(path.to_owned()),
+            ..package
+        })
     }
 
     /// A package from the bytes of its file.
@@ -130,9 +136,15 @@ impl Package {
     /// As for [`Self::open`].
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, ReadError> {
         if bytes.is_empty() {
-            return Err(ReadError::Empty { path: None, format: Format::ThreeMf });
+            return Err(ReadError::Empty {
+                path: None,
+                format: Format::ThreeMf,
+            });
         }
-        Self::parse(bytes).map_err(|flaw| ReadError::Package { path: None, flaw: Box::new(flaw) })
+        Self::parse(bytes).map_err(|flaw| ReadError::Package {
+            path: None,
+            flaw: Box::new(flaw),
+        })
     }
 
     fn parse(bytes: Vec<u8>) -> Flawed<Self> {
@@ -145,7 +157,11 @@ impl Package {
             let name = container.name(part).to_owned();
             let model = Model::parse(part, &name, container.text(part, &mut read)?)?;
             of_part.insert(part, models.len());
-            let uses = model.objects.iter().flat_map(|object| &object.components).chain(&model.items);
+            let uses = model
+                .objects
+                .iter()
+                .flat_map(|object| &object.components)
+                .chain(&model.items);
             for named in uses.filter_map(|own| container.find(own.part.as_deref()?)) {
                 if !of_part.contains_key(&named) && !parts.contains(&named) {
                     parts.push(named);
@@ -155,13 +171,24 @@ impl Package {
         }
         let mut objects = Vec::new();
         for (number, model) in models.iter().enumerate() {
-            let has_mesh =
-                |object: &model::Object| object.mesh.as_ref().is_some_and(|own| !own.triangles.is_empty());
-            let own = model.objects.iter().enumerate().filter(|(_, object)| has_mesh(object));
+            let has_mesh = |object: &model::Object| {
+                object
+                    .mesh
+                    .as_ref()
+                    .is_some_and(|own| !own.triangles.is_empty())
+            };
+            let own = model
+                .objects
+                .iter()
+                .enumerate()
+                .filter(|(_, object)| has_mesh(object));
             objects.extend(own.map(|(object, _)| (number, object)));
         }
-        let of_place: HashMap<Place, usize> =
-            objects.iter().enumerate().map(|(i, &place)| (place, i)).collect();
+        let of_place: HashMap<Place, usize> = objects
+            .iter()
+            .enumerate()
+            .map(|(i, &place)| (place, i))
+            .collect();
         let find = |model: usize, own: &Use| {
             let model = match &own.part {
                 Some(part) => *of_part.get(&container.find(part)?)?,
@@ -179,9 +206,20 @@ impl Package {
             Some(part) => Some((part, container.text(part, &mut read)?)),
             None => None,
         };
-        let volumes = settings.as_ref().map_or_else(Vec::new, |(_, text)| volumes::parse(text));
+        let volumes = settings
+            .as_ref()
+            .map_or_else(Vec::new, |(_, text)| volumes::parse(text));
         let replaced = BTreeMap::new();
-        Ok(Self { path: None, container, models, objects, placements, settings, volumes, replaced })
+        Ok(Self {
+            path: None,
+            container,
+            models,
+            objects,
+            placements,
+            settings,
+            volumes,
+            replaced,
+        })
     }
 
     /// Number of objects that have a mesh.
@@ -191,16 +229,24 @@ impl Package {
 
     /// What its numbers are measured in.
     pub fn unit(&self) -> LengthUnit {
-        self.models.first().map_or_else(LengthUnit::default, |model| model.unit)
+        self.models
+            .first()
+            .map_or_else(LengthUnit::default, |model| model.unit)
     }
 
     /// An object as it is called in messages: `object 3 'Wheel'`, with its part where that is not the one that is built.
     pub fn object_name(&self, object: usize) -> String {
-        let Some(&(model, own)) = self.objects.get(object) else { return format!("object {object}") };
+        let Some(&(model, own)) = self.objects.get(object) else {
+            return format!("object {object}");
+        };
         let found = &self.models[model].objects[own];
         let name = found.name.as_ref().filter(|name| !name.is_empty());
         let name = name.map_or_else(String::new, |name| format!(" '{}'", shortened(name)));
-        let part = if model == 0 { String::new() } else { format!(" of {}", self.models[model].name) };
+        let part = if model == 0 {
+            String::new()
+        } else {
+            format!(" of {}", self.models[model].name)
+        };
         format!("object {}{name}{part}", found.id)
     }
 
@@ -209,12 +255,18 @@ impl Package {
     pub fn stretch(&self, object: usize) -> f64 {
         let all = self.placements.get(object).into_iter().flatten();
         let most = all.map(affine::greatest_stretch).fold(0.0, f64::max);
-        if most > 0.0 && most.is_finite() { most } else { 1.0 }
+        if most > 0.0 && most.is_finite() {
+            most
+        } else {
+            1.0
+        }
     }
 
     /// What the build does to vectors of an object where it is largest, by rows: x' = row · x.
     pub fn largest(&self, object: usize) -> [[f64; 3]; 3] {
-        affine::linear(affine::largest(self.placements.get(object).into_iter().flatten()))
+        affine::linear(affine::largest(
+            self.placements.get(object).into_iter().flatten(),
+        ))
     }
 
     fn mesh(&self, object: usize) -> Option<(&Model, &model::Object, &MeshText)> {
@@ -225,11 +277,14 @@ impl Package {
 
     /// The volumes of an object; none where it is one.
     fn volumes_of(&self, object: usize) -> Vec<&Volume> {
-        let Some((_, found, mesh)) = self.mesh(object).filter(|_| self.objects[object].0 == 0) else {
+        let Some((_, found, mesh)) = self.mesh(object).filter(|_| self.objects[object].0 == 0)
+        else {
             return Vec::new();
         };
         let is_own = |own: &&Volume| {
-            own.object == found.id && own.first <= own.last && (own.last as usize) < mesh.triangles.len()
+            own.object == found.id
+                && own.first <= own.last
+                && (own.last as usize) < mesh.triangles.len()
         };
         self.volumes.iter().filter(is_own).collect()
     }
@@ -237,16 +292,23 @@ impl Package {
     /// The triangles of an object; nothing if there is none of that number. With `join`, vertices at one position are one in objects
     /// of several volumes, within each of these.
     pub fn object(&self, object: usize, join: bool) -> ObjectSoup {
-        let Some((model, _, mesh)) = self.mesh(object) else { return ObjectSoup::default() };
+        let Some((model, _, mesh)) = self.mesh(object) else {
+            return ObjectSoup::default();
+        };
         let volumes = self.volumes_of(object);
-        let mut found = ObjectSoup { others: mesh.others.clone(), ..ObjectSoup::default() };
+        let mut found = ObjectSoup {
+            others: mesh.others.clone(),
+            ..ObjectSoup::default()
+        };
         let (mut positions, mut triangles) = (mesh.positions.clone(), mesh.triangles.clone());
         if join && volumes.len() > 1 {
             (positions, triangles) = apart(mesh, &volumes);
             found.is_joined = true;
         }
         found.soup.positions = positions;
-        triangles.iter().for_each(|triangle| found.soup.faces.push(triangle));
+        triangles
+            .iter()
+            .for_each(|triangle| found.soup.faces.push(triangle));
         let text = |at: &std::ops::Range<u32>| &model.text[at.start as usize..at.end as usize];
         let mut names = BTreeSet::new();
         found.is_uniform = volumes.len() < 2;
@@ -272,27 +334,42 @@ impl Package {
         self.check_size()?;
         let mut found: Option<[[f64; 3]; 2]> = None;
         for (object, placements) in self.placements.iter().enumerate() {
-            let positions = self.mesh(object).map_or(&[][..], |(_, _, mesh)| &mesh.positions);
-            for point in placements.iter().flat_map(|m| positions.iter().map(|&p| affine::apply(m, p))) {
+            let positions = self
+                .mesh(object)
+                .map_or(&[][..], |(_, _, mesh)| &mesh.positions);
+            for point in placements
+                .iter()
+                .flat_map(|m| positions.iter().map(|&p| affine::apply(m, p)))
+            {
                 let [low, high] = found.get_or_insert([point, point]);
-                (0..3).for_each(|i| (low[i], high[i]) = (low[i].min(point[i]), high[i].max(point[i])));
+                (0..3).for_each(|i| {
+                    (low[i], high[i]) = (low[i].min(point[i]), high[i].max(point[i]))
+                });
             }
         }
         Ok(found)
     }
 
     fn check_size(&self) -> Result<(), ReadError> {
-        let sizes = self.placements.iter().enumerate().map(|(object, placements)| {
-            let most =
-                self.mesh(object).map_or(0, |(_, _, mesh)| mesh.positions.len().max(mesh.triangles.len()));
-            placements.len().saturating_mul(most)
-        });
+        let sizes = self
+            .placements
+            .iter()
+            .enumerate()
+            .map(|(object, placements)| {
+                let most = self.mesh(object).map_or(0, |(_, _, mesh)| {
+                    mesh.positions.len().max(mesh.triangles.len())
+                });
+                placements.len().saturating_mul(most)
+            });
         if sizes.fold(0, usize::saturating_add) <= MOST {
             return Ok(());
         }
         let problem = format!("with all items there are more than {MOST} vertices or triangles");
         let flaw = Box::new(PackageFlaw::of_archive(problem));
-        Err(ReadError::Package { path: self.path.clone(), flaw })
+        Err(ReadError::Package {
+            path: self.path.clone(),
+            flaw,
+        })
     }
 
     /// Everything that is built as one soup, in its coordinates, and in words what else there is.
@@ -304,20 +381,28 @@ impl Package {
         let mut all = PolygonSoup::default();
         let mut names = BTreeSet::new();
         for (object, placements) in self.placements.iter().enumerate() {
-            let Some((_, _, mesh)) = self.mesh(object) else { continue };
+            let Some((_, _, mesh)) = self.mesh(object) else {
+                continue;
+            };
             names.extend(self.object(object, false).attributes);
             for m in placements {
                 let first = all.positions.len() as u32;
-                all.positions.extend(mesh.positions.iter().map(|&p| affine::apply(m, p)));
+                all.positions
+                    .extend(mesh.positions.iter().map(|&p| affine::apply(m, p)));
                 for &[a, b, c] in &mesh.triangles {
-                    let corners = if affine::mirrors(m) { [a, c, b] } else { [a, b, c] };
+                    let corners = if affine::mirrors(m) {
+                        [a, c, b]
+                    } else {
+                        [a, b, c]
+                    };
                     all.faces.push(&corners.map(|v| v + first));
                 }
             }
         }
         if !names.is_empty() {
             let names: Vec<String> = names.into_iter().collect();
-            all.left_out.push(format!("properties of triangles {}", names.join(", ")));
+            all.left_out
+                .push(format!("properties of triangles {}", names.join(", ")));
         }
         Ok(all)
     }
@@ -325,11 +410,21 @@ impl Package {
     /// What the package holds.
     pub fn contents(&self) -> PackageContents {
         let object = |object: usize| {
-            let (vertices, triangles) =
-                self.mesh(object).map_or((0, 0), |(_, _, mesh)| (mesh.positions.len(), mesh.triangles.len()));
-            let ObjectSoup { attributes, others, .. } = self.object(object, false);
+            let (vertices, triangles) = self.mesh(object).map_or((0, 0), |(_, _, mesh)| {
+                (mesh.positions.len(), mesh.triangles.len())
+            });
+            let ObjectSoup {
+                attributes, others, ..
+            } = self.object(object, false);
             let built = self.placements[object].len();
-            ObjectContents { name: self.object_name(object), vertices, triangles, built, attributes, others }
+            ObjectContents {
+                name: self.object_name(object),
+                vertices,
+                triangles,
+                built,
+                attributes,
+                others,
+            }
         };
         let assemblies = self.models.iter().flat_map(|model| &model.objects);
         PackageContents {
@@ -344,7 +439,11 @@ impl Package {
     ///
     /// # Errors
     /// There is no such object, the triangles do not fit together, or nothing is left of a volume.
-    pub fn replace(&mut self, object: usize, new: &NewTriangles<'_>) -> Result<Inherited, PackageFlaw> {
+    pub fn replace(
+        &mut self,
+        object: usize,
+        new: &NewTriangles<'_>,
+    ) -> Result<Inherited, PackageFlaw> {
         let Some((model, _, mesh)) = self.mesh(object) else {
             let count = self.object_count();
             return Err(PackageFlaw::of_archive(format!(
@@ -364,9 +463,13 @@ impl Package {
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let mut texts = BTreeMap::new();
         for (number, model) in self.models.iter().enumerate() {
-            let own = self.replaced.iter().filter(|(object, _)| self.objects[**object].0 == number);
-            let own: BTreeMap<usize, &Replacement> =
-                own.map(|(&object, new)| (self.objects[object].1, new)).collect();
+            let own = self
+                .replaced
+                .iter()
+                .filter(|(object, _)| self.objects[**object].0 == number);
+            let own: BTreeMap<usize, &Replacement> = own
+                .map(|(&object, new)| (self.objects[object].1, new))
+                .collect();
             if !own.is_empty() {
                 texts.insert(model.part, edit::edited(model, &own));
             }
@@ -376,14 +479,22 @@ impl Package {
                 let object = self.objects.iter().position(|&(model, object)| {
                     model == 0 && self.models[0].objects[object].id == own.object
                 })?;
-                self.replaced.get(&object)?.volumes.get(&[own.first, own.last]).copied()
+                self.replaced
+                    .get(&object)?
+                    .volumes
+                    .get(&[own.first, own.last])
+                    .copied()
             };
             let edited = volumes::edited(text, &self.volumes, &new);
             if edited != *text {
                 texts.insert(*part, edited);
             }
         }
-        self.container.with(&texts).map_err(|why| WriteError::Writer { reason: std::io::Error::other(why) })
+        self.container
+            .with(&texts)
+            .map_err(|why| WriteError::Writer {
+                reason: std::io::Error::other(why),
+            })
     }
 
     /// Writes the package with what was replaced, whole or not at all.
@@ -398,7 +509,11 @@ impl Package {
 /// A name as it may stand in a message.
 fn shortened(name: &str) -> String {
     const LONGEST: usize = 60;
-    let mut text: String = name.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    let mut text: String = name
+        .chars()
+        .take(LONGEST)
+        .flat_map(char::escape_debug)
+        .collect();
     if name.chars().nth(LONGEST).is_some() {
         text.push('…');
     }

@@ -44,7 +44,10 @@ const UNITS: [(&str, LengthUnit); 6] = [
 impl LengthUnit {
     /// How files name it.
     pub(super) fn name(self) -> &'static str {
-        UNITS.iter().find(|(_, unit)| *unit == self).map_or("millimeter", |(name, _)| name)
+        UNITS
+            .iter()
+            .find(|(_, unit)| *unit == self)
+            .map_or("millimeter", |(name, _)| name)
     }
 
     /// Its length in metres.
@@ -123,10 +126,31 @@ enum Place {
 
 impl Model {
     pub(super) fn parse(part: usize, name: &str, text: String) -> Result<Self> {
-        let mut parser = Parser { name, text: &text, places: vec![Place::Top], found: Found::default() };
+        let mut parser = Parser {
+            name,
+            text: &text,
+            places: vec![Place::Top],
+            found: Found::default(),
+        };
         parser.run()?;
-        let Found { prefix, unit, objects, of_id, items, .. } = parser.found;
-        Ok(Self { part, name: name.to_owned(), text, prefix, unit, objects, of_id, items })
+        let Found {
+            prefix,
+            unit,
+            objects,
+            of_id,
+            items,
+            ..
+        } = parser.found;
+        Ok(Self {
+            part,
+            name: name.to_owned(),
+            text,
+            prefix,
+            unit,
+            objects,
+            of_id,
+            items,
+        })
     }
 }
 
@@ -153,8 +177,9 @@ impl<'a> Parser<'a> {
         let mut reader = Reader::from_str(&self.text[start..]);
         loop {
             let at = start + reader.buffer_position() as usize;
-            let event =
-                reader.read_event().map_err(|why| self.within(PackageFlaw::not_xml(self.name, &why), at))?;
+            let event = reader
+                .read_event()
+                .map_err(|why| self.within(PackageFlaw::not_xml(self.name, &why), at))?;
             let end = start + reader.buffer_position() as usize;
             match event {
                 Event::Start(element) => {
@@ -201,8 +226,10 @@ impl<'a> Parser<'a> {
         let place = *self.places.last().unwrap_or(&Place::Top);
         if place == Place::Top {
             if element.local != "model" || self.found.has_model {
-                let problem =
-                    expected_but_found("one element model", &format!("the element {}", element.name));
+                let problem = expected_but_found(
+                    "one element model",
+                    &format!("the element {}", element.name),
+                );
                 return Err(self.flaw(at, problem));
             }
             self.found.has_model = true;
@@ -211,7 +238,10 @@ impl<'a> Parser<'a> {
                 let own = UNITS.iter().find(|(name, _)| *name == unit);
                 let names: Vec<&str> = UNITS.iter().map(|(name, _)| *name).collect();
                 let flaw = || {
-                    let problem = format!("the unit '{unit}' is unknown; known are {}", names.join(", "));
+                    let problem = format!(
+                        "the unit '{unit}' is unknown; known are {}",
+                        names.join(", ")
+                    );
                     self.flaw(at, problem)
                 };
                 self.found.unit = own.ok_or_else(flaw)?.1;
@@ -224,7 +254,10 @@ impl<'a> Parser<'a> {
             (Place::Model, "build") if is_core => Ok(Place::Build),
             (Place::Resources, "object") if is_core => self.object(element, at),
             (Place::Object, "mesh") if is_core => {
-                if self.object_mut().is_some_and(|object| object.mesh.is_some()) {
+                if self
+                    .object_mut()
+                    .is_some_and(|object| object.mesh.is_some())
+                {
                     return Err(self.flaw(at, "the object has a second mesh"));
                 }
                 if let Some(object) = self.object_mut() {
@@ -282,9 +315,17 @@ impl<'a> Parser<'a> {
     }
 
     /// Refuses a list that a mesh has already.
-    fn once(&mut self, is_first: impl Fn(&MeshText) -> bool, element: &Element<'a>, at: usize) -> Result<()> {
+    fn once(
+        &mut self,
+        is_first: impl Fn(&MeshText) -> bool,
+        element: &Element<'a>,
+        at: usize,
+    ) -> Result<()> {
         if self.mesh_mut().is_some_and(|mesh| !is_first(mesh)) {
-            return Err(self.flaw(at, format!("the mesh has a second list of {}", element.local)));
+            return Err(self.flaw(
+                at,
+                format!("the mesh has a second list of {}", element.local),
+            ));
         }
         Ok(())
     }
@@ -309,10 +350,20 @@ impl<'a> Parser<'a> {
     fn object(&mut self, element: &Element<'a>, at: usize) -> Result<Place> {
         let id = self.id(element, "id", at)?;
         let name = attribute(element.attributes, "name").map(super::xml::plain);
-        if self.found.of_id.insert(id, self.found.objects.len()).is_some() {
+        if self
+            .found
+            .of_id
+            .insert(id, self.found.objects.len())
+            .is_some()
+        {
             return Err(self.flaw(at, format!("there is a second object {id}")));
         }
-        self.found.objects.push(Object { id, name, mesh: None, components: Vec::new() });
+        self.found.objects.push(Object {
+            id,
+            name,
+            mesh: None,
+            components: Vec::new(),
+        });
         Ok(Place::Object)
     }
 
@@ -326,18 +377,28 @@ impl<'a> Parser<'a> {
         let transform = match attribute(element.attributes, "transform") {
             None => IDENTITY,
             Some(text) => transform(text).ok_or_else(|| {
-                self.flaw(at, of_attribute("transform", Some(text), "twelve finite numbers"))
+                self.flaw(
+                    at,
+                    of_attribute("transform", Some(text), "twelve finite numbers"),
+                )
             })?,
         };
         let part = element.local_attribute("path").map(str::to_owned);
-        Ok(Use { object: self.id(element, "objectid", at)?, part, transform, at })
+        Ok(Use {
+            object: self.id(element, "objectid", at)?,
+            part,
+            transform,
+            at,
+        })
     }
 
     fn vertex(&self, element: &Element<'a>, at: usize) -> Result<[f64; 3]> {
         let mut point = [0.0; 3];
         for (x, key) in point.iter_mut().zip(["x", "y", "z"]) {
             let text = attribute(element.attributes, key);
-            let value = text.and_then(|text| number(text.trim().as_bytes())).filter(|x| x.is_finite());
+            let value = text
+                .and_then(|text| number(text.trim().as_bytes()))
+                .filter(|x| x.is_finite());
             *x = value.ok_or_else(|| self.flaw(at, of_attribute(key, text, "a finite number")))?;
         }
         Ok(point)
@@ -349,14 +410,18 @@ impl<'a> Parser<'a> {
         for (corner, key) in corners.iter_mut().zip(["v1", "v2", "v3"]) {
             let text = attribute(element.attributes, key);
             let index = text.and_then(|text| text.trim().parse::<u32>().ok());
-            *corner = index.filter(|&index| (index as usize) < vertices).ok_or_else(|| {
-                let expected = format!("a vertex below {vertices} (their number so far)");
-                self.flaw(at, of_attribute(key, text, &expected))
-            })?;
+            *corner = index
+                .filter(|&index| (index as usize) < vertices)
+                .ok_or_else(|| {
+                    let expected = format!("a vertex below {vertices} (their number so far)");
+                    self.flaw(at, of_attribute(key, text, &expected))
+                })?;
         }
         let has_more = super::xml::attributes(element.attributes).count() > 3;
         let range = element.attributes_at(self.text);
-        let Some(mesh) = self.mesh_mut() else { return Ok(()) };
+        let Some(mesh) = self.mesh_mut() else {
+            return Ok(());
+        };
         if has_more && mesh.attributes.is_empty() {
             mesh.attributes.resize(mesh.triangles.len(), 0..0);
         }
@@ -372,9 +437,10 @@ impl<'a> Parser<'a> {
 fn of_attribute(key: &str, text: Option<&str>, expected: &str) -> String {
     match text {
         None => format!("{key} is missing: expected {expected}"),
-        Some(text) => {
-            expected_but_found(expected, &format!("{key}={}", crate::scan::quoted(text.as_bytes())))
-        }
+        Some(text) => expected_but_found(
+            expected,
+            &format!("{key}={}", crate::scan::quoted(text.as_bytes())),
+        ),
     }
 }
 

@@ -37,12 +37,17 @@ pub(super) fn is_paint(name: &str) -> bool {
 
 /// Whether a code is more than one colour for the whole triangle.
 pub(super) fn is_divided(code: &str) -> bool {
-    code.bytes().last().and_then(digit).is_none_or(|node| node & 3 != 0)
+    code.bytes()
+        .last()
+        .and_then(digit)
+        .is_none_or(|node| node & 3 != 0)
 }
 
 /// The code of the leaf at a point, empty where there is no paint; none if the tree cannot be read.
 pub(super) fn at(code: &str, point: Point) -> Option<String> {
-    let mut nodes = Nodes { digits: code.as_bytes().iter().rev() };
+    let mut nodes = Nodes {
+        digits: code.as_bytes().iter().rev(),
+    };
     let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let mut found = None;
     nodes.walk(corners, point, 0, true, &mut found)?;
@@ -93,10 +98,17 @@ impl Nodes<'_> {
         };
         // The one in which the point is farthest inside.
         let depths = children.iter().map(|child| inside(*child, point));
-        let own =
-            depths.enumerate().fold((0, f64::NEG_INFINITY), |best, at| if at.1 > best.1 { at } else { best });
+        let own = depths.enumerate().fold((0, f64::NEG_INFINITY), |best, at| {
+            if at.1 > best.1 { at } else { best }
+        });
         for (number, child) in children.iter().enumerate().rev() {
-            self.walk(*child, point, depth + 1, is_inside && number == own.0, found)?;
+            self.walk(
+                *child,
+                point,
+                depth + 1,
+                is_inside && number == own.0,
+                found,
+            )?;
         }
         Some(())
     }
@@ -104,7 +116,9 @@ impl Nodes<'_> {
 
 /// The least barycentric coordinate of a point in a triangle: above 0 inside.
 fn inside([a, b, c]: [Point; 3], p: Point) -> f64 {
-    let area = |a: Point, b: Point, c: Point| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let area = |a: Point, b: Point, c: Point| {
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
     let whole = area(a, b, c);
     [area(p, b, c), area(a, p, c), area(a, b, p)]
         .into_iter()

@@ -37,20 +37,27 @@ fn is_corner(own: &Attribute<'_>) -> bool {
 
 /// Whether a triangle's properties depend on where in it something is.
 pub(super) fn varies_within(text: &str) -> bool {
-    let mut of_corners = attributes(text).filter(|own| CORNERS.contains(&own.name)).map(|own| own.value);
+    let mut of_corners = attributes(text)
+        .filter(|own| CORNERS.contains(&own.name))
+        .map(|own| own.value);
     let first = of_corners.next();
     let differs = of_corners.any(|value| Some(value) != first);
     differs || attributes(text).any(|own| is_divided_paint(&own))
 }
 
 fn is_divided_paint(own: &Attribute<'_>) -> bool {
-    let local = own.name.rsplit_once(':').map_or(own.name, |(_, local)| local);
+    let local = own
+        .name
+        .rsplit_once(':')
+        .map_or(own.name, |(_, local)| local);
     paint::is_paint(local) && paint::is_divided(own.value)
 }
 
 /// A triangle's attributes but for its corners, to be compared.
 pub(super) fn beside_corners(text: &str) -> impl Iterator<Item = &str> {
-    attributes(text).filter(|own| !is_corner(own)).map(|own| own.text)
+    attributes(text)
+        .filter(|own| !is_corner(own))
+        .map(|own| own.text)
 }
 
 /// Adds the attributes, each with a blank before it, that a triangle inherits from one with this text.
@@ -61,7 +68,11 @@ pub(super) fn inherit(
     keeps: &dyn Fn(&str) -> bool,
     told: &mut Inherited,
 ) {
-    let of_corner = |k: usize| attributes(text).find(|own| own.name == CORNERS[k]).map(|own| own.value);
+    let of_corner = |k: usize| {
+        attributes(text)
+            .find(|own| own.name == CORNERS[k])
+            .map(|own| own.value)
+    };
     let all = [0, 1, 2].map(of_corner);
     let differ = all.iter().flatten().any(|value| Some(*value) != all[0]);
     let is_whole = source.corners == Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
@@ -71,7 +82,9 @@ pub(super) fn inherit(
             let _ = write!(out, " {}", own.text);
             continue;
         }
-        let Some(corners) = source.corners else { continue };
+        let Some(corners) = source.corners else {
+            continue;
+        };
         if let Some(k) = CORNERS.iter().position(|name| *name == own.name) {
             // Where a corner has none, it has the first's.
             let value = all[nearest(corners[k])].or(all[0]).unwrap_or(own.value);
@@ -103,7 +116,10 @@ mod tests {
 
     fn inherited(text: &str, corners: [[f64; 3]; 3]) -> (String, Inherited) {
         let (mut out, mut told) = (String::new(), Inherited::default());
-        let source = Source { face: 0, corners: Some(corners) };
+        let source = Source {
+            face: 0,
+            corners: Some(corners),
+        };
         inherit(&mut out, text, &source, &|name| name != "x:drop", &mut told);
         (out, told)
     }
@@ -112,13 +128,21 @@ mod tests {
 
     #[test]
     fn attributes_are_inherited() {
-        let (out, told) =
-            inherited(" v1=\"0\" v2='1' v3=\"2\" pid='4' x:y=\"&amp;\" x:drop='1' p1=\"7\"", MIDDLE);
-        assert_eq!((out.as_str(), told), (" pid='4' x:y=\"&amp;\" p1=\"7\"", Inherited::default()));
+        let (out, told) = inherited(
+            " v1=\"0\" v2='1' v3=\"2\" pid='4' x:y=\"&amp;\" x:drop='1' p1=\"7\"",
+            MIDDLE,
+        );
+        assert_eq!(
+            (out.as_str(), told),
+            (" pid='4' x:y=\"&amp;\" p1=\"7\"", Inherited::default())
+        );
         let text = " v1=\"0\" v2=\"1\" v3=\"2\" p1=\"7\" p2=\"8\" p3=\"9\"";
         assert!(varies_within(text));
         let (out, told) = inherited(text, MIDDLE);
-        assert_eq!((out.as_str(), told.nearest_corner), (" p1=\"7\" p2=\"8\" p3=\"9\"", 1));
+        assert_eq!(
+            (out.as_str(), told.nearest_corner),
+            (" p1=\"7\" p2=\"8\" p3=\"9\"", 1)
+        );
         let near = [[0.9, 0.1, 0.0], [0.8, 0.1, 0.1], [0.8, 0.0, 0.2]];
         assert_eq!(inherited(text, near).0, " p1=\"7\" p2=\"7\" p3=\"7\"");
     }
@@ -129,7 +153,10 @@ mod tests {
         let text = " v1=\"0\" v2=\"1\" v3=\"2\" paint_color=\"80043\"";
         assert!(varies_within(text) && !varies_within(" v1=\"0\" paint_color=\"8\""));
         let (out, told) = inherited(text, MIDDLE);
-        assert_eq!((out.as_str(), told.painted_at_centre), (" paint_color=\"4\"", 1));
+        assert_eq!(
+            (out.as_str(), told.painted_at_centre),
+            (" paint_color=\"4\"", 1)
+        );
         let near = [[1.0, 0.0, 0.0], [0.8, 0.1, 0.1], [0.8, 0.0, 0.2]];
         assert_eq!(inherited(text, near).0, " paint_color=\"8\"");
         let whole = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -19,8 +19,15 @@ pub(super) fn walk(
     find: &dyn Fn(usize, &Use) -> Option<Place>,
     visit: &mut dyn FnMut(Place, &Affine),
 ) -> Result<()> {
-    let mut walk = Walk { models, find, visit, uses: 0 };
-    let Some(root) = models.first() else { return Ok(()) };
+    let mut walk = Walk {
+        models,
+        find,
+        visit,
+        uses: 0,
+    };
+    let Some(root) = models.first() else {
+        return Ok(());
+    };
     for item in &root.items {
         walk.step(0, item, &crate::affine::IDENTITY, 0)?;
     }
@@ -43,14 +50,20 @@ impl Walk<'_> {
         };
         self.uses += 1;
         if self.uses > MOST_USES {
-            return Err(flaw(format!("with all components there are more than {MOST_USES} objects")));
+            return Err(flaw(format!(
+                "with all components there are more than {MOST_USES} objects"
+            )));
         }
         if depth > DEEPEST {
-            let problem = format!("more than {DEEPEST} components are within each other, or one uses itself");
+            let problem =
+                format!("more than {DEEPEST} components are within each other, or one uses itself");
             return Err(flaw(problem));
         }
         let Some(place) = (self.find)(model, own) else {
-            let part = own.part.as_ref().map_or(String::new(), |part| format!(" of {part}"));
+            let part = own
+                .part
+                .as_ref()
+                .map_or(String::new(), |part| format!(" of {part}"));
             return Err(flaw(format!("there is no object {}{part}", own.object)));
         };
         let here = product(outer, &own.transform);

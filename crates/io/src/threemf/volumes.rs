@@ -42,12 +42,19 @@ pub(super) fn parse(text: &str) -> Vec<Volume> {
         match element.local {
             "object" => object = read("id").map(|(id, _)| id),
             "volume" => {
-                let (Some(object), Some(first), Some(last)) = (object, read("firstid"), read("lastid"))
+                let (Some(object), Some(first), Some(last)) =
+                    (object, read("firstid"), read("lastid"))
                 else {
                     continue;
                 };
                 let ((first, first_at), (last, last_at)) = (first, last);
-                all.push(Volume { object, first, last, first_at, last_at });
+                all.push(Volume {
+                    object,
+                    first,
+                    last,
+                    first_at,
+                    last_at,
+                });
             }
             _ => {}
         }
@@ -56,7 +63,11 @@ pub(super) fn parse(text: &str) -> Vec<Volume> {
 }
 
 /// The text with other first and last triangles for some of its volumes.
-pub(super) fn edited(text: &str, volumes: &[Volume], new: &dyn Fn(&Volume) -> Option<[u32; 2]>) -> String {
+pub(super) fn edited(
+    text: &str,
+    volumes: &[Volume],
+    new: &dyn Fn(&Volume) -> Option<[u32; 2]>,
+) -> String {
     let mut changes: Vec<(Range<usize>, u32)> = Vec::new();
     for volume in volumes {
         if let Some([first, last]) = new(volume) {
@@ -84,7 +95,10 @@ mod tests {
         let text = "<config>\n <object id=\"3\" x='1'><volume firstid=\"0\" lastid=\"11\"/>\n\
                     <volume lastid = '20' firstid='12'><m/></volume></object><volume/></config>";
         let all = parse(text);
-        let read: Vec<_> = all.iter().map(|own| (own.object, own.first, own.last)).collect();
+        let read: Vec<_> = all
+            .iter()
+            .map(|own| (own.object, own.first, own.last))
+            .collect();
         assert_eq!(read, [(3, 0, 11), (3, 12, 20)]);
         let new = edited(text, &all, &|own| (own.first > 0).then_some([100, 2000]));
         let expected = text.replace("'20'", "'2000'").replace("'12'", "'100'");

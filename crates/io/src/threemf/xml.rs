@@ -19,10 +19,16 @@ impl<'a> Element<'a> {
         let content: &str = tag;
         // What was read from a text borrows from it.
         let start = (content.as_ptr() as usize).wrapping_sub(text.as_ptr() as usize);
-        let whole = text.get(start..start.wrapping_add(content.len())).unwrap_or_default();
+        let whole = text
+            .get(start..start.wrapping_add(content.len()))
+            .unwrap_or_default();
         let (name, attributes) = whole.split_at(tag.name().as_ref().len().min(whole.len()));
         let local = name.rsplit_once(':').map_or(name, |(_, local)| local);
-        Self { name, local, attributes }
+        Self {
+            name,
+            local,
+            attributes,
+        }
     }
 
     /// The prefix of its name with the colon.
@@ -33,7 +39,9 @@ impl<'a> Element<'a> {
     /// An attribute by its name without a prefix.
     pub(super) fn local_attribute(&self, local: &str) -> Option<&'a str> {
         let is_own = |name: &str| name.rsplit_once(':').map_or(name, |(_, own)| own) == local;
-        attributes(self.attributes).find(|own| is_own(own.name)).map(|own| own.value)
+        attributes(self.attributes)
+            .find(|own| is_own(own.name))
+            .map(|own| own.value)
     }
 
     /// Where the text has the attributes.
@@ -69,13 +77,19 @@ pub(super) fn attributes(text: &str) -> impl Iterator<Item = Attribute<'_>> {
         let quote = after.chars().next().filter(|&c| c == '"' || c == '\'')?;
         let (value, after) = after[1..].split_once(quote)?;
         rest = after;
-        Some(Attribute { name, value, text: &start[..start.len() - after.len()] })
+        Some(Attribute {
+            name,
+            value,
+            text: &start[..start.len() - after.len()],
+        })
     })
 }
 
 /// The value of an attribute by its whole name.
 pub(super) fn attribute<'a>(text: &'a str, name: &str) -> Option<&'a str> {
-    attributes(text).find(|own| own.name == name).map(|own| own.value)
+    attributes(text)
+        .find(|own| own.name == name)
+        .map(|own| own.value)
 }
 
 /// A value with its references replaced, as people read it; as it is if they cannot be.

@@ -17,7 +17,10 @@ pub(crate) fn copies<'a>(
     let mut whole = Vec::new();
     for (file, from) in files {
         let to = folder.join(file);
-        let failed = |reason| WriteError::File { path: to.clone(), reason };
+        let failed = |reason| WriteError::File {
+            path: to.clone(),
+            reason,
+        };
         let from = from.canonicalize().map_err(failed)?;
         if to.canonicalize().is_ok_and(|there| there == from) {
             continue;
@@ -26,7 +29,10 @@ pub(crate) fn copies<'a>(
         match std::fs::read(&to) {
             Ok(there) if there == bytes => continue,
             Ok(_) => {
-                let why = format!("it is there already, and not the same as {}", from.display());
+                let why = format!(
+                    "it is there already, and not the same as {}",
+                    from.display()
+                );
                 return Err(failed(io::Error::new(io::ErrorKind::AlreadyExists, why)));
             }
             Err(_) => {}

@@ -202,7 +202,11 @@ pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) 
     positions.iter().fold(0.0, |greatest: f64, position| {
         let [x, y, z] = position.map(off);
         // Hardly any is greater than all before.
-        if x + y + z > greatest { greatest.max(x.hypot(y).hypot(z)) } else { greatest }
+        if x + y + z > greatest {
+            greatest.max(x.hypot(y).hypot(z))
+        } else {
+            greatest
+        }
     })
 }
 
@@ -241,16 +245,25 @@ pub fn write_as(
         return gltf::write_fresh(Some(path), format, output, options).map(drop);
     }
     let copied = named_files(path, format, output)?;
-    whole::write_whole_with(path, |writer| write_checked(writer, format, output, options))?;
+    whole::write_whole_with(path, |writer| {
+        write_checked(writer, format, output, options)
+    })?;
     write_together(&copied)
 }
 
 /// Copies of the files that an OBJ or PLY file names, if it is a file.
-fn named_files(path: &Path, format: Format, output: &Output<'_>) -> Result<Vec<WholeFile>, WriteError> {
+fn named_files(
+    path: &Path,
+    format: Format,
+    output: &Output<'_>,
+) -> Result<Vec<WholeFile>, WriteError> {
     let is_device = std::fs::metadata(path).is_ok_and(|there| !there.is_file());
     match output.materials {
         Some(found) if matches!(format, Format::Obj | Format::Ply) && !is_device => {
-            let files = found.files.iter().map(|file| (file.as_path(), found.folder.join(file)));
+            let files = found
+                .files
+                .iter()
+                .map(|file| (file.as_path(), found.folder.join(file)));
             copies(files, path.parent().unwrap_or(Path::new("")))
         }
         _ => Ok(Vec::new()),
@@ -302,8 +315,15 @@ fn write_checked(
 }
 
 /// Checks that the parts of the output fit together and into the format.
-pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions) -> Result<(), WriteError> {
-    let Triangles { positions, triangles } = output.surface;
+pub(crate) fn check(
+    output: &Output<'_>,
+    format: Format,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    let Triangles {
+        positions,
+        triangles,
+    } = output.surface;
     let vertices = positions.len();
     let counts = [
         ("normals", output.vertex_normals().map(<[_]>::len)),
@@ -312,40 +332,84 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
     ];
     for (what, count) in counts {
         if let Some(count) = count.filter(|&count| count != vertices) {
-            return Err(WriteError::AttributeCount { what, count, vertices });
+            return Err(WriteError::AttributeCount {
+                what,
+                count,
+                vertices,
+            });
         }
     }
     for (what, count) in [("vertices", vertices), ("triangles", triangles.len())] {
         if count > u32::MAX as usize {
-            return Err(WriteError::TooMany { what, count, limit: u32::MAX, format });
+            return Err(WriteError::TooMany {
+                what,
+                count,
+                limit: u32::MAX,
+                format,
+            });
         }
     }
     let named = [
         ("triangle", first_triangle_beyond(triangles, vertices)),
-        ("crease tag", first_beyond(output.creases.iter().map(|tag| tag.vertices.as_slice()), vertices)),
+        (
+            "crease tag",
+            first_beyond(
+                output.creases.iter().map(|tag| tag.vertices.as_slice()),
+                vertices,
+            ),
+        ),
         (
             "corner tag",
-            first_beyond(output.corners.iter().map(|tag| std::slice::from_ref(&tag.vertex)), vertices),
+            first_beyond(
+                output
+                    .corners
+                    .iter()
+                    .map(|tag| std::slice::from_ref(&tag.vertex)),
+                vertices,
+            ),
         ),
     ];
     for (what, beyond) in named {
         if let Some((index, vertex)) = beyond {
-            return Err(WriteError::VertexOutOfRange { what, index, vertex, vertices });
+            return Err(WriteError::VertexOutOfRange {
+                what,
+                index,
+                vertex,
+                vertices,
+            });
         }
     }
     if let Some(corners) = output.corner_normals {
         let (count, normals) = (corners.len(), output.normals.unwrap_or_default().len());
         if count != triangles.len() {
-            return Err(WriteError::CornerNormals { count, triangles: triangles.len() });
+            return Err(WriteError::CornerNormals {
+                count,
+                triangles: triangles.len(),
+            });
         }
         if normals > u32::MAX as usize {
-            return Err(WriteError::TooMany { what: "normals", count: normals, limit: u32::MAX, format });
+            return Err(WriteError::TooMany {
+                what: "normals",
+                count: normals,
+                limit: u32::MAX,
+                format,
+            });
         }
         if let Some((triangle, normal)) = first_triangle_beyond(corners, normals) {
-            return Err(WriteError::NormalOutOfRange { triangle, normal, normals });
+            return Err(WriteError::NormalOutOfRange {
+                triangle,
+                normal,
+                normals,
+            });
         }
     }
-    check_finite("position", positions.as_flattened(), 3, format, is_single(format, options))?;
+    check_finite(
+        "position",
+        positions.as_flattened(),
+        3,
+        format,
+        is_single(format, options),
+    )?;
     if is_single(format, options) && !triangles.is_empty() {
         let is_left = |round: fn(f64) -> f64| {
             let at = |vertex: u32| positions[vertex as usize].map(round);
@@ -355,35 +419,67 @@ pub(crate) fn check(output: &Output<'_>, format: Format, options: &WriteOptions)
             })
         };
         if !is_left(|x| f64::from(x as f32)) && is_left(|x| x) {
-            return Err(WriteError::Rounded { triangles: triangles.len(), format });
+            return Err(WriteError::Rounded {
+                triangles: triangles.len(),
+                format,
+            });
         }
     }
     if let Some(normals) = output.normals.filter(|_| format != Format::Stl) {
-        check_finite("normal", normals.as_flattened(), 3, format, format == Format::Ply)?;
+        check_finite(
+            "normal",
+            normals.as_flattened(),
+            3,
+            format,
+            format == Format::Ply,
+        )?;
     }
     if let Some(quality) = output.quality.filter(|_| format == Format::Ply) {
         check_finite("quality", quality, 1, format, false)?;
     }
-    for channel in output.channels.iter().filter(|channel| crate::holds(format, options, channel)) {
+    for channel in output
+        .channels
+        .iter()
+        .filter(|channel| crate::holds(format, options, channel))
+    {
         channel.check(vertices, 3 * triangles.len(), triangles.len())?;
         if channel.value_count() == 0 && vertices > 0 {
-            return Err(WriteError::NoValues { name: channel.name.clone() });
+            return Err(WriteError::NoValues {
+                name: channel.name.clone(),
+            });
         }
     }
-    let names = output.channels.iter().flat_map(|channel| &channel.labels).chain(output.material_libraries);
+    let names = output
+        .channels
+        .iter()
+        .flat_map(|channel| &channel.labels)
+        .chain(output.material_libraries);
     let names = names.filter(|_| format == Format::Obj || format == Format::Stl && options.ascii);
-    let pictures = output.texture_files.iter().filter(|_| format == Format::Ply);
-    if let Some(name) = names.chain(pictures).find(|name| name.contains(['\n', '\r'])) {
+    let pictures = output
+        .texture_files
+        .iter()
+        .filter(|_| format == Format::Ply);
+    if let Some(name) = names
+        .chain(pictures)
+        .find(|name| name.contains(['\n', '\r']))
+    {
         return Err(WriteError::LineBreak { name: name.clone() });
     }
-    if format == Format::Ply { property::check(output) } else { Ok(()) }
+    if format == Format::Ply {
+        property::check(output)
+    } else {
+        Ok(())
+    }
 }
 
 /// Items that are checked together.
 const CHECKED: usize = 1 << 12;
 
 /// The first of `groups` that names a vertex that does not exist, and that vertex.
-fn first_beyond<'g>(groups: impl Iterator<Item = &'g [u32]>, vertices: usize) -> Option<(usize, u32)> {
+fn first_beyond<'g>(
+    groups: impl Iterator<Item = &'g [u32]>,
+    vertices: usize,
+) -> Option<(usize, u32)> {
     groups
         .enumerate()
         .find_map(|(index, group)| Some((index, *group.iter().find(|&&v| v as usize >= vertices)?)))
@@ -391,8 +487,13 @@ fn first_beyond<'g>(groups: impl Iterator<Item = &'g [u32]>, vertices: usize) ->
 
 /// The same of triangles.
 fn first_triangle_beyond(triangles: &[[u32; 3]], vertices: usize) -> Option<(usize, u32)> {
-    let index = first_failing(triangles, |triangle| triangle.iter().all(|&v| (v as usize) < vertices))?;
-    triangles[index].iter().find(|&&v| v as usize >= vertices).map(|&v| (index, v))
+    let index = first_failing(triangles, |triangle| {
+        triangle.iter().all(|&v| (v as usize) < vertices)
+    })?;
+    triangles[index]
+        .iter()
+        .find(|&&v| v as usize >= vertices)
+        .map(|&v| (index, v))
 }
 
 /// The number of the first item that fails.
@@ -407,7 +508,10 @@ fn first_failing<T: Sync>(items: &[T], passes: impl Fn(&T) -> bool + Sync + Send
     #[cfg(not(feature = "parallel"))]
     let some = items.chunks(CHECKED).position(fails);
     let start = CHECKED * some?;
-    items[start..].iter().position(|item| !passes(item)).map(|at| start + at)
+    items[start..]
+        .iter()
+        .position(|item| !passes(item))
+        .map(|at| start + at)
 }
 
 /// Refuses what the readers of files refuse: NaN and infinity, also where they come of rounding to `f32`.
@@ -418,9 +522,20 @@ fn check_finite(
     format: Format,
     single: bool,
 ) -> Result<(), WriteError> {
-    let fits = |v: f64| if single { (v as f32).is_finite() } else { v.is_finite() };
+    let fits = |v: f64| {
+        if single {
+            (v as f32).is_finite()
+        } else {
+            v.is_finite()
+        }
+    };
     match first_failing(values, |&v| fits(v)) {
-        Some(i) => Err(WriteError::NotFinite { what, vertex: i / width, value: values[i], format }),
+        Some(i) => Err(WriteError::NotFinite {
+            what,
+            vertex: i / width,
+            value: values[i],
+            format,
+        }),
         None => Ok(()),
     }
 }

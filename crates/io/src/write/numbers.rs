@@ -20,7 +20,10 @@ pub(crate) struct Piece(Vec<u8>);
 
 impl<'w> Pieces<'w> {
     pub(crate) fn new(writer: &'w mut dyn Write) -> Self {
-        Self { writer, own: Piece::default() }
+        Self {
+            writer,
+            own: Piece::default(),
+        }
     }
 
     /// Adds `count` elements, each by what `element` writes of it.
@@ -39,7 +42,9 @@ impl<'w> Pieces<'w> {
                 (start..count.min(start + ELEMENTS)).for_each(|at| element(piece, at));
             };
             fill_each(&mut pieces, fill);
-            pieces.iter().try_for_each(|piece| self.writer.write_all(&piece.0))?;
+            pieces
+                .iter()
+                .try_for_each(|piece| self.writer.write_all(&piece.0))?;
         }
         Ok(())
     }
@@ -52,7 +57,11 @@ impl<'w> Pieces<'w> {
     /// Adds what `element` writes.
     pub(super) fn element(&mut self, element: impl FnOnce(&mut Piece)) -> io::Result<()> {
         element(&mut self.own);
-        if self.own.0.len() >= BYTES { self.hand_on() } else { Ok(()) }
+        if self.own.0.len() >= BYTES {
+            self.hand_on()
+        } else {
+            Ok(())
+        }
     }
 
     fn hand_on(&mut self) -> io::Result<()> {

@@ -25,12 +25,21 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         })?;
     }
     vertices(&mut out, output)?;
-    let of = |semantic| output.channels.iter().find(move |channel: &&Channel| channel.semantic == semantic);
+    let of = |semantic| {
+        output
+            .channels
+            .iter()
+            .find(move |channel: &&Channel| channel.semantic == semantic)
+    };
     let textures = of(Semantic::TextureCoordinates);
-    let places = textures.map_or((&[][..], 1), |channel| (&channel.values[..], channel.arity.max(1)));
+    let places = textures.map_or((&[][..], 1), |channel| {
+        (&channel.values[..], channel.arity.max(1))
+    });
     out.each(places.0.len() / places.1, |out, at| {
         out.bytes(b"vt");
-        places.0[at * places.1..][..places.1.min(3)].iter().for_each(|&x| out.number(x));
+        places.0[at * places.1..][..places.1.min(3)]
+            .iter()
+            .for_each(|&x| out.number(x));
         out.end_line();
     })?;
     let normals = output.normals.unwrap_or_default();
@@ -40,7 +49,8 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         out.end_line();
     })?;
     let named = |name: &str| output.channels.iter().find(|channel| channel.name == name);
-    let labels = STATEMENTS.map(|(name, statement)| (named(name).filter(|c| is_label(c)), statement));
+    let labels =
+        STATEMENTS.map(|(name, statement)| (named(name).filter(|c| is_label(c)), statement));
     out.each(output.surface.triangles.len(), |out, at| {
         for (channel, statement) in &labels {
             change_of_label(out, *channel, statement, at);
@@ -69,13 +79,17 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
 /// Vertices, with their colours.
 fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     let colours = output.channels.iter().find(|channel| {
-        channel.semantic == Semantic::Colour && crate::holds(crate::Format::Obj, &Default::default(), channel)
+        channel.semantic == Semantic::Colour
+            && crate::holds(crate::Format::Obj, &Default::default(), channel)
     });
     let (count, triangles) = (output.surface.positions.len(), output.surface.triangles);
-    let colours = colours.map(|channel| (channel, channels::by_vertex(channel, count, triangles).0));
+    let colours =
+        colours.map(|channel| (channel, channels::by_vertex(channel, count, triangles).0));
     out.each(count, |out, vertex| {
         out.bytes(b"v");
-        output.surface.positions[vertex].iter().for_each(|&x| out.number(x));
+        output.surface.positions[vertex]
+            .iter()
+            .for_each(|&x| out.number(x));
         if let Some(colours) = output.colours {
             // Three decimals tell the 256 steps apart.
             colours[vertex]
@@ -83,7 +97,9 @@ fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
                 .for_each(|&c| out.number((f64::from(c) / 255.0 * 1000.0).round() / 1000.0));
         } else if let Some((channel, numbers)) = &colours {
             let start = numbers[vertex] as usize * channel.arity;
-            channel.values[start..start + channel.arity].iter().for_each(|&c| out.number(c));
+            channel.values[start..start + channel.arity]
+                .iter()
+                .for_each(|&c| out.number(c));
         }
         out.end_line();
     })
@@ -93,7 +109,9 @@ fn vertices(out: &mut Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
 fn face(out: &mut Piece, output: &Output<'_>, textures: Option<&Channel>, at: usize) {
     let triangle = &output.surface.triangles[at];
     out.bytes(b"f");
-    let normals = output.corner_normals.map_or(triangle, |corners| &corners[at]);
+    let normals = output
+        .corner_normals
+        .map_or(triangle, |corners| &corners[at]);
     for (corner, (&vertex, &normal)) in triangle.iter().zip(normals).enumerate() {
         // There may be 2³² − 1 vertices, so that the last one's number fits.
         out.integer(vertex + 1);
@@ -127,10 +145,16 @@ fn is_label(channel: &Channel) -> bool {
 fn change_of_label(out: &mut Piece, channel: Option<&Channel>, statement: &[u8], triangle: usize) {
     let Some(channel) = channel else { return };
     let number = channel.indices[triangle];
-    if triangle.checked_sub(1).is_some_and(|before| channel.indices[before] == number) {
+    if triangle
+        .checked_sub(1)
+        .is_some_and(|before| channel.indices[before] == number)
+    {
         return;
     }
-    let name = channel.labels.get(number as usize).map_or("", String::as_str);
+    let name = channel
+        .labels
+        .get(number as usize)
+        .map_or("", String::as_str);
     // What comes before the first name has none.
     if triangle == 0 && name.is_empty() {
         return;

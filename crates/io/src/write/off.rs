@@ -12,7 +12,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
     let find = |is_by_face: bool| {
         let is_own = |channel: &&Channel| {
             let holds = crate::holds(crate::Format::Off, &Default::default(), channel);
-            holds && channel.semantic == Semantic::Colour && (channel.domain == Domain::Face) == is_by_face
+            holds
+                && channel.semantic == Semantic::Colour
+                && (channel.domain == Domain::Face) == is_by_face
         };
         output.channels.iter().find(is_own)
     };
@@ -37,7 +39,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
             normals[vertex].iter().for_each(|&x| out.number(x));
         }
         if let Some(colours) = output.colours {
-            colours[vertex].iter().for_each(|&c| out.integer(u32::from(c)));
+            colours[vertex]
+                .iter()
+                .for_each(|&c| out.integer(u32::from(c)));
             // Colours have a fourth column, the opacity.
             out.integer(255);
         } else if let Some((channel, numbers)) = &of_vertices {

@@ -25,8 +25,13 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
 
 fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> Vec<u8> {
     let (positions, triangles) = (output.surface.positions, output.surface.triangles);
-    let encoding = if ascii { "ascii" } else { "binary_little_endian" };
-    let mut header = format!("ply\nformat {encoding} 1.0\ncomment written by limitmesh\n").into_bytes();
+    let encoding = if ascii {
+        "ascii"
+    } else {
+        "binary_little_endian"
+    };
+    let mut header =
+        format!("ply\nformat {encoding} 1.0\ncomment written by limitmesh\n").into_bytes();
     for file in output.texture_files {
         header.extend(b"comment TextureFile ");
         header.extend(names::write(file));
@@ -48,14 +53,38 @@ fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> Vec<u8
     if output.quality.is_some() {
         properties.push(("double", "quality"));
     }
-    properties.extend(output.vertex_properties.iter().map(|property| (property.kind(), property.name)));
-    properties.extend(columns.vertices.iter().map(|column| (column.kind(), &column.name[..])));
+    properties.extend(
+        output
+            .vertex_properties
+            .iter()
+            .map(|property| (property.kind(), property.name)),
+    );
+    properties.extend(
+        columns
+            .vertices
+            .iter()
+            .map(|column| (column.kind(), &column.name[..])),
+    );
     element("vertex", positions.len(), &properties);
     // Many readers know signed indices only, which reach far enough unless there are more than 2³¹ vertices.
-    let index = if positions.len() > i32::MAX as usize { "list uchar uint" } else { "list uchar int" };
+    let index = if positions.len() > i32::MAX as usize {
+        "list uchar uint"
+    } else {
+        "list uchar int"
+    };
     let mut properties = vec![(index, "vertex_indices")];
-    properties.extend(output.face_properties.iter().map(|property| (property.kind(), property.name)));
-    properties.extend(columns.faces.iter().map(|column| (column.kind(), &column.name[..])));
+    properties.extend(
+        output
+            .face_properties
+            .iter()
+            .map(|property| (property.kind(), property.name)),
+    );
+    properties.extend(
+        columns
+            .faces
+            .iter()
+            .map(|column| (column.kind(), &column.name[..])),
+    );
     properties.extend(columns.textures.map(|_| ("list uchar float", "texcoord")));
     element("face", triangles.len(), &properties);
     header.extend(b"end_header\n");
@@ -64,9 +93,13 @@ fn header((output, columns): (&Output<'_>, &Columns<'_>), ascii: bool) -> Vec<u8
 
 #[inline]
 fn vertex_bytes(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), vertex: usize) {
-    output.surface.positions[vertex].iter().for_each(|x| out.bytes(&x.to_le_bytes()));
+    output.surface.positions[vertex]
+        .iter()
+        .for_each(|x| out.bytes(&x.to_le_bytes()));
     if let Some(normals) = output.vertex_normals() {
-        normals[vertex].iter().for_each(|&x| out.bytes(&(x as f32).to_le_bytes()));
+        normals[vertex]
+            .iter()
+            .for_each(|&x| out.bytes(&(x as f32).to_le_bytes()));
     }
     if let Some(colours) = output.colours {
         out.bytes(&colours[vertex]);
@@ -74,8 +107,14 @@ fn vertex_bytes(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>),
     if let Some(quality) = output.quality {
         out.bytes(&quality[vertex].to_le_bytes());
     }
-    output.vertex_properties.iter().for_each(|property| property.bytes(out, vertex));
-    columns.vertices.iter().for_each(|column| column.bytes(out, vertex));
+    output
+        .vertex_properties
+        .iter()
+        .for_each(|property| property.bytes(out, vertex));
+    columns
+        .vertices
+        .iter()
+        .for_each(|column| column.bytes(out, vertex));
 }
 
 fn vertex_text(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), vertex: usize) {
@@ -87,30 +126,60 @@ fn vertex_text(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), 
         normals[vertex].iter().for_each(|&x| out.single(x as f32));
     }
     if let Some(colours) = output.colours {
-        colours[vertex].iter().for_each(|&c| out.integer(u32::from(c)));
+        colours[vertex]
+            .iter()
+            .for_each(|&c| out.integer(u32::from(c)));
     }
     if let Some(quality) = output.quality {
         out.number(quality[vertex]);
     }
-    output.vertex_properties.iter().for_each(|property| property.text(out, vertex));
-    columns.vertices.iter().for_each(|column| column.text(out, vertex));
+    output
+        .vertex_properties
+        .iter()
+        .for_each(|property| property.text(out, vertex));
+    columns
+        .vertices
+        .iter()
+        .for_each(|column| column.text(out, vertex));
     out.end_line();
 }
 
 #[inline]
 fn face_bytes(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), face: usize) {
     out.bytes(&[3]);
-    output.surface.triangles[face].iter().for_each(|v| out.bytes(&v.to_le_bytes()));
-    output.face_properties.iter().for_each(|property| property.bytes(out, face));
-    columns.faces.iter().for_each(|column| column.bytes(out, face));
-    columns.textures.iter().for_each(|channel| textures(out, channel, face, false));
+    output.surface.triangles[face]
+        .iter()
+        .for_each(|v| out.bytes(&v.to_le_bytes()));
+    output
+        .face_properties
+        .iter()
+        .for_each(|property| property.bytes(out, face));
+    columns
+        .faces
+        .iter()
+        .for_each(|column| column.bytes(out, face));
+    columns
+        .textures
+        .iter()
+        .for_each(|channel| textures(out, channel, face, false));
 }
 
 fn face_text(out: &mut Piece, (output, columns): (&Output<'_>, &Columns<'_>), face: usize) {
     out.bytes(b"3");
-    output.surface.triangles[face].iter().for_each(|&v| out.integer(v));
-    output.face_properties.iter().for_each(|property| property.text(out, face));
-    columns.faces.iter().for_each(|column| column.text(out, face));
-    columns.textures.iter().for_each(|channel| textures(out, channel, face, true));
+    output.surface.triangles[face]
+        .iter()
+        .for_each(|&v| out.integer(v));
+    output
+        .face_properties
+        .iter()
+        .for_each(|property| property.text(out, face));
+    columns
+        .faces
+        .iter()
+        .for_each(|column| column.text(out, face));
+    columns
+        .textures
+        .iter()
+        .for_each(|channel| textures(out, channel, face, true));
     out.end_line();
 }

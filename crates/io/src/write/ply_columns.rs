@@ -35,13 +35,16 @@ impl<'a> Columns<'a> {
     pub(super) fn of(output: &Output<'a>) -> Self {
         let mut found = Self::default();
         let (vertices, triangles) = (output.surface.positions.len(), output.surface.triangles);
-        for channel in
-            output.channels.iter().filter(|channel| crate::holds(Format::Ply, &Default::default(), channel))
+        for channel in output
+            .channels
+            .iter()
+            .filter(|channel| crate::holds(Format::Ply, &Default::default(), channel))
         {
             if channel.domain == Domain::Face {
                 let values = Arc::new(channel.indices.clone());
                 let is_taken = |name: &str| {
-                    output.face_properties.iter().any(|p| p.name == name) || name == "vertex_indices"
+                    output.face_properties.iter().any(|p| p.name == name)
+                        || name == "vertex_indices"
                 };
                 add(&mut found.faces, channel, values, is_taken);
                 continue;
@@ -49,12 +52,16 @@ impl<'a> Columns<'a> {
             let (values, torn) = by_vertex(channel, vertices, triangles);
             let is_by_corner =
                 channel.domain == Domain::Corner && (torn > 0 || channel.name == TEXTURE_LISTS);
-            if channel.semantic == Semantic::TextureCoordinates && is_by_corner && !is_of_vertices(channel) {
+            if channel.semantic == Semantic::TextureCoordinates
+                && is_by_corner
+                && !is_of_vertices(channel)
+            {
                 found.textures = found.textures.or(Some(channel));
                 continue;
             }
             let is_taken = |name: &str| {
-                let has_colours = output.colours.is_some() && ["red", "green", "blue"].contains(&name);
+                let has_colours =
+                    output.colours.is_some() && ["red", "green", "blue"].contains(&name);
                 let is_own = ["x", "y", "z", "nx", "ny", "nz"].contains(&name);
                 let has_quality = output.quality.is_some() && name == "quality";
                 has_colours
@@ -77,15 +84,24 @@ fn add<'a>(
     for (part, name) in names(channel).into_iter().enumerate() {
         if !is_taken(&name) && columns.iter().all(|column| column.name != name) {
             let storage = storage(channel);
-            columns.push(Column { name, storage, channel, part, values: values.clone() });
+            columns.push(Column {
+                name,
+                storage,
+                channel,
+                part,
+                values: values.clone(),
+            });
         }
     }
 }
 
 /// Names of a value's numbers: those that the channel has, or those that are usual.
 fn names(channel: &Channel) -> Vec<String> {
-    let visible =
-        |name: &str| -> String { name.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect() };
+    let visible = |name: &str| -> String {
+        name.chars()
+            .map(|c| if c.is_ascii_graphic() { c } else { '_' })
+            .collect()
+    };
     let own: Vec<String> = channel.name.split(',').map(visible).collect();
     if own.len() == channel.arity
         && own.iter().all(|name| !name.is_empty())
@@ -100,7 +116,10 @@ fn names(channel: &Channel) -> Vec<String> {
         _ => &[],
     };
     let name = |part: usize| {
-        usual.get(part).map_or_else(|| format!("{}_{part}", visible(&channel.name)), |&name| name.to_owned())
+        usual.get(part).map_or_else(
+            || format!("{}_{part}", visible(&channel.name)),
+            |&name| name.to_owned(),
+        )
     };
     (0..channel.arity).map(name).collect()
 }
@@ -149,7 +168,8 @@ impl Column<'_> {
     /// An element's number, as the file holds it.
     #[inline]
     fn number(&self, element: usize) -> f64 {
-        let number = self.channel.values[self.values[element] as usize * self.channel.arity + self.part];
+        let number =
+            self.channel.values[self.values[element] as usize * self.channel.arity + self.part];
         let unit = match self.storage {
             Storage::Byte => 255.0,
             Storage::Uint16 if self.channel.semantic == Semantic::Colour => 65535.0,
@@ -196,7 +216,11 @@ pub(super) fn textures(out: &mut Piece, channel: &Channel, face: usize, ascii: b
         let value = channel.value(corner);
         for part in 0..2 {
             let number = value.get(part).copied().unwrap_or(0.0) as f32;
-            if ascii { out.single(number) } else { out.bytes(&number.to_le_bytes()) }
+            if ascii {
+                out.single(number)
+            } else {
+                out.bytes(&number.to_le_bytes())
+            }
         }
     }
 }

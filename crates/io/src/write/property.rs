@@ -28,19 +28,27 @@ pub enum PropertyValues<'a> {
 impl<'a> Property<'a> {
     /// Whole numbers under a name.
     pub fn integers(name: &'a str, values: &'a [u32]) -> Self {
-        Self { name, values: PropertyValues::Integers(values) }
+        Self {
+            name,
+            values: PropertyValues::Integers(values),
+        }
     }
 
     /// Numbers under a name.
     pub fn numbers(name: &'a str, values: &'a [f64]) -> Self {
-        Self { name, values: PropertyValues::Numbers(values) }
+        Self {
+            name,
+            values: PropertyValues::Numbers(values),
+        }
     }
 
     /// PLY's name of the numbers' type.
     pub(super) fn kind(&self) -> &'static str {
         match self.values {
             // Many readers know signed integers only.
-            PropertyValues::Integers(values) if values.iter().all(|&v| v <= i32::MAX as u32) => "int",
+            PropertyValues::Integers(values) if values.iter().all(|&v| v <= i32::MAX as u32) => {
+                "int"
+            }
             PropertyValues::Integers(_) => "uint",
             PropertyValues::Numbers(_) => "double",
         }
@@ -73,13 +81,23 @@ impl<'a> Property<'a> {
 }
 
 /// Names of what the writer puts beside positions.
-const VERTEX_NAMES: [&str; 10] = ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality"];
+const VERTEX_NAMES: [&str; 10] = [
+    "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality",
+];
 const FACE_NAMES: [&str; 1] = ["vertex_indices"];
 
 /// Checks names, counts and values of an output's properties.
 pub(super) fn check(output: &Output<'_>) -> Result<(), WriteError> {
-    let (vertices, triangles) = (output.surface.positions.len(), output.surface.triangles.len());
-    check_all(output.vertex_properties, &VERTEX_NAMES, vertices, "vertices")?;
+    let (vertices, triangles) = (
+        output.surface.positions.len(),
+        output.surface.triangles.len(),
+    );
+    check_all(
+        output.vertex_properties,
+        &VERTEX_NAMES,
+        vertices,
+        "vertices",
+    )?;
     check_all(output.face_properties, &FACE_NAMES, triangles, "triangles")
 }
 
@@ -92,17 +110,34 @@ fn check_all(
     for (i, property) in properties.iter().enumerate() {
         let name = property.name;
         let visible = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic());
-        if !visible || taken.contains(&name) || properties[..i].iter().any(|other| other.name == name) {
-            return Err(WriteError::PropertyName { name: name.to_owned() });
+        if !visible
+            || taken.contains(&name)
+            || properties[..i].iter().any(|other| other.name == name)
+        {
+            return Err(WriteError::PropertyName {
+                name: name.to_owned(),
+            });
         }
         if property.count() != elements {
             let (name, count) = (name.to_owned(), property.count());
-            return Err(WriteError::PropertyCount { name, count, elements, what });
+            return Err(WriteError::PropertyCount {
+                name,
+                count,
+                elements,
+                what,
+            });
         }
-        let PropertyValues::Numbers(values) = property.values else { continue };
+        let PropertyValues::Numbers(values) = property.values else {
+            continue;
+        };
         if let Some(element) = values.iter().position(|value| !value.is_finite()) {
             let (name, value) = (name.to_owned(), values[element]);
-            return Err(WriteError::PropertyNotFinite { name, element, value, format: Format::Ply });
+            return Err(WriteError::PropertyNotFinite {
+                name,
+                element,
+                value,
+                format: Format::Ply,
+            });
         }
     }
     Ok(())

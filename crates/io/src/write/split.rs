@@ -30,38 +30,53 @@ enum Numbers {
 
 /// Whether PLY files hold a channel as numbers of vertices, as the one did that it came from: it has a name for each.
 pub(super) fn is_of_vertices(channel: &Channel) -> bool {
-    channel.semantic == Semantic::TextureCoordinates && channel.name.split(',').count() == channel.arity
+    channel.semantic == Semantic::TextureCoordinates
+        && channel.name.split(',').count() == channel.arity
 }
 
 /// Whether a PLY file has vertices several times, since channels have texture coordinates that differ between corners there, and did so at
 /// vertices in the file that they come from.
 pub fn splits_vertices(channels: &[Channel], triangles: &[[u32; 3]], vertices: usize) -> bool {
-    let own = channels.iter().filter(|own| own.domain == Domain::Corner && is_of_vertices(own));
-    let own: Vec<&Channel> =
-        own.filter(|own| own.check(vertices, 3 * triangles.len(), triangles.len()).is_ok()).collect();
+    let own = channels
+        .iter()
+        .filter(|own| own.domain == Domain::Corner && is_of_vertices(own));
+    let own: Vec<&Channel> = own
+        .filter(|own| {
+            own.check(vertices, 3 * triangles.len(), triangles.len())
+                .is_ok()
+        })
+        .collect();
     !own.is_empty() && differ(&own, triangles, vertices)
 }
 
 /// Whether channels have two values at some vertex.
 fn differ(channels: &[&Channel], triangles: &[[u32; 3]], count: usize) -> bool {
     let mut first = vec![NONE; count];
-    triangles.as_flattened().iter().zip(0..).any(|(&v, corner)| {
-        let known = &mut first[v as usize];
-        if *known == NONE {
-            *known = corner;
-        }
-        !channels.iter().all(|own| has_same(own, *known, corner))
-    })
+    triangles
+        .as_flattened()
+        .iter()
+        .zip(0..)
+        .any(|(&v, corner)| {
+            let known = &mut first[v as usize];
+            if *known == NONE {
+                *known = corner;
+            }
+            !channels.iter().all(|own| has_same(own, *known, corner))
+        })
 }
 
 impl Split {
     /// An output's, if a PLY file needs that.
     pub(super) fn of(output: &Output<'_>) -> Option<Self> {
-        let Triangles { positions, triangles } = output.surface;
+        let Triangles {
+            positions,
+            triangles,
+        } = output.surface;
         if !splits_vertices(output.channels, triangles, positions.len()) {
             return None;
         }
-        let is_by_list = |own: &Channel| own.semantic == Semantic::TextureCoordinates && !is_of_vertices(own);
+        let is_by_list =
+            |own: &Channel| own.semantic == Semantic::TextureCoordinates && !is_of_vertices(own);
         let held = output.channels.iter().filter(|own| {
             own.domain == Domain::Corner
                 && crate::holds(crate::Format::Ply, &Default::default(), own)
@@ -103,9 +118,16 @@ impl Split {
     }
 
     /// The output with these vertices, and their properties.
-    pub(super) fn output<'a>(&'a self, output: &Output<'a>, properties: &'a [Property<'a>]) -> Output<'a> {
+    pub(super) fn output<'a>(
+        &'a self,
+        output: &Output<'a>,
+        properties: &'a [Property<'a>],
+    ) -> Output<'a> {
         Output {
-            surface: Triangles { positions: &self.positions, triangles: &self.triangles },
+            surface: Triangles {
+                positions: &self.positions,
+                triangles: &self.triangles,
+            },
             normals: self.normals.as_deref(),
             corner_normals: None,
             colours: self.colours.as_deref(),
@@ -119,7 +141,11 @@ impl Split {
 
 /// Triangles of which corners have a vertex of their own for each combination of values; and by vertex what it is a copy of, and the first
 /// corner that has it.
-fn divided(channels: &[&Channel], triangles: &[[u32; 3]], count: usize) -> (Vec<[u32; 3]>, Vec<(u32, u32)>) {
+fn divided(
+    channels: &[&Channel],
+    triangles: &[[u32; 3]],
+    count: usize,
+) -> (Vec<[u32; 3]>, Vec<(u32, u32)>) {
     let is_same = |a: u32, b: u32| channels.iter().all(|own| has_same(own, a, b));
     let mut vertices: Vec<(u32, u32)> = (0..count as u32).map(|v| (v, NONE)).collect();
     // By vertex, the next copy of the same.

@@ -23,7 +23,11 @@ const HEADER: [u8; 80] = {
 
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) -> io::Result<()> {
     let out = Pieces::new(writer);
-    if ascii { write_ascii(out, output) } else { write_binary(out, output) }
+    if ascii {
+        write_ascii(out, output)
+    } else {
+        write_binary(out, output)
+    }
 }
 
 fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
@@ -34,7 +38,9 @@ fn write_binary(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     out.bytes(&(triangles as u32).to_le_bytes())?;
     out.each(triangles, |out, face| {
         let corners = output.surface.corners(face);
-        for value in facet_normal(corners).into_iter().chain(corners.into_iter().flatten().map(|x| x as f32))
+        for value in facet_normal(corners)
+            .into_iter()
+            .chain(corners.into_iter().flatten().map(|x| x as f32))
         {
             out.bytes(&value.to_le_bytes());
         }
@@ -49,11 +55,16 @@ fn write_ascii(mut out: Pieces<'_>, output: &Output<'_>) -> io::Result<()> {
     let number = |face: usize| solids.map_or(0, |channel| channel.indices[face]);
     let name = |face: usize| {
         let name = solids.and_then(|channel| channel.labels.get(channel.indices[face] as usize));
-        name.map_or_else(|| UNNAMED_SOLID.as_bytes().to_vec(), |name| names::write(name))
+        name.map_or_else(
+            || UNNAMED_SOLID.as_bytes().to_vec(),
+            |name| names::write(name),
+        )
     };
     let triangles = output.surface.triangles.len();
     out.each(triangles, |out, face| {
-        let before = face.checked_sub(1).filter(|&before| number(before) != number(face));
+        let before = face
+            .checked_sub(1)
+            .filter(|&before| number(before) != number(face));
         if let Some(before) = before {
             named(out, b"endsolid", &name(before));
         }
@@ -95,14 +106,25 @@ fn named(out: &mut Piece, keyword: &[u8], name: &[u8]) {
 /// The channel that a file holds: in text the names of solids, else attributes.
 fn find<'a>(output: &Output<'a>, ascii: bool) -> Option<&'a Channel> {
     let options = WriteOptions::default().ascii(ascii);
-    output.channels.iter().find(|channel| crate::holds(Format::Stl, &options, channel))
+    output
+        .channels
+        .iter()
+        .find(|channel| crate::holds(Format::Stl, &options, channel))
 }
 
 /// The unit normal of a facet; zero, as the format asks, where its corners lie on one line.
 fn facet_normal([a, b, c]: [[f64; 3]; 3]) -> [f32; 3] {
     let edge = |from: [f64; 3], to: [f64; 3]| [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
     let (u, v) = (edge(a, b), edge(a, c));
-    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let normal = [
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    ];
     let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if length > 0.0 && length.is_finite() { normal.map(|x| (x / length) as f32) } else { [0.0; 3] }
+    if length > 0.0 && length.is_finite() {
+        normal.map(|x| (x / length) as f32)
+    } else {
+        [0.0; 3]
+    }
 }

@@ -15,18 +15,23 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// # Errors
 /// The folder does not exist or may not be written to, or the earlier file of that name is a folder or read-only.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
-    let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
+    let failed = |reason: io::Error| WriteError::File {
+        path: path.to_owned(),
+        reason,
+    };
     match earlier(path).map_err(failed)? {
         Some(device) if !device.is_file() => Ok(()),
-        earlier => {
-            Unfinished::beside(target(path, earlier.as_ref()).map_err(failed)?).map(drop).map_err(failed)
-        }
+        earlier => Unfinished::beside(target(path, earlier.as_ref()).map_err(failed)?)
+            .map(drop)
+            .map_err(failed),
     }
 }
 
 /// What is known of the earlier file of that name, if there is one; an error if it may not be replaced.
 fn earlier(path: &Path) -> io::Result<Option<fs::Metadata>> {
-    let Ok(earlier) = fs::metadata(path) else { return Ok(None) };
+    let Ok(earlier) = fs::metadata(path) else {
+        return Ok(None);
+    };
     if earlier.is_dir() {
         return Err(io::Error::from(io::ErrorKind::IsADirectory));
     }
@@ -34,7 +39,10 @@ fn earlier(path: &Path) -> io::Result<Option<fs::Metadata>> {
         // A new name over a file asks only the folder for permission, and the superuser may write to what is read-only: ask
         // the file as well.
         if earlier.permissions().readonly() {
-            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+            return Err(io::Error::new(
+                io::ErrorKind::PermissionDenied,
+                "the file is read-only",
+            ));
         }
         fs::OpenOptions::new().write(true).open(path)?;
     }
@@ -43,7 +51,11 @@ fn earlier(path: &Path) -> io::Result<Option<fs::Metadata>> {
 
 /// The file that is replaced where `path` names it by a link.
 fn target(path: &Path, earlier: Option<&fs::Metadata>) -> io::Result<PathBuf> {
-    if earlier.is_some() { fs::canonicalize(path) } else { Ok(path.to_owned()) }
+    if earlier.is_some() {
+        fs::canonicalize(path)
+    } else {
+        Ok(path.to_owned())
+    }
 }
 
 /// Writes `bytes` to a file, whole or not at all.
@@ -63,7 +75,9 @@ const PIECE: usize = 1 << 22;
 
 /// Writes bytes so that a program may end on the way.
 pub(super) fn write_in_pieces(writer: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
-    bytes.chunks(PIECE).try_for_each(|piece| writer.write_all(piece))
+    bytes
+        .chunks(PIECE)
+        .try_for_each(|piece| writer.write_all(piece))
 }
 
 /// Writes what `fill` gives to a file, whole or not at all, as [`write_whole`] does.
@@ -74,10 +88,16 @@ pub fn write_whole_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
 ) -> Result<(), WriteError> {
-    let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
+    let failed = |reason: io::Error| WriteError::File {
+        path: path.to_owned(),
+        reason,
+    };
     let earlier = earlier(path).map_err(failed)?;
     if earlier.as_ref().is_some_and(|e| !e.is_file()) {
-        let mut device = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
+        let mut device = fs::OpenOptions::new()
+            .write(true)
+            .open(path)
+            .map_err(failed)?;
         return fill(&mut device).map_err(|error| error.in_file(path));
     }
     let file = Unfinished::filled(path, earlier, fill)?;
@@ -97,7 +117,10 @@ pub(crate) struct WholeFile {
 pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
     let mut waiting = Vec::with_capacity(files.len());
     for WholeFile { path, bytes } in files {
-        let failed = |reason: io::Error| WriteError::File { path: path.clone(), reason };
+        let failed = |reason: io::Error| WriteError::File {
+            path: path.clone(),
+            reason,
+        };
         let earlier = earlier(path).map_err(failed)?;
         if earlier.as_ref().is_some_and(|e| !e.is_file()) {
             waiting.push((path, None));
@@ -113,7 +136,10 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
         match file {
             Some(file) => {
                 let finished = file.finish(held.get_or_insert_with(register));
-                finished.map_err(|reason| WriteError::File { path: (*path).clone(), reason })?;
+                finished.map_err(|reason| WriteError::File {
+                    path: (*path).clone(),
+                    reason,
+                })?;
             }
             None => {
                 held = None;
@@ -133,7 +159,10 @@ struct Register {
     finished: usize,
 }
 
-static REGISTER: Mutex<Register> = Mutex::new(Register { unfinished: Vec::new(), finished: 0 });
+static REGISTER: Mutex<Register> = Mutex::new(Register {
+    unfinished: Vec::new(),
+    finished: 0,
+});
 
 fn register() -> MutexGuard<'static, Register> {
     REGISTER.lock().unwrap_or_else(PoisonError::into_inner)
@@ -186,9 +215,18 @@ impl Unfinished {
             _ => PathBuf::from("."),
         };
         // With the permissions of any new file.
-        let open = |path: &Path| fs::OpenOptions::new().read(true).write(true).create_new(true).open(path);
+        let open = |path: &Path| {
+            fs::OpenOptions::new()
+                .read(true)
+                .write(true)
+                .create_new(true)
+                .open(path)
+        };
         let mut register = register();
-        let file = tempfile::Builder::new().prefix(".limitmesh-").suffix(".tmp").make_in(folder, open)?;
+        let file = tempfile::Builder::new()
+            .prefix(".limitmesh-")
+            .suffix(".tmp")
+            .make_in(folder, open)?;
         let (file, path) = file.keep().map_err(|error| error.error)?;
         register.unfinished.push(path.clone());
         Ok(Self { file, path, target })
@@ -200,8 +238,12 @@ impl Unfinished {
         earlier: Option<fs::Metadata>,
         fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
     ) -> Result<Self, WriteError> {
-        let failed = |reason: io::Error| WriteError::File { path: path.to_owned(), reason };
-        let mut file = Self::beside(target(path, earlier.as_ref()).map_err(failed)?).map_err(failed)?;
+        let failed = |reason: io::Error| WriteError::File {
+            path: path.to_owned(),
+            reason,
+        };
+        let mut file =
+            Self::beside(target(path, earlier.as_ref()).map_err(failed)?).map_err(failed)?;
         fill(&mut file.file).map_err(|error| error.in_file(path))?;
         if let Some(earlier) = earlier {
             fs::set_permissions(&file.path, earlier.permissions()).map_err(failed)?;
@@ -220,7 +262,11 @@ impl Unfinished {
 impl Drop for Unfinished {
     fn drop(&mut self) {
         let mut register = register();
-        if let Some(at) = register.unfinished.iter().position(|path| *path == self.path) {
+        if let Some(at) = register
+            .unfinished
+            .iter()
+            .position(|path| *path == self.path)
+        {
             register.unfinished.swap_remove(at);
             // What is to be told is why it was not finished.
             let _ = fs::remove_file(&self.path);

@@ -54,7 +54,10 @@ fn models() -> Option<String> {
     let folder = std::env::var("LIMITMESH_MODELS").ok();
     if folder.is_none() {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
     }
     folder
 }
@@ -89,7 +92,10 @@ fn loops_and_components(mesh: &Mesh) -> (usize, usize) {
     let cut: HashSet<u32> = mesh.junctions().edges.iter().flatten().copied().collect();
     let mut loops = glued.clone();
     let mut on_loops = Vec::new();
-    for h in topology.half_edges().filter(|h| topology.twin(*h).is_none() && !cut.contains(&h.0)) {
+    for h in topology
+        .half_edges()
+        .filter(|h| topology.twin(*h).is_none() && !cut.contains(&h.0))
+    {
         let [a, b] = topology.ends(h);
         unite(&mut loops, a.0, b.0);
         on_loops.push(a.0);
@@ -113,14 +119,22 @@ fn shared_models_have_the_topology_on_record() {
     let Some(folder) = models() else { return };
     for (name, faces, characteristic, boundary_loops, components, non_manifold) in MODELS {
         // The record counts the vertices as stored, but those of STL by position.
-        let weld = if name.ends_with("stl") { Weld::Exact } else { Weld::Never };
+        let weld = if name.ends_with("stl") {
+            Weld::Exact
+        } else {
+            Weld::Never
+        };
         let (mesh, diagnosis) = build(&folder, name, weld);
         let junctions = mesh.junctions();
         let copies: usize = junctions.vertices.iter().map(|group| group.len() - 1).sum();
         let edges: usize = junctions.edges.iter().map(|group| group.len() - 1).sum();
         let whole = mesh.topology().euler_characteristic() - copies as i64 + edges as i64;
         assert_eq!(whole, characteristic, "{name}");
-        assert_eq!(loops_and_components(&mesh), (boundary_loops, components), "{name}");
+        assert_eq!(
+            loops_and_components(&mesh),
+            (boundary_loops, components),
+            "{name}"
+        );
         assert_eq!(diagnosis.non_manifold_edges.count, non_manifold, "{name}");
         // Two of the beetle's edges have both ends inside one sheet: their three faces each are split in two.
         let split = if name == "beetle.obj" { 6 } else { 0 };
@@ -133,20 +147,43 @@ fn shared_defects_are_found() {
     let Some(folder) = models() else { return };
     let findings = |name: &str| {
         let (_, diagnosis) = build(&folder, name, Weld::Exact);
-        let found = diagnosis.findings().filter(|(_, finding)| !finding.is_empty());
-        found.map(|(name, finding)| (name, finding.count)).collect::<Vec<_>>()
+        let found = diagnosis
+            .findings()
+            .filter(|(_, finding)| !finding.is_empty());
+        found
+            .map(|(name, finding)| (name, finding.count))
+            .collect::<Vec<_>>()
     };
     assert_eq!(findings("defects/fan3.obj"), [("non_manifold_edges", 1)]);
-    assert_eq!(findings("defects/hourglass_ico.obj"), [("bow_tie_vertices", 1)]);
-    assert_eq!(findings("defects/deg_faces.obj"), [("collapsed_faces", 1), ("isolated_vertices", 1)]);
-    assert_eq!(findings("defects/extra_vertex.obj"), [("isolated_vertices", 1)]);
+    assert_eq!(
+        findings("defects/hourglass_ico.obj"),
+        [("bow_tie_vertices", 1)]
+    );
+    assert_eq!(
+        findings("defects/deg_faces.obj"),
+        [("collapsed_faces", 1), ("isolated_vertices", 1)]
+    );
+    assert_eq!(
+        findings("defects/extra_vertex.obj"),
+        [("isolated_vertices", 1)]
+    );
     assert_eq!(
         findings("defects/spider_ascii.stl"),
-        [("welded_vertices", 3 * 1368 - 722), ("collapsed_faces", 56), ("flipped_faces", 4)]
+        [
+            ("welded_vertices", 3 * 1368 - 722),
+            ("collapsed_faces", 56),
+            ("flipped_faces", 4)
+        ]
     );
     assert_eq!(findings("teapot.obj")[0], ("welded_vertices", 403));
     // Clean files, twisted polygons included, pass strict mode.
-    for name in ["bunny_3674.obj", "mannequin.off", "bob_cage.obj", "fish_cage.obj", "featuretype.stl"] {
+    for name in [
+        "bunny_3674.obj",
+        "mannequin.off",
+        "bob_cage.obj",
+        "fish_cage.obj",
+        "featuretype.stl",
+    ] {
         let soup = limitmesh_io::read(Path::new(&folder).join(name)).unwrap();
         Mesh::from_soup(&soup, &BuildOptions::default().strict(true)).unwrap();
     }
@@ -169,10 +206,15 @@ fn reversed_faces_are_turned_back() {
         mesh.triangles().iter().map(|&t| lowest_first(t)).collect()
     };
     assert_eq!(rotated(&repaired), rotated(&head));
-    let soup = limitmesh_io::read(Path::new(&folder).join("defects/mannequin_flipped.off")).unwrap();
-    let reversed = soup.faces.iter().zip(head.triangles()).filter(|(face, triangle)| {
-        let next = |v: u32| face[(face.iter().position(|&w| w == v).unwrap() + 1) % 3];
-        next(triangle[0]) != triangle[1]
-    });
+    let soup =
+        limitmesh_io::read(Path::new(&folder).join("defects/mannequin_flipped.off")).unwrap();
+    let reversed = soup
+        .faces
+        .iter()
+        .zip(head.triangles())
+        .filter(|(face, triangle)| {
+            let next = |v: u32| face[(face.iter().position(|&w| w == v).unwrap() + 1) % 3];
+            next(triangle[0]) != triangle[1]
+        });
     assert_eq!(diagnosis.flipped_faces.count, reversed.count());
 }

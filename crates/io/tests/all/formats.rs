@@ -1,6 +1,10 @@
 //! What each reader understands, on small files written out here.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
 
 use limitmesh::Triangles;
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup};
@@ -14,12 +18,22 @@ fn polygons(soup: &PolygonSoup) -> Vec<&[u32]> {
     soup.faces.iter().collect()
 }
 
-const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+const SQUARE: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+];
 const OBJ_SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
 fn obj_corners_in_every_form() {
-    for face in ["f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//9 2//9 3//9 4//9", "f 1/1/1 2/2/2 3/3/3 4/4/4"] {
+    for face in [
+        "f 1 2 3 4",
+        "f 1/1 2/2 3/3 4/4",
+        "f 1//9 2//9 3//9 4//9",
+        "f 1/1/1 2/2/2 3/3/3 4/4/4",
+    ] {
         let soup = obj(&format!("{OBJ_SQUARE}{face}\n"));
         assert_eq!(soup.positions, SQUARE, "{face}");
         assert_eq!(polygons(&soup), [&[0, 1, 2, 3]], "{face}");
@@ -44,13 +58,18 @@ fn obj_lines_comments_and_continuations() {
     let text = "\u{feff}# comment \\\r\n\r\n  v\t0 0 0 # here \\\r\nv 1 \\\r\n 0 0 0.5\r\n\
                 v 1 1\\\r\n 0 0.1 0.2 0.3\r\nv 0 1 0\r\ng a b\r\ns off\r\nusemtl x#y\r\nf 1 2 \\\r\n3 4#5\\\n";
     // The last corner is `4#5`: no comment, as no blank stands before it.
-    let error = read_bytes(text.as_bytes(), Format::Obj).unwrap_err().to_string();
+    let error = read_bytes(text.as_bytes(), Format::Obj)
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("line 13, face 0: expected"), "{error}");
     let soup = obj(&text.replace("4#5\\\n", "4 #5\\\n"));
     assert_eq!(soup.positions, SQUARE);
     assert_eq!(polygons(&soup), [&[0, 1, 2, 3]]);
     // The same with lines that end with CR alone, as on machines of long ago.
-    assert_eq!(obj(&text.replace("4#5\\\n", "4").replace("\r\n", "\r")), soup);
+    assert_eq!(
+        obj(&text.replace("4#5\\\n", "4").replace("\r\n", "\r")),
+        soup
+    );
 }
 
 #[test]
@@ -66,7 +85,10 @@ fn obj_tags() {
     let tags = "t crease 2/1/0 0 1 2.5\nt crease 4/2/0 1 2 2 3 1 10\nt crease 4/1/0 0 2 1 3 inf\n\
                 t corner 1/1/0 3 10\nt corner 2/1/0 0 1 4.5\nt interpolateboundary 1/0/0 2\nt\nt smooth\n";
     let soup = obj(&format!("{tags}{OBJ_SQUARE}f 1 2 3 4\n"));
-    let crease = |a, b, sharpness| CreaseTag { vertices: [a, b], sharpness };
+    let crease = |a, b, sharpness| CreaseTag {
+        vertices: [a, b],
+        sharpness,
+    };
     let corner = |vertex, sharpness| CornerTag { vertex, sharpness };
     assert_eq!(
         soup.creases,
@@ -78,7 +100,10 @@ fn obj_tags() {
             crease(1, 3, f64::INFINITY)
         ]
     );
-    assert_eq!(soup.corners, [corner(3, 10.0), corner(0, 4.5), corner(1, 4.5)]);
+    assert_eq!(
+        soup.corners,
+        [corner(3, 10.0), corner(0, 4.5), corner(1, 4.5)]
+    );
 }
 
 #[test]
@@ -86,9 +111,17 @@ fn numbers_keep_every_bit() {
     let soup = obj(
         "v 0.1 1e-320 -0\nv 1.7976931348623157e308 123456789.123456789 +3.\nv .5 -2E+3 4.9e-324\nf 1 2 3\n",
     );
-    let expected =
-        [[0.1, 1e-320, -0.0], [f64::MAX, 123_456_789.123_456_79, 3.0], [0.5, -2000.0, f64::from_bits(1)]];
-    for (met, expected) in soup.positions.as_flattened().iter().zip(expected.as_flattened()) {
+    let expected = [
+        [0.1, 1e-320, -0.0],
+        [f64::MAX, 123_456_789.123_456_79, 3.0],
+        [0.5, -2000.0, f64::from_bits(1)],
+    ];
+    for (met, expected) in soup
+        .positions
+        .as_flattened()
+        .iter()
+        .zip(expected.as_flattened())
+    {
         assert_eq!(met.to_bits(), expected.to_bits());
     }
 }
@@ -109,7 +142,10 @@ fn ply_text_with_extra_elements_and_properties() {
     let body = "1.5 2 7 8\n2.5 0\n255 0 2 .1 .2 0 0\n\n 0 1 0 0 0\n0 1 1 9 1 0\n7 0 0 1 0\n\
                 0.5 3 0 1 2 1\n0.5 4 0 1 2 3 1\n0\nanything after the last element\n";
     let mut soup = ply(text, body.as_bytes());
-    assert_eq!(soup.left_out.last().map(String::as_str), Some("32 bytes after the last element"));
+    assert_eq!(
+        soup.left_out.last().map(String::as_str),
+        Some("32 bytes after the last element")
+    );
     soup.left_out.pop();
     assert_eq!(soup.positions, SQUARE);
     assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]]);
@@ -125,10 +161,21 @@ fn ply_text_with_extra_elements_and_properties() {
 #[test]
 fn ply_binary_with_every_type() {
     let integers = ["char", "uchar", "short", "ushort", "int", "uint"];
-    let names = [integers.as_slice(), &["int8", "uint8", "int16", "uint16", "int32", "uint32"]].concat();
+    let names = [
+        integers.as_slice(),
+        &["int8", "uint8", "int16", "uint16", "int32", "uint32"],
+    ]
+    .concat();
     for big in [false, true] {
-        for name in names.iter().chain(&["float", "double", "float32", "float64"]) {
-            let list = if name.contains("float") || *name == "double" { "uchar" } else { name };
+        for name in names
+            .iter()
+            .chain(&["float", "double", "float32", "float64"])
+        {
+            let list = if name.contains("float") || *name == "double" {
+                "uchar"
+            } else {
+                name
+            };
             let header = format!(
                 "ply\nformat binary_{}_endian 1.0\nelement other 2\nproperty list {list} {name} skipped\n\
                  element face 1\nproperty {name} q\nproperty list {list} {list} vertex_indices\n\
@@ -148,7 +195,11 @@ fn ply_binary_with_every_type() {
                     "float" | "float32" => (value as f32).to_le_bytes().to_vec(),
                     _ => f64::from(value).to_le_bytes().to_vec(),
                 };
-                if big { body.extend(little.iter().rev()) } else { body.extend(little) }
+                if big {
+                    body.extend(little.iter().rev())
+                } else {
+                    body.extend(little)
+                }
             };
             put(list, 2);
             put(name, 5);
@@ -184,7 +235,10 @@ fn ply_binary_body_may_begin_with_any_byte() {
 fn ply_strips_turn_every_other_triangle() {
     let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
-    let soup = ply(header, b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 0 1 2 3 -1 3 2 1 -1\n");
+    let soup = ply(
+        header,
+        b"0 0 0\n1 0 0\n1 1 0\n0 1 0\n9 0 1 2 3 -1 3 2 1 -1\n",
+    );
     assert_eq!(polygons(&soup), [[0, 1, 2], [2, 1, 3], [3, 2, 1]]);
 }
 
@@ -206,9 +260,13 @@ endsolid facet normal";
 
 #[test]
 fn stl_text_with_several_solids() {
-    for text in [ASCII_STL.to_owned(), ASCII_STL.replace('\n', "\r\n"), format!("\u{feff}\n {ASCII_STL}\n\n")]
-    {
-        let soup = read_bytes(text.as_bytes(), Format::Stl).unwrap_or_else(|error| panic!("{error}"));
+    for text in [
+        ASCII_STL.to_owned(),
+        ASCII_STL.replace('\n', "\r\n"),
+        format!("\u{feff}\n {ASCII_STL}\n\n"),
+    ] {
+        let soup =
+            read_bytes(text.as_bytes(), Format::Stl).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(polygons(&soup), [[0, 1, 2], [3, 4, 5]]);
         assert_eq!(soup.positions[2], [0.0, 1.5, 0.0]);
         assert_eq!(soup.positions[3], [0.0, 0.0, 1.0]);
@@ -222,7 +280,9 @@ fn binary_stl(start: &[u8], facets: u32) -> Vec<u8> {
     bytes.extend(facets.to_le_bytes());
     for facet in 0..facets {
         let values = [0, 0, 1, 0, 0, facet, 1, 0, facet, 0, 1, facet];
-        values.iter().for_each(|&v| bytes.extend((v as f32).to_le_bytes()));
+        values
+            .iter()
+            .for_each(|&v| bytes.extend((v as f32).to_le_bytes()));
         bytes.extend([7, 7]);
     }
     bytes
@@ -230,8 +290,12 @@ fn binary_stl(start: &[u8], facets: u32) -> Vec<u8> {
 
 #[test]
 fn stl_binary_that_begins_with_solid() {
-    let starts: [&[u8]; 4] =
-        [b"", b"solid", b"solid x\nfacet normal 0 0 1\nouter loop", b"v 1 2 3\nply\nOFF"];
+    let starts: [&[u8]; 4] = [
+        b"",
+        b"solid",
+        b"solid x\nfacet normal 0 0 1\nouter loop",
+        b"v 1 2 3\nply\nOFF",
+    ];
     for start in starts {
         let bytes = binary_stl(start, 3);
         let soup = read_bytes(&bytes, Format::Stl).unwrap_or_else(|error| panic!("{error}"));
@@ -254,18 +318,27 @@ fn off_in_many_dresses() {
     let files = [
         format!("OFF\n4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
         format!("OFF 4 2 5\n{square}3 0 1 2\n4 0 1 2 3"),
-        format!("OFF # keyword\n# counts\n\n4 2 # no edges\n\n{square}# faces\n3 0 1 2 # one\n\n4 0 1 2 3\n"),
+        format!(
+            "OFF # keyword\n# counts\n\n4 2 # no edges\n\n{square}# faces\n3 0 1 2 # one\n\n4 0 1 2 3\n"
+        ),
         format!("4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
-        format!("COFF\r\n4 2 5\r\n{}3 0 1 2 255 0 0\r\n4 0 1 2 3 0.5 0.5 0.5 1\r\n", with("255 0 0 255")),
+        format!(
+            "COFF\r\n4 2 5\r\n{}3 0 1 2 255 0 0\r\n4 0 1 2 3 0.5 0.5 0.5 1\r\n",
+            with("255 0 0 255")
+        ),
         format!("NOFF\n4 2 5\n{}3 0 1 2 7\n4 0 1 2 3\n", with("0 0 1")),
-        format!("STCNOFF\n4 2 5\n{}3 0 1 2\n4 0 1 2 3\n", with("0 0 1 1 0 0 1 .5 .5")),
+        format!(
+            "STCNOFF\n4 2 5\n{}3 0 1 2\n4 0 1 2 3\n",
+            with("0 0 1 1 0 0 1 .5 .5")
+        ),
         format!("off\n4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
         format!("OFF4 2 5\n{square}3 0 1 2\n4 0 1 2 3\n"),
         format!("\nOff4\n2\n{square}3 0 1 2\n4 0 1 2 3\n").replace("4\n2", "4 2"),
         format!("cnoff4 2 0\n{}3 0 1 2\n4 0 1 2 3\n", with("0 0 1 1 0 0 1")),
     ];
     for file in files {
-        let soup = read_bytes(file.as_bytes(), Format::Off).unwrap_or_else(|error| panic!("{error}\n{file}"));
+        let soup = read_bytes(file.as_bytes(), Format::Off)
+            .unwrap_or_else(|error| panic!("{error}\n{file}"));
         assert_eq!(soup.positions, SQUARE, "{file}");
         assert_eq!(polygons(&soup), [&[0, 1, 2][..], &[0, 1, 2, 3]], "{file}");
     }
@@ -276,8 +349,8 @@ fn off_in_many_dresses() {
 fn off_columns_are_read_under_all_keywords() {
     let (normal, colour, texture) = ([0.6, 0.0, -0.8], [0.25, 0.5, 1.0, 0.75], [3.5, -2.0]);
     for keyword in [
-        "OFF", "NOFF", "COFF", "STOFF", "CNOFF", "NCOFF", "STNOFF", "NSTOFF", "STCOFF", "CSTOFF", "STCNOFF",
-        "STNCOFF", "CNSTOFF", "noff", "stoff", "stcnoff", "StCnOff",
+        "OFF", "NOFF", "COFF", "STOFF", "CNOFF", "NCOFF", "STNOFF", "NSTOFF", "STCOFF", "CSTOFF",
+        "STCNOFF", "STNCOFF", "CNSTOFF", "noff", "stoff", "stcnoff", "StCnOff",
     ] {
         for glued in [" ", "\n", ""] {
             for opacity in [3, 4] {
@@ -297,19 +370,28 @@ fn off_columns_are_read_under_all_keywords() {
                 let text = format!(
                     "{keyword}{glued}3 1 3\n0 0 0{columns}\n1 0 0{columns}\n0 1 0{columns}\n3 0 1 2\n"
                 );
-                let soup =
-                    read_bytes(text.as_bytes(), Format::Off).unwrap_or_else(|why| panic!("{why}\n{text}"));
+                let soup = read_bytes(text.as_bytes(), Format::Off)
+                    .unwrap_or_else(|why| panic!("{why}\n{text}"));
                 let mut expected: Vec<(&str, &[f64])> = Vec::new();
                 expected.extend(has("N").then_some(("normals", &normal[..])));
                 expected.extend(has("T").then_some(("texture coordinates", &texture[..])));
                 expected.extend(has("C").then_some(("colours", &colour[..opacity])));
-                let found: Vec<(&str, &[f64])> =
-                    soup.channels.iter().map(|own| (own.name.as_str(), own.value(2))).collect();
+                let found: Vec<(&str, &[f64])> = soup
+                    .channels
+                    .iter()
+                    .map(|own| (own.name.as_str(), own.value(2)))
+                    .collect();
                 assert_eq!(found, expected, "{text}");
                 assert!(
-                    soup.channels.iter().all(|own| own.domain == Domain::Vertex && own.indices.len() == 3)
+                    soup.channels
+                        .iter()
+                        .all(|own| own.domain == Domain::Vertex && own.indices.len() == 3)
                 );
-                assert_eq!(soup.left_out, if has("N") { vec!["normals"] } else { vec![] }, "{text}");
+                assert_eq!(
+                    soup.left_out,
+                    if has("N") { vec!["normals"] } else { vec![] },
+                    "{text}"
+                );
             }
         }
     }
@@ -323,7 +405,11 @@ fn off_keyword_that_touches_the_counts() {
         .iter()
         .map(|face| {
             let [a, b, c] = [0, 1, 2].map(|i| soup.positions[face[i] as usize]);
-            let cross = [b[1] * c[2] - b[2] * c[1], b[2] * c[0] - b[0] * c[2], b[0] * c[1] - b[1] * c[0]];
+            let cross = [
+                b[1] * c[2] - b[2] * c[1],
+                b[2] * c[0] - b[0] * c[2],
+                b[0] * c[1] - b[1] * c[0],
+            ];
             (0..3).map(|i| a[i] * cross[i]).sum::<f64>() / 6.0
         })
         .sum();
@@ -333,14 +419,20 @@ fn off_keyword_that_touches_the_counts() {
 
 #[test]
 fn extensions_in_capitals_and_small_letters() {
-    for (name, format) in
-        [("a.obj", Format::Obj), ("b.PLY", Format::Ply), ("c.d.Stl", Format::Stl), ("e.oFF", Format::Off)]
-    {
+    for (name, format) in [
+        ("a.obj", Format::Obj),
+        ("b.PLY", Format::Ply),
+        ("c.d.Stl", Format::Stl),
+        ("e.oFF", Format::Off),
+    ] {
         assert_eq!(Format::from_path(name.as_ref()).unwrap(), format);
     }
-    for (name, expected) in
-        [("a.txt", "'txt'"), ("obj", "no extension"), (".obj", "no extension"), ("", "no extension")]
-    {
+    for (name, expected) in [
+        ("a.txt", "'txt'"),
+        ("obj", "no extension"),
+        (".obj", "no extension"),
+        ("", "no extension"),
+    ] {
         let message = Format::from_path(name.as_ref()).unwrap_err().to_string();
         assert!(message.contains(expected), "{message}");
     }
@@ -348,7 +440,11 @@ fn extensions_in_capitals_and_small_letters() {
 
 /// What reading `bytes` says that it left out.
 fn find(soup: &PolygonSoup, name: &str) -> Channel {
-    soup.channels.iter().find(|channel| channel.name == name).unwrap_or_else(|| panic!("{name}")).clone()
+    soup.channels
+        .iter()
+        .find(|channel| channel.name == name)
+        .unwrap_or_else(|| panic!("{name}"))
+        .clone()
 }
 
 fn left_out(bytes: &[u8], format: Format) -> Vec<String> {
@@ -363,11 +459,17 @@ fn what_an_obj_file_held_and_a_soup_cannot_is_named() {
         // No corner names the texture coordinate, and no face stands under a material.
         ("vt 0 0\nvn 0 0 1\n", &["texture coordinates", "normals"]),
         ("mtllib a.mtl\n", &["materials"]),
-        ("l 1 2\np 3\nvp 0.5\n", &["lines", "points", "points in parameter space"]),
+        (
+            "l 1 2\np 3\nvp 0.5\n",
+            &["lines", "points", "points in parameter space"],
+        ),
         ("v 0 0 1 0.5 0.5\n", &["colours"]),
         ("v 0 0 1 1 0.5 red 0.5\n", &["colours"]),
         ("v 0 0 1 0.5\n", &["weights of vertices"]),
-        ("curv 0 1 1 2\ncurv 0 1 1 2\nbevel on\n", &["statements 'curv'", "statements 'bevel'"]),
+        (
+            "curv 0 1 1 2\ncurv 0 1 1 2\nbevel on\n",
+            &["statements 'curv'", "statements 'bevel'"],
+        ),
         ("t hole 1/0/0 0\n", &["tags 'hole'"]),
         // Nothing is said of what says nothing.
         ("g\no\ns off\ns 0\n", &[]),
@@ -388,20 +490,38 @@ fn obj_files_hold_channels() {
     let text = "mtllib a.mtl b.mtl\no car\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0.5 0\nv 1 1 0\nv 0 1 0 0 0 1\n\
         vt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0.25 0.125\nf 1/1 2/2 3/3\nusemtl red\ng wheel left\nf 1/-1 3/3 4\n";
     let soup = obj(text);
-    assert_eq!(soup.left_out, ["that 1 corner has no texture coordinates: 0 0 takes their place"]);
+    assert_eq!(
+        soup.left_out,
+        ["that 1 corner has no texture coordinates: 0 0 takes their place"]
+    );
     assert_eq!(soup.material_libraries, ["a.mtl b.mtl"]);
     let [texture, colour, object, group, material] = &soup.channels[..] else {
         panic!("{:?}", soup.channels)
     };
     let values = |channel: &Channel| -> Vec<Vec<f64>> {
-        (0..channel.indices.len()).map(|element| channel.value(element).to_vec()).collect()
+        (0..channel.indices.len())
+            .map(|element| channel.value(element).to_vec())
+            .collect()
     };
-    let places =
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.25, 0.125], [1.0, 1.0, 0.0], [0.0; 3]];
+    let places = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.5, 0.25, 0.125],
+        [1.0, 1.0, 0.0],
+        [0.0; 3],
+    ];
     assert_eq!(values(texture), places);
-    assert_eq!(values(colour), [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0; 3], [0.0, 0.0, 1.0]]);
+    assert_eq!(
+        values(colour),
+        [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [1.0; 3], [0.0, 0.0, 1.0]]
+    );
     let names = |channel: &Channel| -> Vec<String> {
-        channel.indices.iter().map(|&number| channel.labels[number as usize].clone()).collect()
+        channel
+            .indices
+            .iter()
+            .map(|&number| channel.labels[number as usize].clone())
+            .collect()
     };
     assert_eq!(names(object), ["car", "car"]);
     assert_eq!(names(group), ["", "wheel left"]);
@@ -409,8 +529,13 @@ fn obj_files_hold_channels() {
 
     // And back again.
     let triangles = [[0, 1, 2], [0, 2, 3]];
-    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
-    let output = Output::new(surface).channels(&soup.channels).material_libraries(&soup.material_libraries);
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &triangles,
+    };
+    let output = Output::new(surface)
+        .channels(&soup.channels)
+        .material_libraries(&soup.material_libraries);
     let mut bytes = Vec::new();
     write_to(&mut bytes, Format::Obj, &output, &WriteOptions::default()).unwrap();
     let again = obj(std::str::from_utf8(&bytes).unwrap());
@@ -418,7 +543,11 @@ fn obj_files_hold_channels() {
     for (now, before) in again.channels.iter().zip(&soup.channels) {
         let is_named = !before.labels.is_empty();
         assert!(
-            if is_named { names(now) == names(before) } else { values(now) == values(before) },
+            if is_named {
+                names(now) == names(before)
+            } else {
+                values(now) == values(before)
+            },
             "{}",
             now.name
         );
@@ -452,7 +581,9 @@ fn ply_files_hold_channels() {
     let soup = read_bytes(text.as_bytes(), Format::Ply).unwrap();
     assert!(soup.left_out.is_empty(), "{:?}", soup.left_out);
     let values = |channel: &Channel| -> Vec<f64> {
-        (0..channel.indices.len()).flat_map(|element| channel.value(element).to_vec()).collect()
+        (0..channel.indices.len())
+            .flat_map(|element| channel.value(element).to_vec())
+            .collect()
     };
     let check = |soup: &PolygonSoup, expects_places: bool| {
         let colours = find(soup, "red,green,blue,alpha");
@@ -469,16 +600,28 @@ fn ply_files_hold_channels() {
         let corners = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.5, 0.5, 0.25, 0.25, 0.0, 1.0];
         assert_eq!(values(&find(soup, "texcoord")), corners);
         if expects_places {
-            assert_eq!(values(&find(soup, "s,t")), [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]);
+            assert_eq!(
+                values(&find(soup, "s,t")),
+                [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+            );
         }
     };
     check(&soup, true);
     let triangles = [[0, 1, 2], [0, 2, 3]];
-    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &triangles,
+    };
     for ascii in [true, false] {
         let mut bytes = Vec::new();
         let output = Output::new(surface).channels(&soup.channels);
-        write_to(&mut bytes, Format::Ply, &output, &WriteOptions::default().ascii(ascii)).unwrap();
+        write_to(
+            &mut bytes,
+            Format::Ply,
+            &output,
+            &WriteOptions::default().ascii(ascii),
+        )
+        .unwrap();
         let again = read_bytes(&bytes, Format::Ply).unwrap();
         assert!(again.left_out.is_empty(), "{:?}", again.left_out);
         check(&again, true);
@@ -507,9 +650,18 @@ fn ply_channels_that_do_not_fit_are_told() {
     };
     let told = |heat: &str, list: &str| left_out(ply(heat, list).as_bytes(), Format::Ply);
     assert!(told("1", "6 0 0 1 0 1 1").is_empty());
-    assert_eq!(told("nan", "6 0 0 1 0 1 1"), ["vertex properties heat (not all finite)"]);
-    assert_eq!(told("1", "4 0 0 1 0"), ["face properties texcoord (not two numbers for each corner)"]);
-    assert_eq!(told("1", "0"), ["face properties texcoord (not two numbers for each corner)"]);
+    assert_eq!(
+        told("nan", "6 0 0 1 0 1 1"),
+        ["vertex properties heat (not all finite)"]
+    );
+    assert_eq!(
+        told("1", "4 0 0 1 0"),
+        ["face properties texcoord (not two numbers for each corner)"]
+    );
+    assert_eq!(
+        told("1", "0"),
+        ["face properties texcoord (not two numbers for each corner)"]
+    );
 }
 
 #[test]
@@ -521,18 +673,26 @@ fn what_a_ply_file_held_and_a_soup_cannot_is_named() {
     // Of normals one number says nothing; red and flags are carried.
     let named = ["vertex properties nx", "element edge"];
     assert_eq!(left_out(ply.as_bytes(), Format::Ply), named);
-    assert_eq!(left_out(format!("{ply} \n\n").as_bytes(), Format::Ply), named);
+    assert_eq!(
+        left_out(format!("{ply} \n\n").as_bytes(), Format::Ply),
+        named
+    );
     let more = left_out(format!("{ply}\n4 5\n").as_bytes(), Format::Ply);
     assert_eq!(more[2..], ["4 bytes after the last element"]);
-    let surface =
-        Triangles { positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], triangles: &[[0, 1, 2]] };
+    let surface = Triangles {
+        positions: &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        triangles: &[[0, 1, 2]],
+    };
     let normals = [[0.0, 0.0, 1.0]; 3];
     let mut binary = Vec::new();
     let output = Output::new(surface).normals(&normals);
     write_to(&mut binary, Format::Ply, &output, &WriteOptions::default()).unwrap();
     assert_eq!(left_out(&binary, Format::Ply), ["normals"]);
     binary.push(7);
-    assert_eq!(left_out(&binary, Format::Ply), ["normals", "1 byte after the last element"]);
+    assert_eq!(
+        left_out(&binary, Format::Ply),
+        ["normals", "1 byte after the last element"]
+    );
 }
 
 #[test]
@@ -543,49 +703,88 @@ fn stl_solids_and_attributes_are_read_and_written_back() {
              endsolid{name}\n"
         )
     };
-    let bytes = [solid(" a b"), solid(""), solid(" gr\u{f6}\u{df}e"), solid(" a b")].concat();
+    let bytes = [
+        solid(" a b"),
+        solid(""),
+        solid(" gr\u{f6}\u{df}e"),
+        solid(" a b"),
+    ]
+    .concat();
     let soup = read_bytes(bytes.as_bytes(), Format::Stl).unwrap();
     assert!(
         soup.left_out.is_empty()
-            && read_bytes(solid("").as_bytes(), Format::Stl).unwrap().channels.is_empty()
+            && read_bytes(solid("").as_bytes(), Format::Stl)
+                .unwrap()
+                .channels
+                .is_empty()
     );
     let names = find(&soup, "names of objects");
     assert_eq!(
         (names.indices.as_slice(), names.labels.as_slice()),
-        (&[0, 1, 2, 0][..], &["a b", "", "gr\u{f6}\u{df}e"].map(str::to_owned)[..])
+        (
+            &[0, 1, 2, 0][..],
+            &["a b", "", "gr\u{f6}\u{df}e"].map(str::to_owned)[..]
+        )
     );
-    let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|face| face.try_into().unwrap()).collect();
-    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let triangles: Vec<[u32; 3]> = soup
+        .faces
+        .iter()
+        .map(|face| face.try_into().unwrap())
+        .collect();
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &triangles,
+    };
     let write = |ascii: bool, channels: &[Channel]| {
         let mut bytes = Vec::new();
         let output = Output::new(surface).channels(channels);
-        write_to(&mut bytes, Format::Stl, &output, &WriteOptions::default().ascii(ascii)).unwrap();
+        write_to(
+            &mut bytes,
+            Format::Stl,
+            &output,
+            &WriteOptions::default().ascii(ascii),
+        )
+        .unwrap();
         bytes
     };
     // What is a solid in one file is one in the other, line by line.
     let lines = |bytes: &[u8]| -> Vec<String> {
         let text = String::from_utf8(bytes.to_vec()).unwrap();
-        text.lines().filter(|line| line.contains("solid")).map(str::to_owned).collect()
+        text.lines()
+            .filter(|line| line.contains("solid"))
+            .map(str::to_owned)
+            .collect()
     };
     assert_eq!(lines(&write(true, &soup.channels)), lines(bytes.as_bytes()));
     let mut binary = write(false, &soup.channels);
-    assert!(read_bytes(&binary, Format::Stl).unwrap().channels.is_empty());
+    assert!(
+        read_bytes(&binary, Format::Stl)
+            .unwrap()
+            .channels
+            .is_empty()
+    );
     // The two bytes at the end of the second facet and of the last.
     binary[84 + 50 + 48..84 + 100].copy_from_slice(&0x8421u16.to_le_bytes());
     binary[84 + 150 + 48..].copy_from_slice(&7u16.to_le_bytes());
     let soup = read_bytes(&binary, Format::Stl).unwrap();
-    let values: Vec<f64> = (0..4).map(|face| find(&soup, "attributes of facets").value(face)[0]).collect();
+    let values: Vec<f64> = (0..4)
+        .map(|face| find(&soup, "attributes of facets").value(face)[0])
+        .collect();
     assert_eq!(values, [0.0, f64::from(0x8421), 0.0, 7.0]);
     assert_eq!(write(false, &soup.channels), binary);
     binary.extend([0; 3]);
-    assert_eq!(left_out(&binary, Format::Stl), ["3 bytes after the last facet"]);
+    assert_eq!(
+        left_out(&binary, Format::Stl),
+        ["3 bytes after the last facet"]
+    );
 }
 
 #[test]
 fn what_an_off_file_held_and_a_soup_cannot_is_named() {
     let off = |keyword: &str, column: &str, face: &str, end: &str| {
-        let text =
-            format!("{keyword}\n3 1 0\n0 0 0{column}\n1 0 0{column}\n0 1 0{column}\n3 0 1 2{face}\n{end}");
+        let text = format!(
+            "{keyword}\n3 1 0\n0 0 0{column}\n1 0 0{column}\n0 1 0{column}\n3 0 1 2{face}\n{end}"
+        );
         left_out(text.as_bytes(), Format::Off)
     };
     assert!(off("OFF", "", "", "").is_empty());
@@ -596,26 +795,45 @@ fn what_an_off_file_held_and_a_soup_cannot_is_named() {
         assert!(off("COFF", column, column, "").is_empty(), "{column}");
     }
     for column in [" 300 0 0", " red", " 1.5 0 0", " -1 0 0", " 7", " 1 2"] {
-        assert_eq!(off("OFF", column, column, ""), ["colours", "colours of faces"], "{column}");
+        assert_eq!(
+            off("OFF", column, column, ""),
+            ["colours", "colours of faces"],
+            "{column}"
+        );
     }
     assert_eq!(off("NOFF", " 0 0 1", "", ""), ["normals"]);
     // The normal comes first, so that the colour is 255 0 0 1.
-    assert_eq!(off("STCNOFF", " 0 0 1 255 0 0 1 0.5 0.5", "", ""), ["normals"]);
+    assert_eq!(
+        off("STCNOFF", " 0 0 1 255 0 0 1 0.5 0.5", "", ""),
+        ["normals"]
+    );
     assert_eq!(off("NOFF", " 0 0", "", ""), ["normals"]);
     assert_eq!(off("STOFF", " 0.5", "", ""), ["texture coordinates"]);
     assert_eq!(off("STOFF", " 0.5 x", "", ""), ["texture coordinates"]);
     // Announced, and not there.
     assert!(off("STNOFF", "", "", "").is_empty());
-    assert_eq!(off("OFF", "", "", "3 0 1 2\n"), ["what stands after the last face"]);
+    assert_eq!(
+        off("OFF", "", "", "3 0 1 2\n"),
+        ["what stands after the last face"]
+    );
 }
 
 /// Colours of vertices and faces, in both of the ways in which files have them: read, and written as they were.
 #[test]
 fn off_colours_are_read_and_written_back() {
     for (of_vertices, of_faces, expected) in [
-        (["255 0 0 51", "0 255 0 255", "0 0 255 0", "0 0 0 255"], "51 102 255 255", [1.0, 0.0, 0.0, 0.2]),
         (
-            ["1.0 0.0 0.0 0.2", "0.0 1.0 0.0 1.0", "0.0 0.0 1.0 0.0", "0.0 0.0 0.0 1.0"],
+            ["255 0 0 51", "0 255 0 255", "0 0 255 0", "0 0 0 255"],
+            "51 102 255 255",
+            [1.0, 0.0, 0.0, 0.2],
+        ),
+        (
+            [
+                "1.0 0.0 0.0 0.2",
+                "0.0 1.0 0.0 1.0",
+                "0.0 0.0 1.0 0.0",
+                "0.0 0.0 0.0 1.0",
+            ],
             "0.2 0.4 1.0 1.0",
             [1.0, 0.0, 0.0, 0.2],
         ),
@@ -631,7 +849,10 @@ fn off_colours_are_read_and_written_back() {
             assert!((faces.value(1)[i] - [0.2, 0.4, 1.0, 1.0][i]).abs() < 1e-7);
         }
         let triangles = [[0, 1, 2], [0, 2, 3]];
-        let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+        let surface = Triangles {
+            positions: &soup.positions,
+            triangles: &triangles,
+        };
         let mut bytes = Vec::new();
         let output = Output::new(surface).channels(&soup.channels);
         write_to(&mut bytes, Format::Off, &output, &WriteOptions::default()).unwrap();
@@ -641,7 +862,10 @@ fn off_colours_are_read_and_written_back() {
     let text = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0 0 128 255\n";
     let soup = read_bytes(text.as_bytes(), Format::Off).unwrap();
     assert_eq!(find(&soup, "colours of faces").value(0), [0.666; 3]);
-    assert_eq!(find(&soup, "colours of faces").value(1), [0.0, 128.0 / 255.0, 1.0]);
+    assert_eq!(
+        find(&soup, "colours of faces").value(1),
+        [0.0, 128.0 / 255.0, 1.0]
+    );
 }
 
 /// Names in any encoding come out as the bytes that they were.
@@ -650,13 +874,22 @@ fn obj_names_are_the_same_bytes_again() {
     let text =
         b"mtllib gr\xf6\xdfe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\ng \xff\xfe \xe6\x9c\xa8\nusemtl \x80\nf 1 2 3\n";
     let soup = read_bytes(text, Format::Obj).unwrap();
-    let surface = Triangles { positions: &soup.positions, triangles: &[[0, 1, 2]] };
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &[[0, 1, 2]],
+    };
     let mut bytes = Vec::new();
-    let output = Output::new(surface).channels(&soup.channels).material_libraries(&soup.material_libraries);
+    let output = Output::new(surface)
+        .channels(&soup.channels)
+        .material_libraries(&soup.material_libraries);
     write_to(&mut bytes, Format::Obj, &output, &WriteOptions::default()).unwrap();
-    for line in
-        text.split(|&b| b == b'\n').filter(|line| line.first().is_some_and(|&c| c != b'v' && c != b'f'))
+    for line in text
+        .split(|&b| b == b'\n')
+        .filter(|line| line.first().is_some_and(|&c| c != b'v' && c != b'f'))
     {
-        assert!(bytes.split(|&b| b == b'\n').any(|own| own == line), "{line:x?}");
+        assert!(
+            bytes.split(|&b| b == b'\n').any(|own| own == line),
+            "{line:x?}"
+        );
     }
 }

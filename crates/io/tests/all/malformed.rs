@@ -1,14 +1,22 @@
 //! Damaged files: each error names the place, what was expected and what was found, and none makes room for
 //! what the file does not hold.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
 
 use limitmesh_io::{Format, read, read_bytes};
 
 #[track_caller]
 fn refuses(format: Format, bytes: impl AsRef<[u8]>, message: &str) {
     match read_bytes(bytes.as_ref(), format) {
-        Ok(soup) => panic!("read {} vertices, {} faces", soup.positions.len(), soup.faces.len()),
+        Ok(soup) => panic!(
+            "read {} vertices, {} faces",
+            soup.positions.len(),
+            soup.faces.len()
+        ),
         Err(error) => assert_eq!(error.to_string(), message),
     }
 }
@@ -16,19 +24,49 @@ fn refuses(format: Format, bytes: impl AsRef<[u8]>, message: &str) {
 #[test]
 fn obj() {
     let refuses = |text: &str, message: &str| refuses(Format::Obj, text, message);
-    refuses("v 0 0\n", "OBJ line 1, vertex 0: expected a finite number for z, found the end of the line");
+    refuses(
+        "v 0 0\n",
+        "OBJ line 1, vertex 0: expected a finite number for z, found the end of the line",
+    );
     refuses(
         "v 0 0 0\nv 1",
         "OBJ line 2, vertex 1: expected a finite number for y, found the end of the file",
     );
-    refuses("v 0 0 0\n\nv 1 x 2\n", "OBJ line 3, vertex 1: expected a finite number for y, found 'x'");
-    refuses("v inf 0 0\n", "OBJ line 1, vertex 0: expected a finite number for x, found 'inf'");
-    refuses("v 0 -NaN 0\n", "OBJ line 1, vertex 0: expected a finite number for y, found '-NaN'");
-    refuses("v 0 0 1e999\n", "OBJ line 1, vertex 0: expected a finite number for z, found '1e999'");
-    refuses("v 0 0,5 1\n", "OBJ line 1, vertex 0: expected a finite number for y, found '0,5'");
+    refuses(
+        "v 0 0 0\n\nv 1 x 2\n",
+        "OBJ line 3, vertex 1: expected a finite number for y, found 'x'",
+    );
+    refuses(
+        "v inf 0 0\n",
+        "OBJ line 1, vertex 0: expected a finite number for x, found 'inf'",
+    );
+    refuses(
+        "v 0 -NaN 0\n",
+        "OBJ line 1, vertex 0: expected a finite number for y, found '-NaN'",
+    );
+    refuses(
+        "v 0 0 1e999\n",
+        "OBJ line 1, vertex 0: expected a finite number for z, found '1e999'",
+    );
+    refuses(
+        "v 0 0,5 1\n",
+        "OBJ line 1, vertex 0: expected a finite number for y, found '0,5'",
+    );
     let form = "expected a vertex index from 1, or one from -1 to -1, counting back from the latest vertex";
-    for word in ["0", "-2", "x", "1.5", "/1", "99999999999999999999", "4294967296", "-9223372036854775808"] {
-        refuses(&format!("v 0 0 0\nf 1 {word} 1\n"), &format!("OBJ line 2, face 0: {form}, found '{word}'"));
+    for word in [
+        "0",
+        "-2",
+        "x",
+        "1.5",
+        "/1",
+        "99999999999999999999",
+        "4294967296",
+        "-9223372036854775808",
+    ] {
+        refuses(
+            &format!("v 0 0 0\nf 1 {word} 1\n"),
+            &format!("OBJ line 2, face 0: {form}, found '{word}'"),
+        );
     }
     refuses(
         "v 0 0 0\nf 1 1 1\nf 1 3 2\nv 0 0 0\n",
@@ -47,21 +85,40 @@ fn obj() {
 #[test]
 fn obj_tags() {
     let refuses = |tag: &str, message: &str| {
-        refuses(Format::Obj, format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{tag}\n"), message);
+        refuses(
+            Format::Obj,
+            format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{tag}\n"),
+            message,
+        );
     };
     refuses(
         "t crease 2/1/0 1 3 10",
         "OBJ line 5: a tag names vertex 3, but the last vertex is 2 (tags count from 0)",
     );
-    refuses("t crease 2/1/0 1 -1 10", "OBJ line 5: expected a vertex index from 0 in a tag, found '-1'");
+    refuses(
+        "t crease 2/1/0 1 -1 10",
+        "OBJ line 5: expected a vertex index from 0 in a tag, found '-1'",
+    );
     refuses(
         "t crease 2/1/0 1 2",
         "OBJ line 5: expected a sharpness of at least 0, found the end of the line",
     );
-    refuses("t corner 1/1/0 1 -2", "OBJ line 5: expected a sharpness of at least 0, found '-2'");
-    refuses("t corner 1/1/0 1 nan", "OBJ line 5: expected a sharpness of at least 0, found 'nan'");
-    refuses("t corner x", "OBJ line 5: expected the tag's counts, as in 2/1/0, found 'x'");
-    refuses("t corner 1", "OBJ line 5: expected the tag's counts, as in 2/1/0, found '1'");
+    refuses(
+        "t corner 1/1/0 1 -2",
+        "OBJ line 5: expected a sharpness of at least 0, found '-2'",
+    );
+    refuses(
+        "t corner 1/1/0 1 nan",
+        "OBJ line 5: expected a sharpness of at least 0, found 'nan'",
+    );
+    refuses(
+        "t corner x",
+        "OBJ line 5: expected the tag's counts, as in 2/1/0, found 'x'",
+    );
+    refuses(
+        "t corner 1",
+        "OBJ line 5: expected the tag's counts, as in 2/1/0, found '1'",
+    );
     refuses(
         "t crease 3/1/0 0 1 2 10",
         "OBJ line 5: the tag has 3 vertices and 1 sharpnesses; each tagged place needs 2 of the former, \
@@ -97,15 +154,30 @@ fn ply_headers_of_hundreds_of_thousands_of_lines() {
 #[test]
 fn ply_headers() {
     let refuses = |text: &str, message: &str| refuses(Format::Ply, text, message);
-    refuses("ply\n", "PLY line 2: expected end_header, found the end of the file");
-    refuses("plx\n", "PLY line 1: expected the word ply alone on the first line, found 'plx'");
-    refuses("ply\nformat ascii 2.0\nend_header\n", "PLY line 2: expected version 1.0, found '2.0'");
+    refuses(
+        "ply\n",
+        "PLY line 2: expected end_header, found the end of the file",
+    );
+    refuses(
+        "plx\n",
+        "PLY line 1: expected the word ply alone on the first line, found 'plx'",
+    );
+    refuses(
+        "ply\nformat ascii 2.0\nend_header\n",
+        "PLY line 2: expected version 1.0, found '2.0'",
+    );
     refuses(
         "ply\nformat binary 1.0\n",
         "PLY line 2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'",
     );
-    refuses("ply\nend_header\n", "PLY line 2: the header names no format, such as ascii 1.0");
-    refuses("ply\nformat ascii 1.0\nend_header\n", "PLY line 3: the header has no element vertex");
+    refuses(
+        "ply\nend_header\n",
+        "PLY line 2: the header names no format, such as ascii 1.0",
+    );
+    refuses(
+        "ply\nformat ascii 1.0\nend_header\n",
+        "PLY line 3: the header has no element vertex",
+    );
     refuses(
         "ply\nformat ascii 1.0\nelement vertex -1\n",
         "PLY line 3: expected the number of elements, found '-1'",
@@ -158,21 +230,44 @@ fn ply_headers() {
 
 #[test]
 fn ply_text() {
-    let header = format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 2\n{FACE}end_header\n");
-    let refuses = |body: &str, message: &str| refuses(Format::Ply, format!("{header}{body}"), message);
-    refuses("0 0 0\n1 0\n0 1 0\n", "PLY line 11, vertex 1: expected a number, found the end of the line");
+    let header =
+        format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 2\n{FACE}end_header\n");
+    let refuses =
+        |body: &str, message: &str| refuses(Format::Ply, format!("{header}{body}"), message);
+    refuses(
+        "0 0 0\n1 0\n0 1 0\n",
+        "PLY line 11, vertex 1: expected a number, found the end of the line",
+    );
     refuses(
         "0 0 0\n1 0 0 5\n0 1 0\n",
         "PLY line 11, vertex 1: expected the end of the line after the last property, found '5'",
     );
-    refuses("0 0 0\n1 0 nan\n0 1 0\n", "PLY line 11, vertex 1: expected a finite number for z, found NaN");
-    refuses("0 0 0\n1 0 0\n1 0 -\n", "PLY line 12, vertex 2: expected a number, found '-'");
+    refuses(
+        "0 0 0\n1 0 nan\n0 1 0\n",
+        "PLY line 11, vertex 1: expected a finite number for z, found NaN",
+    );
+    refuses(
+        "0 0 0\n1 0 0\n1 0 -\n",
+        "PLY line 12, vertex 2: expected a number, found '-'",
+    );
     let vertices = "0 0 0\n1 0 0\n0 1 0\n";
     let with = |faces: &str, message: &str| refuses(&format!("{vertices}{faces}"), message);
-    with("3 0 1 2\n", "PLY line 14, face 1: expected an integer, found the end of the file");
-    with("3 0 1 2\n3 0 1", "PLY line 14, face 1: expected a number, found the end of the file");
-    with("3 0 1 2\n3 0 1 2.0\n", "PLY line 14, face 1: expected an integer, found '2.0'");
-    with("3 0 1 2\n-3 0 1 2\n", "PLY line 14, face 1: expected the length of a list, found -3");
+    with(
+        "3 0 1 2\n",
+        "PLY line 14, face 1: expected an integer, found the end of the file",
+    );
+    with(
+        "3 0 1 2\n3 0 1",
+        "PLY line 14, face 1: expected a number, found the end of the file",
+    );
+    with(
+        "3 0 1 2\n3 0 1 2.0\n",
+        "PLY line 14, face 1: expected an integer, found '2.0'",
+    );
+    with(
+        "3 0 1 2\n-3 0 1 2\n",
+        "PLY line 14, face 1: expected the length of a list, found -3",
+    );
     with(
         "3 0 1 3\n3 0 1 2\n",
         "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found 3",
@@ -181,7 +276,10 @@ fn ply_text() {
         "3 0 1 -1\n3 0 1 2\n",
         "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found -1",
     );
-    with("4000000000 0 1\n3 0 1 2\n", "PLY line 13, face 0: expected a number, found the end of the line");
+    with(
+        "4000000000 0 1\n3 0 1 2\n",
+        "PLY line 13, face 0: expected a number, found the end of the line",
+    );
 }
 
 #[test]
@@ -200,17 +298,25 @@ fn ply_binary() {
     with(
         &[0.0; 5],
         &[],
-        format!("PLY byte {begin}, vertex 1: expected {promise}, found 20 bytes up to the end of the file"),
+        format!(
+            "PLY byte {begin}, vertex 1: expected {promise}, found 20 bytes up to the end of the file"
+        ),
     );
     let not_finite = [0.0, 0.0, 0.0, 0.0, f32::NEG_INFINITY, 0.0, 0.0, 0.0, 0.0];
     let after = begin + 20;
-    with(&not_finite, &[], format!("PLY byte {after}, vertex 1: expected a finite number for y, found -inf"));
+    with(
+        &not_finite,
+        &[],
+        format!("PLY byte {after}, vertex 1: expected a finite number for y, found -inf"),
+    );
     let faces = begin + 36;
     let (end, from) = (faces + 1, faces + 1);
     with(
         &[0.0; 9],
         &[3],
-        format!("PLY byte {end}, face 0: expected 12 bytes from byte {from}, found the end of the file"),
+        format!(
+            "PLY byte {end}, face 0: expected 12 bytes from byte {from}, found the end of the file"
+        ),
     );
     let face = [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
     let cut = [&face[..], &face[..10]].concat();
@@ -218,7 +324,9 @@ fn ply_binary() {
     with(
         &[0.0; 9],
         &cut,
-        format!("PLY byte {end}, face 1: expected 12 bytes from byte {from}, found the end of the file"),
+        format!(
+            "PLY byte {end}, face 1: expected 12 bytes from byte {from}, found the end of the file"
+        ),
     );
     let mut beyond = [face, face].concat();
     beyond[25] = 0xff;
@@ -237,17 +345,28 @@ fn ply_binary() {
 #[test]
 fn stl_text() {
     let refuses = |text: &str, message: &str| refuses(Format::Stl, text, message);
-    refuses("solid x\n", "STL line 2: expected facet or endsolid, found the end of the file");
+    refuses(
+        "solid x\n",
+        "STL line 2: expected facet or endsolid, found the end of the file",
+    );
     refuses(
         "solid\nfacet\nouter\nloop\nvertex 0 0 0\nvertex 1 0 0",
         "STL line 6, facet 0: expected vertex, found the end of the file",
     );
-    let facet =
-        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    refuses(&format!("solid\n{facet}"), "STL line 9: expected facet or endsolid, found the end of the file");
-    refuses(&format!("solid\n{facet}endsolid\nend"), "STL line 10: expected solid, found 'end'");
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    refuses(
+        &format!("solid\n{facet}"),
+        "STL line 9: expected facet or endsolid, found the end of the file",
+    );
+    refuses(
+        &format!("solid\n{facet}endsolid\nend"),
+        "STL line 10: expected solid, found 'end'",
+    );
     let with = |from: &str, to: &str, message: &str| {
-        refuses(&format!("solid\n{facet}{}endsolid\n", facet.replacen(from, to, 1)), message);
+        refuses(
+            &format!("solid\n{facet}{}endsolid\n", facet.replacen(from, to, 1)),
+            message,
+        );
     };
     with(
         "1 0 0\nv",
@@ -259,10 +378,26 @@ fn stl_text() {
         "1 infinity 0\nv",
         "STL line 12, facet 1: expected a finite number for y, found 'infinity'",
     );
-    with("vertex 0 1 0\n", "", "STL line 13, facet 1: expected vertex, found 'endloop'");
-    with("endloop", "vertex 1 1 0\nendloop", "STL line 14, facet 1: expected endloop, found 'vertex'");
-    with("outer loop\n", "", "STL line 10, facet 1: expected outer loop, found 'vertex'");
-    with("endfacet\n", "", "STL line 15, facet 1: expected endfacet, found 'endsolid'");
+    with(
+        "vertex 0 1 0\n",
+        "",
+        "STL line 13, facet 1: expected vertex, found 'endloop'",
+    );
+    with(
+        "endloop",
+        "vertex 1 1 0\nendloop",
+        "STL line 14, facet 1: expected endloop, found 'vertex'",
+    );
+    with(
+        "outer loop\n",
+        "",
+        "STL line 10, facet 1: expected outer loop, found 'vertex'",
+    );
+    with(
+        "endfacet\n",
+        "",
+        "STL line 15, facet 1: expected endfacet, found 'endsolid'",
+    );
 }
 
 #[test]
@@ -286,10 +421,16 @@ fn stl_binary() {
         &binary(u32::MAX, 100),
         "STL byte 184, facet 2: expected 4294967295 facets of 50 bytes, as byte 80 promises, found the end of the file",
     );
-    refuses(&binary(0, 100), "STL byte 80: the file promises no facet, but 100 bytes follow");
+    refuses(
+        &binary(0, 100),
+        "STL byte 80: the file promises no facet, but 100 bytes follow",
+    );
     let mut bytes = binary(2, 100);
     bytes[84 + 50 + 12 + 8..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    refuses(&bytes, "STL byte 154, facet 1: expected a finite number, found NaN");
+    refuses(
+        &bytes,
+        "STL byte 154, facet 1: expected a finite number, found NaN",
+    );
 }
 
 #[test]
@@ -305,11 +446,26 @@ fn off() {
         "nOFF\n3\n1 1 0\n",
         "OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found 'nOFF'",
     );
-    refuses("OFF\n", "OFF line 2: expected the number of vertices, found the end of the file");
-    refuses("OFF\nx 1 0\n", "OFF line 2: expected the number of vertices, found 'x'");
-    refuses("OFF\n3 -1 0\n", "OFF line 2: expected the number of faces, found '-1'");
-    refuses("OFF\n3\n", "OFF line 2: expected the number of faces, found the end of the line");
-    refuses("OFF\n5000000000 1 0\n", "OFF line 2: expected at most 4294967295 vertices, found 5000000000");
+    refuses(
+        "OFF\n",
+        "OFF line 2: expected the number of vertices, found the end of the file",
+    );
+    refuses(
+        "OFF\nx 1 0\n",
+        "OFF line 2: expected the number of vertices, found 'x'",
+    );
+    refuses(
+        "OFF\n3 -1 0\n",
+        "OFF line 2: expected the number of faces, found '-1'",
+    );
+    refuses(
+        "OFF\n3\n",
+        "OFF line 2: expected the number of faces, found the end of the line",
+    );
+    refuses(
+        "OFF\n5000000000 1 0\n",
+        "OFF line 2: expected at most 4294967295 vertices, found 5000000000",
+    );
     refuses(
         "OFF\n3 1 0\n0 0 0\n1 0 0\n",
         "OFF line 5, vertex 2: expected a finite number for x, found the end of the file",
@@ -324,9 +480,18 @@ fn off() {
         "OFF line 5, vertex 2: expected a finite number for z, found 'nan'",
     );
     let with = |faces: &str, message: &str| with(&format!("0 0 0\n1 0 0\n0 1 0\n{faces}"), message);
-    with("3 0 1 2\n", "OFF line 7, face 1: expected the face's number of corners, found the end of the file");
-    with("3 0 1 2\n3 0 1\n", "OFF line 7, face 1: expected 3 vertex indices, found the end of the line");
-    with("3 0 1 2\n3 0 1", "OFF line 7, face 1: expected 3 vertex indices, found the end of the file");
+    with(
+        "3 0 1 2\n",
+        "OFF line 7, face 1: expected the face's number of corners, found the end of the file",
+    );
+    with(
+        "3 0 1 2\n3 0 1\n",
+        "OFF line 7, face 1: expected 3 vertex indices, found the end of the line",
+    );
+    with(
+        "3 0 1 2\n3 0 1",
+        "OFF line 7, face 1: expected 3 vertex indices, found the end of the file",
+    );
     with(
         "3 0 1 3\n3 0 1 2\n",
         "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '3'",
@@ -335,8 +500,14 @@ fn off() {
         "3 0 1 -1\n3 0 1 2\n",
         "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '-1'",
     );
-    with("3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: expected 3 vertex indices, found 'x'");
-    with("-3 0 1 x\n3 0 1 2\n", "OFF line 6, face 0: expected the face's number of corners, found '-3'");
+    with(
+        "3 0 1 x\n3 0 1 2\n",
+        "OFF line 6, face 0: expected 3 vertex indices, found 'x'",
+    );
+    with(
+        "-3 0 1 x\n3 0 1 2\n",
+        "OFF line 6, face 0: expected the face's number of corners, found '-3'",
+    );
     with(
         "999999999999 0 1 2\n3 0 1 2\n",
         "OFF line 6, face 0: expected 999999999999 vertex indices, found the end of the line",
@@ -357,14 +528,22 @@ fn counts_beyond_the_file() {
     let skipped = format!(
         "ply\nformat binary_big_endian 1.0\nelement x 4294967295\n{FACE}element vertex 0\n{XYZ}end_header\n"
     );
-    refuses(Format::Ply, ply("ascii"), "PLY line 11, vertex 1: expected a number, found the end of the file");
+    refuses(
+        Format::Ply,
+        ply("ascii"),
+        "PLY line 11, vertex 1: expected a number, found the end of the file",
+    );
     refuses(
         Format::Ply,
         ply("binary_big_endian"),
         "PLY byte 184, vertex 0: expected 4294967295 elements vertex of 12 \
          bytes each, as line 3 promises, found 6 bytes up to the end of the file",
     );
-    refuses(Format::Ply, faces, "PLY line 12, face 1: expected an integer, found the end of the file");
+    refuses(
+        Format::Ply,
+        faces,
+        "PLY line 12, face 1: expected an integer, found the end of the file",
+    );
     refuses(
         Format::Ply,
         skipped,
@@ -381,9 +560,15 @@ fn counts_beyond_the_file() {
 #[test]
 fn billions_of_nothing() {
     for encoding in ["ascii", "binary_little_endian"] {
-        let text =
-            format!("ply\nformat {encoding} 1.0\nelement x 4294967295\nelement vertex 0\n{XYZ}end_header\n");
-        assert!(read_bytes(text.as_bytes(), Format::Ply).unwrap().positions.is_empty());
+        let text = format!(
+            "ply\nformat {encoding} 1.0\nelement x 4294967295\nelement vertex 0\n{XYZ}end_header\n"
+        );
+        assert!(
+            read_bytes(text.as_bytes(), Format::Ply)
+                .unwrap()
+                .positions
+                .is_empty()
+        );
     }
 }
 
@@ -399,20 +584,33 @@ fn content_under_another_name() {
         (b"OFF\n0 0 0\n", "an OFF file", Some(Format::Off)),
         (b"# c\n\nv 0 0 0\n", "an OBJ file", Some(Format::Obj)),
         (b"mtllib x.mtl\n", "an OBJ file", Some(Format::Obj)),
-        (b"solid x\n facet normal 0 0 0\n", "an STL file", Some(Format::Stl)),
+        (
+            b"solid x\n facet normal 0 0 0\n",
+            "an STL file",
+            Some(Format::Stl),
+        ),
         (&stl, "a binary STL file", Some(Format::Stl)),
         (b"glTF\x02\0\0\0", "a binary glTF file", None),
         (b"\x1f\x8b\x08", "gzip data", None),
         (b"PK\x03\x04", "a ZIP archive", Some(Format::ThreeMf)),
         (b"{\"asset\":{}}", "JSON, as glTF is", None),
         (b"<?xml version=\"1.0\"?>", "XML or HTML", None),
-        (b"version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer, not the file itself", None),
+        (
+            b"version https://git-lfs.github.com/spec/v1\n",
+            "a Git LFS pointer, not the file itself",
+            None,
+        ),
         (b"\xff\xfev\0 \x000\0", "UTF-16 text", None),
     ];
     for (bytes, words, format) in files {
-        let is_own = |named: Format| Some(named) == format || named.is_gltf() && words.contains("glTF");
+        let is_own =
+            |named: Format| Some(named) == format || named.is_gltf() && words.contains("glTF");
         for named in Format::ALL.iter().copied().filter(|&named| !is_own(named)) {
-            refuses(named, bytes, &format!("named as {named}, but the content looks like {words}"));
+            refuses(
+                named,
+                bytes,
+                &format!("named as {named}, but the content looks like {words}"),
+            );
         }
     }
 }
@@ -429,8 +627,14 @@ fn files_that_cannot_be_read() {
     assert!(message("missing.obj").starts_with(&format!("cannot read {}: ", at("missing.obj"))));
     assert!(message("folder.obj").starts_with(&format!("cannot read {}: ", at("folder.obj"))));
     assert_eq!(message("empty.ply"), at("empty.ply: the file is empty"));
-    assert_eq!(message("ply.obj"), at("ply.obj: named as OBJ, but the content looks like a PLY file"));
-    assert_eq!(message("bad.off"), at("bad.off: OFF line 2: expected the number of faces, found 'x'"));
+    assert_eq!(
+        message("ply.obj"),
+        at("ply.obj: named as OBJ, but the content looks like a PLY file")
+    );
+    assert_eq!(
+        message("bad.off"),
+        at("bad.off: OFF line 2: expected the number of faces, found 'x'")
+    );
     assert_eq!(
         message("mesh.fbx"),
         at(
@@ -442,8 +646,13 @@ fn files_that_cannot_be_read() {
 #[test]
 fn long_and_unprintable_words_are_shortened() {
     let text = format!("v 0 0 \u{7}\u{e9}{}\n", "y".repeat(1000));
-    let message = read_bytes(text.as_bytes(), Format::Obj).unwrap_err().to_string();
-    assert!(message.contains("found '\\u{7}é") || message.contains("found 'é"), "{message}");
+    let message = read_bytes(text.as_bytes(), Format::Obj)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("found '\\u{7}é") || message.contains("found 'é"),
+        "{message}"
+    );
     assert!(message.len() < 150, "{message}");
 }
 
@@ -452,9 +661,15 @@ fn long_and_unprintable_words_are_shortened() {
 fn devices_that_never_end_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     for format in Format::ALL {
-        let path = folder.path().join("endless").with_extension(format.extension());
+        let path = folder
+            .path()
+            .join("endless")
+            .with_extension(format.extension());
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
         let error = read(&path).unwrap_err().to_string();
-        assert!(error.contains("endless") && error.contains("it is a device"), "{error}");
+        assert!(
+            error.contains("endless") && error.contains("it is a device"),
+            "{error}"
+        );
     }
 }

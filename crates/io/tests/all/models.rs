@@ -8,7 +8,10 @@ fn folder() -> Option<PathBuf> {
     let folder = std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from);
     if folder.is_none() {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
     }
     folder
 }
@@ -57,7 +60,12 @@ fn every_model_has_the_counts_of_the_list() {
     let Some(folder) = folder() else { return };
     for (name, vertices, faces, creases, corners) in COUNTS {
         let soup = read(folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
-        let met = (soup.positions.len(), soup.faces.len(), soup.creases.len(), soup.corners.len());
+        let met = (
+            soup.positions.len(),
+            soup.faces.len(),
+            soup.creases.len(),
+            soup.corners.len(),
+        );
         assert_eq!(met, (vertices, faces, creases, corners), "{name}");
     }
 }
@@ -66,7 +74,11 @@ fn every_model_has_the_counts_of_the_list() {
 #[test]
 fn tags_count_vertices_from_zero() {
     let Some(folder) = folder() else { return };
-    for name in ["rook_creased.obj", "mechpart_creased.obj", "loop_icos_semisharp.obj"] {
+    for name in [
+        "rook_creased.obj",
+        "mechpart_creased.obj",
+        "loop_icos_semisharp.obj",
+    ] {
         let mut soup = read(folder.join(name)).unwrap();
         // What was left out has not been written.
         soup.left_out.clear();
@@ -78,12 +90,22 @@ fn tags_count_vertices_from_zero() {
                 })
             })
         };
-        assert!(soup.creases.iter().all(|tag| is_edge(tag.vertices)), "{name}");
+        assert!(
+            soup.creases.iter().all(|tag| is_edge(tag.vertices)),
+            "{name}"
+        );
         let shifted = |tag: &limitmesh::mesh::CreaseTag| tag.vertices.map(|v| v.wrapping_sub(1));
-        assert!(!soup.creases.iter().all(|tag| is_edge(shifted(tag))), "{name}");
+        assert!(
+            !soup.creases.iter().all(|tag| is_edge(shifted(tag))),
+            "{name}"
+        );
     }
     let icosahedra = read(folder.join("loop_icos_semisharp.obj")).unwrap();
-    let corners: Vec<_> = icosahedra.corners.iter().map(|tag| (tag.vertex, tag.sharpness)).collect();
+    let corners: Vec<_> = icosahedra
+        .corners
+        .iter()
+        .map(|tag| (tag.vertex, tag.sharpness))
+        .collect();
     assert_eq!(corners, [(4, 2.5), (16, 4.5)]);
 }
 
@@ -102,7 +124,10 @@ fn damaged_files_say_where() {
     let Some(folder) = folder() else { return };
     let message = |name: &str| read(folder.join(name)).unwrap_err().to_string();
     let truncated = message("defects/sphere_truncated.ply");
-    assert!(truncated.contains("sphere_truncated.ply: PLY byte 4411, face "), "{truncated}");
+    assert!(
+        truncated.contains("sphere_truncated.ply: PLY byte 4411, face "),
+        "{truncated}"
+    );
     let not_finite = message("defects/inf_nan.obj");
     assert!(
         not_finite.contains("OBJ line 1, vertex 0: expected a finite number for x, found 'inf'"),
@@ -115,13 +140,21 @@ fn damaged_files_say_where() {
 fn models_survive_every_format() {
     let Some(folder) = folder() else { return };
     let target = tempfile::tempdir().unwrap();
-    for name in ["skull_low.obj", "goathead_be.ply", "featuretype.stl", "mannequin.off"] {
+    for name in [
+        "skull_low.obj",
+        "goathead_be.ply",
+        "featuretype.stl",
+        "mannequin.off",
+    ] {
         let mut soup = read(folder.join(name)).unwrap();
         // What was left out is not written here, nor what else there is beside the shape.
         soup.left_out.clear();
         soup.channels.clear();
         let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|f| f.try_into().unwrap()).collect();
-        let output = Output::new(limitmesh::Triangles { positions: &soup.positions, triangles: &triangles });
+        let output = Output::new(limitmesh::Triangles {
+            positions: &soup.positions,
+            triangles: &triangles,
+        });
         for extension in ["obj", "ply", "off"] {
             let path = target.path().join("copy").with_extension(extension);
             write(&path, &output, &WriteOptions::default()).unwrap();
@@ -129,8 +162,14 @@ fn models_survive_every_format() {
         }
         let path = target.path().join("copy.stl");
         write(&path, &output, &WriteOptions::default()).unwrap();
-        let corners =
-            soup.faces.iter().flatten().map(|&v| soup.positions[v as usize].map(|x| f64::from(x as f32)));
-        assert!(read(&path).unwrap().positions.into_iter().eq(corners), "{name} as stl");
+        let corners = soup
+            .faces
+            .iter()
+            .flatten()
+            .map(|&v| soup.positions[v as usize].map(|x| f64::from(x as f32)));
+        assert!(
+            read(&path).unwrap().positions.into_iter().eq(corners),
+            "{name} as stl"
+        );
     }
 }

@@ -7,13 +7,26 @@ use limitmesh_io::{Format, Output, Property, WriteOptions, read_bytes, splits_ve
 
 /// Two triangles that share an edge.
 const SURFACE: Triangles<'_> = Triangles {
-    positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [9.0, 9.0, 9.0]],
+    positions: &[
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [9.0, 9.0, 9.0],
+    ],
     triangles: &[[0, 1, 2], [2, 1, 3]],
 };
 
 /// By corner, with a seam at vertex 2 alone: at vertex 1 two values are as good as equal.
 fn textures(name: &str) -> Channel {
-    let values = [[0.0, 0.0], [1.0, 0.0], [0.0, 0.5], [0.25, 0.75], [1.0, 0.0], [1.0, 1.0]];
+    let values = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [0.0, 0.5],
+        [0.25, 0.75],
+        [1.0, 0.0],
+        [1.0, 1.0],
+    ];
     Channel::new(name, Semantic::TextureCoordinates, Domain::Corner, 2)
         .stored(Storage::Single)
         .with(values.concat(), (0..6).collect())
@@ -21,7 +34,13 @@ fn textures(name: &str) -> Channel {
 
 fn written(output: &Output<'_>, ascii: bool) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_to(&mut bytes, Format::Ply, output, &WriteOptions::default().ascii(ascii)).unwrap();
+    write_to(
+        &mut bytes,
+        Format::Ply,
+        output,
+        &WriteOptions::default().ascii(ascii),
+    )
+    .unwrap();
     bytes
 }
 
@@ -36,16 +55,35 @@ fn vertices_stand_for_each_value_that_files_had_at_vertices() {
             .stored(Storage::Byte)
             .with(vec![1.0, 0.0, 0.0, 0.0, 0.0, 1.0], vec![0, 0, 0, 0, 1, 1]);
         let channels = [textures(name), heat, red];
-        assert!(splits_vertices(&channels, SURFACE.triangles, SURFACE.positions.len()));
-        let normals = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]];
+        assert!(splits_vertices(
+            &channels,
+            SURFACE.triangles,
+            SURFACE.positions.len()
+        ));
+        let normals = [
+            [0.0, 0.0, 1.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.0, -1.0],
+            [0.0, -1.0, 0.0],
+        ];
         let (quality, parts) = ([0.5, 1.5, 2.5, 3.5, 4.5], [3, 4, 5, 6, 7]);
-        let properties = [Property::integers("part", &parts), Property::numbers("twice", &quality)];
-        let output = Output::new(SURFACE).normals(&normals).quality(&quality).vertex_properties(&properties);
+        let properties = [
+            Property::integers("part", &parts),
+            Property::numbers("twice", &quality),
+        ];
+        let output = Output::new(SURFACE)
+            .normals(&normals)
+            .quality(&quality)
+            .vertex_properties(&properties);
         let output = output.channels(&channels);
         let text = String::from_utf8(written(&output, true)).unwrap();
         let (header, body) = text.split_once("end_header\n").unwrap();
         for part in name.split(',') {
-            assert!(header.contains(&format!("property float {part}\n")), "{header}");
+            assert!(
+                header.contains(&format!("property float {part}\n")),
+                "{header}"
+            );
         }
         assert!(!header.contains("texcoord"), "{header}");
         // Copies come last, with all that their vertices have; what is in no triangle stays, with the first values.
@@ -77,9 +115,20 @@ fn vertices_stand_for_each_value_that_files_had_at_vertices() {
 fn without_seams_vertices_stand_once() {
     let mut smooth = textures("s,t");
     smooth.indices[3] = 2;
-    let text = String::from_utf8(written(&Output::new(SURFACE).channels(&[smooth.clone()]), true)).unwrap();
-    assert!(text.contains("element vertex 5\n") && text.contains("property float t\n"), "{text}");
-    assert!(!splits_vertices(&[smooth], SURFACE.triangles, SURFACE.positions.len()));
+    let text = String::from_utf8(written(
+        &Output::new(SURFACE).channels(&[smooth.clone()]),
+        true,
+    ))
+    .unwrap();
+    assert!(
+        text.contains("element vertex 5\n") && text.contains("property float t\n"),
+        "{text}"
+    );
+    assert!(!splits_vertices(
+        &[smooth],
+        SURFACE.triangles,
+        SURFACE.positions.len()
+    ));
 }
 
 #[test]
@@ -87,9 +136,16 @@ fn lists_by_corner_stay_lists() {
     let mut smooth = textures("texcoord");
     smooth.indices[3] = 2;
     for channel in [textures("texcoord"), smooth] {
-        let text = String::from_utf8(written(&Output::new(SURFACE).channels(&[channel]), true)).unwrap();
-        assert!(text.contains("element vertex 5\n") && !text.contains("property float s\n"), "{text}");
-        assert!(text.contains("property list uchar float texcoord\n"), "{text}");
+        let text =
+            String::from_utf8(written(&Output::new(SURFACE).channels(&[channel]), true)).unwrap();
+        assert!(
+            text.contains("element vertex 5\n") && !text.contains("property float s\n"),
+            "{text}"
+        );
+        assert!(
+            text.contains("property list uchar float texcoord\n"),
+            "{text}"
+        );
         assert!(text.contains("\n3 0 1 2 6 0 0 1 0 0 0.5\n"), "{text}");
     }
 }

@@ -40,10 +40,21 @@ fn read(bytes: &[u8]) -> PolygonSoup {
 
 fn written(soup: &PolygonSoup, ascii: bool) -> Vec<u8> {
     let triangles = [[0, 1, 2]];
-    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
-    let output = Output::new(surface).channels(&soup.channels).texture_files(&soup.texture_files);
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &triangles,
+    };
+    let output = Output::new(surface)
+        .channels(&soup.channels)
+        .texture_files(&soup.texture_files);
     let mut bytes = Vec::new();
-    write_to(&mut bytes, Format::Ply, &output, &WriteOptions::default().ascii(ascii)).unwrap();
+    write_to(
+        &mut bytes,
+        Format::Ply,
+        &output,
+        &WriteOptions::default().ascii(ascii),
+    )
+    .unwrap();
     bytes
 }
 
@@ -56,7 +67,11 @@ fn types_and_pictures_are_kept() {
     assert_eq!(text.replace("comment written by limitmesh\n", ""), TYPES);
     let binary = written(&soup, false);
     // A vertex: three doubles, 1 + 1 + 2 + 2 + 4 + 4 + 4 + 8 bytes; the face: 1 + 12 + 2 bytes.
-    let header = binary.windows(11).position(|bytes| bytes == b"end_header\n").unwrap() + 11;
+    let header = binary
+        .windows(11)
+        .position(|bytes| bytes == b"end_header\n")
+        .unwrap()
+        + 11;
     assert_eq!(binary.len() - header, 3 * (24 + 26) + 15);
     assert_eq!(written(&read(&binary), true), text.as_bytes());
 }
@@ -65,11 +80,18 @@ fn types_and_pictures_are_kept() {
 #[test]
 fn what_a_type_cannot_hold_is_written_as_a_double() {
     let mut soup = read(TYPES.as_bytes());
-    let place = soup.channels.iter().position(|channel| channel.name == "b").unwrap();
+    let place = soup
+        .channels
+        .iter()
+        .position(|channel| channel.name == "b")
+        .unwrap();
     for value in [0.5, 256.0, -1.0] {
         soup.channels[place].values[1] = value;
         let text = String::from_utf8(written(&soup, true)).unwrap();
-        assert!(text.contains("property double b\n") && text.contains("property char a\n"), "{text}");
+        assert!(
+            text.contains("property double b\n") && text.contains("property char a\n"),
+            "{text}"
+        );
         assert_eq!(read(text.as_bytes()).channels[place].values[1], value);
     }
 }
@@ -77,15 +99,26 @@ fn what_a_type_cannot_hold_is_written_as_a_double() {
 /// Colours of 16 bits stand for 0 to 1, as those of 8 do.
 #[test]
 fn colours_of_two_bytes_are_kept() {
-    let text = TYPES.replace("char a", "ushort red").replace("uchar b", "ushort green");
-    let text = text.replace("short c", "ushort blue").replace("ushort d", "float d");
+    let text = TYPES
+        .replace("char a", "ushort red")
+        .replace("uchar b", "ushort green");
+    let text = text
+        .replace("short c", "ushort blue")
+        .replace("ushort d", "float d");
     let text = text.replace("-128 0 -32768 0", "0 7 65535 0");
     let text = text.replace("127 255 32767 65535", "127 255 32767 0");
     let soup = read(text.as_bytes());
-    let colour = soup.channels.iter().find(|channel| channel.name == "red,green,blue").unwrap();
+    let colour = soup
+        .channels
+        .iter()
+        .find(|channel| channel.name == "red,green,blue")
+        .unwrap();
     assert_eq!(colour.values[..3], [0.0, 7.0 / 65535.0, 1.0]);
     let again = String::from_utf8(written(&soup, true)).unwrap();
-    assert!(again.contains("property ushort green\n") && again.contains("0 7 65535"), "{again}");
+    assert!(
+        again.contains("property ushort green\n") && again.contains("0 7 65535"),
+        "{again}"
+    );
 }
 
 /// A name with a line break would be a line of the header.
@@ -93,8 +126,17 @@ fn colours_of_two_bytes_are_kept() {
 fn names_of_pictures_with_line_breaks_are_refused() {
     let mut soup = read(TYPES.as_bytes());
     soup.texture_files = vec!["a\nelement face 7".to_owned()];
-    let surface = Triangles { positions: &soup.positions, triangles: &[[0, 1, 2]] };
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &[[0, 1, 2]],
+    };
     let output = Output::new(surface).texture_files(&soup.texture_files);
-    let error = write_to(&mut Vec::new(), Format::Ply, &output, &WriteOptions::default()).unwrap_err();
+    let error = write_to(
+        &mut Vec::new(),
+        Format::Ply,
+        &output,
+        &WriteOptions::default(),
+    )
+    .unwrap_err();
     assert!(error.to_string().contains("line break"), "{error}");
 }

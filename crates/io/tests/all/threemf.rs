@@ -19,7 +19,12 @@ fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     for (i, (name, bytes)) in parts.iter().enumerate() {
         let method = [CompressionMethod::Deflated, CompressionMethod::Stored][i % 2];
-        writer.start_file(*name, SimpleFileOptions::default().compression_method(method)).unwrap();
+        writer
+            .start_file(
+                *name,
+                SimpleFileOptions::default().compression_method(method),
+            )
+            .unwrap();
         writer.write_all(bytes).unwrap();
     }
     writer.finish().unwrap().into_inner()
@@ -30,7 +35,10 @@ fn package(model: &str, more: &[(&str, &[u8])]) -> Vec<u8> {
     let mut parts: Vec<(&str, &[u8])> = vec![
         ("[Content_Types].xml", b"<Types/>"),
         ("_rels/.rels", RELATIONSHIPS.as_bytes()),
-        ("Metadata/thumbnail.png", b"\x89PNG\r\n\x1a\n\0\0no real picture"),
+        (
+            "Metadata/thumbnail.png",
+            b"\x89PNG\r\n\x1a\n\0\0no real picture",
+        ),
         ("3D/3dmodel.model", model.as_bytes()),
     ];
     parts.extend(more);
@@ -54,16 +62,24 @@ fn raw(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
 fn text(bytes: &[u8], name: &str) -> String {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
     let mut text = String::new();
-    archive.by_name(name).unwrap().read_to_string(&mut text).unwrap();
+    archive
+        .by_name(name)
+        .unwrap()
+        .read_to_string(&mut text)
+        .unwrap();
     text
 }
 
 /// The values of an attribute in all tags of a name, empty where a tag has none.
 fn values(text: &str, tag: &str, key: &str) -> Vec<String> {
-    let tags = text.split('<').filter(|own| own.starts_with(&format!("{tag} ")));
+    let tags = text
+        .split('<')
+        .filter(|own| own.starts_with(&format!("{tag} ")));
     let value = |own: &str| {
         let found = own.split_once(&format!(" {key}=\""));
-        found.map_or_else(String::new, |(_, rest)| rest.split('"').next().unwrap().to_owned())
+        found.map_or_else(String::new, |(_, rest)| {
+            rest.split('"').next().unwrap().to_owned()
+        })
     };
     tags.map(value).collect()
 }
@@ -95,14 +111,21 @@ fn what_is_built_is_read() {
         tetrahedron("", ""),
         tetrahedron("", "")
     );
-    let build = "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 3 0 0 100\"/><item objectid=\"1\"/>";
+    let build =
+        "<item objectid=\"2\" transform=\"2 0 0 0 2 0 0 0 3 0 0 100\"/><item objectid=\"1\"/>";
     let bytes = package(&model(&resources, build), &[]);
     let package = Package::from_bytes(bytes.clone()).unwrap();
-    assert_eq!((package.object_count(), package.unit()), (2, LengthUnit::Inch));
+    assert_eq!(
+        (package.object_count(), package.unit()),
+        (2, LengthUnit::Inch)
+    );
     assert_eq!(package.object_name(0), "object 1 'a < b'");
     assert!((package.stretch(0) - 3.0).abs() < 1e-12 && package.stretch(1) == 1.0);
     let contents = package.contents();
-    assert_eq!((contents.objects[0].built, contents.objects[1].built), (3, 0));
+    assert_eq!(
+        (contents.objects[0].built, contents.objects[1].built),
+        (3, 0)
+    );
     assert_eq!((contents.items, contents.assemblies), (2, 1));
     let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
     assert_eq!((soup.positions.len(), soup.faces.len()), (12, 12));
@@ -134,10 +157,17 @@ fn only_triangles_change() {
         // Each triangle in two, in another order.
         let positions: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.1, -1e-30]).collect();
         let triangles: Vec<[u32; 3]> = (0..8).map(|i| [i, i + 1, (i + 2) % 9]).collect();
-        let source = |triangle: usize| Source { face: (7 - triangle) / 2, corners: None };
+        let source = |triangle: usize| Source {
+            face: (7 - triangle) / 2,
+            corners: None,
+        };
         let keeps = |_: &str| true;
-        let new =
-            NewTriangles { positions: &positions, triangles: &triangles, source: &source, keeps: &keeps };
+        let new = NewTriangles {
+            positions: &positions,
+            triangles: &triangles,
+            source: &source,
+            keeps: &keeps,
+        };
         package.replace(0, &new).unwrap();
         let written = package.to_bytes().unwrap();
         for ((name, new), (_, old)) in raw(&written).iter().zip(raw(&bytes)) {
@@ -167,10 +197,16 @@ fn only_triangles_change() {
 #[test]
 fn volumes_are_numbered_anew() {
     let object = |id: u32| format!("<object id=\"{id}\">{}</object>", tetrahedron("", ""));
-    let model = model(&(object(1) + &object(2)), "<item objectid=\"1\"/><item objectid=\"2\"/>");
+    let model = model(
+        &(object(1) + &object(2)),
+        "<item objectid=\"1\"/><item objectid=\"2\"/>",
+    );
     let config = "<config><object id=\"1\"><volume firstid=\"0\" lastid=\"0\"><m/></volume><volume firstid=\"1\" lastid=\"3\"/>\
                   </object><object id=\"2\"><volume firstid=\"0\" lastid=\"3\"/></object></config>";
-    let bytes = package(&model, &[("Metadata/Slic3r_PE_model.config", config.as_bytes())]);
+    let bytes = package(
+        &model,
+        &[("Metadata/Slic3r_PE_model.config", config.as_bytes())],
+    );
     let mut package = Package::from_bytes(bytes).unwrap();
     // The first triangle is a volume of its own: joined by position within volumes, and no farther.
     let own = package.object(0, true);
@@ -180,21 +216,40 @@ fn volumes_are_numbered_anew() {
     let positions = vec![[0.0; 3]; 3];
     let triangles = vec![[0, 1, 2]; 10];
     // Six from the first, given in an order of their own.
-    let source = |triangle: usize| Source { face: [0, 3, 0, 0, 1, 0, 2, 0, 0, 1][triangle], corners: None };
-    let new =
-        NewTriangles { positions: &positions, triangles: &triangles, source: &source, keeps: &|_| true };
+    let source = |triangle: usize| Source {
+        face: [0, 3, 0, 0, 1, 0, 2, 0, 0, 1][triangle],
+        corners: None,
+    };
+    let new = NewTriangles {
+        positions: &positions,
+        triangles: &triangles,
+        source: &source,
+        keeps: &|_| true,
+    };
     package.replace(0, &new).unwrap();
-    let written = text(&package.to_bytes().unwrap(), "Metadata/Slic3r_PE_model.config");
+    let written = text(
+        &package.to_bytes().unwrap(),
+        "Metadata/Slic3r_PE_model.config",
+    );
     let expected = config.replacen("lastid=\"0\"", "lastid=\"5\"", 1).replacen(
         "firstid=\"1\" lastid=\"3\"",
         "firstid=\"6\" lastid=\"9\"",
         1,
     );
     assert_eq!(written, expected);
-    let nothing = |_: usize| Source { face: 1, corners: None };
-    let new = NewTriangles { source: &nothing, ..new };
+    let nothing = |_: usize| Source {
+        face: 1,
+        corners: None,
+    };
+    let new = NewTriangles {
+        source: &nothing,
+        ..new
+    };
     let flaw = package.replace(0, &new).unwrap_err().to_string();
-    assert!(flaw.contains("the volume from triangle 0 to 0 has no triangle left"), "{flaw}");
+    assert!(
+        flaw.contains("the volume from triangle 0 to 0 has no triangle left"),
+        "{flaw}"
+    );
 }
 
 #[test]
@@ -210,7 +265,10 @@ fn objects_of_other_parts_are_found() {
         &[("3D/Objects/part_1.model", other.as_bytes())],
     );
     let package = Package::from_bytes(bytes).unwrap();
-    assert_eq!(package.object_name(0), "object 4 of 3D/Objects/part_1.model");
+    assert_eq!(
+        package.object_name(0),
+        "object 4 of 3D/Objects/part_1.model"
+    );
     assert_eq!(package.scene_soup().unwrap().positions[3], [4.5, 0.0, 3.0]);
 }
 
@@ -218,17 +276,32 @@ fn objects_of_other_parts_are_found() {
 fn triangles_become_packages() {
     let positions = [[0.1, 0.2, 0.3], [1e-300, -2.0, 1e21], [3.0, 4.0, 5.0]];
     let triangles = [[0, 1, 2]];
-    let output = Output::new(limitmesh::mesh::Triangles { positions: &positions, triangles: &triangles });
+    let output = Output::new(limitmesh::mesh::Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    });
     let write = || {
         let mut bytes = Vec::new();
-        write_to(&mut bytes, Format::ThreeMf, &output, &WriteOptions::default()).unwrap();
+        write_to(
+            &mut bytes,
+            Format::ThreeMf,
+            &output,
+            &WriteOptions::default(),
+        )
+        .unwrap();
         bytes
     };
     let bytes = write();
     assert_eq!(bytes, write());
     let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
-    assert_eq!((soup.positions.as_slice(), soup.faces.len()), (&positions[..], 1));
-    assert_eq!(values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1], "1e+21");
+    assert_eq!(
+        (soup.positions.as_slice(), soup.faces.len()),
+        (&positions[..], 1)
+    );
+    assert_eq!(
+        values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1],
+        "1e+21"
+    );
 }
 
 /// What a package with this model is refused with.
@@ -242,32 +315,61 @@ fn refused(bytes: Vec<u8>) -> String {
 #[test]
 fn flaws_name_their_place() {
     let mesh = tetrahedron("", "");
-    let object = |mesh: &str| model(&format!("<object id=\"1\">{mesh}</object>"), "<item objectid=\"1\"/>");
+    let object = |mesh: &str| {
+        model(
+            &format!("<object id=\"1\">{mesh}</object>"),
+            "<item objectid=\"1\"/>",
+        )
+    };
     let whole = object(&mesh);
     let cases: [(String, &str); 24] = [
         (
             object(&mesh.replace("v3=\"1\"/>", "v3=\"9\"/>")),
             "line 10, column 5, object 1: expected a vertex below 4 (their number so far), found v3='9'",
         ),
-        (object(&mesh.replace("v3=\"1\"/>", "/>")), "object 1: v3 is missing: expected a vertex below 4"),
-        (object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")), "found v3='-1'"),
+        (
+            object(&mesh.replace("v3=\"1\"/>", "/>")),
+            "object 1: v3 is missing: expected a vertex below 4",
+        ),
+        (
+            object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")),
+            "found v3='-1'",
+        ),
         (
             object(&mesh.replace("y=\"+2\"", "y=\"2m\"")),
             "line 7, column 35, object 1: expected a finite number, found y='2m'",
         ),
-        (object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")), "found y='1e999'"),
-        (object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")), "found y='NaN'"),
-        (object(&mesh.replace("</triangles>", "</triangle>")), "not well-formed XML"),
+        (
+            object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")),
+            "found y='1e999'",
+        ),
+        (
+            object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")),
+            "found y='NaN'",
+        ),
+        (
+            object(&mesh.replace("</triangles>", "</triangle>")),
+            "not well-formed XML",
+        ),
         (whole.replace("</model>", ""), "3D/3dmodel.model"),
         (
             whole.replace("\"inch\"", "\"furlong\""),
             "the unit 'furlong' is unknown; known are micron, millimeter",
         ),
         (whole.replace("</model>", "</modell>"), "well-formed XML"),
-        (whole.replace("model", "modell"), "expected one element model, found the element modell"),
+        (
+            whole.replace("model", "modell"),
+            "expected one element model, found the element modell",
+        ),
         (String::new(), "it has no element model"),
-        (whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"), "3MF allows no document type"),
-        (whole.replace("objectid=\"1\"", "objectid=\"2\""), "there is no object 2"),
+        (
+            whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"),
+            "3MF allows no document type",
+        ),
+        (
+            whole.replace("objectid=\"1\"", "objectid=\"2\""),
+            "there is no object 2",
+        ),
         (
             whole.replace("objectid=\"1\"", "objectid=\"1\" q:path=\"/x.model\""),
             "there is no object 1 of /x.model",
@@ -281,13 +383,28 @@ fn flaws_name_their_place() {
             "expected twelve finite numbers",
         ),
         (
-            whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 inf\""),
+            whole.replace(
+                "objectid=\"1\"",
+                "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 inf\"",
+            ),
             "twelve finite numbers",
         ),
-        (whole.replace("<object id=\"1\"", "<object"), "id is missing: expected a whole number"),
-        (whole.replace("</object>", "</object><object id=\"1\"/>"), "there is a second object 1"),
-        (object(&format!("{mesh}{mesh}")), "the object has a second mesh"),
-        (object(&mesh.replace("</mesh>", "<triangles/></mesh>")), "the mesh has a second list of triangles"),
+        (
+            whole.replace("<object id=\"1\"", "<object"),
+            "id is missing: expected a whole number",
+        ),
+        (
+            whole.replace("</object>", "</object><object id=\"1\"/>"),
+            "there is a second object 1",
+        ),
+        (
+            object(&format!("{mesh}{mesh}")),
+            "the object has a second mesh",
+        ),
+        (
+            object(&mesh.replace("</mesh>", "<triangles/></mesh>")),
+            "the mesh has a second list of triangles",
+        ),
         (
             model(
                 "<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
@@ -308,19 +425,40 @@ fn flaws_name_their_place() {
     ];
     for (model, words) in cases {
         let said = refused(package(&model, &[]));
-        assert!(said.contains(words) && said.contains("3MF 3D/3dmodel.model"), "{said}\nwithout\n{words}");
+        assert!(
+            said.contains(words) && said.contains("3MF 3D/3dmodel.model"),
+            "{said}\nwithout\n{words}"
+        );
     }
     let rels = |text: &str| archive(&[("_rels/.rels", text.as_bytes())]);
     for (bytes, words) in [
-        (b"PK\x03\x04 and no more".to_vec(), "the package: it cannot be read as a ZIP archive"),
-        (archive(&[("a", b"b")]), "it has no part _rels/.rels, as 3MF packages have"),
-        (rels("<Relationships/>"), "_rels/.rels: it names no 3D model"),
-        (rels(RELATIONSHIPS), "the model '/3D/3dmodel.model', which is no part of the package"),
+        (
+            b"PK\x03\x04 and no more".to_vec(),
+            "the package: it cannot be read as a ZIP archive",
+        ),
+        (
+            archive(&[("a", b"b")]),
+            "it has no part _rels/.rels, as 3MF packages have",
+        ),
+        (
+            rels("<Relationships/>"),
+            "_rels/.rels: it names no 3D model",
+        ),
+        (
+            rels(RELATIONSHIPS),
+            "the model '/3D/3dmodel.model', which is no part of the package",
+        ),
         (rels("<a><b></a>"), "not well-formed XML"),
-        (b"solid x\nendsolid".to_vec(), "named as 3MF, but the content looks like"),
+        (
+            b"solid x\nendsolid".to_vec(),
+            "named as 3MF, but the content looks like",
+        ),
         (Vec::new(), "the file is empty"),
         (
-            package("\u{fffd}", &[]).iter().map(|&b| if b == 0xBF { 0xFF } else { b }).collect(),
+            package("\u{fffd}", &[])
+                .iter()
+                .map(|&b| if b == 0xBF { 0xFF } else { b })
+                .collect(),
             "it cannot be unpacked",
         ),
     ] {
@@ -336,7 +474,9 @@ fn packages_that_swell_are_refused() {
     let deflated = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
     writer.start_file("_rels/.rels", deflated).unwrap();
     writer.write_all(RELATIONSHIPS.as_bytes()).unwrap();
-    writer.start_file("3D/3dmodel.model", deflated.large_file(true)).unwrap();
+    writer
+        .start_file("3D/3dmodel.model", deflated.large_file(true))
+        .unwrap();
     let blanks = vec![b' '; 1 << 24];
     (0..64).for_each(|_| writer.write_all(&blanks).unwrap());
     let bytes = writer.finish().unwrap().into_inner();
@@ -360,7 +500,9 @@ fn damaged_packages_are_errors_or_meshes() {
     // A generator of numbers that are nothing special.
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };
     let marks = [
@@ -382,7 +524,10 @@ fn damaged_packages_are_errors_or_meshes() {
     for _ in 0..4000 {
         let mut text = whole.clone();
         for _ in 0..1 + random(3) {
-            let at = (0..).map(|_| random(text.len())).find(|&at| text.is_char_boundary(at)).unwrap();
+            let at = (0..)
+                .map(|_| random(text.len()))
+                .find(|&at| text.is_char_boundary(at))
+                .unwrap();
             let end = (at..=(at + random(20)).min(text.len()))
                 .rev()
                 .find(|&end| text.is_char_boundary(end))
@@ -390,17 +535,35 @@ fn damaged_packages_are_errors_or_meshes() {
             text.replace_range(at..end, marks[random(marks.len())]);
         }
         let bytes = package(&text, &[("Metadata/Slic3r_PE_model.config", config)]);
-        let Ok(mut package) = Package::from_bytes(bytes) else { continue };
+        let Ok(mut package) = Package::from_bytes(bytes) else {
+            continue;
+        };
         read += 1;
-        let _ = (package.bounding_box(), package.contents(), package.scene_soup());
+        let _ = (
+            package.bounding_box(),
+            package.contents(),
+            package.scene_soup(),
+        );
         for object in 0..package.object_count() {
             let own = package.object(object, true);
-            let triangles: Vec<[u32; 3]> =
-                own.soup.faces.iter().map(|face| face.try_into().unwrap()).collect();
+            let triangles: Vec<[u32; 3]> = own
+                .soup
+                .faces
+                .iter()
+                .map(|face| face.try_into().unwrap())
+                .collect();
             let centre = Some([[0.4, 0.3, 0.3], [0.3, 0.4, 0.3], [0.3, 0.3, 0.4]]);
-            let source = |face: usize| Source { face, corners: centre };
+            let source = |face: usize| Source {
+                face,
+                corners: centre,
+            };
             let positions = &own.soup.positions;
-            let new = NewTriangles { positions, triangles: &triangles, source: &source, keeps: &|_| true };
+            let new = NewTriangles {
+                positions,
+                triangles: &triangles,
+                source: &source,
+                keeps: &|_| true,
+            };
             package.replace(object, &new).unwrap();
         }
         let again = Package::from_bytes(package.to_bytes().unwrap()).unwrap();

@@ -1,12 +1,16 @@
 //! What is written reads back as the same, files are written whole or not at all, and what does not fit
 //! together is refused.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
 
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic, Triangles};
 use limitmesh_io::{
-    Format, Output, Property, WriteError, WriteOptions, check_writable, read_bytes, rounding, write,
-    write_to, write_whole,
+    Format, Output, Property, WriteError, WriteOptions, check_writable, read_bytes, rounding,
+    write, write_to, write_whole,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -15,26 +19,38 @@ use std::path::Path;
 
 fn written(format: Format, output: &Output<'_>, ascii: bool) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_to(&mut bytes, format, output, &WriteOptions::default().ascii(ascii)).unwrap();
+    write_to(
+        &mut bytes,
+        format,
+        output,
+        &WriteOptions::default().ascii(ascii),
+    )
+    .unwrap();
     bytes
 }
 
 fn read_back(format: Format, output: &Output<'_>, ascii: bool) -> PolygonSoup {
     let bytes = written(format, output, ascii);
-    read_bytes(&bytes, format).unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&bytes)))
+    read_bytes(&bytes, format)
+        .unwrap_or_else(|error| panic!("{error}\n{}", String::from_utf8_lossy(&bytes)))
 }
 
 /// Any finite number: all signs, exponents and digits, subnormal ones and negative zero too.
 fn any_finite() -> impl Strategy<Value = f64> {
     prop_oneof![
-        any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()),
+        any::<u64>()
+            .prop_map(f64::from_bits)
+            .prop_filter("finite", |x| x.is_finite()),
         -10.0..10.0,
         (-1000i32..1000).prop_map(f64::from),
     ]
 }
 
 fn any_f32() -> impl Strategy<Value = f64> {
-    any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |x| x.is_finite()).prop_map(f64::from)
+    any::<u32>()
+        .prop_map(f32::from_bits)
+        .prop_filter("finite", |x| x.is_finite())
+        .prop_map(f64::from)
 }
 
 proptest! {
@@ -75,7 +91,10 @@ struct Surface {
 
 impl Surface {
     fn plain(&self) -> Output<'_> {
-        Output::new(Triangles { positions: &self.positions, triangles: &self.triangles })
+        Output::new(Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        })
     }
 
     /// With the attributes whose bits are set in `which`.
@@ -189,7 +208,10 @@ const POSITIONS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 2.0, 1
 const TRIANGLES: [[u32; 3]; 1] = [[0, 1, 2]];
 
 fn triangle() -> Output<'static> {
-    Output::new(Triangles { positions: &POSITIONS, triangles: &TRIANGLES })
+    Output::new(Triangles {
+        positions: &POSITIONS,
+        triangles: &TRIANGLES,
+    })
 }
 
 const NORMALS: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.5, 0.0, 0.5], [0.0, -1.0, 0.0]];
@@ -198,8 +220,14 @@ const COLOURS: [[u8; 3]; 3] = [[255, 0, 128], [1, 2, 3], [0, 0, 0]];
 /// The text of each format, which other programs must understand.
 #[test]
 fn text_is_as_the_formats_have_it() {
-    let creases = [CreaseTag { vertices: [0, 2], sharpness: 10.0 }];
-    let corners = [CornerTag { vertex: 1, sharpness: 2.5 }];
+    let creases = [CreaseTag {
+        vertices: [0, 2],
+        sharpness: 10.0,
+    }];
+    let corners = [CornerTag {
+        vertex: 1,
+        sharpness: 2.5,
+    }];
     let output = triangle()
         .normals(&NORMALS)
         .colours(&COLOURS)
@@ -237,14 +265,24 @@ fn text_is_as_the_formats_have_it() {
 
 #[test]
 fn binary_is_as_the_formats_have_it() {
-    let ply = written(Format::Ply, &triangle().normals(&NORMALS).colours(&COLOURS).quality(&[7.0; 3]), false);
+    let ply = written(
+        Format::Ply,
+        &triangle()
+            .normals(&NORMALS)
+            .colours(&COLOURS)
+            .quality(&[7.0; 3]),
+        false,
+    );
     let body = ply.windows(11).position(|w| w == b"end_header\n").unwrap() + 11;
     assert_eq!(ply.len() - body, 3 * (24 + 12 + 3 + 8) + 13);
     assert_eq!(ply[body + 47..][..8], 0.1f64.to_le_bytes());
     assert_eq!(ply[body + 47 + 24..][..4], 0.5f32.to_le_bytes());
     assert_eq!(ply[body + 47 + 36..][..3], [1, 2, 3]);
     assert_eq!(ply[body + 47 + 39..][..8], 7f64.to_le_bytes());
-    assert_eq!(ply[ply.len() - 13..], [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    assert_eq!(
+        ply[ply.len() - 13..],
+        [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]
+    );
     let stl = written(Format::Stl, &triangle(), false);
     assert_eq!(stl.len(), 84 + 50);
     assert!(!stl.starts_with(b"solid"));
@@ -272,20 +310,35 @@ fn what_does_not_fit_together_is_refused() {
         message(Format::Obj, &triangle().quality(&[0.0; 4])),
         "there are 4 quality values for 3 vertices: each vertex needs one"
     );
-    let beyond = Output::new(Triangles { positions: &POSITIONS, triangles: &[[0, 1, 2], [2, 1, 3]] });
-    assert_eq!(message(Format::Stl, &beyond), "triangle 1 names vertex 3, but there are 3 vertices");
-    let creases = [CreaseTag { vertices: [1, 9], sharpness: 1.0 }];
+    let beyond = Output::new(Triangles {
+        positions: &POSITIONS,
+        triangles: &[[0, 1, 2], [2, 1, 3]],
+    });
+    assert_eq!(
+        message(Format::Stl, &beyond),
+        "triangle 1 names vertex 3, but there are 3 vertices"
+    );
+    let creases = [CreaseTag {
+        vertices: [1, 9],
+        sharpness: 1.0,
+    }];
     assert_eq!(
         message(Format::Obj, &triangle().creases(&creases)),
         "crease tag 0 names vertex 9, but there are 3 vertices"
     );
-    let corners = [CornerTag { vertex: 3, sharpness: 1.0 }];
+    let corners = [CornerTag {
+        vertex: 3,
+        sharpness: 1.0,
+    }];
     assert_eq!(
         message(Format::Obj, &triangle().corners(&corners)),
         "corner tag 0 names vertex 3, but there are 3 vertices"
     );
     let positions = [POSITIONS[0], [0.0, f64::NAN, 0.0], POSITIONS[2]];
-    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    let output = Output::new(Triangles {
+        positions: &positions,
+        triangles: &TRIANGLES,
+    });
     for &format in Format::ALL {
         assert_eq!(
             message(format, &output),
@@ -293,7 +346,10 @@ fn what_does_not_fit_together_is_refused() {
         );
     }
     let positions = [POSITIONS[0], POSITIONS[1], [0.0, 0.0, -1e39]];
-    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    let output = Output::new(Triangles {
+        positions: &positions,
+        triangles: &TRIANGLES,
+    });
     assert!(message(Format::Stl, &output).starts_with("position of vertex 2 is -1"));
     written(Format::Obj, &output, false);
     written(Format::Stl, &output, true);
@@ -326,7 +382,10 @@ impl io::Write for Full {
 
 #[test]
 fn properties_are_columns_of_ply_files_and_channels_when_read() {
-    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let surface = Triangles {
+        positions: &POSITIONS,
+        triangles: &TRIANGLES,
+    };
     let vertices = POSITIONS.len();
     let small: Vec<u32> = (0..vertices as u32).collect();
     let large: Vec<u32> = small.iter().map(|v| v + i32::MAX as u32).collect();
@@ -338,11 +397,17 @@ fn properties_are_columns_of_ply_files_and_channels_when_read() {
         Property::numbers("number", &numbers),
     ];
     let of_faces = [Property::integers("origin", &faces)];
-    let output = Output::new(surface).vertex_properties(&columns).face_properties(&of_faces);
+    let output = Output::new(surface)
+        .vertex_properties(&columns)
+        .face_properties(&of_faces);
     let text = String::from_utf8(written(Format::Ply, &output, true)).unwrap();
     let (header, body) = text.split_once("end_header\n").unwrap();
-    for line in ["property int small", "property uint large", "property double number", "property int origin"]
-    {
+    for line in [
+        "property int small",
+        "property uint large",
+        "property double number",
+        "property int origin",
+    ] {
         assert!(header.lines().any(|l| l == line), "{line} in\n{header}");
     }
     for (v, line) in body.lines().take(vertices).enumerate() {
@@ -362,11 +427,14 @@ fn properties_are_columns_of_ply_files_and_channels_when_read() {
             let numbers_of = |name: &str| -> Vec<f64> {
                 let found = channels.iter().find(|channel| channel.name == name);
                 let values = |channel: &Channel| -> Vec<f64> {
-                    (0..channel.indices.len()).map(|element| channel.value(element)[0]).collect()
+                    (0..channel.indices.len())
+                        .map(|element| channel.value(element)[0])
+                        .collect()
                 };
                 found.map(values).unwrap_or_default()
             };
-            let whole = |values: &[u32]| -> Vec<f64> { values.iter().map(|&v| f64::from(v)).collect() };
+            let whole =
+                |values: &[u32]| -> Vec<f64> { values.iter().map(|&v| f64::from(v)).collect() };
             let expected = [
                 ("small", whole(&small)),
                 ("large", whole(&large)),
@@ -374,7 +442,11 @@ fn properties_are_columns_of_ply_files_and_channels_when_read() {
                 ("origin", whole(&faces)),
             ];
             for (name, values) in expected {
-                let values = if format == Format::Ply { values } else { Vec::new() };
+                let values = if format == Format::Ply {
+                    values
+                } else {
+                    Vec::new()
+                };
                 assert_eq!(numbers_of(name), values, "{name}");
             }
         }
@@ -383,19 +455,28 @@ fn properties_are_columns_of_ply_files_and_channels_when_read() {
 
 #[test]
 fn channels_that_do_not_fit_are_refused() {
-    let lone = Triangles { positions: &POSITIONS, triangles: &[] };
+    let lone = Triangles {
+        positions: &POSITIONS,
+        triangles: &[],
+    };
     let refused = |surface, channel: Channel, format| {
         let channels = [channel];
         let output = Output::new(surface).channels(&channels);
-        write_to(&mut Vec::new(), format, &output, &WriteOptions::default()).unwrap_err().to_string()
+        write_to(&mut Vec::new(), format, &output, &WriteOptions::default())
+            .unwrap_err()
+            .to_string()
     };
     let empty = || Channel::new("c", Semantic::Colour, Domain::Corner, 3);
     for format in [Format::Obj, Format::Ply] {
         assert!(refused(lone, empty(), format).contains("no values"));
-        let few = Channel::new("c", Semantic::Colour, Domain::Vertex, 3).with(vec![0.5; 3], vec![0]);
+        let few =
+            Channel::new("c", Semantic::Colour, Domain::Vertex, 3).with(vec![0.5; 3], vec![0]);
         assert!(refused(lone, few, format).contains("needs one"));
     }
-    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let surface = Triangles {
+        positions: &POSITIONS,
+        triangles: &TRIANGLES,
+    };
     let mut named = Channel::new("materials", Semantic::Label, Domain::Face, 1);
     named = named.with(vec![0.0], vec![0; TRIANGLES.len()]);
     named.labels = vec!["red\nf 1 2 3".to_owned()];
@@ -404,15 +485,28 @@ fn channels_that_do_not_fit_are_refused() {
 
 #[test]
 fn properties_that_do_not_fit_are_refused() {
-    let surface = Triangles { positions: &POSITIONS, triangles: &TRIANGLES };
+    let surface = Triangles {
+        positions: &POSITIONS,
+        triangles: &TRIANGLES,
+    };
     let zeros = vec![0.0; POSITIONS.len()];
     let refused = |property: Property<'_>, twice: bool| {
         let columns = vec![property; if twice { 2 } else { 1 }];
         let output = Output::new(surface).vertex_properties(&columns);
-        write_to(&mut Vec::new(), Format::Ply, &output, &WriteOptions::default()).unwrap_err().to_string()
+        write_to(
+            &mut Vec::new(),
+            Format::Ply,
+            &output,
+            &WriteOptions::default(),
+        )
+        .unwrap_err()
+        .to_string()
     };
     for name in ["", "two words", "x", "quality", "größe", "line\n"] {
-        assert!(refused(Property::numbers(name, &zeros), false).contains("name"), "{name}");
+        assert!(
+            refused(Property::numbers(name, &zeros), false).contains("name"),
+            "{name}"
+        );
     }
     assert!(refused(Property::numbers("again", &zeros), true).contains("again"));
     assert!(refused(Property::numbers("few", &zeros[1..]), false).contains("needs one"));
@@ -424,14 +518,20 @@ fn properties_that_do_not_fit_are_refused() {
 #[test]
 fn a_failing_writer_is_reported_wherever_it_fails() {
     let triangles = vec![[0, 1, 2]; 3000];
-    let output = Output::new(Triangles { positions: &POSITIONS, triangles: &triangles });
+    let output = Output::new(Triangles {
+        positions: &POSITIONS,
+        triangles: &triangles,
+    });
     for &format in Format::ALL {
         for ascii in [false, true] {
             let length = written(format, &output, ascii).len();
             let options = WriteOptions::default().ascii(ascii);
             for room in [0, 1, length / 2, length - 1] {
                 let error = write_to(&mut Full(room), format, &output, &options).unwrap_err();
-                assert!(matches!(error, WriteError::Writer { .. }), "{format} {error}");
+                assert!(
+                    matches!(error, WriteError::Writer { .. }),
+                    "{format} {error}"
+                );
             }
             write_to(&mut Full(length), format, &output, &options).unwrap();
         }
@@ -451,9 +551,16 @@ fn names(folder: &Path) -> Vec<String> {
 fn files_are_replaced_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mesh.OBJ");
-    fs::write(&path, "earlier content, longer than what is written after it".repeat(99)).unwrap();
+    fs::write(
+        &path,
+        "earlier content, longer than what is written after it".repeat(99),
+    )
+    .unwrap();
     write(&path, &triangle(), &WriteOptions::default()).unwrap();
-    assert_eq!(fs::read(&path).unwrap(), written(Format::Obj, &triangle(), false));
+    assert_eq!(
+        fs::read(&path).unwrap(),
+        written(Format::Obj, &triangle(), false)
+    );
     write_whole(&folder.path().join("report.json"), b"{}").unwrap();
     assert_eq!(names(folder.path()), ["mesh.OBJ", "report.json"]);
 }
@@ -464,7 +571,10 @@ fn a_refused_output_leaves_the_earlier_file() {
     let path = folder.path().join("mesh.stl");
     fs::write(&path, "earlier").unwrap();
     let positions = [[0.0; 3], [1e300; 3], [1.0; 3]];
-    let output = Output::new(Triangles { positions: &positions, triangles: &TRIANGLES });
+    let output = Output::new(Triangles {
+        positions: &positions,
+        triangles: &TRIANGLES,
+    });
     let error = write(&path, &output, &WriteOptions::default()).unwrap_err();
     assert!(matches!(error, WriteError::NotFinite { vertex: 1, .. }));
     assert_eq!(fs::read(&path).unwrap(), b"earlier");
@@ -481,14 +591,25 @@ fn places_that_cannot_be_written_to() {
         check_writable(&missing),
     ];
     for message in refused.map(|result| result.unwrap_err().to_string()) {
-        assert!(message.starts_with(&format!("cannot write {}: ", missing.display())), "{message}");
-        assert!(!message.contains(".limitmesh-"), "names a temporary file: {message}");
+        assert!(
+            message.starts_with(&format!("cannot write {}: ", missing.display())),
+            "{message}"
+        );
+        assert!(
+            !message.contains(".limitmesh-"),
+            "names a temporary file: {message}"
+        );
     }
     let is_folder = folder.path().join("folder.ply");
     fs::create_dir(&is_folder).unwrap();
     let message = write_whole(&is_folder, b"").unwrap_err().to_string();
     assert!(message.contains("directory"), "{message}");
-    let unknown = write(&folder.path().join("mesh.xyz"), &triangle(), &WriteOptions::default()).unwrap_err();
+    let unknown = write(
+        &folder.path().join("mesh.xyz"),
+        &triangle(),
+        &WriteOptions::default(),
+    )
+    .unwrap_err();
     assert!(matches!(unknown, WriteError::UnknownFormat(_)));
     assert_eq!(names(folder.path()), ["folder.ply"]);
 }
@@ -503,9 +624,18 @@ mod unix {
         let folder = tempfile::tempdir().unwrap();
         let mode = |name: &str| fs::metadata(folder.path().join(name)).unwrap().mode() & 0o777;
         fs::File::create(folder.path().join("plain")).unwrap();
-        write(&folder.path().join("mesh.ply"), &triangle(), &WriteOptions::default()).unwrap();
+        write(
+            &folder.path().join("mesh.ply"),
+            &triangle(),
+            &WriteOptions::default(),
+        )
+        .unwrap();
         assert_eq!(mode("mesh.ply"), mode("plain"));
-        fs::set_permissions(folder.path().join("plain"), fs::Permissions::from_mode(0o640)).unwrap();
+        fs::set_permissions(
+            folder.path().join("plain"),
+            fs::Permissions::from_mode(0o640),
+        )
+        .unwrap();
         write_whole(&folder.path().join("plain"), b"x").unwrap();
         assert_eq!(mode("plain"), 0o640);
     }
@@ -513,12 +643,18 @@ mod unix {
     #[test]
     fn links_stay_links() {
         let folder = tempfile::tempdir().unwrap();
-        let (real, link) = (folder.path().join("real.off"), folder.path().join("link.off"));
+        let (real, link) = (
+            folder.path().join("real.off"),
+            folder.path().join("link.off"),
+        );
         fs::write(&real, "earlier").unwrap();
         symlink("real.off", &link).unwrap();
         write(&link, &triangle(), &WriteOptions::default()).unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read(&real).unwrap(), written(Format::Off, &triangle(), false));
+        assert_eq!(
+            fs::read(&real).unwrap(),
+            written(Format::Off, &triangle(), false)
+        );
     }
 
     #[test]
@@ -530,7 +666,9 @@ mod unix {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_device_is_an_error() {
-        let message = write_whole(Path::new("/dev/full"), b"x").unwrap_err().to_string();
+        let message = write_whole(Path::new("/dev/full"), b"x")
+            .unwrap_err()
+            .to_string();
         assert!(message.starts_with("cannot write /dev/full: "), "{message}");
     }
 
@@ -543,8 +681,10 @@ mod unix {
         fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
         if fs::OpenOptions::new().write(true).open(&path).is_ok() {
             // Written directly: the test harness keeps what macros print to itself.
-            let _ =
-                std::io::Write::write_all(&mut std::io::stderr(), b"skipped: this user may write anywhere\n");
+            let _ = std::io::Write::write_all(
+                &mut std::io::stderr(),
+                b"skipped: this user may write anywhere\n",
+            );
             return;
         }
         let result = write(&path, &triangle(), &WriteOptions::default());
@@ -564,8 +704,10 @@ mod unix {
         fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
         if all_powerful {
             // Written directly: the test harness keeps what macros print to itself.
-            let _ =
-                std::io::Write::write_all(&mut std::io::stderr(), b"skipped: this user may write anywhere\n");
+            let _ = std::io::Write::write_all(
+                &mut std::io::stderr(),
+                b"skipped: this user may write anywhere\n",
+            );
             return;
         }
         assert!(matches!(result, Err(WriteError::File { .. })));
@@ -579,9 +721,17 @@ mod unix {
 fn what_rounding_leaves_no_triangle_of_is_an_error() {
     let triangles = [[0, 1, 2], [0, 2, 3]];
     for (scale, offset) in [(1e-60, 0.0), (1.0, 1e9)] {
-        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]
-            .map(|p| p.map(|x: f64| offset + scale * x));
-        let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+        ]
+        .map(|p| p.map(|x: f64| offset + scale * x));
+        let output = Output::new(Triangles {
+            positions: &positions,
+            triangles: &triangles,
+        });
         for (format, options, is_lost) in [
             (Format::Stl, WriteOptions::default(), true),
             (Format::Glb, WriteOptions::default(), true),
@@ -596,10 +746,23 @@ fn what_rounding_leaves_no_triangle_of_is_an_error() {
             );
         }
         // One of two is left.
-        let positions =
-            [positions[0], positions[0].map(|x| x + 1000.0), positions[2].map(|x| x - 1000.0), positions[3]];
-        let output = Output::new(Triangles { positions: &positions, triangles: &triangles });
-        write_to(&mut Vec::new(), Format::Stl, &output, &WriteOptions::default()).unwrap();
+        let positions = [
+            positions[0],
+            positions[0].map(|x| x + 1000.0),
+            positions[2].map(|x| x - 1000.0),
+            positions[3],
+        ];
+        let output = Output::new(Triangles {
+            positions: &positions,
+            triangles: &triangles,
+        });
+        write_to(
+            &mut Vec::new(),
+            Format::Stl,
+            &output,
+            &WriteOptions::default(),
+        )
+        .unwrap();
     }
 }
 
@@ -608,7 +771,9 @@ fn what_rounding_leaves_no_triangle_of_is_an_error() {
 fn long_lists_are_the_same_for_any_number_of_threads() {
     let side = 120u32;
     let place = |i: u32, j: u32| [f64::from(i), f64::from(j), f64::from(i * j % 97) / 97.0];
-    let positions: Vec<_> = (0..=side).flat_map(|j| (0..=side).map(move |i| place(i, j))).collect();
+    let positions: Vec<_> = (0..=side)
+        .flat_map(|j| (0..=side).map(move |i| place(i, j)))
+        .collect();
     let triangles: Vec<[u32; 3]> = (0..side * side)
         .flat_map(|square| {
             let corner = square / side * (side + 1) + square % side;
@@ -617,7 +782,11 @@ fn long_lists_are_the_same_for_any_number_of_threads() {
         })
         .collect();
     let normals: Vec<[f64; 3]> = positions.iter().map(|p| [p[2], 0.25, 1.0 - p[2]]).collect();
-    let output = Output::new(Triangles { positions: &positions, triangles: &triangles }).normals(&normals);
+    let output = Output::new(Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    })
+    .normals(&normals);
     let kinds = [
         (Format::Obj, false),
         (Format::Ply, false),
@@ -630,18 +799,24 @@ fn long_lists_are_the_same_for_any_number_of_threads() {
     ];
     for (format, ascii) in kinds {
         let by = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
             pool.install(|| written(format, &output, ascii))
         };
         let one = by(1);
-        assert!([2, 3, 8].into_iter().all(|threads| by(threads) == one), "{format}");
+        assert!(
+            [2, 3, 8].into_iter().all(|threads| by(threads) == one),
+            "{format}"
+        );
         let soup = read_bytes(&one, format).unwrap();
         assert_eq!(soup.faces.len(), triangles.len(), "{format}");
         let is_single = format == Format::Glb || format == Format::Stl && !ascii;
         for (face, triangle) in soup.faces.iter().zip(&triangles) {
             for (&read, &wrote) in face.iter().zip(triangle) {
-                let wrote =
-                    positions[wrote as usize].map(|x| if is_single { f64::from(x as f32) } else { x });
+                let wrote = positions[wrote as usize]
+                    .map(|x| if is_single { f64::from(x as f32) } else { x });
                 assert_eq!(soup.positions[read as usize], wrote, "{format}");
             }
         }

@@ -32,7 +32,12 @@ struct Quadric {
 }
 
 impl Quadric {
-    const ZERO: Self = Self { matrix: DMat3::ZERO, vector: DVec3::ZERO, constant: 0.0, area: 0.0 };
+    const ZERO: Self = Self {
+        matrix: DMat3::ZERO,
+        vector: DVec3::ZERO,
+        constant: 0.0,
+        area: 0.0,
+    };
 
     fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
         let cross = (b - a).cross(c - a);
@@ -106,15 +111,20 @@ struct Collapser<'a> {
 pub(super) fn collapse_to(half: &mut Surface, triangles: usize) {
     let mut collapser = Collapser::new(half);
     while collapser.left > triangles {
-        let Some(Reverse(candidate)) = collapser.queue.pop() else { break };
-        let Candidate { from, to, versions, .. } = candidate;
+        let Some(Reverse(candidate)) = collapser.queue.pop() else {
+            break;
+        };
+        let Candidate {
+            from, to, versions, ..
+        } = candidate;
         if versions == [from, to].map(|v| collapser.versions[v as usize]) {
             collapser.try_collapse(from, to, triangles);
         }
     }
     let alive = collapser.alive;
     let mut keep = alive.iter();
-    half.triangles.retain(|_| keep.next().copied().unwrap_or(false));
+    half.triangles
+        .retain(|_| keep.next().copied().unwrap_or(false));
     half.drop_unused_vertices();
 }
 
@@ -124,7 +134,8 @@ impl<'a> Collapser<'a> {
         let mut quadrics = vec![Quadric::ZERO; surface.positions.len()];
         for t in &surface.triangles {
             let quadric = Quadric::of_triangle(t.map(|v| surface.positions[v as usize]));
-            t.iter().for_each(|&v| quadrics[v as usize] = quadrics[v as usize].plus(quadric));
+            t.iter()
+                .for_each(|&v| quadrics[v as usize] = quadrics[v as usize].plus(quadric));
         }
         let mut collapser = Self {
             alive: vec![true; surface.triangles.len()],
@@ -180,7 +191,12 @@ impl<'a> Collapser<'a> {
             if wanted(other) {
                 let cost = self.meeting_point(v, other).1.to_bits();
                 let versions = [v, other].map(|v| self.versions[v as usize]);
-                self.queue.push(Reverse(Candidate { cost, from: v, to: other, versions }));
+                self.queue.push(Reverse(Candidate {
+                    cost,
+                    from: v,
+                    to: other,
+                    versions,
+                }));
             }
         }
     }
@@ -262,7 +278,10 @@ impl<'a> Collapser<'a> {
 
 /// Area over that of the equilateral triangle on the longest edge: 1 at best, 0 for a sliver.
 pub(super) fn shape([a, b, c]: [DVec3; 3]) -> f64 {
-    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    let longest = a
+        .distance_squared(b)
+        .max(b.distance_squared(c))
+        .max(c.distance_squared(a));
     let doubled_area = (b - a).cross(c - a).length();
     // An equilateral triangle of edge s has doubled area s²·√3/2.
     doubled_area / (longest * 0.866_025_403_784_438_6)

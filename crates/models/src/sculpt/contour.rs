@@ -18,7 +18,10 @@ impl Grid {
     /// The grid with cells of edge `cell` that covers x from 0 to `high.x`, y and z from `low` to `high`.
     pub(crate) fn new(low: [f64; 2], high: [f64; 3], cell: f64) -> Self {
         let low = DVec3::new(0.0, low[0], low[1]);
-        let cells = ((DVec3::from_array(high) - low) / cell).ceil().to_array().map(|n| n as usize);
+        let cells = ((DVec3::from_array(high) - low) / cell)
+            .ceil()
+            .to_array()
+            .map(|n| n as usize);
         Self { low, cell, cells }
     }
 
@@ -36,8 +39,14 @@ impl Grid {
 const LEAST_PART: f64 = 0.15;
 
 /// The six chains of cell corners from 0 to 7 (bits x, y, z); each is a tetrahedron.
-const CHAINS: [[usize; 4]; 6] =
-    [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 3, 2, 7], [0, 6, 4, 7], [0, 5, 1, 7]];
+const CHAINS: [[usize; 4]; 6] = [
+    [0, 1, 3, 7],
+    [0, 2, 6, 7],
+    [0, 4, 5, 7],
+    [0, 3, 2, 7],
+    [0, 6, 4, 7],
+    [0, 5, 1, 7],
+];
 
 struct Contour<'a> {
     grid: &'a Grid,
@@ -57,7 +66,12 @@ pub(super) fn contour(field: Field<'_>, grid: &Grid) -> Surface {
         }
     }
     let crossings = vec![[u32::MAX; 7]; values.len()];
-    let mut contour = Contour { grid, values, crossings, surface: Surface::default() };
+    let mut contour = Contour {
+        grid,
+        values,
+        crossings,
+        surface: Surface::default(),
+    };
     for z in 0..nz {
         for y in 0..ny {
             for x in 0..nx {
@@ -79,7 +93,9 @@ impl Contour<'_> {
         }
         for chain in CHAINS {
             let mut sides = [Vec::new(), Vec::new()];
-            chain.iter().for_each(|&c| sides[usize::from(inside[c])].push(c));
+            chain
+                .iter()
+                .for_each(|&c| sides[usize::from(inside[c])].push(c));
             let [outer, inner] = sides;
             let mut vertex = |a: usize, b: usize| self.crossing(&corners, a.min(b), a.max(b));
             let polygon: Vec<u32> = match (&inner[..], &outer[..]) {
@@ -89,7 +105,10 @@ impl Contour<'_> {
                 _ => continue,
             };
             let centre = |side: &[usize]| {
-                side.iter().map(|&c| self.grid.position(corners[c])).sum::<DVec3>() / side.len() as f64
+                side.iter()
+                    .map(|&c| self.grid.position(corners[c]))
+                    .sum::<DVec3>()
+                    / side.len() as f64
             };
             self.fan(&polygon, centre(&outer) - centre(&inner));
         }
@@ -101,7 +120,9 @@ impl Contour<'_> {
             let [a, b, c] = [polygon[0], polygon[i], polygon[i + 1]];
             let [p, q, r] = [a, b, c].map(|v| self.surface.positions[v as usize]);
             let faces_outwards = (q - p).cross(r - p).dot(outwards) > 0.0;
-            self.surface.triangles.push(if faces_outwards { [a, b, c] } else { [a, c, b] });
+            self.surface
+                .triangles
+                .push(if faces_outwards { [a, b, c] } else { [a, c, b] });
         }
     }
 
@@ -112,7 +133,10 @@ impl Contour<'_> {
         if *slot == u32::MAX {
             let (value_a, value_b) = (self.values[node_a], self.values[node_b]);
             let part = (value_a / (value_a - value_b)).clamp(LEAST_PART, 1.0 - LEAST_PART);
-            let position = self.grid.position(corners[a]).lerp(self.grid.position(corners[b]), part);
+            let position = self
+                .grid
+                .position(corners[a])
+                .lerp(self.grid.position(corners[b]), part);
             *slot = self.surface.positions.len() as u32;
             self.surface.positions.push(position);
         }

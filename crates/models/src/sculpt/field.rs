@@ -24,7 +24,11 @@ pub(crate) fn ellipsoid(p: DVec3, centre: DVec3, axes: DVec3) -> f64 {
     let scaled = (p - centre) / axes;
     let gradient = (scaled / axes).length();
     let level = scaled.length();
-    if gradient > 0.0 { level * (level - 1.0) / gradient } else { -axes.min_element() }
+    if gradient > 0.0 {
+        level * (level - 1.0) / gradient
+    } else {
+        -axes.min_element()
+    }
 }
 
 /// A rod from `a` to `b` whose radius runs linearly from `radius_a` to `radius_b`, with round ends.
@@ -37,13 +41,22 @@ pub(crate) fn rod(p: DVec3, a: DVec3, radius_a: f64, b: DVec3, radius_b: f64) ->
 /// A chain of rods through points with radii, blended at the joints by `blend`.
 pub(crate) fn limb(p: DVec3, joints: &[(DVec3, f64)], blend: f64) -> f64 {
     joints.windows(2).fold(f64::INFINITY, |value, pair| {
-        union(value, rod(p, pair[0].0, pair[0].1, pair[1].0, pair[1].1), blend)
+        union(
+            value,
+            rod(p, pair[0].0, pair[0].1, pair[1].0, pair[1].1),
+            blend,
+        )
     })
 }
 
 /// A flat blade: the convex polygon with `corners` (counter-clockwise, in the coordinates `u`, `v`), as thick as
 /// twice `half_thickness` across, its edges rounded by `blend`.
-pub(crate) fn blade([u, v, across]: [f64; 3], corners: &[[f64; 2]], half_thickness: f64, blend: f64) -> f64 {
+pub(crate) fn blade(
+    [u, v, across]: [f64; 3],
+    corners: &[[f64; 2]],
+    half_thickness: f64,
+    blend: f64,
+) -> f64 {
     let mut value = across.abs() - half_thickness;
     for (i, [u0, v0]) in corners.iter().enumerate() {
         let [u1, v1] = corners[(i + 1) % corners.len()];
@@ -59,7 +72,11 @@ pub(crate) fn blade([u, v, across]: [f64; 3], corners: &[[f64; 2]], half_thickne
 pub(crate) fn union(a: f64, b: f64, blend: f64) -> f64 {
     let low = a.min(b);
     let overlap = blend - (a - b).abs();
-    if overlap > 0.0 { low - overlap * overlap / (4.0 * blend) } else { low }
+    if overlap > 0.0 {
+        low - overlap * overlap / (4.0 * blend)
+    } else {
+        low
+    }
 }
 
 /// Smooth intersection.

@@ -34,7 +34,11 @@ fn limit_position(positions: &[DVec3], p: DVec3, all: &[u32], boundary: &[u32]) 
         return (p * 4.0 + sum(boundary)) / 6.0;
     }
     let valence = all.len() as f64;
-    let beta = if all.len() == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * valence) };
+    let beta = if all.len() == 3 {
+        3.0 / 16.0
+    } else {
+        3.0 / (8.0 * valence)
+    };
     let weight = 1.0 / (3.0 / (8.0 * beta) + valence);
     p * (1.0 - valence * weight) + sum(all) * weight
 }

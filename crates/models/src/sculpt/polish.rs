@@ -33,15 +33,26 @@ fn flip_edges(half: &mut Surface) {
         let place = edges.partition_point(|e| (e.0, e.1) < (from, to));
         edges.get(place).filter(|e| (e.0, e.1) == (from, to))
     };
-    let mut valence: Vec<i64> = half.neighbours().iter().map(|(all, _)| all.len() as i64).collect();
+    let mut valence: Vec<i64> = half
+        .neighbours()
+        .iter()
+        .map(|(all, _)| all.len() as i64)
+        .collect();
     let mut touched = vec![false; half.triangles.len()];
     let mut made: Vec<(u32, u32)> = Vec::new();
     for &(a, b, c, face) in edges.iter().filter(|e| e.0 < e.1) {
-        let Some(&(_, _, d, other)) = find(b, a) else { continue };
+        let Some(&(_, _, d, other)) = find(b, a) else {
+            continue;
+        };
         // An edge that is there already must not be made a second time.
-        let joined = find(c, d).is_some() || find(d, c).is_some() || made.contains(&(c.min(d), c.max(d)));
+        let joined =
+            find(c, d).is_some() || find(d, c).is_some() || made.contains(&(c.min(d), c.max(d)));
         let [face, other] = [face as usize, other as usize];
-        if touched[face] || touched[other] || joined || !flip_is_better(half, &valence, [a, b, c, d]) {
+        if touched[face]
+            || touched[other]
+            || joined
+            || !flip_is_better(half, &valence, [a, b, c, d])
+        {
             continue;
         }
         half.triangles[face] = [a, d, c];
@@ -91,14 +102,18 @@ fn slide(half: &mut Surface, field: Field<'_>) {
             (b - a).cross(c - a).normalize_or_zero()
         })
         .collect();
-    let step = 1e-4 * old.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
+    let step = 1e-4
+        * old
+            .iter()
+            .fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
     for (v, (all, boundary)) in neighbours.iter().enumerate() {
         // A vertex in the mirror plane slides along the plane, between its neighbours there.
         let list = if boundary.is_empty() { all } else { boundary };
         let mean = list.iter().map(|&u| old[u as usize]).sum::<DVec3>() / list.len() as f64;
         let normal = gradient(field, old[v], step).normalize_or_zero();
-        let flatness =
-            faces[v].iter().fold(1.0_f64, |least, &face| least.min(normals[face as usize].dot(normal)));
+        let flatness = faces[v].iter().fold(1.0_f64, |least, &face| {
+            least.min(normals[face as usize].dot(normal))
+        });
         let mut pull = (mean - old[v]) * (SLIDE * ((flatness - TIP) / (1.0 - TIP)).max(0.0));
         pull -= normal * pull.dot(normal);
         let mut p = old[v] + pull;

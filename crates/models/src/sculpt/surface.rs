@@ -27,19 +27,31 @@ impl Surface {
                 whole.positions.len() as u32 - 1
             })
             .collect();
-        whole.triangles.extend(self.triangles.iter().map(|&[a, b, c]| [a, c, b].map(|v| images[v as usize])));
+        whole.triangles.extend(
+            self.triangles
+                .iter()
+                .map(|&[a, b, c]| [a, c, b].map(|v| images[v as usize])),
+        );
         whole
     }
 
     /// The surface with every triangle split in four at the middles of its edges.
     pub(crate) fn split_in_four(&self) -> Self {
-        let mut split = Self { positions: self.positions.clone(), triangles: Vec::new() };
-        let mut edges: Vec<(u32, u32)> =
-            self.directed_edges().iter().map(|e| (e.0.min(e.1), e.0.max(e.1))).collect();
+        let mut split = Self {
+            positions: self.positions.clone(),
+            triangles: Vec::new(),
+        };
+        let mut edges: Vec<(u32, u32)> = self
+            .directed_edges()
+            .iter()
+            .map(|e| (e.0.min(e.1), e.0.max(e.1)))
+            .collect();
         edges.sort_unstable();
         edges.dedup();
         let ends = |v: u32| self.positions[v as usize];
-        split.positions.extend(edges.iter().map(|&(a, b)| ends(a).midpoint(ends(b))));
+        split
+            .positions
+            .extend(edges.iter().map(|&(a, b)| ends(a).midpoint(ends(b))));
         let first = self.positions.len();
         let middle = |a: u32, b: u32| {
             let edge = (a.min(b), a.max(b));
@@ -47,7 +59,9 @@ impl Surface {
         };
         for &[a, b, c] in &self.triangles {
             let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
-            split.triangles.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+            split
+                .triangles
+                .extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
         }
         split
     }
@@ -56,7 +70,9 @@ impl Surface {
     pub(super) fn faces_at_vertices(&self) -> Vec<Vec<u32>> {
         let mut faces = vec![Vec::new(); self.positions.len()];
         for (face, triangle) in self.triangles.iter().enumerate() {
-            triangle.iter().for_each(|&v| faces[v as usize].push(face as u32));
+            triangle
+                .iter()
+                .for_each(|&v| faces[v as usize].push(face as u32));
         }
         faces
     }
@@ -67,7 +83,9 @@ impl Surface {
             .triangles
             .iter()
             .enumerate()
-            .flat_map(|(face, &t)| (0..3).map(move |i| (t[i], t[(i + 1) % 3], t[(i + 2) % 3], face as u32)))
+            .flat_map(|(face, &t)| {
+                (0..3).map(move |i| (t[i], t[(i + 1) % 3], t[(i + 2) % 3], face as u32))
+            })
             .collect();
         edges.sort_unstable();
         edges
@@ -94,7 +112,10 @@ impl Surface {
     /// Drops vertices that no triangle names and renumbers the others in order.
     pub(super) fn drop_unused_vertices(&mut self) {
         let mut used = vec![false; self.positions.len()];
-        self.triangles.as_flattened().iter().for_each(|&v| used[v as usize] = true);
+        self.triangles
+            .as_flattened()
+            .iter()
+            .for_each(|&v| used[v as usize] = true);
         let mut kept = 0;
         let renumbered: Vec<u32> = used
             .iter()
@@ -104,15 +125,25 @@ impl Surface {
             })
             .collect();
         let mut keep = used.iter();
-        self.positions.retain(|_| keep.next().copied().unwrap_or(false));
-        self.triangles.iter_mut().flatten().for_each(|v| *v = renumbered[*v as usize]);
+        self.positions
+            .retain(|_| keep.next().copied().unwrap_or(false));
+        self.triangles
+            .iter_mut()
+            .flatten()
+            .for_each(|v| *v = renumbered[*v as usize]);
     }
 
     /// The surface as a soup of triangles.
     pub(crate) fn into_soup(self) -> PolygonSoup {
         let mut faces = PolygonFaces::with_capacity(self.triangles.len(), 3 * self.triangles.len());
-        self.triangles.iter().for_each(|triangle| faces.push(triangle));
+        self.triangles
+            .iter()
+            .for_each(|triangle| faces.push(triangle));
         let positions = self.positions.iter().map(DVec3::to_array).collect();
-        PolygonSoup { positions, faces, ..PolygonSoup::default() }
+        PolygonSoup {
+            positions,
+            faces,
+            ..PolygonSoup::default()
+        }
     }
 }

@@ -42,7 +42,10 @@ fn the_contour_of_a_ball_is_a_hemisphere_that_looks_outwards() {
     assert_half(&half);
     for p in &half.positions {
         // Crossings may be pushed off the surface by a part of a cell's diagonal.
-        assert!((p.length() - RADIUS).abs() < 0.07 * 3.0_f64.sqrt() * 0.2, "{p}");
+        assert!(
+            (p.length() - RADIUS).abs() < 0.07 * 3.0_f64.sqrt() * 0.2,
+            "{p}"
+        );
     }
     for t in &half.triangles {
         let [a, b, c] = t.map(|v| half.positions[v as usize]);
@@ -53,7 +56,8 @@ fn the_contour_of_a_ball_is_a_hemisphere_that_looks_outwards() {
 #[test]
 fn a_tunnel_survives_contouring() {
     // A ball drilled through along z is a torus: Euler characteristic 0.
-    let drilled = |p: DVec3| difference(unit_ball(p), DVec3::new(p.x, p.y, 0.0).length() - 0.3, 0.02);
+    let drilled =
+        |p: DVec3| difference(unit_ball(p), DVec3::new(p.x, p.y, 0.0).length() - 0.3, 0.02);
     let whole = contour(&drilled, &grid()).mirrored();
     assert_eq!(mesh(&whole).topology().euler_characteristic(), 0);
 }
@@ -85,13 +89,24 @@ fn polishing_improves_shapes_and_puts_vertices_on_the_body() {
     let mut half = contour(&unit_ball, &grid());
     collapse_to(&mut half, 150);
     let worst = |half: &Surface| {
-        half.triangles.iter().map(|t| shape(t.map(|v| half.positions[v as usize]))).fold(1.0, f64::min)
+        half.triangles
+            .iter()
+            .map(|t| shape(t.map(|v| half.positions[v as usize])))
+            .fold(1.0, f64::min)
     };
     let before = worst(&half);
     polish(&mut half, &unit_ball);
     assert_half(&half);
-    assert!(worst(&half) > before.max(0.3), "{before} to {}", worst(&half));
-    assert!(half.positions.iter().all(|p| (p.length() - RADIUS).abs() < 1e-6));
+    assert!(
+        worst(&half) > before.max(0.3),
+        "{before} to {}",
+        worst(&half)
+    );
+    assert!(
+        half.positions
+            .iter()
+            .all(|p| (p.length() - RADIUS).abs() < 1e-6)
+    );
 }
 
 #[test]
@@ -101,7 +116,11 @@ fn the_limit_of_a_sculpted_ball_is_a_ball() {
     let mesh = mesh(&whole);
     let neighbours = whole.neighbours();
     for (&p, (all, _)) in whole.positions.iter().zip(&neighbours) {
-        let mean = all.iter().map(|&u| whole.positions[u as usize]).sum::<DVec3>() / all.len() as f64;
+        let mean = all
+            .iter()
+            .map(|&u| whole.positions[u as usize])
+            .sum::<DVec3>()
+            / all.len() as f64;
         // Loop's limit mask with Warren's β = 3/(8k) is the middle between the vertex and the mean of its
         // neighbours; with β = 3/16 for k = 3 it is 2 to 3.
         let part = if all.len() == 3 { 0.6 } else { 0.5 };
@@ -130,7 +149,13 @@ fn fields_are_zero_on_their_surfaces_and_negative_inside() {
     let (a, b) = (at(0.0, 0.0, 0.0), at(1.0, 0.0, 0.0));
     assert!((rod(at(0.5, 0.3, 0.0), a, 0.2, b, 0.4)).abs() < 1e-15);
     assert!((rod(at(1.4, 0.0, 0.0), a, 0.2, b, 0.4)).abs() < 1e-15);
-    assert!(limb(at(1.0, 0.5, 0.0), &[(a, 0.1), (b, 0.1), (at(1.0, 1.0, 0.0), 0.1)], 0.05) < 0.0);
+    assert!(
+        limb(
+            at(1.0, 0.5, 0.0),
+            &[(a, 0.1), (b, 0.1), (at(1.0, 1.0, 0.0), 0.1)],
+            0.05
+        ) < 0.0
+    );
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     assert!(blade([0.5, 0.5, 0.0], &square, 0.1, 0.02) < 0.0);
     assert!(blade([0.5, 0.5, 0.2], &square, 0.1, 0.02) > 0.0);

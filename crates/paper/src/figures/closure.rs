@@ -69,7 +69,10 @@ enum Kind {
 }
 
 /// Counts the cases in all models and draws the best example of each.
-pub(crate) fn closure(players: &[&Player], folder: &mut Folder<'_>) -> anyhow::Result<ClosureFigure> {
+pub(crate) fn closure(
+    players: &[&Player],
+    folder: &mut Folder<'_>,
+) -> anyhow::Result<ClosureFigure> {
     let mut counts = Vec::new();
     let mut best: [Option<Example>; 4] = [None, None, None, None];
     for player in players {
@@ -105,15 +108,25 @@ fn search(player: &Player, best: &mut [Option<Example>; 4]) -> anyhow::Result<()
         let criterion = LimitNormal::new(ANGLE_DEGREES.to_radians());
         let divisible = criterion.divisible(&mesh, &LimitTable::new(&Loop))?;
         let next = methods::adaptive(&mesh, &criterion, 1, SeamRule::All)?.mesh;
-        let scene =
-            Scene { mesh: &mesh, next: &next, starts: starts(&mesh, &divisible), divisible: &divisible };
+        let scene = Scene {
+            mesh: &mesh,
+            next: &next,
+            starts: starts(&mesh, &divisible),
+            divisible: &divisible,
+        };
         // Cut sheets split edges for each other: their faces do not tell their case by their neighbours alone.
         if scene.starts.last() == Some(&next.face_count()) {
             for face in (0..mesh.face_count()).filter(|&face| !divisible[face]) {
-                let place = Place { model: player.name, step, face };
+                let place = Place {
+                    model: player.name,
+                    step,
+                    face,
+                };
                 if let Some(example) = scene.example(place)
                     && let Some(slot) = best.get_mut(scene.divisible_neighbours(face))
-                    && slot.as_ref().is_none_or(|known| known.quality < example.quality)
+                    && slot
+                        .as_ref()
+                        .is_none_or(|known| known.quality < example.quality)
                 {
                     *slot = Some(example);
                 }
@@ -129,7 +142,11 @@ fn starts(mesh: &Mesh, divisible: &[bool]) -> Vec<usize> {
     let mut starts = vec![0];
     let mut total = 0;
     for (face, &flag) in divisible.iter().enumerate() {
-        total += if flag { 4 } else { 1 + neighbours(mesh, face).filter(|&n| divisible[n]).count() };
+        total += if flag {
+            4
+        } else {
+            1 + neighbours(mesh, face).filter(|&n| divisible[n]).count()
+        };
         starts.push(total);
     }
     starts
@@ -137,7 +154,10 @@ fn starts(mesh: &Mesh, divisible: &[bool]) -> Vec<usize> {
 
 /// The faces across the edges of `face`.
 fn neighbours(mesh: &Mesh, face: usize) -> impl Iterator<Item = usize> + '_ {
-    let twin = move |corner| mesh.topology().twin(HalfEdgeId::of(FaceId(face as u32), corner));
+    let twin = move |corner| {
+        mesh.topology()
+            .twin(HalfEdgeId::of(FaceId(face as u32), corner))
+    };
     (0..3).filter_map(twin).map(|h| h.face().index())
 }
 
@@ -151,7 +171,9 @@ struct Scene<'a> {
 
 impl Scene<'_> {
     fn divisible_neighbours(&self, face: usize) -> usize {
-        neighbours(self.mesh, face).filter(|&n| self.divisible[n]).count()
+        neighbours(self.mesh, face)
+            .filter(|&n| self.divisible[n])
+            .count()
     }
 
     /// The face of `place` as an example; None at a boundary.
@@ -171,31 +193,56 @@ impl Scene<'_> {
         };
         let mut quality = shape(corners);
         let mut after = Vec::new();
-        for (&covered, kind) in
-            around.iter().zip(around.iter().map(|&n| self.kind(n))).chain([(&face, Kind::Face)])
+        for (&covered, kind) in around
+            .iter()
+            .zip(around.iter().map(|&n| self.kind(n)))
+            .chain([(&face, Kind::Face)])
         {
             let tilt = dot(normal, unit(self.mesh.face_normal(FaceId(covered as u32))));
-            quality = quality.min(shape(self.mesh.as_triangles().corners(covered))).min(tilt);
+            quality = quality
+                .min(shape(self.mesh.as_triangles().corners(covered)))
+                .min(tilt);
             for child in self.starts[covered]..self.starts[covered + 1] {
                 after.push((self.next.as_triangles().corners(child).map(flat), kind));
             }
         }
-        Some(Example { place, quality, before: corners.map(flat).to_vec(), after })
+        Some(Example {
+            place,
+            quality,
+            before: corners.map(flat).to_vec(),
+            after,
+        })
     }
 
     fn kind(&self, face: usize) -> Kind {
-        if self.divisible[face] { Kind::Divisible } else { Kind::Indivisible }
+        if self.divisible[face] {
+            Kind::Divisible
+        } else {
+            Kind::Indivisible
+        }
     }
 }
 
 /// How equilateral a triangle is: 4√3 times its area by the sum of its squared sides.
 fn shape([a, b, c]: [Vector; 3]) -> f64 {
     let normal = cross(sub(b, a), sub(c, a));
-    let squares: f64 = [sub(b, a), sub(c, b), sub(a, c)].iter().map(|&side| dot(side, side)).sum();
-    if squares > 0.0 { 2.0 * 3.0_f64.sqrt() * dot(normal, normal).sqrt() / squares } else { 0.0 }
+    let squares: f64 = [sub(b, a), sub(c, b), sub(a, c)]
+        .iter()
+        .map(|&side| dot(side, side))
+        .sum();
+    if squares > 0.0 {
+        2.0 * 3.0_f64.sqrt() * dot(normal, normal).sqrt() / squares
+    } else {
+        0.0
+    }
 }
 
-const CAPTIONS: [&str; 4] = ["none divisible: left", "one: in two", "two: in three", "three: in four"];
+const CAPTIONS: [&str; 4] = [
+    "none divisible: left",
+    "one: in two",
+    "two: in three",
+    "three: in four",
+];
 
 fn picture(examples: &[Option<Example>; 4], room: Room) -> Result<String, RenderError> {
     let (columns, panel) = room.pick((4, 240.0), (2, 0.5 * Room::NARROW));
@@ -203,11 +250,18 @@ fn picture(examples: &[Option<Example>; 4], room: Room) -> Result<String, Render
     let rows = examples.len() / columns;
     let mut drawing = Drawing::new(columns as f64 * panel, rows as f64 * height)?;
     for (case, example) in examples.iter().enumerate() {
-        let corner = [(case % columns) as f64 * panel, (case / columns) as f64 * height];
+        let corner = [
+            (case % columns) as f64 * panel,
+            (case / columns) as f64 * height,
+        ];
         let centre = corner[0] + 0.5 * panel;
         let words = format!("({}) {}", ["a", "b", "c", "d"][case], CAPTIONS[case]);
         let below = corner[1] + panel;
-        drawing.label([centre, below + 18.0], &words, &plain().bold(true).align(Align::Centre));
+        drawing.label(
+            [centre, below + 18.0],
+            &words,
+            &plain().bold(true).align(Align::Centre),
+        );
         let place = match example {
             Some(example) => {
                 draw(&mut drawing, example, corner, panel);
@@ -216,16 +270,28 @@ fn picture(examples: &[Option<Example>; 4], room: Room) -> Result<String, Render
             }
             None => "no such face in these models".to_owned(),
         };
-        drawing.label([centre, below + 38.0], &place, &small().align(Align::Centre));
+        drawing.label(
+            [centre, below + 38.0],
+            &place,
+            &small().align(Align::Centre),
+        );
     }
     drawing.finish()
 }
 
 /// An example in a square.
 fn draw(drawing: &mut Drawing, example: &Example, corner: [f64; 2], side: f64) {
-    let points = || example.after.iter().flat_map(|(triangle, _)| triangle).chain(&example.before);
+    let points = || {
+        example
+            .after
+            .iter()
+            .flat_map(|(triangle, _)| triangle)
+            .chain(&example.before)
+    };
     let extent = |axis: usize| {
-        points().fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[axis]), high.max(p[axis])))
+        points().fold((f64::MAX, f64::MIN), |(low, high), p| {
+            (low.min(p[axis]), high.max(p[axis]))
+        })
     };
     let ((left, right), (top, bottom)) = (extent(0), extent(1));
     let scale = (side - 28.0) / (right - left).max(bottom - top).max(f64::MIN_POSITIVE);
@@ -241,7 +307,13 @@ fn draw(drawing: &mut Drawing, example: &Example, corner: [f64; 2], side: f64) {
             Kind::Divisible => (AMRESH, 0.24),
             Kind::Indivisible => (PALE, 0.16),
         };
-        tinted(drawing, &triangle.map(place), fill, opacity, &Pen::line(INK, 1.2));
+        tinted(
+            drawing,
+            &triangle.map(place),
+            fill,
+            opacity,
+            &Pen::line(INK, 1.2),
+        );
     }
     let before: Vec<[f64; 2]> = example.before.iter().map(|&p| place(p)).collect();
     drawing.polygon(&before, &Pen::line(PAPER, 1.4).dashes(&[5.0, 4.0]));

@@ -68,8 +68,13 @@ pub(crate) fn cone(player: &Player, folder: &mut Folder<'_>) -> anyhow::Result<O
         meshes.push(methods::uniform_plain(&player.mesh, step)?.mesh);
     }
     let table = LimitTable::new(&Loop);
-    let normals = meshes.iter().map(|mesh| table.normals(mesh)).collect::<Result<Vec<_>, _>>()?;
-    let Some(vertex) = choose(&meshes, &normals) else { return Ok(None) };
+    let normals = meshes
+        .iter()
+        .map(|mesh| table.normals(mesh))
+        .collect::<Result<Vec<_>, _>>()?;
+    let Some(vertex) = choose(&meshes, &normals) else {
+        return Ok(None);
+    };
     let normal = normals[0][vertex.index()];
     let stages: Vec<Stage> = meshes
         .iter()
@@ -79,7 +84,10 @@ pub(crate) fn cone(player: &Player, folder: &mut Folder<'_>) -> anyhow::Result<O
             Stage {
                 step,
                 limit_normal_turn_degrees: angle_degrees(normals[step][vertex.index()], normal),
-                angles_degrees: faces.iter().map(|&f| angle_degrees(face_normal(f), normal)).collect(),
+                angles_degrees: faces
+                    .iter()
+                    .map(|&f| angle_degrees(face_normal(f), normal))
+                    .collect(),
                 centre: mesh.positions()[vertex.index()],
                 faces,
             }
@@ -97,7 +105,14 @@ pub(crate) fn cone(player: &Player, folder: &mut Folder<'_>) -> anyhow::Result<O
         ),
     );
     let (model, vertex) = (player.name, vertex.0);
-    Ok(Some(ConeFigure { model, vertex, alpha_degrees: ALPHA, limit_normal: normal, stages, picture }))
+    Ok(Some(ConeFigure {
+        model,
+        vertex,
+        alpha_degrees: ALPHA,
+        limit_normal: normal,
+        stages,
+        picture,
+    }))
 }
 
 /// The vertex all of whose face normals enter the cone, not before the last step, from farthest outside.
@@ -111,9 +126,12 @@ fn choose(meshes: &[Mesh], normals: &[Vec<Vector>]) -> Option<VertexId> {
         }
         let normal = normals.first()?[vertex.index()];
         let mut spread = meshes.iter().map(|mesh| {
-            let angles =
-                faces_around(mesh, vertex).into_iter().map(|f| angle_degrees(face_normal(f), normal));
-            angles.fold((f64::MAX, 0.0), |(least, most): (f64, f64), a| (least.min(a), most.max(a)))
+            let angles = faces_around(mesh, vertex)
+                .into_iter()
+                .map(|f| angle_degrees(face_normal(f), normal));
+            angles.fold((f64::MAX, 0.0), |(least, most): (f64, f64), a| {
+                (least.min(a), most.max(a))
+            })
         });
         let (first, middle, last) = (spread.next()?, spread.next()?, spread.next()?);
         // All normals start outside; some are still outside after one step.
@@ -129,7 +147,13 @@ fn choose(meshes: &[Mesh], normals: &[Vec<Vector>]) -> Option<VertexId> {
 fn faces_around(mesh: &Mesh, vertex: VertexId) -> Vec<[Vector; 3]> {
     let topology = mesh.topology();
     let place = |v: VertexId| mesh.positions()[v.index()];
-    let corners = |h| [place(vertex), place(topology.target(h)), place(topology.opposite(h))];
+    let corners = |h| {
+        [
+            place(vertex),
+            place(topology.target(h)),
+            place(topology.opposite(h)),
+        ]
+    };
     topology.outgoing_ring(vertex).map(corners).collect()
 }
 
@@ -145,8 +169,10 @@ const ROW: f64 = 236.0;
 
 fn picture(stages: &[Stage], normal: Vector, room: Room) -> Result<String, RenderError> {
     let count = stages.len() as f64;
-    let (width, height) =
-        room.pick((PANEL * count, SPACE_HEIGHT + PANEL + 20.0), (Room::NARROW, ROW * count));
+    let (width, height) = room.pick(
+        (PANEL * count, SPACE_HEIGHT + PANEL + 20.0),
+        (Room::NARROW, ROW * count),
+    );
     let scale = room.pick(1.0, 0.5 * Room::NARROW / PANEL);
     let mut drawing = Drawing::new(width, height)?;
     let widest = stages.iter().map(Stage::greatest).fold(ALPHA, f64::max);
@@ -158,7 +184,11 @@ fn picture(stages: &[Stage], normal: Vector, room: Room) -> Result<String, Rende
             step => format!("(c) after {step} steps"),
         };
         let middle = x + 0.5 * room.pick(PANEL, Room::NARROW);
-        drawing.label([middle, y + 20.0], &title, &plain().bold(true).align(Align::Centre));
+        drawing.label(
+            [middle, y + 20.0],
+            &title,
+            &plain().bold(true).align(Align::Centre),
+        );
         let [space, above] = room.pick(
             [[middle, 178.0], [middle, SPACE_HEIGHT + 0.5 * PANEL]],
             [[0.25 * width, y + 140.0], [0.75 * width, y + 120.0]],
@@ -185,8 +215,16 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, origin: [f64; 
         let d = sub(p, stage.centre);
         dot(d, d).sqrt()
     });
-    let (ring, arrow) = (105.0 * scale / size.fold(f64::MIN_POSITIVE, f64::max), 120.0 * scale);
-    let flat = |d: Vector| [origin[0] + dot(d, u), origin[1] - rise * dot(d, normal) + depth * dot(d, v)];
+    let (ring, arrow) = (
+        105.0 * scale / size.fold(f64::MIN_POSITIVE, f64::max),
+        120.0 * scale,
+    );
+    let flat = |d: Vector| {
+        [
+            origin[0] + dot(d, u),
+            origin[1] - rise * dot(d, normal) + depth * dot(d, v),
+        ]
+    };
     let mut faces: Vec<(f64, [[f64; 2]; 3], f64)> = Vec::new();
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
         let corners = face.map(|p| sub(p, stage.centre).map(|c| ring * c));
@@ -212,9 +250,17 @@ fn in_space(drawing: &mut Drawing, stage: &Stage, normal: Vector, origin: [f64; 
         drawing.line(origin, end, &thin(PALE));
     }
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
-        drawing.arrow(origin, flat(face_normal(*face).map(|c| arrow * c)), &Pen::line(colour(angle), 1.7));
+        drawing.arrow(
+            origin,
+            flat(face_normal(*face).map(|c| arrow * c)),
+            &Pen::line(colour(angle), 1.7),
+        );
     }
-    drawing.arrow(origin, flat(normal.map(|c| arrow * c)), &Pen::line(INK, 2.2));
+    drawing.arrow(
+        origin,
+        flat(normal.map(|c| arrow * c)),
+        &Pen::line(INK, 2.2),
+    );
 }
 
 /// The normals by angle and direction around the limit normal.
@@ -237,7 +283,10 @@ fn from_above(
     let place = |n: Vector, angle: f64| {
         let direction = [dot(n, u), dot(n, v)];
         let length = direction[0].hypot(direction[1]).max(f64::MIN_POSITIVE);
-        [centre[0] + scale * angle * direction[0] / length, centre[1] + scale * angle * direction[1] / length]
+        [
+            centre[0] + scale * angle * direction[0] / length,
+            centre[1] + scale * angle * direction[1] / length,
+        ]
     };
     for (face, &angle) in stage.faces.iter().zip(&stage.angles_degrees) {
         let at = place(face_normal(*face), angle);

@@ -45,7 +45,11 @@ impl Head {
 }
 
 /// Refines a head both ways and draws it.
-pub(crate) fn head(player: &Player, renderer: &Renderer, folder: &mut Folder<'_>) -> anyhow::Result<Head> {
+pub(crate) fn head(
+    player: &Player,
+    renderer: &Renderer,
+    folder: &mut Folder<'_>,
+) -> anyhow::Result<Head> {
     let control = &player.mesh;
     let uniform = methods::uniform_plain(control, STEPS)?.mesh;
     let refine = |angle, seam| methods::paper(control, angle, STEPS, seam);
@@ -54,9 +58,15 @@ pub(crate) fn head(player: &Player, renderer: &Renderer, folder: &mut Folder<'_>
     for (seam, name) in SEAMS {
         by_seam.push((name, refine(ANGLE_DEGREES, seam)?.mesh.face_count()));
     }
-    let matching = match_angle(PAPER_ADAPTIVE, ANGLE_DEGREES, |angle| refine(angle, SeamRule::All))?;
+    let matching = match_angle(PAPER_ADAPTIVE, ANGLE_DEGREES, |angle| {
+        refine(angle, SeamRule::All)
+    })?;
     let camera = renderer.camera(control, player.view())?;
-    let place = if player.origin.file { "file" } else { "builtin" };
+    let place = if player.origin.file {
+        "file"
+    } else {
+        "builtin"
+    };
     let name = player.name;
     let mut pictures = Vec::new();
     for (mesh, step, words) in [

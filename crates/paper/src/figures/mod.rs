@@ -25,12 +25,24 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    pub(super) fn new(file: impl Into<String>, alt: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self { file: file.into(), narrow: None, alt: alt.into(), caption: caption.into() }
+    pub(super) fn new(
+        file: impl Into<String>,
+        alt: impl Into<String>,
+        caption: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            narrow: None,
+            alt: alt.into(),
+            caption: caption.into(),
+        }
     }
 
     /// A drawing in both its layouts, whose files are called `stem`.
     pub(super) fn drawn(stem: &str, alt: impl Into<String>, caption: impl Into<String>) -> Self {
-        Self { narrow: Some(Room::Narrow.file(stem)), ..Self::new(Room::Wide.file(stem), alt, caption) }
+        Self {
+            narrow: Some(Room::Narrow.file(stem)),
+            ..Self::new(Room::Wide.file(stem), alt, caption)
+        }
     }
 }

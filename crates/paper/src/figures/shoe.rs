@@ -35,14 +35,22 @@ pub(crate) struct ShoeSetting {
 }
 
 /// Refines the shoe at both thresholds and draws it.
-pub(crate) fn shoe(player: &Player, renderer: &Renderer, folder: &mut Folder<'_>) -> anyhow::Result<Shoe> {
+pub(crate) fn shoe(
+    player: &Player,
+    renderer: &Renderer,
+    folder: &mut Folder<'_>,
+) -> anyhow::Result<Shoe> {
     let control = &player.mesh;
     let control_faces = control.face_count();
     let uniform_faces = control_faces << (2 * STEPS);
     let camera = renderer.camera(control, player.view())?;
     folder.write("figure8-control.png", &renderer.draw(control, &camera)?)?;
     let caption = format!("control mesh: {} faces", thousands(control_faces));
-    let mut pictures = vec![Picture::new("figure8-control.png", format!("Shoe, {caption}"), caption)];
+    let mut pictures = vec![Picture::new(
+        "figure8-control.png",
+        format!("Shoe, {caption}"),
+        caption,
+    )];
     let mut settings = Vec::new();
     for (degrees, angle, printed) in SETTINGS {
         let mesh = methods::paper(control, degrees, STEPS, SeamRule::All)?.mesh;
@@ -51,7 +59,18 @@ pub(crate) fn shoe(player: &Player, renderer: &Renderer, folder: &mut Folder<'_>
         let caption = format!("2 steps, {angle}: {} faces", thousands(mesh.face_count()));
         pictures.push(Picture::new(file, format!("Shoe, {caption}"), caption));
         let readings = readings(printed, control_faces, uniform_faces);
-        settings.push(ShoeSetting { angle, faces: mesh.face_count(), printed, readings });
+        settings.push(ShoeSetting {
+            angle,
+            faces: mesh.face_count(),
+            printed,
+            readings,
+        });
     }
-    Ok(Shoe { origin: player.origin.clone(), control_faces, uniform_faces, settings, pictures })
+    Ok(Shoe {
+        origin: player.origin.clone(),
+        control_faces,
+        uniform_faces,
+        settings,
+        pictures,
+    })
 }

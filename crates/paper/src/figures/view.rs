@@ -61,7 +61,10 @@ pub(crate) struct Tried {
 impl ViewModel {
     /// The faces at one of the thresholds.
     pub(crate) fn faces_at(&self, part_of_pi: u32) -> Option<usize> {
-        self.tried.iter().find(|t| t.part_of_pi == part_of_pi).map(|t| t.faces)
+        self.tried
+            .iter()
+            .find(|t| t.part_of_pi == part_of_pi)
+            .map(|t| t.faces)
     }
 }
 
@@ -79,22 +82,33 @@ pub(crate) fn view_dependent(
         draw(show, chosen, &mut model, renderer, folder)?;
         models.push(model);
     }
-    Ok(ViewFigure { models, part_of_pi: part_of_pi.unwrap_or(PARTS_OF_PI[0]) })
+    Ok(ViewFigure {
+        models,
+        part_of_pi: part_of_pi.unwrap_or(PARTS_OF_PI[0]),
+    })
 }
 
 /// The threshold whose count is nearest, in ratio, to a reading of the paper's, as a share of the uniform one.
 fn nearest_threshold(model: &ViewModel) -> u32 {
     let scale = model.uniform_faces as f64 / model.paper_uniform as f64;
     let off = |tried: &Tried| {
-        let ratios = model.paper_adaptive_readings.iter().map(|&r| tried.faces as f64 / (r as f64 * scale));
-        ratios.map(|ratio| ratio.ln().abs()).fold(f64::MAX, f64::min)
+        let ratios = model
+            .paper_adaptive_readings
+            .iter()
+            .map(|&r| tried.faces as f64 / (r as f64 * scale));
+        ratios
+            .map(|ratio| ratio.ln().abs())
+            .fold(f64::MAX, f64::min)
     };
     let best = model.tried.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
     best.map_or(PARTS_OF_PI[0], |tried| tried.part_of_pi)
 }
 
 fn refine(player: &Player, part_of_pi: u32) -> anyhow::Result<Mesh> {
-    let view = View { viewpoint: Viewpoint::Direction(player.front.sight), dilatation: 1.0 };
+    let view = View {
+        viewpoint: Viewpoint::Direction(player.front.sight),
+        dilatation: 1.0,
+    };
     let angle = std::f64::consts::PI / f64::from(part_of_pi);
     let criterion = LimitNormal::new(angle).view(view);
     Ok(methods::adaptive(&player.mesh, &criterion, STEPS, SeamRule::All)?.mesh)
@@ -105,7 +119,10 @@ fn scan(show: &Shown<'_>) -> anyhow::Result<ViewModel> {
     let control = &show.player.mesh;
     let mut tried = Vec::new();
     for part_of_pi in PARTS_OF_PI {
-        tried.push(Tried { part_of_pi, faces: refine(show.player, part_of_pi)?.face_count() });
+        tried.push(Tried {
+            part_of_pi,
+            faces: refine(show.player, part_of_pi)?.face_count(),
+        });
     }
     let low = show.paper_uniform >> (2 * STEPS);
     Ok(ViewModel {
@@ -133,23 +150,42 @@ fn draw(
     let uniform = methods::uniform_plain(&player.mesh, STEPS)?.mesh;
     let adaptive = refine(player, part_of_pi)?;
     let front = player.front;
-    model.back_faces = [&player.mesh, &uniform, &adaptive].map(|mesh| back_faces(mesh, front.sight));
+    model.back_faces =
+        [&player.mesh, &uniform, &adaptive].map(|mesh| back_faces(mesh, front.sight));
     // The viewer of the front view is then on the left.
-    let side = ViewDirection { sight: unit(cross(front.up, front.sight)), up: front.up };
+    let side = ViewDirection {
+        sight: unit(cross(front.up, front.sight)),
+        up: front.up,
+    };
     for (mesh, view, key, words) in [
         (&uniform, front, "uniform", "uniform, front view"),
         (&adaptive, front, "front", "view-dependent, front view"),
-        (&adaptive, side, "side", "view-dependent, from the side (the viewer is on the left)"),
+        (
+            &adaptive,
+            side,
+            "side",
+            "view-dependent, from the side (the viewer is on the left)",
+        ),
     ] {
         let file = format!("figure9-{}-{key}.png", player.name);
-        folder.write(&file, &renderer.draw(mesh, &renderer.camera(&uniform, view)?)?)?;
+        folder.write(
+            &file,
+            &renderer.draw(mesh, &renderer.camera(&uniform, view)?)?,
+        )?;
         let caption = format!("{words}: {} faces", thousands(mesh.face_count()));
-        model.pictures.push(Picture::new(file, format!("{}, {caption}", player.name), caption));
+        model.pictures.push(Picture::new(
+            file,
+            format!("{}, {caption}", player.name),
+            caption,
+        ));
     }
     Ok(())
 }
 
 /// Number of faces whose normal points along the direction of sight.
 fn back_faces(mesh: &Mesh, sight: [f64; 3]) -> usize {
-    mesh.topology().faces().filter(|&face| dot(mesh.face_normal(face), sight) > 0.0).count()
+    mesh.topology()
+        .faces()
+        .filter(|&face| dot(mesh.face_normal(face), sight) > 0.0)
+        .count()
 }

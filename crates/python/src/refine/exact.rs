@@ -18,16 +18,22 @@ pub(super) fn refined(
     goals: &Goals,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
-    let near =
-        goals.within.map(|within| Near::of(&mut control, within, (recipe, goals), observer)).transpose()?;
+    let near = goals
+        .within
+        .map(|within| Near::of(&mut control, within, (recipe, goals), observer))
+        .transpose()?;
     let mut options = control.options(goals, recipe);
     if let Some(near) = &near {
         options = near.asked_of(options);
     }
     let found = exact_observed(&control.mesh, recipe.scheme, &options, observer)?;
-    let distance =
-        near.as_ref().map(|near| near.distance(&found, &control.tables.parts, observer)).transpose()?;
-    let inverted = near.as_ref().map(|near| near.inverted(&found, &control.tables.parts));
+    let distance = near
+        .as_ref()
+        .map(|near| near.distance(&found, &control.tables.parts, observer))
+        .transpose()?;
+    let inverted = near
+        .as_ref()
+        .map(|near| near.inverted(&found, &control.tables.parts));
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
@@ -43,7 +49,11 @@ pub(super) fn refined(
 impl Refined {
     /// What is told of an exact refinement, but for channels.
     pub(crate) fn of_exact(found: Exact, tables: Tables) -> Self {
-        let (error, stop, inverted) = (found.error, stop_name(found.stop), found.inverted_triangles());
+        let (error, stop, inverted) = (
+            found.error,
+            stop_name(found.stop),
+            found.inverted_triangles(),
+        );
         let (side_corners, side_normals) = found.sides.into_iter().unzip();
         let (positions, triangles) = found.mesh.into_positions_and_triangles();
         Self {

@@ -96,7 +96,11 @@ pub(crate) fn refine<'py>(
                 stepwise::refined(control, &recipe, (method, &goals), observer)?
             }
         };
-        let mut refined = if has_wide_indices { refined.widened() } else { refined };
+        let mut refined = if has_wide_indices {
+            refined.widened()
+        } else {
+            refined
+        };
         refined.took(start.elapsed().as_secs_f64());
         Ok(refined)
     })?;
@@ -147,10 +151,14 @@ impl Method {
             ("exact", true) => Ok(Self::Sqrt3),
             ("uniform", true) => Ok(Self::Sqrt3Uniform),
             (other, true) => {
-                let what = format!("method is '{other}', expected 'exact' or 'uniform' with scheme='sqrt3'");
+                let what = format!(
+                    "method is '{other}', expected 'exact' or 'uniform' with scheme='sqrt3'"
+                );
                 Err(OptionError::new_err(what))
             }
-            (other, false) => Err(OptionError::new_err(format!("there is no method '{other}'"))),
+            (other, false) => Err(OptionError::new_err(format!(
+                "there is no method '{other}'"
+            ))),
         }
     }
 }
@@ -196,7 +204,10 @@ impl Refined {
 
     /// With vertex numbers of 64 bits.
     pub(crate) fn widened(self) -> Self {
-        Self { triangles: self.triangles.widened(), ..self }
+        Self {
+            triangles: self.triangles.widened(),
+            ..self
+        }
     }
 
     /// Puts down how long it took.
@@ -208,9 +219,16 @@ impl Refined {
     pub(crate) fn told(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let dict = PyDict::new(py);
         dict.set_item(intern!(py, "seconds"), self.seconds)?;
-        dict.set_item(intern!(py, "diagnosis"), tell::diagnosis(py, &self.tables.diagnosis)?)?;
+        dict.set_item(
+            intern!(py, "diagnosis"),
+            tell::diagnosis(py, &self.tables.diagnosis)?,
+        )?;
         dict.set_item(intern!(py, "crease_angle"), self.tables.crease_angle)?;
-        let interpolated = self.tables.interpolated.map(|told| told.told(py)).transpose()?;
+        let interpolated = self
+            .tables
+            .interpolated
+            .map(|told| told.told(py))
+            .transpose()?;
         dict.set_item(intern!(py, "interpolation"), interpolated)?;
         dict.set_item(intern!(py, "vertices"), tell::rows(py, self.positions)?)?;
         match self.triangles {
@@ -218,13 +236,25 @@ impl Refined {
             Indices::Wide(rows) => dict.set_item(intern!(py, "faces"), tell::rows(py, rows)?)?,
         }
         dict.set_item(intern!(py, "normals"), tell::rows(py, self.normals)?)?;
-        let sides = (PyArray1::from_vec(py, self.side_corners), tell::rows(py, self.side_normals)?);
+        let sides = (
+            PyArray1::from_vec(py, self.side_corners),
+            tell::rows(py, self.side_normals)?,
+        );
         dict.set_item(intern!(py, "_sides"), sides)?;
         let parents = self.parents.map(|list| PyArray1::from_vec(py, list));
         dict.set_item(intern!(py, "_parents"), parents)?;
-        dict.set_item(intern!(py, "_origins"), Origins::new(self.tables, self.origins))?;
-        let channels = self.channels.into_iter().map(|channel| channels::told(py, channel));
-        dict.set_item(intern!(py, "channels"), PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?)?;
+        dict.set_item(
+            intern!(py, "_origins"),
+            Origins::new(self.tables, self.origins),
+        )?;
+        let channels = self
+            .channels
+            .into_iter()
+            .map(|channel| channels::told(py, channel));
+        dict.set_item(
+            intern!(py, "channels"),
+            PyList::new(py, channels.collect::<PyResult<Vec<_>>>()?)?,
+        )?;
         dict.set_item(intern!(py, "error"), self.error)?;
         dict.set_item(intern!(py, "input_distance"), self.input_distance)?;
         dict.set_item(intern!(py, "stop"), self.stop)?;
@@ -247,23 +277,31 @@ struct Normals {
 impl Normals {
     fn of_sides(mesh: &Mesh, sided: SidedNormals) -> Self {
         let topology = mesh.topology();
-        let differs =
-            |&h: &HalfEdgeId| sided.at(topology, h) != sided.by_vertex()[topology.origin(h).index()];
+        let differs = |&h: &HalfEdgeId| {
+            sided.at(topology, h) != sided.by_vertex()[topology.origin(h).index()]
+        };
         let corners: Vec<HalfEdgeId> = match mesh.tags().creases.is_empty() {
             true => Vec::new(),
             false => topology.half_edges().filter(differs).collect(),
         };
         let of_corners = corners.iter().map(|&h| sided.at(topology, h)).collect();
-        Self { corners: corners.iter().map(|h| h.0).collect(), of_corners, by_vertex: sided.into_by_vertex() }
+        Self {
+            corners: corners.iter().map(|h| h.0).collect(),
+            of_corners,
+            by_vertex: sided.into_by_vertex(),
+        }
     }
 }
 
 impl Indices {
     fn widened(self) -> Self {
         match self {
-            Self::Narrow(rows) => {
-                Self::Wide(rows.into_par_iter().with_min_len(ROWS).map(|row| row.map(i64::from)).collect())
-            }
+            Self::Narrow(rows) => Self::Wide(
+                rows.into_par_iter()
+                    .with_min_len(ROWS)
+                    .map(|row| row.map(i64::from))
+                    .collect(),
+            ),
             wide => wide,
         }
     }

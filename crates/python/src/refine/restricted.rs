@@ -28,7 +28,10 @@ pub(super) fn refined(
     let mut front = Front::measured_by_observed(&control.mesh, recipe.scheme, measure, observer)?;
     let cap = goals.cap(BYTES_PER_TRIANGLE);
     let most = goals.triangles.into_iter().chain(cap).min();
-    front.update_observed(&most.map_or(demand.clone(), |most| demand.triangles(most)), observer)?;
+    front.update_observed(
+        &most.map_or(demand.clone(), |most| demand.triangles(most)),
+        observer,
+    )?;
     let stop = match goals.triangles {
         _ if front.worst() <= limit => "met",
         _ if front.limit() <= limit => "level-cap",
@@ -45,7 +48,11 @@ pub(super) fn refined(
     let normals = normals(&found, &control, recipe)?;
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
-        origins: Trail::Known(if goals.origins { found.origins } else { Vec::new() }),
+        origins: Trail::Known(if goals.origins {
+            found.origins
+        } else {
+            Vec::new()
+        }),
         channels,
         stop,
         levels,
@@ -59,7 +66,10 @@ fn limit(method: Method, goals: &Goals, diagonal: f64) -> (Measure, f64) {
     match (method, tolerance) {
         (Method::VertexError, tolerance) => (Measure::VertexError, tolerance.unwrap_or(0.0)),
         (_, Some(tolerance)) => (Measure::PlanarityDistance, tolerance),
-        (_, None) => (Measure::PlanarityAngle, goals.angle.unwrap_or(0.0).to_radians()),
+        (_, None) => (
+            Measure::PlanarityAngle,
+            goals.angle.unwrap_or(0.0).to_radians(),
+        ),
     }
 }
 
@@ -67,12 +77,28 @@ fn limit(method: Method, goals: &Goals, diagonal: f64) -> (Measure, f64) {
 fn normals(found: &Snapshot, control: &Control, recipe: &Recipe) -> Result<Normals, Failure> {
     let surface = LimitSurface::new(&control.mesh, recipe.scheme)?;
     let place = |origin: &Origin| (FaceId(origin.face), origin.barycentric);
-    let at = |places: &[_]| surface.at_all(places).into_iter().map(|point| point.normal).collect();
+    let at = |places: &[_]| {
+        surface
+            .at_all(places)
+            .into_iter()
+            .map(|point| point.normal)
+            .collect()
+    };
     let mut by_vertex: Vec<[f64; 3]> = at(&found.origins.iter().map(place).collect::<Vec<_>>());
     let mut is_sided = vec![false; by_vertex.len()];
-    found.mesh.tags().creases.iter().flat_map(|tag| tag.vertices).for_each(|v| is_sided[v as usize] = true);
+    found
+        .mesh
+        .tags()
+        .creases
+        .iter()
+        .flat_map(|tag| tag.vertices)
+        .for_each(|v| is_sided[v as usize] = true);
     let flat = found.mesh.triangles().as_flattened();
-    let corners: Vec<u32> = (0..).zip(flat).filter(|&(_, &v)| is_sided[v as usize]).map(|(h, _)| h).collect();
+    let corners: Vec<u32> = (0..)
+        .zip(flat)
+        .filter(|&(_, &v)| is_sided[v as usize])
+        .map(|(h, _)| h)
+        .collect();
     let of_corner = |&h: &u32| {
         let own = found.corner_origin(control.mesh.triangles(), HalfEdgeId(h));
         place(&own.unwrap_or(found.origins[flat[h as usize] as usize]))
@@ -85,9 +111,17 @@ fn normals(found: &Snapshot, control: &Control, recipe: &Recipe) -> Result<Norma
         let sum = &mut by_vertex[flat[h as usize] as usize];
         *sum = [0, 1, 2].map(|axis| sum[axis] + normal[axis]);
     }
-    for (normal, _) in by_vertex.iter_mut().zip(is_sided).filter(|(_, is_sided)| *is_sided) {
+    for (normal, _) in by_vertex
+        .iter_mut()
+        .zip(is_sided)
+        .filter(|(_, is_sided)| *is_sided)
+    {
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
         *normal = normal.map(|x| if length > 0.0 { x / length } else { 0.0 });
     }
-    Ok(Normals { corners, of_corners, by_vertex })
+    Ok(Normals {
+        corners,
+        of_corners,
+        by_vertex,
+    })
 }

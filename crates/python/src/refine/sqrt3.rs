@@ -23,11 +23,17 @@ pub(super) fn to_goals(
 ) -> Result<Refined, Failure> {
     let options = Sqrt3Options::default()
         .angle(goals.angle.map(f64::to_radians))
-        .tolerance(goals.tolerance.map(|tolerance| tolerance.of(control.diagonal)))
+        .tolerance(
+            goals
+                .tolerance
+                .map(|tolerance| tolerance.of(control.diagonal)),
+        )
         .triangles(goals.triangles)
         .max_triangles(goals.cap(BYTES_PER_ADAPTIVE))
         .origins(goals.origins);
-    let options = goals.max_levels.map_or(options, |levels| options.max_levels(levels));
+    let options = goals
+        .max_levels
+        .map_or(options, |levels| options.max_levels(levels));
     let found = adaptive_observed(&control.mesh, &options, observer)?;
     let normals = Normals::of_sides(&found.mesh, found.normals);
     // Nothing is known from below, and nothing is proven.
@@ -35,7 +41,9 @@ pub(super) fn to_goals(
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
         origins: Trail::Known(found.origins),
-        error: found.estimated_distance.map(|distance| (0.0, distance, false, at.into())),
+        error: found
+            .estimated_distance
+            .map(|distance| (0.0, distance, false, at.into())),
         stop: match found.stop {
             ExactStop::TriangleCap => goals.cap_name(BYTES_PER_ADAPTIVE),
             stop => exact::stop_name(stop),
@@ -57,7 +65,11 @@ pub(super) fn by_steps(
         .normals(true)
         .max_triangles(goals.cap(BYTES_PER_TRIANGLE));
     let found = uniform_observed(&control.mesh, &options, observer)?;
-    let none = || Normals { corners: Vec::new(), of_corners: Vec::new(), by_vertex: Vec::new() };
+    let none = || Normals {
+        corners: Vec::new(),
+        of_corners: Vec::new(),
+        by_vertex: Vec::new(),
+    };
     let of_sides = |sided: SidedNormals| Normals::of_sides(&found.mesh, sided);
     let normals = found.normals.map_or_else(none, of_sides);
     Ok(Refined {

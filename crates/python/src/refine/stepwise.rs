@@ -33,14 +33,19 @@ pub(super) fn refined(
     };
     let (mesh, scheme, cap) = (&control.mesh, recipe.scheme, goals.cap(BYTES_PER_TRIANGLE));
     let carries = !control.channels.is_empty();
-    let options =
-        StepwiseOptions::default().levels(goals.levels).origins(carries || goals.origins).max_triangles(cap);
+    let options = StepwiseOptions::default()
+        .levels(goals.levels)
+        .origins(carries || goals.origins)
+        .max_triangles(cap);
     let found = stepwise_observed(mesh, scheme, criterion.as_ref(), &options, observer)?;
     let channels = match carries {
         true => carried(&control.channels, mesh, scheme, &found)?,
         false => Vec::new(),
     };
-    let normals = Normals::of_sides(&found.mesh, LimitTable::new(scheme).sided_normals(&found.mesh)?);
+    let normals = Normals::of_sides(
+        &found.mesh,
+        LimitTable::new(scheme).sided_normals(&found.mesh)?,
+    );
     Ok(Refined {
         parents: control.tables.input_faces(found.parents),
         origins: Trail::Known(found.origins),

@@ -2,7 +2,9 @@
 
 use limitmesh::carry::carried;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{UniformOptions, UniformTriangles, uniform_observed, uniform_triangles_observed};
+use limitmesh::refine::{
+    UniformOptions, UniformTriangles, uniform_observed, uniform_triangles_observed,
+};
 
 use super::stepwise::{BYTES_PER_TRIANGLE, stop_name};
 use super::{Normals, Refined};
@@ -18,25 +20,52 @@ pub(super) fn refined(
     goals: &Goals,
     observer: &mut Observer<'_>,
 ) -> Result<Refined, Failure> {
-    let options = UniformOptions::default().levels(goals.levels).max_triangles(goals.cap(BYTES_PER_TRIANGLE));
+    let options = UniformOptions::default()
+        .levels(goals.levels)
+        .max_triangles(goals.cap(BYTES_PER_TRIANGLE));
     let at_limit = options.limit(true).normals(true);
     let found = uniform_triangles_observed(&control.mesh, recipe.scheme, &at_limit, observer)?;
     let channels = match control.channels.is_empty() {
         true => Vec::new(),
         false => {
             // The same triangles, which know where they came from.
-            let traced = uniform_observed(&control.mesh, recipe.scheme, &options.origins(true), observer)?;
+            let traced = uniform_observed(
+                &control.mesh,
+                recipe.scheme,
+                &options.origins(true),
+                observer,
+            )?;
             carried(&control.channels, &control.mesh, recipe.scheme, &traced)?
         }
     };
-    let UniformTriangles { positions, triangles, normals, sides, levels, stop, .. } = found;
+    let UniformTriangles {
+        positions,
+        triangles,
+        normals,
+        sides,
+        levels,
+        stop,
+        ..
+    } = found;
     let (corners, of_corners) = sides.into_iter().unzip();
-    let normals = Normals { corners, of_corners, by_vertex: normals };
+    let normals = Normals {
+        corners,
+        of_corners,
+        by_vertex: normals,
+    };
     let faces = 0..control.mesh.face_count() as u32;
     Ok(Refined {
         // The triangles of a face stand together: Python repeats its number for each.
-        parents: if goals.origins { control.tables.input_faces(faces.collect()) } else { None },
-        origins: if goals.origins { Trail::uniform(control.mesh, levels) } else { Trail::default() },
+        parents: if goals.origins {
+            control.tables.input_faces(faces.collect())
+        } else {
+            None
+        },
+        origins: if goals.origins {
+            Trail::uniform(control.mesh, levels)
+        } else {
+            Trail::default()
+        },
         channels,
         stop: stop_name(&stop, goals),
         levels,

@@ -4,7 +4,8 @@ use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Observer;
 use limitmesh::refine::{
-    Exact, ExactOptions, InputDistance, Origin, WithinOptions, turned_over_triangles, within_observed,
+    Exact, ExactOptions, InputDistance, Origin, WithinOptions, turned_over_triangles,
+    within_observed,
 };
 
 use super::Refined;
@@ -33,7 +34,9 @@ impl Near {
     ) -> Result<Self, Failure> {
         let within = within.of(control.diagonal);
         let tolerance = WithinOptions::usual_tolerance(within, control.diagonal);
-        let mut options = WithinOptions::default().within(within).tolerance(Some(tolerance));
+        let mut options = WithinOptions::default()
+            .within(within)
+            .tolerance(Some(tolerance));
         if let Some(cap) = goals.max_triangles {
             options = options.max_triangles(Some(cap));
         }
@@ -43,12 +46,19 @@ impl Near {
             *channel = channel.on_parts(&found.parts, &control.mesh);
         }
         control.tables.parts = found.parts.after(&control.tables.parts);
-        Ok(Self { within, tolerance, input: control.whole.take().unwrap_or(before) })
+        Ok(Self {
+            within,
+            tolerance,
+            input: control.whole.take().unwrap_or(before),
+        })
     }
 
     /// What refinement is asked therefore.
     pub(super) fn asked_of(&self, options: ExactOptions) -> ExactOptions {
-        options.tolerance(self.tolerance).flat_regions(false).origins(true)
+        options
+            .tolerance(self.tolerance)
+            .flat_regions(false)
+            .origins(true)
     }
 
     /// How far a result is from the input.
@@ -71,7 +81,9 @@ impl Near {
             Some(distance) => {
                 Ok(distance.decided([input, found.mesh.as_triangles()], self.within, observer)?)
             }
-            None => Err(Failure::Option("triangles reach over several faces of the input".to_owned())),
+            None => Err(Failure::Option(
+                "triangles reach over several faces of the input".to_owned(),
+            )),
         }
     }
 

@@ -15,19 +15,39 @@ use limitmesh_render::{
 const SIZE: (u32, u32) = (150, 120);
 
 fn control(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// The limit surface by rays, and a mesh of it to 1/20 of a pixel with its limit normals.
 fn pictures(control: &Mesh, camera: impl Fn(&SplitSurface) -> Camera) -> [Image; 2] {
     let tolerance = 0.0003 * control.diagonal();
-    let fine = exact(control, &Loop, &ExactOptions::default().tolerance(tolerance)).unwrap().split_surface();
+    let fine = exact(
+        control,
+        &Loop,
+        &ExactOptions::default().tolerance(tolerance),
+    )
+    .unwrap()
+    .split_surface();
     let (camera, style) = (camera(&fine), Style::default());
     let surface = LimitSurface::new(control, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
     let by_rays = render_exact(&rays, &camera, &style, SIZE).unwrap();
     let normals = Some(&fine.normals[..]);
-    let of_mesh = render(fine.as_triangles(), normals, None, &camera, &style, SIZE.0, SIZE.1).unwrap();
+    let of_mesh = render(
+        fine.as_triangles(),
+        normals,
+        None,
+        &camera,
+        &style,
+        SIZE.0,
+        SIZE.1,
+    )
+    .unwrap();
     [by_rays, of_mesh]
 }
 
@@ -43,8 +63,8 @@ fn differing([a, b]: &[Image; 2], by: u8) -> (usize, usize) {
                 continue;
             }
             all += 1;
-            let around =
-                (0..9u32).filter_map(|i| b.pixel((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?));
+            let around = (0..9u32)
+                .filter_map(|i| b.pixel((x + i % 3).checked_sub(1)?, (y + i / 3).checked_sub(1)?));
             let empty = around.clone().filter(|&pixel| pixel == background).count();
             inside += usize::from(empty == 0 || empty == around.count());
         }
@@ -55,10 +75,23 @@ fn differing([a, b]: &[Image; 2], by: u8) -> (usize, usize) {
 #[test]
 fn pictures_are_those_of_fine_meshes_but_along_outlines() {
     let tight = |fine: &SplitSurface| {
-        Camera::fit_tightly(fine.as_triangles(), ViewDirection::default(), SIZE.0, SIZE.1).unwrap()
+        Camera::fit_tightly(
+            fine.as_triangles(),
+            ViewDirection::default(),
+            SIZE.0,
+            SIZE.1,
+        )
+        .unwrap()
     };
     let near = |fine: &SplitSurface| {
-        Camera::fit_perspective(fine.as_triangles(), ViewDirection::front(), 40.0, SIZE.0, SIZE.1).unwrap()
+        Camera::fit_perspective(
+            fine.as_triangles(),
+            ViewDirection::front(),
+            40.0,
+            SIZE.0,
+            SIZE.1,
+        )
+        .unwrap()
     };
     let sphere = pictures(&control("sphere"), tight);
     let torus = pictures(&control("torus"), near);
@@ -68,7 +101,11 @@ fn pictures_are_those_of_fine_meshes_but_along_outlines() {
             "{name}: {all} pixels of {} differ by more than 6, {inside} of them not along the outline",
             SIZE.0 * SIZE.1
         );
-        let covered = images[0].rgba().chunks(4).filter(|pixel| *pixel != [255; 4]).count();
+        let covered = images[0]
+            .rgba()
+            .chunks(4)
+            .filter(|pixel| *pixel != [255; 4])
+            .count();
         assert!(covered > 2000, "{name}: {covered}");
         // The torus has an outline in front of itself, too.
         let most = if name == "sphere" { 0 } else { 40 };
@@ -83,7 +120,13 @@ fn pictures_are_the_same_bytes_on_any_number_of_threads() {
     let rays = RayCaster::new(&surface).unwrap();
     let camera = Camera::fit(control.as_triangles(), ViewDirection::side(), 60, 40).unwrap();
     let draw = || render_exact(&rays, &camera, &Style::default(), (60, 40)).unwrap();
-    let with = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(draw);
+    let with = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+            .install(draw)
+    };
     assert_eq!(with(1), with(3));
 }
 
@@ -101,8 +144,9 @@ fn it_tells_how_it_goes_on_and_is_cancelled() {
     };
     render_exact_observed(&rays, &camera, &Style::default(), (60, 40), &mut watch).unwrap();
     assert!(last == total && total > 60 * 40, "{last} {total}");
-    let stopped =
-        render_exact_observed(&rays, &camera, &Style::default(), (60, 40), &mut |_| ControlFlow::Break(()));
+    let stopped = render_exact_observed(&rays, &camera, &Style::default(), (60, 40), &mut |_| {
+        ControlFlow::Break(())
+    });
     assert_eq!(stopped.unwrap_err(), RenderError::Cancelled);
     let none = render_exact(&rays, &camera, &Style::default(), (0, 40));
     assert!(matches!(none, Err(RenderError::Size { .. })));

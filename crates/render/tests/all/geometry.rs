@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used)]
 
 use limitmesh::Triangles;
-use limitmesh_render::{Camera, Image, Lighting, RenderError, Shading, Style, ViewDirection, render};
+use limitmesh_render::{
+    Camera, Image, Lighting, RenderError, Shading, Style, ViewDirection, render,
+};
 
 const BLACK: [u8; 4] = [0, 0, 0, 255];
 
@@ -16,17 +18,26 @@ struct Shape {
 
 impl Shape {
     fn view(&self) -> Triangles<'_> {
-        Triangles { positions: &self.positions, triangles: &self.triangles }
+        Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        }
     }
 
     /// An axis-parallel rectangle at height z, facing +z.
     fn rectangle(mut self, low: [f64; 2], high: [f64; 2], z: f64) -> Self {
         let first = self.positions.len() as u32;
         self.positions.extend(
-            [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
-                .map(|[x, y]| [x, y, z]),
+            [
+                [low[0], low[1]],
+                [high[0], low[1]],
+                [high[0], high[1]],
+                [low[0], high[1]],
+            ]
+            .map(|[x, y]| [x, y, z]),
         );
-        self.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        self.triangles
+            .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         self
     }
 
@@ -38,14 +49,22 @@ impl Shape {
             let polar = std::f64::consts::PI * f64::from(i) / f64::from(stacks);
             for j in 0..slices {
                 let turn = std::f64::consts::TAU * f64::from(j) / f64::from(slices);
-                shape.positions.push([polar.sin() * turn.sin(), polar.cos(), polar.sin() * turn.cos()]);
+                shape.positions.push([
+                    polar.sin() * turn.sin(),
+                    polar.cos(),
+                    polar.sin() * turn.cos(),
+                ]);
             }
         }
         for i in 0..stacks {
             for j in 0..slices {
                 let at = |i: u32, j: u32| i * slices + j % slices;
-                shape.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-                shape.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                shape
+                    .triangles
+                    .push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                shape
+                    .triangles
+                    .push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
             }
         }
         shape
@@ -64,7 +83,11 @@ fn mask() -> Style {
         lighting.ambient = 100.0;
         lighting
     };
-    Style::default().surface_colour([255; 3]).back_colour([255; 3]).background(BLACK).lighting(glow)
+    Style::default()
+        .surface_colour([255; 3])
+        .back_colour([255; 3])
+        .background(BLACK)
+        .lighting(glow)
 }
 
 /// The part of the picture that a mask covers, in pixels.
@@ -74,7 +97,11 @@ fn covered(image: &Image) -> f64 {
 
 fn linear(channel: u8) -> f64 {
     let c = f64::from(channel) / 255.0;
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }
 }
 
 fn draw(shape: &Shape, camera: &Camera, style: &Style, width: u32, height: u32) -> Image {
@@ -89,8 +116,15 @@ fn a_square_covers_exactly_its_pixels() {
         for y in 0..40 {
             for x in 0..60 {
                 let inside = (20..44).contains(&x) && (12..26).contains(&y);
-                assert_eq!(image.pixel(x, y).unwrap()[0] > 127, inside, "pixel {x}, {y}");
-                assert!(matches!(image.pixel(x, y).unwrap()[0], 0 | 255), "no border is blurred");
+                assert_eq!(
+                    image.pixel(x, y).unwrap()[0] > 127,
+                    inside,
+                    "pixel {x}, {y}"
+                );
+                assert!(
+                    matches!(image.pixel(x, y).unwrap()[0], 0 | 255),
+                    "no border is blurred"
+                );
             }
         }
     }
@@ -108,18 +142,26 @@ fn a_sphere_has_the_area_of_its_outline() {
             let outline = (0.25f64).asin().tan() / 20f64.to_radians().tan();
             (camera, 120.0 * outline)
         } else {
-            (Camera::orthographic([0.0; 3], ViewDirection::front(), 1.2).unwrap(), 100.0)
+            (
+                Camera::orthographic([0.0; 3], ViewDirection::front(), 1.2).unwrap(),
+                100.0,
+            )
         };
         let area = covered(&draw(&sphere, &camera, &mask(), width, height));
         let expected = std::f64::consts::PI * radius * radius;
-        assert!((area / expected - 1.0).abs() < 0.003, "perspective {perspective}: {area}, not {expected}");
+        assert!(
+            (area / expected - 1.0).abs() < 0.003,
+            "perspective {perspective}: {area}, not {expected}"
+        );
     }
 }
 
 #[test]
 fn nearer_surfaces_hide_farther_ones_whatever_their_order() {
-    let cameras =
-        [pixel_camera(20), Camera::perspective([0.0, 0.0, 30.0], [0.0; 3], [0.0, 1.0, 0.0], 36.87).unwrap()];
+    let cameras = [
+        pixel_camera(20),
+        Camera::perspective([0.0, 0.0, 30.0], [0.0; 3], [0.0, 1.0, 0.0], 36.87).unwrap(),
+    ];
     let near = Shape::default().rectangle([-4.0, -4.0], [4.0, 4.0], 1.0);
     for camera in cameras {
         for swapped in [false, true] {
@@ -127,9 +169,11 @@ fn nearer_surfaces_hide_farther_ones_whatever_their_order() {
             if swapped {
                 shape.triangles.reverse();
             }
-            let colours: Vec<[u8; 3]> =
-                (0..8).map(|v| if v < 4 { [255, 0, 0] } else { [0, 255, 0] }).collect();
-            let image = render(shape.view(), None, Some(&colours), &camera, &mask(), 20, 20).unwrap();
+            let colours: Vec<[u8; 3]> = (0..8)
+                .map(|v| if v < 4 { [255, 0, 0] } else { [0, 255, 0] })
+                .collect();
+            let image =
+                render(shape.view(), None, Some(&colours), &camera, &mask(), 20, 20).unwrap();
             let [r, g, ..] = image.pixel(10, 10).unwrap();
             assert!(r > 200 && g < 60, "the near one is seen: {r}, {g}");
             let [r, g, ..] = image.pixel(3, 10).unwrap();
@@ -144,13 +188,26 @@ fn surfaces_that_cross_are_cut_where_they_meet() {
     let mut shape = Shape::default();
     for slope in [1.0, -1.0] {
         let first = shape.positions.len() as u32;
+        shape.positions.extend(
+            [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(|[x, y]| [x, y, slope * x]),
+        );
         shape
-            .positions
-            .extend([[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(|[x, y]| [x, y, slope * x]));
-        shape.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            .triangles
+            .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
     }
-    let colours: Vec<[u8; 3]> = (0..8).map(|v| if v < 4 { [255, 0, 0] } else { [0, 255, 0] }).collect();
-    let image = render(shape.view(), None, Some(&colours), &pixel_camera(20), &mask(), 20, 20).unwrap();
+    let colours: Vec<[u8; 3]> = (0..8)
+        .map(|v| if v < 4 { [255, 0, 0] } else { [0, 255, 0] })
+        .collect();
+    let image = render(
+        shape.view(),
+        None,
+        Some(&colours),
+        &pixel_camera(20),
+        &mask(),
+        20,
+        20,
+    )
+    .unwrap();
     for y in 2..18 {
         for x in 2..18 {
             let [r, g, ..] = image.pixel(x, y).unwrap();
@@ -162,11 +219,18 @@ fn surfaces_that_cross_are_cut_where_they_meet() {
 #[test]
 fn outside_and_inside_have_their_own_colours() {
     let square = Shape::default().rectangle([-8.0, -8.0], [8.0, 8.0], 0.0);
-    let style = Style::default().surface_colour([20, 20, 250]).back_colour([250, 20, 20]);
-    let from_behind = Camera::orthographic([0.0; 3], ViewDirection::along([0.0, 0.0, 1.0]), 10.0).unwrap();
-    let [r, _, b, _] = draw(&square, &pixel_camera(20), &style, 20, 20).pixel(10, 10).unwrap();
+    let style = Style::default()
+        .surface_colour([20, 20, 250])
+        .back_colour([250, 20, 20]);
+    let from_behind =
+        Camera::orthographic([0.0; 3], ViewDirection::along([0.0, 0.0, 1.0]), 10.0).unwrap();
+    let [r, _, b, _] = draw(&square, &pixel_camera(20), &style, 20, 20)
+        .pixel(10, 10)
+        .unwrap();
     assert!(b > r + 50);
-    let [r, _, b, _] = draw(&square, &from_behind, &style, 20, 20).pixel(10, 10).unwrap();
+    let [r, _, b, _] = draw(&square, &from_behind, &style, 20, 20)
+        .pixel(10, 10)
+        .unwrap();
     assert!(r > b + 50);
 }
 
@@ -174,9 +238,18 @@ fn outside_and_inside_have_their_own_colours() {
 fn light_falls_from_the_upper_left() {
     let camera = Camera::orthographic([0.0; 3], ViewDirection::front(), 1.1).unwrap();
     for shading in [Shading::Flat, Shading::Smooth] {
-        let image = draw(&Shape::sphere(60), &camera, &Style::default().shading(shading), 110, 110);
+        let image = draw(
+            &Shape::sphere(60),
+            &camera,
+            &Style::default().shading(shading),
+            110,
+            110,
+        );
         let grey = |x, y| image.pixel(x, y).unwrap()[1];
-        assert!(grey(35, 35) > grey(75, 75) + 30 && grey(55, 30) > grey(55, 80) + 30, "{shading:?}");
+        assert!(
+            grey(35, 35) > grey(75, 75) + 30 && grey(55, 30) > grey(55, 80) + 30,
+            "{shading:?}"
+        );
     }
 }
 
@@ -187,11 +260,23 @@ fn smooth_normals_hide_the_triangles() {
     let picture = |slices: u32, shading: Shading| {
         let sphere = Shape::sphere(slices);
         let style = Style::default().shading(shading);
-        render(sphere.view(), Some(&sphere.positions), None, &camera, &style, 100, 100).unwrap()
+        render(
+            sphere.view(),
+            Some(&sphere.positions),
+            None,
+            &camera,
+            &style,
+            100,
+            100,
+        )
+        .unwrap()
     };
     let farthest = |a: &Image, b: &Image| {
         let pixels = (30..70).flat_map(|y| (30..70).map(move |x| (x, y)));
-        pixels.map(|(x, y)| a.pixel(x, y).unwrap()[1].abs_diff(b.pixel(x, y).unwrap()[1])).max().unwrap()
+        pixels
+            .map(|(x, y)| a.pixel(x, y).unwrap()[1].abs_diff(b.pixel(x, y).unwrap()[1]))
+            .max()
+            .unwrap()
     };
     let fine = picture(160, Shading::Smooth);
     assert!(farthest(&picture(40, Shading::Smooth), &fine) <= 3);
@@ -200,17 +285,17 @@ fn smooth_normals_hide_the_triangles() {
 
 /// Dark lines on white: how much of a row or column they cover, in pixels.
 fn darkness(image: &Image, places: impl Iterator<Item = (u32, u32)>) -> f64 {
-    places.map(|(x, y)| 1.0 - linear(image.pixel(x, y).unwrap()[1])).sum()
+    places
+        .map(|(x, y)| 1.0 - linear(image.pixel(x, y).unwrap()[1]))
+        .sum()
 }
 
 #[test]
 fn wires_are_as_wide_as_asked_for() {
     // Shared edges drawn from both sides (the middle), and borders drawn from one.
-    let sheet = Shape::default().rectangle([-100.0, -80.0], [0.3, 80.0], 0.0).rectangle(
-        [0.3, -80.0],
-        [100.0, 80.0],
-        0.0,
-    );
+    let sheet = Shape::default()
+        .rectangle([-100.0, -80.0], [0.3, 80.0], 0.0)
+        .rectangle([0.3, -80.0], [100.0, 80.0], 0.0);
     let mut welded = sheet.clone();
     for corner in welded.triangles.iter_mut().flatten() {
         *corner = match *corner {
@@ -224,7 +309,10 @@ fn wires_are_as_wide_as_asked_for() {
         let image = draw(&welded, &pixel_camera(200), &style, 240, 200);
         // The line x = 0.3 is at pixel 120.3; the diagonals are far from it at this height.
         let shared = darkness(&image, (112..129).map(|x| (x, 60)));
-        assert!((shared - f64::from(width)).abs() < 0.06 * f64::from(width) + 0.02, "{width}: {shared}");
+        assert!(
+            (shared - f64::from(width)).abs() < 0.06 * f64::from(width) + 0.02,
+            "{width}: {shared}"
+        );
         // A line of full width inside of the left border at pixel 20.
         let border = darkness(&image, (20..32).map(|x| (x, 110)));
         assert!(
@@ -279,7 +367,9 @@ fn the_whole_surface_is_framed() {
                 for &p in &shape.positions {
                     let [x, y] = camera.project(p, width, height).unwrap();
                     let sideways = (2.0 * x / f64::from(width) - 1.0).abs();
-                    reach = reach.max(sideways).max((2.0 * y / f64::from(height) - 1.0).abs());
+                    reach = reach
+                        .max(sideways)
+                        .max((2.0 * y / f64::from(height) - 1.0).abs());
                 }
                 assert!(reach < 0.97, "camera {which}: {reach}");
                 assert!(which != 1 || reach > 0.93, "tight: {reach}");
@@ -291,11 +381,20 @@ fn the_whole_surface_is_framed() {
 #[test]
 fn a_transparent_background_stays_transparent() {
     let square = Shape::default().rectangle([-10.0, -10.0], [10.5, 10.0], 0.0);
-    let image = draw(&square, &pixel_camera(40), &mask().background([0; 4]), 40, 40);
+    let image = draw(
+        &square,
+        &pixel_camera(40),
+        &mask().background([0; 4]),
+        40,
+        40,
+    );
     assert_eq!(image.pixel(0, 0), Some([0; 4]));
     assert_eq!(image.pixel(20, 20), Some([255; 4]));
     let [r, _, _, opacity] = image.pixel(30, 20).unwrap();
-    assert!(r == 255 && opacity.abs_diff(128) <= 1, "half covered, its colour undimmed: {r}, {opacity}");
+    assert!(
+        r == 255 && opacity.abs_diff(128) <= 1,
+        "half covered, its colour undimmed: {r}, {opacity}"
+    );
 }
 
 #[test]
@@ -323,7 +422,8 @@ fn a_floor_reaches_from_below_the_eye_to_the_horizon() {
     for p in &mut floor.positions {
         *p = [p[0], 0.0, -p[1]];
     }
-    let camera = Camera::perspective([0.0, 1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 1.0, 0.0], 60.0).unwrap();
+    let camera =
+        Camera::perspective([0.0, 1.0, 0.0], [0.0, 1.0, -1.0], [0.0, 1.0, 0.0], 60.0).unwrap();
     let image = draw(&floor, &camera, &mask(), 64, 64);
     for y in 0..64 {
         for x in 0..64 {
@@ -342,27 +442,51 @@ fn bad_input_is_an_error() {
         render(shape.view(), None, None, &camera, style, width, height)
     };
     for (width, height) in [(0, 10), (10, 0), (16_385, 10), (10, u32::MAX)] {
-        assert!(matches!(result(&good, &style, width, height), Err(RenderError::Size { .. })));
+        assert!(matches!(
+            result(&good, &style, width, height),
+            Err(RenderError::Size { .. })
+        ));
         assert!(Camera::fit(good.view(), ViewDirection::default(), width, height).is_err());
         assert!(Image::new(width, height, BLACK).is_err());
     }
-    assert_eq!(result(&Shape::default(), &style, 10, 10), Err(RenderError::Empty));
+    assert_eq!(
+        result(&Shape::default(), &style, 10, 10),
+        Err(RenderError::Empty)
+    );
     let mut bad = good.clone();
     bad.triangles[3][1] = 4000;
     let found = result(&bad, &style, 10, 10);
     assert!(
-        matches!(found, Err(RenderError::VertexOutOfRange { triangle: 3, vertex: 4000, .. })),
+        matches!(
+            found,
+            Err(RenderError::VertexOutOfRange {
+                triangle: 3,
+                vertex: 4000,
+                ..
+            })
+        ),
         "{found:?}"
     );
     for value in [f64::NAN, f64::INFINITY] {
         let mut bad = good.clone();
         bad.positions[5][2] = value;
-        assert!(matches!(result(&bad, &style, 10, 10), Err(RenderError::NotFinite { index: 5, .. })));
+        assert!(matches!(
+            result(&bad, &style, 10, 10),
+            Err(RenderError::NotFinite { index: 5, .. })
+        ));
         assert!(Camera::fit(bad.view(), ViewDirection::default(), 10, 10).is_err());
     }
     assert!(result(&good, &style.samples(3), 10, 10).is_err());
     assert!(result(&good, &style.wire_width(f32::NAN), 10, 10).is_err());
-    let few = render(good.view(), Some(&[[0.0; 3]]), None, &camera, &style, 10, 10);
+    let few = render(
+        good.view(),
+        Some(&[[0.0; 3]]),
+        None,
+        &camera,
+        &style,
+        10,
+        10,
+    );
     assert!(matches!(few, Err(RenderError::Count { .. })));
     assert!(Camera::fit(good.view(), ViewDirection::along([0.0; 3]), 10, 10).is_err());
     assert!(Camera::perspective([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0], 40.0).is_err());

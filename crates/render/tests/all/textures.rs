@@ -4,7 +4,8 @@
 
 use limitmesh::Triangles;
 use limitmesh_render::{
-    Camera, Covering, Image, Lighting, Material, RenderError, Style, Texture, ViewDirection, render_textured,
+    Camera, Covering, Image, Lighting, Material, RenderError, Style, Texture, ViewDirection,
+    render_textured,
 };
 
 /// Light by which a surface has its own colour.
@@ -12,13 +13,23 @@ fn plain() -> Style {
     let mut lighting = Lighting::even();
     // From above and from below alike, as the surface faces the viewer: (0.42 + 0.58/2) of the ambient light.
     (lighting.key, lighting.fill, lighting.ambient) = (0.0, 0.0, 1.0 / 0.71);
-    Style::default().background([0, 0, 0, 255]).lighting(lighting)
+    Style::default()
+        .background([0, 0, 0, 255])
+        .lighting(lighting)
 }
 
 /// A square of `size` pixels in front of the viewer, one unit a pixel.
 fn square(size: f64) -> ([[f64; 3]; 4], [[u32; 3]; 2]) {
     let half = size / 2.0;
-    ([[-half, -half, 0.0], [half, -half, 0.0], [half, half, 0.0], [-half, half, 0.0]], [[0, 1, 2], [0, 2, 3]])
+    (
+        [
+            [-half, -half, 0.0],
+            [half, -half, 0.0],
+            [half, half, 0.0],
+            [-half, half, 0.0],
+        ],
+        [[0, 1, 2], [0, 2, 3]],
+    )
 }
 
 fn camera(height: u32) -> Camera {
@@ -27,50 +38,92 @@ fn camera(height: u32) -> Camera {
 
 /// The texture coordinates of the square's corners, by triangle, if it spans `times` textures.
 fn corners(times: f64) -> [[f64; 2]; 6] {
-    [[0.0, 0.0], [times, 0.0], [times, times], [0.0, 0.0], [times, times], [0.0, times]]
+    [
+        [0.0, 0.0],
+        [times, 0.0],
+        [times, times],
+        [0.0, 0.0],
+        [times, times],
+        [0.0, times],
+    ]
 }
 
 /// Mid-grey, so that no light is beyond what is kept as it is.
 const COLOURS: [[u8; 3]; 4] = [[200, 0, 0], [0, 200, 0], [0, 0, 200], [200, 200, 200]];
 
 fn quarters() -> Texture {
-    let pixels = COLOURS.iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let pixels = COLOURS
+        .iter()
+        .flat_map(|&[r, g, b]| [r, g, b, 255])
+        .collect();
     Texture::from_image(&Image::from_rgba(2, 2, pixels).unwrap())
 }
 
 fn drawn(covering: &Covering<'_>, size: u32) -> Image {
     let (positions, triangles) = square(f64::from(size));
-    let surface = Triangles { positions: &positions, triangles: &triangles };
-    render_textured(surface, None, covering, &camera(size), &plain(), (size, size)).unwrap()
+    let surface = Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    };
+    render_textured(
+        surface,
+        None,
+        covering,
+        &camera(size),
+        &plain(),
+        (size, size),
+    )
+    .unwrap()
 }
 
 /// Alike in linear light, to a fiftieth of white.
 fn is_near(pixel: [u8; 4], colour: [u8; 3]) -> bool {
     let linear = |c: u8| {
         let c = f64::from(c) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+        if c <= 0.04045 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
     };
     (0..3).all(|i| (linear(pixel[i]) - linear(colour[i])).abs() < 0.02)
 }
 
 #[test]
 fn a_texture_lies_with_its_corners_where_coordinates_say() {
-    let materials = [Material { colour: [1.0; 3], texture: Some(quarters()) }];
-    let covering = Covering { materials: &materials, of_triangle: &[0, 0], corners: &corners(1.0) };
+    let materials = [Material {
+        colour: [1.0; 3],
+        texture: Some(quarters()),
+    }];
+    let covering = Covering {
+        materials: &materials,
+        of_triangle: &[0, 0],
+        corners: &corners(1.0),
+    };
     // A size for which the middles of the texture's pixels are middles of the picture's, rows from above.
     let image = drawn(&covering, 42);
     for (i, colour) in COLOURS.into_iter().enumerate() {
         let (x, y) = (10 + 21 * (i as u32 % 2), 10 + 21 * (i as u32 / 2));
         let pixel = image.pixel(x, y).unwrap();
-        assert!(is_near(pixel, colour), "{x} {y}: {pixel:?}, expected {colour:?}");
+        assert!(
+            is_near(pixel, colour),
+            "{x} {y}: {pixel:?}, expected {colour:?}"
+        );
     }
 }
 
 /// Where a pixel of the picture sees many of the texture, it has their mean in linear light.
 #[test]
 fn small_textures_become_their_mean() {
-    let materials = [Material { colour: [1.0; 3], texture: Some(quarters()) }];
-    let covering = Covering { materials: &materials, of_triangle: &[0, 0], corners: &corners(400.0) };
+    let materials = [Material {
+        colour: [1.0; 3],
+        texture: Some(quarters()),
+    }];
+    let covering = Covering {
+        materials: &materials,
+        of_triangle: &[0, 0],
+        corners: &corners(400.0),
+    };
     let image = drawn(&covering, 40);
     let linear = |c: f64| ((c / 255.0 + 0.055) / 1.055).powf(2.4);
     let mean = 0.5 * linear(200.0);
@@ -88,8 +141,15 @@ fn materials_are_those_of_their_triangles() {
             .map(|c| ((f32::from(c) / 255.0 + 0.055) / 1.055).powf(2.4))
             .map(|c| if c < 0.004 { 0.0 } else { c })
     };
-    let materials = [Material { colour: colour([200, 0, 0]), texture: None }];
-    let covering = Covering { materials: &materials, of_triangle: &[0, 7], corners: &corners(1.0) };
+    let materials = [Material {
+        colour: colour([200, 0, 0]),
+        texture: None,
+    }];
+    let covering = Covering {
+        materials: &materials,
+        of_triangle: &[0, 7],
+        corners: &corners(1.0),
+    };
     let image = drawn(&covering, 40);
     assert!(is_near(image.pixel(30, 35).unwrap(), [200, 0, 0]));
     // The other has none: the style's own colour.
@@ -100,19 +160,47 @@ fn materials_are_those_of_their_triangles() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let (positions, triangles) = square(10.0);
-    let surface = Triangles { positions: &positions, triangles: &triangles };
+    let surface = Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    };
     let drawn = |of_triangle: &[u32], corners: &[[f64; 2]]| {
-        let covering = Covering { materials: &[], of_triangle, corners };
-        render_textured(surface, None, &covering, &camera(10), &Style::default(), (10, 10))
+        let covering = Covering {
+            materials: &[],
+            of_triangle,
+            corners,
+        };
+        render_textured(
+            surface,
+            None,
+            &covering,
+            &camera(10),
+            &Style::default(),
+            (10, 10),
+        )
     };
     let mut broken = corners(1.0);
     broken[4] = [0.0, f64::NAN];
-    assert!(matches!(drawn(&[0], &corners(1.0)), Err(RenderError::Count { met: 1, expected: 2, .. })));
+    assert!(matches!(
+        drawn(&[0], &corners(1.0)),
+        Err(RenderError::Count {
+            met: 1,
+            expected: 2,
+            ..
+        })
+    ));
     assert!(matches!(
         drawn(&[0, 0], &corners(1.0)[..5]),
-        Err(RenderError::Count { met: 5, expected: 6, .. })
+        Err(RenderError::Count {
+            met: 5,
+            expected: 6,
+            ..
+        })
     ));
-    assert!(matches!(drawn(&[0, 0], &broken), Err(RenderError::NotFinite { index: 4, .. })));
+    assert!(matches!(
+        drawn(&[0, 0], &broken),
+        Err(RenderError::NotFinite { index: 4, .. })
+    ));
     // The same picture whatever is beyond single precision.
     let far = corners(1e300);
     assert!(drawn(&[0, 0], &far).is_ok());

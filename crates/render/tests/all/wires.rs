@@ -24,13 +24,21 @@ fn darkness(triangle: [[f64; 2]; 3], others: &[[[f64; 2]; 3]]) -> [f64; 3] {
         }
         unique
     };
-    let vertex = |&[x, y]: &[f64; 2]| positions.iter().position(|&p| p == [x, -y, 0.0]).unwrap() as u32;
-    let triangles: Vec<[u32; 3]> =
-        all.map(|corners| [0, 1, 2].map(|corner| vertex(&corners[corner]))).collect();
+    let vertex =
+        |&[x, y]: &[f64; 2]| positions.iter().position(|&p| p == [x, -y, 0.0]).unwrap() as u32;
+    let triangles: Vec<[u32; 3]> = all
+        .map(|corners| [0, 1, 2].map(|corner| vertex(&corners[corner])))
+        .collect();
     let half = 0.5 * f64::from(SIDE);
     let camera = Camera::orthographic([half, -half, 0.0], ViewDirection::front(), half).unwrap();
-    let surface = Triangles { positions: &positions, triangles: &triangles };
-    let style = Style::default().lighting(Lighting::even()).wireframe(true).wire_width(WIDTH as f32);
+    let surface = Triangles {
+        positions: &positions,
+        triangles: &triangles,
+    };
+    let style = Style::default()
+        .lighting(Lighting::even())
+        .wireframe(true)
+        .wire_width(WIDTH as f32);
     let image = render(surface, None, None, &camera, &style, SIDE, SIDE).unwrap();
     let light = |x: f64, y: f64| {
         let pixel = image.pixel(x as u32, y as u32).unwrap();
@@ -45,7 +53,11 @@ fn darkness(triangle: [[f64; 2]; 3], others: &[[[f64; 2]; 3]]) -> [f64; 3] {
         let depth = inwards[0].hypot(inwards[1]);
         // In the middle of the half of the line that this triangle draws.
         let inside = 0.25 * WIDTH / depth;
-        blank - light(middle[0] + inside * inwards[0], middle[1] + inside * inwards[1])
+        blank
+            - light(
+                middle[0] + inside * inwards[0],
+                middle[1] + inside * inwards[1],
+            )
     })
 }
 
@@ -62,7 +74,11 @@ fn with_neighbours(side: f64, altitude: f64) -> ([[f64; 2]; 3], Vec<[[f64; 2]; 3
     };
     let triangle = [0, 1, 2].map(corner);
     let neighbours = (0..3).map(|edge| {
-        let (a, b, c) = (triangle[edge], triangle[(edge + 1) % 3], triangle[(edge + 2) % 3]);
+        let (a, b, c) = (
+            triangle[edge],
+            triangle[(edge + 1) % 3],
+            triangle[(edge + 2) % 3],
+        );
         let own = side * 0.75_f64.sqrt();
         let far = if edge == 0 { altitude / own } else { 1.0 };
         let opposite = [0, 1].map(|axis| {
@@ -82,12 +98,21 @@ fn the_edges_of_a_triangle_are_drawn_alike_whatever_is_beside_them() {
         for altitude in [1.0, 6.0, side * 0.75_f64.sqrt()] {
             let (triangle, neighbours) = with_neighbours(side, altitude);
             let [first, second, third] = darkness(triangle, &neighbours);
-            assert!((first - second).abs() <= 3.0, "{side}, {altitude}: {first}, {second}");
-            assert!((second - third).abs() <= 3.0, "{side}, {altitude}: {second}, {third}");
+            assert!(
+                (first - second).abs() <= 3.0,
+                "{side}, {altitude}: {first}, {second}"
+            );
+            assert!(
+                (second - third).abs() <= 3.0,
+                "{side}, {altitude}: {second}, {third}"
+            );
             last = first;
         }
     }
-    assert!(last > 300.0, "those of the largest are drawn in full: {last}");
+    assert!(
+        last > 300.0,
+        "those of the largest are drawn in full: {last}"
+    );
 }
 
 #[test]
@@ -96,7 +121,14 @@ fn smaller_triangles_have_paler_edges() {
         let (triangle, neighbours) = with_neighbours(side, 20.0);
         darkness(triangle, &neighbours)[0]
     };
-    assert_eq!([24.0, 30.0].map(darkness_of), [0.0; 2], "those of the smallest are left out");
+    assert_eq!(
+        [24.0, 30.0].map(darkness_of),
+        [0.0; 2],
+        "those of the smallest are left out"
+    );
     let dark = [40.0, 45.0, 50.0, 55.0, 60.0].map(darkness_of);
-    assert!(dark.windows(2).all(|pair| pair[1] > pair[0] + 20.0), "{dark:?}");
+    assert!(
+        dark.windows(2).all(|pair| pair[1] > pair[0] + 20.0),
+        "{dark:?}"
+    );
 }

@@ -32,7 +32,11 @@ impl Job {
     /// The arguments of `limitmesh refine`.
     pub(super) fn words(&self) -> Vec<OsString> {
         let mut words: Vec<OsString> = self.options.iter().map(Into::into).collect();
-        words.extend(self.output.as_ref().map(|path| format!("--output={path}").into()));
+        words.extend(
+            self.output
+                .as_ref()
+                .map(|path| format!("--output={path}").into()),
+        );
         words.extend(["--report=-", "--"].map(Into::into));
         words.push(self.input.clone().into());
         words
@@ -54,9 +58,16 @@ impl Reader {
     pub(super) fn new() -> Self {
         let mut whole = Arguments::command();
         whole.build();
-        let refine = whole.find_subcommand("refine").into_iter().flat_map(|own| own.get_arguments());
+        let refine = whole
+            .find_subcommand("refine")
+            .into_iter()
+            .flat_map(|own| own.get_arguments());
         let names = refine.filter_map(|own| own.get_long()).map(str::to_owned);
-        Self { known: names.filter(|name| !NOT_OF_JOBS.contains(&name.as_str())).collect() }
+        Self {
+            known: names
+                .filter(|name| !NOT_OF_JOBS.contains(&name.as_str()))
+                .collect(),
+        }
     }
 
     /// The job of a line.
@@ -67,8 +78,13 @@ impl Reader {
         let line = std::str::from_utf8(line).map_err(|why| format!("it is no UTF-8: {why}"))?;
         let fields: BTreeMap<String, Box<RawValue>> = serde_json::from_str(line)
             .map_err(|why| format!("it is no JSON object of a job: {}", without_line(&why)))?;
-        let mut job =
-            Job { input: String::new(), output: None, others: vec![], option_files: vec![], options: vec![] };
+        let mut job = Job {
+            input: String::new(),
+            output: None,
+            others: vec![],
+            option_files: vec![],
+            options: vec![],
+        };
         let (mut is_dry, mut has_input) = (false, false);
         for (name, value) in &fields {
             let name = name.replace('_', "-");
@@ -133,7 +149,9 @@ impl Value {
         let text = value.get();
         let wrong = "an object; give text, a number, true, false, null or a list";
         match text.as_bytes().first() {
-            Some(b'"') => Ok(Self::One(serde_json::from_str(text).map_err(|_| "no text")?)),
+            Some(b'"') => Ok(Self::One(
+                serde_json::from_str(text).map_err(|_| "no text")?,
+            )),
             Some(b'{') | None => Err(wrong),
             Some(b'[') => {
                 let items: Vec<&RawValue> = serde_json::from_str(text).map_err(|_| "no list")?;
@@ -175,7 +193,11 @@ impl Value {
     fn words(&self, name: &str) -> Vec<String> {
         match self {
             Self::Yes => vec![format!("--{name}")],
-            _ => self.texts().into_iter().map(|text| format!("--{name}={text}")).collect(),
+            _ => self
+                .texts()
+                .into_iter()
+                .map(|text| format!("--{name}={text}"))
+                .collect(),
         }
     }
 }
@@ -204,8 +226,10 @@ impl Claims {
     /// # Errors
     /// One of them is another's, in words.
     pub(super) fn write(&mut self, job: &Job, line: usize) -> Result<(), String> {
-        let files: Vec<(FileIdentity, &Path)> =
-            job.written().map(|path| (FileIdentity::of(path), path)).collect();
+        let files: Vec<(FileIdentity, &Path)> = job
+            .written()
+            .map(|path| (FileIdentity::of(path), path))
+            .collect();
         for (i, (file, path)) in files.iter().enumerate() {
             let name = path.display();
             if files[..i].iter().any(|(earlier, _)| earlier == file) {
@@ -222,7 +246,8 @@ impl Claims {
                 None => {}
             }
         }
-        self.written.extend(files.into_iter().map(|(file, _)| (file, Some(line))));
+        self.written
+            .extend(files.into_iter().map(|(file, _)| (file, Some(line))));
         Ok(())
     }
 }
@@ -265,15 +290,32 @@ mod tests {
             (r#"{"input": 3, "output": true}"#, "'output' is no name"),
             (r#"{"input": "-", "output": "a.ply"}"#, "standard input"),
             (r#"{"input": "a.obj", "output": "b/"}"#, "a folder"),
-            (r#"{"input": "a.obj", "output": "b.ply", "optimise": false}"#, "'optimise' is no option"),
-            (r#"{"input": "a.obj", "output": "b.ply", "report": "r.json"}"#, "'report' is no option"),
-            (r#"{"input": "a.obj", "output": "b.ply", "tolerance": {"mm": 1}}"#, "'tolerance' is an object"),
-            (r#"{"input": "a.obj", "output": "b.ply", "camera": [[1]]}"#, "'camera' is a list of something"),
+            (
+                r#"{"input": "a.obj", "output": "b.ply", "optimise": false}"#,
+                "'optimise' is no option",
+            ),
+            (
+                r#"{"input": "a.obj", "output": "b.ply", "report": "r.json"}"#,
+                "'report' is no option",
+            ),
+            (
+                r#"{"input": "a.obj", "output": "b.ply", "tolerance": {"mm": 1}}"#,
+                "'tolerance' is an object",
+            ),
+            (
+                r#"{"input": "a.obj", "output": "b.ply", "camera": [[1]]}"#,
+                "'camera' is a list of something",
+            ),
         ] {
             let what = job(line).unwrap_err();
             assert!(what.contains(words), "{line}: {what}");
         }
-        assert!(Reader::new().job(b"{\"input\": \"\xff\"}").unwrap_err().contains("UTF-8"));
+        assert!(
+            Reader::new()
+                .job(b"{\"input\": \"\xff\"}")
+                .unwrap_err()
+                .contains("UTF-8")
+        );
         assert!(job(r#"{"input": "a.obj", "dry-run": true}"#).is_ok());
     }
 

@@ -23,10 +23,24 @@ const BLOCK: usize = 1 << 16;
 pub(super) fn key(job: &Job) -> io::Result<String> {
     let mut hash = Sha256::new();
     part(&mut hash, VERSION.as_bytes());
-    let extension = |path: &str| Path::new(path).extension().unwrap_or_default().to_ascii_lowercase();
-    part(&mut hash, job.output.as_deref().map(extension).unwrap_or_default().as_encoded_bytes());
+    let extension = |path: &str| {
+        Path::new(path)
+            .extension()
+            .unwrap_or_default()
+            .to_ascii_lowercase()
+    };
+    part(
+        &mut hash,
+        job.output
+            .as_deref()
+            .map(extension)
+            .unwrap_or_default()
+            .as_encoded_bytes(),
+    );
     hash.update((job.options.len() as u64).to_le_bytes());
-    job.options.iter().for_each(|option| part(&mut hash, option.as_bytes()));
+    job.options
+        .iter()
+        .for_each(|option| part(&mut hash, option.as_bytes()));
     for path in &job.option_files {
         file(&mut hash, Path::new(path))?;
     }
@@ -39,13 +53,20 @@ pub(super) fn key(job: &Job) -> io::Result<String> {
         file(&mut hash, path)?;
         if extension == "gltf" || extension == "glb" {
             // What is wrong with a document is found when it is refined.
-            for (name, own) in Asset::open(path).map(|asset| asset.files_beside()).unwrap_or_default() {
+            for (name, own) in Asset::open(path)
+                .map(|asset| asset.files_beside())
+                .unwrap_or_default()
+            {
                 part(&mut hash, name.as_os_str().as_encoded_bytes());
                 file(&mut hash, &own)?;
             }
         }
     }
-    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hash
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
 }
 
 fn part(hash: &mut Sha256, bytes: &[u8]) {
@@ -88,7 +109,11 @@ mod tests {
             option_files: Vec::new(),
             options: options.iter().map(|&own| own.to_owned()).collect(),
         };
-        let (a, b, c) = (at("a.obj", "v 0 0 0"), at("b.obj", "v 0 0 0"), at("c.obj", "v 0 0 1"));
+        let (a, b, c) = (
+            at("a.obj", "v 0 0 0"),
+            at("b.obj", "v 0 0 0"),
+            at("c.obj", "v 0 0 1"),
+        );
         let of = |job: Job| key(&job).unwrap();
         let first = of(job(&a, "x.ply", &["--tolerance=1"]));
         assert_eq!(first.len(), 64);
@@ -108,13 +133,21 @@ mod tests {
     #[test]
     fn files_beside_a_document_count() {
         let folder = tempfile::tempdir().unwrap();
-        let text = r#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "a%20b.bin", "byteLength": 3}]}"#;
+        let text =
+            r#"{"asset": {"version": "2.0"}, "buffers": [{"uri": "a%20b.bin", "byteLength": 3}]}"#;
         std::fs::write(folder.path().join("a.gltf"), text).unwrap();
         let of = |bytes: &str| {
             std::fs::write(folder.path().join("a b.bin"), bytes).unwrap();
             let input = folder.path().join("a.gltf").display().to_string();
             let none = Vec::new;
-            key(&Job { input, output: None, others: none(), option_files: none(), options: none() }).unwrap()
+            key(&Job {
+                input,
+                output: None,
+                others: none(),
+                option_files: none(),
+                options: none(),
+            })
+            .unwrap()
         };
         assert_ne!(of("abc"), of("abd"));
         assert_eq!(of("abc"), of("abc"));

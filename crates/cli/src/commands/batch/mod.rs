@@ -89,13 +89,27 @@ pub(crate) fn run(
         program: program.to_vec(),
         // All processors for one job are asked for by their number.
         threads: threads.max(1),
-        limits: Limits { time: arguments.time_limit, memory: arguments.memory_limit },
+        limits: Limits {
+            time: arguments.time_limit,
+            memory: arguments.memory_limit,
+        },
         is_stopped: AtomicBool::new(false),
     };
     let processors = thread::available_parallelism().map_or(1, usize::from);
-    let processes = arguments.processes.unwrap_or((processors / starter.threads).max(1));
-    let batch = Batch { starter, earlier, with_seconds: arguments.seconds };
-    batch.run(tasks, processes, (results, output_name(arguments)), (start, progress))
+    let processes = arguments
+        .processes
+        .unwrap_or((processors / starter.threads).max(1));
+    let batch = Batch {
+        starter,
+        earlier,
+        with_seconds: arguments.seconds,
+    };
+    batch.run(
+        tasks,
+        processes,
+        (results, output_name(arguments)),
+        (start, progress),
+    )
 }
 
 fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
@@ -103,7 +117,9 @@ fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
         return usage("--resume goes on with a file of results; standard output is none");
     }
     if arguments.memory_limit.is_some() && process::resident(std::process::id()).is_none() {
-        return usage("--memory-limit needs a system that tells in /proc what processes have in memory");
+        return usage(
+            "--memory-limit needs a system that tells in /proc what processes have in memory",
+        );
     }
     Ok(())
 }
@@ -120,13 +136,22 @@ fn tasks(arguments: &BatchArguments) -> anyhow::Result<Vec<Task>> {
     let reader = Reader::new();
     let lines = bytes.split(|&byte| byte == b'\n').enumerate();
     let lines = lines.filter(|(_, line)| !line.trim_ascii().is_empty());
-    let mut tasks: Vec<Task> =
-        lines.map(|(i, line)| Task { line: i + 1, job: reader.job(line.trim_ascii()) }).collect();
+    let mut tasks: Vec<Task> = lines
+        .map(|(i, line)| Task {
+            line: i + 1,
+            job: reader.job(line.trim_ascii()),
+        })
+        .collect();
     let mut claims = Claims::default();
-    [&arguments.jobs, &arguments.output].into_iter().for_each(|own| claims.take(own));
+    [&arguments.jobs, &arguments.output]
+        .into_iter()
+        .for_each(|own| claims.take(own));
     for job in tasks.iter().filter_map(|task| task.job.as_ref().ok()) {
-        let read = std::iter::once(&job.input).chain(&job.option_files).map(Path::new);
-        read.filter(|path| input::builtin_name(path).is_none()).for_each(|path| claims.read(path));
+        let read = std::iter::once(&job.input)
+            .chain(&job.option_files)
+            .map(Path::new);
+        read.filter(|path| input::builtin_name(path).is_none())
+            .for_each(|path| claims.read(path));
     }
     for task in &mut tasks {
         if let Ok(job) = &task.job
@@ -148,7 +173,10 @@ fn output_name(arguments: &BatchArguments) -> String {
 
 /// Makes the folders of what is written.
 fn make_folders(tasks: &[Task]) -> anyhow::Result<()> {
-    let written = tasks.iter().filter_map(|task| task.job.as_ref().ok()).flat_map(Job::written);
+    let written = tasks
+        .iter()
+        .filter_map(|task| task.job.as_ref().ok())
+        .flat_map(Job::written);
     let mut last = None;
     for folder in written.filter_map(Path::parent) {
         if last.replace(folder) != Some(folder) {
@@ -181,8 +209,16 @@ impl Counts {
     }
 
     fn in_words(&self, jobs: usize) -> String {
-        let mut words = format!("{} of {} ended", thousands(self.all()), counted(jobs, "job", "jobs"));
-        let parts = [(self.failed, "failed"), (self.short, "stopped short"), (self.kept, "kept from before")];
+        let mut words = format!(
+            "{} of {} ended",
+            thousands(self.all()),
+            counted(jobs, "job", "jobs")
+        );
+        let parts = [
+            (self.failed, "failed"),
+            (self.short, "stopped short"),
+            (self.kept, "kept from before"),
+        ];
         for (count, what) in parts.into_iter().filter(|(count, _)| *count > 0) {
             words.push_str(&format!(", {} {what}", thousands(count)));
         }
@@ -256,19 +292,35 @@ impl Batch {
             interrupt::end_as_asked(name);
         }
         results.finish()?;
-        progress.note(format!("{}; {}", counts.in_words(jobs), seconds(start.elapsed().as_secs_f64())));
+        progress.note(format!(
+            "{}; {}",
+            counts.in_words(jobs),
+            seconds(start.elapsed().as_secs_f64())
+        ));
         let Counts { short, failed, .. } = counts;
-        anyhow::ensure!(failed == 0, "{} of {} failed", thousands(failed), counted(jobs, "job", "jobs"));
+        anyhow::ensure!(
+            failed == 0,
+            "{} of {} failed",
+            thousands(failed),
+            counted(jobs, "job", "jobs")
+        );
         Ok(match short {
             0 => Outcome::Done,
-            _ => Outcome::StoppedShort(format!("{} of {}", thousands(short), counted(jobs, "job", "jobs"))),
+            _ => Outcome::StoppedShort(format!(
+                "{} of {}",
+                thousands(short),
+                counted(jobs, "job", "jobs")
+            )),
         })
     }
 
     /// Does tasks as long as there are any.
     fn work(&self, tasks: &Mutex<VecDeque<Task>>, sender: &Sender<(usize, Fate)>) {
         while !interrupt::is_asked() {
-            let next = tasks.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+            let next = tasks
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .pop_front();
             let Some(task) = next else { return };
             let result = self.result(&task).unwrap_or_else(Fate::Broken);
             // Nobody listens any more if the batch failed.
@@ -283,7 +335,13 @@ impl Batch {
             Ok(job) => job,
             Err(what) => {
                 let told = failed(Kind::Line, None, what.clone());
-                return new(Line { line: task.line, key: None, input: None, output: None, told });
+                return new(Line {
+                    line: task.line,
+                    key: None,
+                    input: None,
+                    output: None,
+                    told,
+                });
             }
         };
         let key = key::key(job).ok();
@@ -292,27 +350,54 @@ impl Batch {
         }
         let told = match self.starter.run(&job.words())? {
             Ended::Cancelled => return Ok(Fate::Cancelled),
-            Ended::Said { report: Some(report), verdict: Verdict::Done } => {
+            Ended::Said {
+                report: Some(report),
+                verdict: Verdict::Done,
+            } => {
                 let report = told::on_one_line(&report, self.with_seconds)?;
-                Told::Done { output_bytes: size(job), report }
+                Told::Done {
+                    output_bytes: size(job),
+                    report,
+                }
             }
-            Ended::Said { report: Some(report), verdict: Verdict::StoppedShort { why } } => {
+            Ended::Said {
+                report: Some(report),
+                verdict: Verdict::StoppedShort { why },
+            } => {
                 let report = told::on_one_line(&report, self.with_seconds)?;
-                Told::StoppedShort { why, output_bytes: size(job), report }
+                Told::StoppedShort {
+                    why,
+                    output_bytes: size(job),
+                    report,
+                }
             }
-            Ended::Said { verdict: Verdict::Options { message }, .. } => failed(Kind::Options, None, message),
-            Ended::Said { verdict: Verdict::File { message }, .. } => failed(Kind::File, None, message),
+            Ended::Said {
+                verdict: Verdict::Options { message },
+                ..
+            } => failed(Kind::Options, None, message),
+            Ended::Said {
+                verdict: Verdict::File { message },
+                ..
+            } => failed(Kind::File, None, message),
             Ended::Said { .. } => failed(Kind::Crash, None, "it ended without a report".to_owned()),
             Ended::Passed(kind) => self.passed(kind),
             Ended::Crashed(how) => failed(Kind::Crash, None, how),
         };
         let (input, output) = (Some(job.input.as_str()), job.output.as_deref());
-        new(Line { line: task.line, key: key.as_deref(), input, output, told })
+        new(Line {
+            line: task.line,
+            key: key.as_deref(),
+            input,
+            output,
+            told,
+        })
     }
 
     /// The earlier result of a job, if it holds.
     fn kept(&self, key: &str, job: &Job) -> Option<Fate> {
-        let earlier = self.earlier.get(&(key.to_owned(), job.input.clone(), job.output.clone()))?;
+        let earlier = self
+            .earlier
+            .get(&(key.to_owned(), job.input.clone(), job.output.clone()))?;
         let Limits { time, memory } = self.starter.limits;
         let standing = match earlier.failed {
             Some((kind @ (Kind::Time | Kind::Memory), Some(at))) => {
@@ -339,12 +424,17 @@ impl Batch {
         let (limit, message) = match kind {
             Kind::Time => {
                 let most = time.unwrap_or_default().as_secs_f64();
-                (serde_json::Number::from_f64(most), format!("it took more than {most} s (--time-limit)"))
+                (
+                    serde_json::Number::from_f64(most),
+                    format!("it took more than {most} s (--time-limit)"),
+                )
             }
             _ => {
                 let most = memory.unwrap_or_default();
-                let words =
-                    format!("it took more than {} of memory (--memory-limit)", crate::format::bytes(most));
+                let words = format!(
+                    "it took more than {} of memory (--memory-limit)",
+                    crate::format::bytes(most)
+                );
                 (Some(most.into()), words)
             }
         };
@@ -359,7 +449,13 @@ fn size(job: &Job) -> Option<u64> {
 }
 
 fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> Told {
-    Told::Failed { error: ErrorTold { kind, limit, message } }
+    Told::Failed {
+        error: ErrorTold {
+            kind,
+            limit,
+            message,
+        },
+    }
 }
 
 /// A result as its line.

@@ -74,7 +74,9 @@ impl Starter {
     /// # Errors
     /// No process can be started.
     pub(super) fn run(&self, words: &[OsString]) -> anyhow::Result<Ended> {
-        let mut child = self.start(words).context("no process can be started for a job")?;
+        let mut child = self
+            .start(words)
+            .context("no process can be started for a job")?;
         // Closed to end it.
         let mut line = child.stdin.take();
         let said = listen(child.stdout.take());
@@ -103,19 +105,40 @@ impl Starter {
             return Ok(why);
         }
         let mut values = serde_json::Deserializer::from_slice(&bytes).into_iter::<Box<RawValue>>();
-        let mut values = values.by_ref().collect::<Result<Vec<_>, _>>().unwrap_or_default();
-        let verdict = values.pop().and_then(|last| serde_json::from_str(last.get()).ok());
+        let mut values = values
+            .by_ref()
+            .collect::<Result<Vec<_>, _>>()
+            .unwrap_or_default();
+        let verdict = values
+            .pop()
+            .and_then(|last| serde_json::from_str(last.get()).ok());
         Ok(match verdict {
-            Some(verdict) => Ended::Said { report: values.pop(), verdict },
+            Some(verdict) => Ended::Said {
+                report: values.pop(),
+                verdict,
+            },
             None => Ended::Crashed(in_words(status, &told.recv().unwrap_or_default())),
         })
     }
 
     fn start(&self, words: &[OsString]) -> std::io::Result<Child> {
-        let (program, first) = self.program.split_first().ok_or(std::io::ErrorKind::NotFound)?;
+        let (program, first) = self
+            .program
+            .split_first()
+            .ok_or(std::io::ErrorKind::NotFound)?;
         let mut command = Command::new(program);
-        command.args(first).args(["batch-job", "--quiet", "--threads", &self.threads.to_string(), "--"]);
-        command.args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command.args(first).args([
+            "batch-job",
+            "--quiet",
+            "--threads",
+            &self.threads.to_string(),
+            "--",
+        ]);
+        command
+            .args(words)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
         #[cfg(unix)]
         {
             use std::os::unix::process::CommandExt;
@@ -134,7 +157,8 @@ impl Starter {
         if time.is_some_and(|most| start.elapsed() > most) {
             return Some(Ended::Passed(Kind::Time));
         }
-        let is_large = memory.is_some_and(|most| resident(child.id()).is_some_and(|now| now > most));
+        let is_large =
+            memory.is_some_and(|most| resident(child.id()).is_some_and(|now| now > most));
         is_large.then_some(Ended::Passed(Kind::Memory))
     }
 }
@@ -154,7 +178,9 @@ fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
 /// Bytes that a process has in memory, where the system tells.
 pub(super) fn resident(process: u32) -> Option<usize> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmRSS:"))?;
     let kib: usize = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kib * 1024)
 }
@@ -162,11 +188,22 @@ pub(super) fn resident(process: u32) -> Option<usize> {
 /// How a process ended without a verdict, with the end of what it said.
 fn in_words(status: std::process::ExitStatus, told: &[u8]) -> String {
     let told = String::from_utf8_lossy(told);
-    let lines: Vec<&str> = told.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let lines: Vec<&str> = told
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty())
+        .collect();
     let words = lines.join("; ");
-    let skipped = words.char_indices().rev().nth(MOST_WORDS).map_or(0, |(at, _)| at);
+    let skipped = words
+        .char_indices()
+        .rev()
+        .nth(MOST_WORDS)
+        .map_or(0, |(at, _)| at);
     match words.is_empty() {
         true => format!("it ended without a word ({status})"),
-        false => format!("it ended without a result ({status}): {}", &words[skipped..]),
+        false => format!(
+            "it ended without a result ({status}): {}",
+            &words[skipped..]
+        ),
     }
 }

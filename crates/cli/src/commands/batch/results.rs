@@ -161,12 +161,27 @@ impl ResultFile {
             ensure!(Instant::now() < end, "{name} is in use by another batch");
             std::thread::sleep(TRIED_AGAIN);
         }
-        let length = file.metadata().with_context(|| format!("{name} cannot be read"))?.len();
-        ensure!(resumes || length == 0, "{name} is there already; --resume goes on with it");
-        let mut own = Self { path: path.to_owned(), file, end: 0, lines: BTreeMap::new() };
-        let earlier = own.read().with_context(|| format!("{name} cannot be resumed"))?;
+        let length = file
+            .metadata()
+            .with_context(|| format!("{name} cannot be read"))?
+            .len();
+        ensure!(
+            resumes || length == 0,
+            "{name} is there already; --resume goes on with it"
+        );
+        let mut own = Self {
+            path: path.to_owned(),
+            file,
+            end: 0,
+            lines: BTreeMap::new(),
+        };
+        let earlier = own
+            .read()
+            .with_context(|| format!("{name} cannot be resumed"))?;
         // A line that was being written when the program was killed.
-        own.file.set_len(own.end).with_context(|| format!("{name} cannot be written"))?;
+        own.file
+            .set_len(own.end)
+            .with_context(|| format!("{name} cannot be written"))?;
         Ok((own, earlier))
     }
 
@@ -182,18 +197,36 @@ impl ResultFile {
                 break;
             }
             let text = std::str::from_utf8(&line)?;
-            let read: Option<Known> =
-                if text.starts_with(START) { serde_json::from_str(text).ok() } else { None };
-            let Some(read) = read else { bail!("line {number} is no result of a job") };
-            let place = Place { start: self.end, length: length - 1 };
+            let read: Option<Known> = if text.starts_with(START) {
+                serde_json::from_str(text).ok()
+            } else {
+                None
+            };
+            let Some(read) = read else {
+                bail!("line {number} is no result of a job")
+            };
+            let place = Place {
+                start: self.end,
+                length: length - 1,
+            };
             self.end += length as u64;
-            let (Some(key), Some(input)) = (read.key, read.input) else { continue };
+            let (Some(key), Some(input)) = (read.key, read.input) else {
+                continue;
+            };
             let failed = match read.status.as_str() {
-                "failed" => Some(read.error.map_or((Kind::Crash, None), |own| (own.kind, own.limit))),
+                "failed" => Some(
+                    read.error
+                        .map_or((Kind::Crash, None), |own| (own.kind, own.limit)),
+                ),
                 _ => None,
             };
             let is_short = read.status == "stopped-short";
-            let earlier = Earlier { place, is_short, output_bytes: read.output_bytes, failed };
+            let earlier = Earlier {
+                place,
+                is_short,
+                output_bytes: read.output_bytes,
+                failed,
+            };
             found.insert((key, input, read.output), earlier);
         }
         Ok(found)
@@ -203,14 +236,25 @@ impl ResultFile {
         // In one piece, so that another reader sees whole lines.
         let written = self.file.write_all(result.as_bytes());
         written.with_context(|| format!("{} cannot be written", self.path.display()))?;
-        self.lines.insert(line, Place { start: self.end, length: result.len() - 1 });
+        self.lines.insert(
+            line,
+            Place {
+                start: self.end,
+                length: result.len() - 1,
+            },
+        );
         self.end += result.len() as u64;
         Ok(())
     }
 
     /// Puts the results into the order of their jobs, and leaves out those of jobs that are no more.
     fn finish(self) -> anyhow::Result<()> {
-        let Self { path, mut file, lines, .. } = self;
+        let Self {
+            path,
+            mut file,
+            lines,
+            ..
+        } = self;
         let mut result = Vec::new();
         let fill = |writer: &mut dyn Write| {
             for (number, place) in &lines {
@@ -218,14 +262,19 @@ impl ResultFile {
                 file.seek(SeekFrom::Start(place.start))?;
                 file.read_exact(&mut result)?;
                 // Jobs may stand on other lines than they did.
-                let digits = result[START.len()..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+                let digits = result[START.len()..]
+                    .iter()
+                    .take_while(|byte| byte.is_ascii_digit())
+                    .count();
                 write!(writer, "{START}{number}")?;
                 writer.write_all(&result[START.len() + digits..])?;
                 writer.write_all(b"\n")?;
             }
             Ok(())
         };
-        Ok(interrupt::whole_or_not(&path, || limitmesh_io::write_whole_with(&path, fill))?)
+        Ok(interrupt::whole_or_not(&path, || {
+            limitmesh_io::write_whole_with(&path, fill)
+        })?)
     }
 }
 
@@ -234,7 +283,9 @@ mod tests {
     use super::*;
 
     fn result(line: usize, key: &str) -> String {
-        format!("{{\"line\":{line},\"key\":\"{key}\",\"input\":\"i\",\"output\":null,\"status\":\"done\"}}")
+        format!(
+            "{{\"line\":{line},\"key\":\"{key}\",\"input\":\"i\",\"output\":null,\"status\":\"done\"}}"
+        )
     }
 
     #[test]
@@ -245,13 +296,25 @@ mod tests {
         assert!(earlier.is_empty());
         results.add(12, result(12, "c")).unwrap();
         results.add(2, result(2, "a")).unwrap();
-        assert!(Results::open(&path, true).err().unwrap().to_string().contains("in use"));
+        assert!(
+            Results::open(&path, true)
+                .err()
+                .unwrap()
+                .to_string()
+                .contains("in use")
+        );
         // Killed in the middle of a line.
         drop(results);
         let mut file = OpenOptions::new().append(true).open(&path).unwrap();
         file.write_all(b"{\"line\":3,\"key\":").unwrap();
         drop(file);
-        assert!(Results::open(&path, false).err().unwrap().to_string().contains("--resume"));
+        assert!(
+            Results::open(&path, false)
+                .err()
+                .unwrap()
+                .to_string()
+                .contains("--resume")
+        );
         let (mut results, earlier) = Results::open(&path, true).unwrap();
         assert_eq!(earlier.len(), 2);
         let key = |key: &str| (key.to_owned(), "i".to_owned(), None);

@@ -102,7 +102,10 @@ impl Kind {
 ///
 /// # Errors
 /// It is no JSON.
-pub(super) fn on_one_line(report: &RawValue, with_seconds: bool) -> serde_json::Result<Box<RawValue>> {
+pub(super) fn on_one_line(
+    report: &RawValue,
+    with_seconds: bool,
+) -> serde_json::Result<Box<RawValue>> {
     let mut line = String::with_capacity(report.get().len());
     add(report, with_seconds, &mut line)?;
     RawValue::from_string(line)
@@ -115,7 +118,10 @@ fn add(value: &RawValue, with_seconds: bool, line: &mut String) -> serde_json::R
             let Members(members) = serde_json::from_str(text)?;
             line.push('{');
             let mut is_first = true;
-            for (name, value) in members.iter().filter(|(name, _)| with_seconds || name != "seconds") {
+            for (name, value) in members
+                .iter()
+                .filter(|(name, _)| with_seconds || name != "seconds")
+            {
                 line.push_str(if is_first { "" } else { "," });
                 is_first = false;
                 line.push_str(&serde_json::to_string(name)?);
@@ -172,8 +178,13 @@ mod tests {
         let report = "{\n  \"b\": 0.10000000000000000001,\n \"seconds\": {\"read\": 1},\n \"a\": [ {\"seconds\": 2, \"\\u00e4\\n\": \" x \"}, [], {} ] }";
         let report = RawValue::from_string(report.to_owned()).unwrap();
         let line = on_one_line(&report, false).unwrap();
-        assert_eq!(line.get(), "{\"b\":0.10000000000000000001,\"a\":[{\"ä\\n\":\" x \"},[],{}]}");
+        assert_eq!(
+            line.get(),
+            "{\"b\":0.10000000000000000001,\"a\":[{\"ä\\n\":\" x \"},[],{}]}"
+        );
         let line = on_one_line(&report, true).unwrap();
-        assert!(line.get().contains("\"seconds\":{\"read\":1}") && line.get().contains("\"seconds\":2"));
+        assert!(
+            line.get().contains("\"seconds\":{\"read\":1}") && line.get().contains("\"seconds\":2")
+        );
     }
 }

@@ -39,7 +39,12 @@ impl AttributeGoals {
         for channel in channels.all() {
             if let Some(tolerance) = arguments.tolerance(channel) {
                 let goal = goal(channel, control, tolerance)?;
-                self.all.push(Wanted { name: channel.name.clone(), tolerance, goal, is_length: false });
+                self.all.push(Wanted {
+                    name: channel.name.clone(),
+                    tolerance,
+                    goal,
+                    is_length: false,
+                });
             }
         }
         Ok(())
@@ -48,19 +53,30 @@ impl AttributeGoals {
     /// Adds the surface that a morph target makes.
     pub(super) fn add_surface(&mut self, name: String, moved: Mesh, tolerance: f64) {
         let goal = Some(AttributeGoal::surface(moved, tolerance));
-        self.all.push(Wanted { name, tolerance, goal, is_length: true });
+        self.all.push(Wanted {
+            name,
+            tolerance,
+            goal,
+            is_length: true,
+        });
     }
 
     /// What is asked of the refinement.
     pub(super) fn options(&self) -> Vec<AttributeGoal> {
-        self.all.iter().filter_map(|wanted| wanted.goal.clone()).collect()
+        self.all
+            .iter()
+            .filter_map(|wanted| wanted.goal.clone())
+            .collect()
     }
 
     /// The goals in words, if there are some.
     pub(super) fn in_words(&self) -> Option<&'static str> {
         let has_goal = |wanted: &Wanted| wanted.goal.is_some();
         let is_length = |wanted: &Wanted| has_goal(wanted) && wanted.is_length;
-        match (self.all.iter().any(is_length), self.all.iter().any(|own| has_goal(own) && !own.is_length)) {
+        match (
+            self.all.iter().any(is_length),
+            self.all.iter().any(|own| has_goal(own) && !own.is_length),
+        ) {
             (false, false) => None,
             (true, false) => Some("the morph targets' tolerance"),
             (false, true) => Some("the channels' tolerances"),
@@ -100,7 +116,10 @@ impl AttributeGoals {
         }
         lines.extend(morphs.map(|upper| match upper {
             Some(upper) => {
-                format!("each morph target within {}{unit} of its limit surface", upper_bound(upper))
+                format!(
+                    "each morph target within {}{unit} of its limit surface",
+                    upper_bound(upper)
+                )
             }
             None => "morph targets are not bounded".to_owned(),
         }));

@@ -18,12 +18,18 @@ pub(super) fn all(arguments: &RefineArguments) -> anyhow::Result<Vec<Camera>> {
 }
 
 /// Refuses a camera inside a closed mesh: all that it could see are back faces, which are left coarse.
-pub(super) fn check(cameras: &[Camera], control: &Mesh, arguments: &RefineArguments) -> anyhow::Result<()> {
+pub(super) fn check(
+    cameras: &[Camera],
+    control: &Mesh,
+    arguments: &RefineArguments,
+) -> anyhow::Result<()> {
     if cameras.is_empty() || control.topology().boundary_edge_count() > 0 {
         return Ok(());
     }
     // Where there is no limit, refinement says so itself.
-    let Ok(limits) = LimitTable::new(arguments.scheme()?).positions(control) else { return Ok(()) };
+    let Ok(limits) = LimitTable::new(arguments.scheme()?).positions(control) else {
+        return Ok(());
+    };
     let triangles = || control.triangles().iter().copied();
     let inside = |camera: &Camera| winding(camera.eye, &limits, triangles()) > 0.5;
     match cameras.iter().position(inside) {

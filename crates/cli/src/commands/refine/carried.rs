@@ -20,10 +20,18 @@ pub(super) struct Trail {
 
 impl Trail {
     /// Where a triangle's corner at a vertex came from, on its triangle's side of edges.
-    fn of(&self, (triangle, corner): (usize, usize), vertex: u32, control: &[[u32; 3]]) -> Option<Origin> {
+    fn of(
+        &self,
+        (triangle, corner): (usize, usize),
+        vertex: u32,
+        control: &[[u32; 3]],
+    ) -> Option<Origin> {
         let origin = self.origins[vertex as usize];
-        let Some(sides) = &self.sides else { return origin.in_face(control, self.parents[triangle]) };
-        let own = sides.binary_search_by_key(&((3 * triangle + corner) as u32), |&(corner, _)| corner);
+        let Some(sides) = &self.sides else {
+            return origin.in_face(control, self.parents[triangle]);
+        };
+        let own =
+            sides.binary_search_by_key(&((3 * triangle + corner) as u32), |&(corner, _)| corner);
         Some(own.map_or(origin, |at| sides[at].1))
     }
 }
@@ -46,12 +54,22 @@ impl Carried<'_> {
     }
 
     /// Where a triangle's corner, which is at a vertex, came from on the control mesh.
-    pub(super) fn control_place(&self, triangle: usize, corner: usize, vertex: u32) -> Option<Origin> {
+    pub(super) fn control_place(
+        &self,
+        triangle: usize,
+        corner: usize,
+        vertex: u32,
+    ) -> Option<Origin> {
         self.trail.of((triangle, corner), vertex, self.control)
     }
 
     /// What a triangle's corner, which is at a vertex, is of the vertices of the input's face.
-    pub(super) fn place(&self, triangle: usize, corner: usize, vertex: u32) -> Option<[(u32, f64); 3]> {
+    pub(super) fn place(
+        &self,
+        triangle: usize,
+        corner: usize,
+        vertex: u32,
+    ) -> Option<[(u32, f64); 3]> {
         let own = self.control_place(triangle, corner, vertex)?;
         let (whole, weights) = self.parts.on_whole(own.face, own.barycentric);
         Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
@@ -59,7 +77,11 @@ impl Carried<'_> {
 
     /// What moves the control mesh's vertices, given what moves the input's: joints with weights that add up to 1, where there are any.
     /// Vertices on divided faces are moved as the points are where they stand.
-    pub(super) fn influences(&self, control: &Mesh, input: &[Vec<(u32, f64)>]) -> Vec<Vec<(u32, f64)>> {
+    pub(super) fn influences(
+        &self,
+        control: &Mesh,
+        input: &[Vec<(u32, f64)>],
+    ) -> Vec<Vec<(u32, f64)>> {
         let mut lists = vec![Vec::new(); control.vertex_count()];
         let mut is_met = vec![false; lists.len()];
         for (corner, &v) in control.triangles().as_flattened().iter().enumerate() {
@@ -69,7 +91,11 @@ impl Carried<'_> {
             let own = std::array::from_fn(|i| if i == corner % 3 { 1.0 } else { 0.0 });
             let (whole, shares) = self.parts.on_whole((corner / 3) as u32, own);
             let list: &mut Vec<(u32, f64)> = &mut lists[v as usize];
-            for (i, share) in shares.into_iter().enumerate().filter(|&(_, share)| share > 0.0) {
+            for (i, share) in shares
+                .into_iter()
+                .enumerate()
+                .filter(|&(_, share)| share > 0.0)
+            {
                 let input = &input[self.vertices[3 * whole as usize + i] as usize];
                 let total: f64 = input.iter().map(|&(_, weight)| weight).sum();
                 for &(joint, weight) in input {
@@ -104,7 +130,11 @@ const NONE: u32 = u32::MAX;
 
 impl<'a> Vertices<'a> {
     /// None yet, for a surface with so many vertices.
-    pub(super) fn new(channels: &'a [&'a Channel], moving: Option<&'a [Joints]>, count: usize) -> Self {
+    pub(super) fn new(
+        channels: &'a [&'a Channel],
+        moving: Option<&'a [Joints]>,
+        count: usize,
+    ) -> Self {
         let empty = |channel: &&Channel| VertexAttribute {
             name: channel.name.clone(),
             width: channel.arity,
@@ -113,7 +143,15 @@ impl<'a> Vertices<'a> {
         };
         let attributes = channels.iter().map(empty).collect();
         let (joints, weights) = (Vec::new(), Vec::new());
-        Self { channels, first: vec![NONE; count], next: Vec::new(), moving, attributes, joints, weights }
+        Self {
+            channels,
+            first: vec![NONE; count],
+            next: Vec::new(),
+            moving,
+            attributes,
+            joints,
+            weights,
+        }
     }
 
     /// All attributes, when there are no more vertices.
@@ -121,8 +159,12 @@ impl<'a> Vertices<'a> {
         let mut all = self.attributes;
         if self.moving.is_some() {
             let width = MOST_JOINTS;
-            let joints =
-                VertexAttribute { name: "JOINTS_0".to_owned(), width, values: self.joints, is_integer: true };
+            let joints = VertexAttribute {
+                name: "JOINTS_0".to_owned(),
+                width,
+                values: self.joints,
+                is_integer: true,
+            };
             let weights = VertexAttribute {
                 name: "WEIGHTS_0".to_owned(),
                 width,
@@ -144,7 +186,11 @@ impl<'a> Vertices<'a> {
         let mut known = self.first[v as usize];
         let mut last = NONE;
         while known != NONE {
-            if self.attributes.iter().all(|attribute| is_same(attribute, known, new)) {
+            if self
+                .attributes
+                .iter()
+                .all(|attribute| is_same(attribute, known, new))
+            {
                 for attribute in &mut self.attributes {
                     attribute.values.truncate(new as usize * attribute.width);
                 }
@@ -157,7 +203,11 @@ impl<'a> Vertices<'a> {
             last => self.next[last as usize] = new,
         }
         self.next.push(NONE);
-        for (joint, weight) in self.moving.iter().flat_map(|moving| moving[of_mesh as usize]) {
+        for (joint, weight) in self
+            .moving
+            .iter()
+            .flat_map(|moving| moving[of_mesh as usize])
+        {
             self.joints.push(f64::from(joint));
             self.weights.push(weight);
         }
@@ -168,6 +218,10 @@ impl<'a> Vertices<'a> {
 /// Whether two vertices have the same value in a file.
 fn is_same(attribute: &VertexAttribute, a: u32, b: u32) -> bool {
     let width = attribute.width;
-    let of = |v: u32| attribute.values[v as usize * width..][..width].iter().map(|&x| x as f32);
+    let of = |v: u32| {
+        attribute.values[v as usize * width..][..width]
+            .iter()
+            .map(|&x| x as f32)
+    };
     of(a).eq(of(b))
 }

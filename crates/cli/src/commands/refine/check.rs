@@ -57,7 +57,9 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     }
     proof::check(arguments, format)?;
     if arguments.split_normals && format.is_some_and(|format| format != Format::Ply) {
-        return usage("--split-normals is for PLY files: OBJ holds normals by corner, and the others none");
+        return usage(
+            "--split-normals is for PLY files: OBJ holds normals by corner, and the others none",
+        );
     }
     if arguments.exact.dry_run && arguments.picture.is_some() {
         return usage("--dry-run gives no mesh that --picture could draw");
@@ -66,20 +68,34 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
 }
 
 /// Refuses two jobs that would write one file, and one that would replace an input of any of them.
-pub(super) fn together(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow::Result<()> {
+pub(super) fn together(
+    arguments: &RefineArguments,
+    jobs: &[RefineArguments],
+) -> anyhow::Result<()> {
     if arguments.exact.dry_run {
         return Ok(());
     }
-    let written: Vec<&Path> = jobs.iter().filter_map(|job| job.output.as_deref()).collect();
+    let written: Vec<&Path> = jobs
+        .iter()
+        .filter_map(|job| job.output.as_deref())
+        .collect();
     let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
     output::check_replaced(&written, &inputs, Some(arguments.overwrite))?;
     output::check_once(&written)?;
     // Where that is asked for a result may replace its own input, but not what another result is to be made from.
-    let read: BTreeMap<FileIdentity, usize> =
-        inputs.iter().enumerate().map(|(number, input)| (FileIdentity::of(input), number)).collect();
+    let read: BTreeMap<FileIdentity, usize> = inputs
+        .iter()
+        .enumerate()
+        .map(|(number, input)| (FileIdentity::of(input), number))
+        .collect();
     for (number, job) in jobs.iter().enumerate() {
-        let Some(output) = job.output.as_deref() else { continue };
-        if read.get(&FileIdentity::of(output)).is_some_and(|&other| other != number) {
+        let Some(output) = job.output.as_deref() else {
+            continue;
+        };
+        if read
+            .get(&FileIdentity::of(output))
+            .is_some_and(|&other| other != number)
+        {
             return usage(format!(
                 "{} is an input, too, which the result of {} would replace",
                 output.display(),
@@ -116,7 +132,9 @@ struct Limited {
 /// The first option that is given, and unknown to the way that is gone.
 fn unknown(arguments: &RefineArguments) -> Option<Limited> {
     let way = arguments.way();
-    limited(arguments).into_iter().find(|option| option.is_given && !option.known.contains(&way))
+    limited(arguments)
+        .into_iter()
+        .find(|option| option.is_given && !option.known.contains(&way))
 }
 
 /// All of them. What depends on other options has checks of its own.
@@ -125,8 +143,18 @@ fn limited(arguments: &RefineArguments) -> [Limited; 24] {
     const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
     const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
     const STEPS: &[Way] = &[Way::Stepwise, Way::Sqrt3Steps];
-    let RefineArguments { exact, channels, asset, interpolation, .. } = arguments;
-    let option = |name, is_given, known| Limited { name, is_given, known };
+    let RefineArguments {
+        exact,
+        channels,
+        asset,
+        interpolation,
+        ..
+    } = arguments;
+    let option = |name, is_given, known| Limited {
+        name,
+        is_given,
+        known,
+    };
     [
         option("--levels", arguments.levels.is_some(), STEPS),
         option("--seam", arguments.seam.is_some(), STEPS),
@@ -134,7 +162,11 @@ fn limited(arguments: &RefineArguments) -> [Limited; 24] {
         option("--view", arguments.view.is_some(), IN_QUARTERS),
         option("--eye", arguments.eye.is_some(), IN_QUARTERS),
         option("--interpolate", interpolation.interpolate, IN_QUARTERS),
-        option("--interpolate-within", interpolation.interpolate_within.is_some(), IN_QUARTERS),
+        option(
+            "--interpolate-within",
+            interpolation.interpolate_within.is_some(),
+            IN_QUARTERS,
+        ),
         option("--tolerance", exact.tolerance.is_some(), GOALS),
         option("--within", exact.within.is_some(), EXACT),
         option("--triangles", exact.triangles.is_some(), GOALS),
@@ -150,7 +182,11 @@ fn limited(arguments: &RefineArguments) -> [Limited; 24] {
         option("--max-memory", exact.max_memory.is_some(), EXACT),
         option("--dry-run", exact.dry_run, EXACT),
         option("--uv-tolerance", channels.uv_tolerance.is_some(), EXACT),
-        option("--attribute-tolerance", !channels.attribute_tolerance.is_empty(), EXACT),
+        option(
+            "--attribute-tolerance",
+            !channels.attribute_tolerance.is_empty(),
+            EXACT,
+        ),
         option("--morph-tolerance", asset.morph_tolerance.is_some(), EXACT),
     ]
 }
@@ -192,17 +228,27 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
     }
     let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
-        return usage("--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance");
+        return usage(
+            "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
+        );
     }
-    let within = matches!(arguments.asset.morph_tolerance, Some(MorphTolerance::Within(_)));
-    let goal = arguments.channels.given_tolerance().or(within.then_some("--morph-tolerance"));
+    let within = matches!(
+        arguments.asset.morph_tolerance,
+        Some(MorphTolerance::Within(_))
+    );
+    let goal = arguments
+        .channels
+        .given_tolerance()
+        .or(within.then_some("--morph-tolerance"));
     let other = [
         ("--triangles", exact.triangles.is_some()),
         ("--balance", exact.balance),
         ("--optimize", exact.optimize),
     ];
     if let (Some(goal), Some((other, _))) = (goal, other.into_iter().find(|&(_, given)| given)) {
-        return usage(format!("{goal} divides until it is met; that does not go with {other}"));
+        return usage(format!(
+            "{goal} divides until it is met; that does not go with {other}"
+        ));
     }
     if let (Some(asked), None) = (exact.triangles, arguments.max_triangles)
         && asked > arguments.max_triangles()

@@ -65,11 +65,18 @@ impl Control {
             triangles: mesh.triangles().to_vec(),
         });
         let featured = arguments.features.apply(mesh)?;
-        for note in [along_needles(&featured), divided_corners(&featured)].into_iter().flatten() {
+        for note in [along_needles(&featured), divided_corners(&featured)]
+            .into_iter()
+            .flatten()
+        {
             progress.note(note);
         }
         diagnosis.concave_corners = featured.concave.corners.clone();
-        let Featured { mesh, mut concave, along_needles } = featured;
+        let Featured {
+            mesh,
+            mut concave,
+            along_needles,
+        } = featured;
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
         let (mesh, interpolation) = match Nearness::of(arguments, &mesh, diagonal)? {
             Some(near) => {
@@ -83,18 +90,38 @@ impl Control {
             }
             None => (mesh, None),
         };
-        let featured = Featured { mesh, concave, along_needles };
-        let before =
-            Before { surface, faces, residual: interpolation.as_ref().map(|report| report.residual) };
+        let featured = Featured {
+            mesh,
+            concave,
+            along_needles,
+        };
+        let before = Before {
+            surface,
+            faces,
+            residual: interpolation.as_ref().map(|report| report.residual),
+        };
         let took = start.elapsed();
-        Ok(Self { featured, diagnosis, before, shown, bulk, interpolation, diagonal, took })
+        Ok(Self {
+            featured,
+            diagnosis,
+            before,
+            shown,
+            bulk,
+            interpolation,
+            diagonal,
+            took,
+        })
     }
 }
 
 /// Tells about edges that are not sharp though their faces meet at more than the crease angle.
 fn along_needles(control: &Featured) -> Option<String> {
     let edges = counted(control.along_needles, "edge", "edges");
-    let are = if control.along_needles == 1 { "is" } else { "are" };
+    let are = if control.along_needles == 1 {
+        "is"
+    } else {
+        "are"
+    };
     (control.along_needles > 0)
         .then(|| format!("{edges} along needles {are} not sharp: the faces beyond these decide"))
 }
@@ -104,7 +131,12 @@ fn divided_corners(control: &Featured) -> Option<String> {
     let concave = &control.concave;
     let corners = counted(concave.corners.count, "corner", "corners");
     let edges = counted(concave.edges, "sharp edge", "sharp edges");
-    let divide = if concave.edges == 1 { "divides" } else { "divide" };
-    (concave.edges > 0)
-        .then(|| format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat"))
+    let divide = if concave.edges == 1 {
+        "divides"
+    } else {
+        "divide"
+    };
+    (concave.edges > 0).then(|| {
+        format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat")
+    })
 }

@@ -22,13 +22,24 @@ pub(super) fn run(
 ) -> anyhow::Result<()> {
     progress.stage("estimating");
     let options = goals.options(arguments);
-    let found = exact_estimate_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
+    let found = exact_estimate_observed(
+        control,
+        arguments.scheme()?,
+        &options,
+        &mut progress.observer(),
+    )?;
     progress.clear();
     // A report on standard output is not mixed with text for people.
-    if arguments.report.as_deref().is_none_or(|path| !output::is_standard_output(path)) {
+    if arguments
+        .report
+        .as_deref()
+        .is_none_or(|path| !output::is_standard_output(path))
+    {
         output::print(&format!("{}: {}", input.path, in_words(&found, arguments)))?;
     }
-    let Some(path) = &arguments.report else { return Ok(()) };
+    let Some(path) = &arguments.report else {
+        return Ok(());
+    };
     let report = PredictionReport {
         version: VERSION,
         input,
@@ -49,7 +60,11 @@ fn in_words(found: &Estimate, arguments: &RefineArguments) -> String {
         "{}{}{}, at most about {} of memory while it refines; nothing was written",
         if found.is_counted { "" } else { "about " },
         counted(found.triangles, "triangle", "triangles"),
-        if is_capped { ", where --max-triangles ends it" } else { "" },
+        if is_capped {
+            ", where --max-triangles ends it"
+        } else {
+            ""
+        },
         bytes(found.memory_bytes)
     )
 }

@@ -18,8 +18,8 @@ use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::{Phases, Progress};
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport, ParametersReport,
-    RoundEntry,
+    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport,
+    ParametersReport, RoundEntry,
 };
 
 /// A part of the distance that rounding makes up and that is told.
@@ -29,7 +29,15 @@ const NOTED: f64 = 0.01;
 ///
 /// `before` is the mesh that was read.
 pub(super) fn run(
-    (Featured { mesh: control, concave, .. }, before, channels): (&Featured, &Before, &Channels),
+    (
+        Featured {
+            mesh: control,
+            concave,
+            ..
+        },
+        before,
+        channels,
+    ): (&Featured, &Before, &Channels),
     goals: &Goals,
     arguments: &RefineArguments,
     progress: &Progress,
@@ -41,17 +49,29 @@ pub(super) fn run(
         // Where refinement tries two ways, the second starts again; the report counts on.
         if at.stage == Stage::Refining && at.done > 0 && at.done != last {
             last = at.done;
-            rounds.push(RoundEntry { round: rounds.len() + 1, triangles: at.triangles });
+            rounds.push(RoundEntry {
+                round: rounds.len() + 1,
+                triangles: at.triangles,
+            });
         }
         show(at)
     };
-    progress.stage(format!("refining {}", counted(control.face_count(), "triangle", "triangles")));
+    progress.stage(format!(
+        "refining {}",
+        counted(control.face_count(), "triangle", "triangles")
+    ));
     let options = goals.options(arguments);
     let mut found = exact_observed(control, arguments.scheme()?, &options, &mut observer)?;
-    let moved =
-        input_distance::measured((control, before, &concave.parts), &found, goals, arguments, progress)?;
-    let rounding = written(arguments)
-        .map_or(0.0, |(format, options)| limitmesh_io::rounding(format, &options, found.mesh.positions()));
+    let moved = input_distance::measured(
+        (control, before, &concave.parts),
+        &found,
+        goals,
+        arguments,
+        progress,
+    )?;
+    let rounding = written(arguments).map_or(0.0, |(format, options)| {
+        limitmesh_io::rounding(format, &options, found.mesh.positions())
+    });
     if let Some(note) = round(&mut found, rounding, goals) {
         progress.note(note);
     }
@@ -62,26 +82,40 @@ pub(super) fn run(
     let error = ErrorReport::new(&found.error, goals.diagonal);
     let mut achieved = achieved(&found, &error, goals, arguments);
     let attributes = goals.attributes.reached(&found);
-    achieved.extend(goals.attributes.achieved(&attributes, &unit_in_words(arguments.build.unit)));
+    achieved.extend(
+        goals
+            .attributes
+            .achieved(&attributes, &unit_in_words(arguments.build.unit)),
+    );
     match (&moved, goals.near) {
         (Some(moved), Some(_)) => {
             achieved.insert(0, moved.near_in_words(&unit_in_words(arguments.build.unit)))
         }
         (Some(moved), None) => {
-            achieved.extend(input_distance::in_words(moved, &error, control, goals, arguments));
+            achieved.extend(input_distance::in_words(
+                moved, &error, control, goals, arguments,
+            ));
         }
         (None, _) => {}
     }
     let inverted = match &before.surface {
-        Some(BeforeSurface { positions, triangles }) if goals.near.is_some() => {
-            turned_over_triangles(Triangles { positions, triangles }, &found, &concave.parts)
-        }
+        Some(BeforeSurface {
+            positions,
+            triangles,
+        }) if goals.near.is_some() => turned_over_triangles(
+            Triangles {
+                positions,
+                triangles,
+            },
+            &found,
+            &concave.parts,
+        ),
         _ => found.inverted_triangles(),
     };
     let outcome = match outcome(&found, control, goals, arguments) {
-        Outcome::Done => {
-            goals.near.map_or(Outcome::Done, |near| near.outcome(moved.as_ref(), inverted, arguments))
-        }
+        Outcome::Done => goals.near.map_or(Outcome::Done, |near| {
+            near.outcome(moved.as_ref(), inverted, arguments)
+        }),
         short => short,
     };
     let channels = channels.refined(control, &found, arguments.scheme()?)?;
@@ -89,13 +123,29 @@ pub(super) fn run(
         || arguments.picture.is_some();
     let normals = wanted.then(|| Normals::of_exact(&mut found));
     let Exact {
-        mesh, origins, parents, is_optimized, side_origins, pixels, open_cones, stop, levels, ..
+        mesh,
+        origins,
+        parents,
+        is_optimized,
+        side_origins,
+        pixels,
+        open_cones,
+        stop,
+        levels,
+        ..
     } = found;
     let places = (&before.faces[..], &concave.parts);
-    let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents.clone(), places));
+    let provenance = arguments
+        .exact
+        .provenance
+        .then(|| Provenance::new(&origins, parents.clone(), places));
     let sides = is_optimized.then_some(side_origins);
     let trail = if goals.keeps_origins || arguments.proof.is_some() {
-        Trail { origins, parents, sides }
+        Trail {
+            origins,
+            parents,
+            sides,
+        }
     } else {
         Trail::default()
     };
@@ -126,7 +176,9 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     let proven = found.error.upper;
     found.error.upper += rounding;
     found.error.lower = (found.error.lower - rounding).max(0.0);
-    let is_beyond = goals.length.is_some_and(|length| proven <= length && found.error.upper > length);
+    let is_beyond = goals
+        .length
+        .is_some_and(|length| proven <= length && found.error.upper > length);
     if is_beyond && found.stop == ExactStop::Met {
         found.stop = ExactStop::Rounding;
     }
@@ -142,15 +194,27 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 const EXACT: f64 = 1e-6;
 
 /// What was reached, in sentences of a line each.
-fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &RefineArguments) -> Vec<String> {
+fn achieved(
+    found: &Exact,
+    error: &ErrorReport,
+    goals: &Goals,
+    arguments: &RefineArguments,
+) -> Vec<String> {
     let mut lines = error.in_words(&unit_in_words(arguments.build.unit));
     if error.upper.is_none() {
         lines.push(unproven(goals).to_owned());
     } else if !error.certified {
-        let scheme = arguments.scheme.in_quarters().map_or("", |name| name.scheme().name());
-        lines.push(format!("(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"));
+        let scheme = arguments
+            .scheme
+            .in_quarters()
+            .map_or("", |name| name.scheme().name());
+        lines.push(format!(
+            "(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"
+        ));
     }
-    let is_exact = error.upper.is_some_and(|upper| upper <= EXACT * goals.diagonal);
+    let is_exact = error
+        .upper
+        .is_some_and(|upper| upper <= EXACT * goals.diagonal);
     if found.levels == 0
         && !found.is_optimized
         && found.stop == ExactStop::Met
@@ -164,12 +228,17 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, arguments: &Refin
         );
     }
     lines.extend(found.pixels.map(|pixels| match pixels.is_finite() {
-        true => format!("at most {} pixels as the cameras see it", upper_bound(pixels)),
+        true => format!(
+            "at most {} pixels as the cameras see it",
+            upper_bound(pixels)
+        ),
         false => "not bounded as the cameras see it".to_owned(),
     }));
     if found.unfolded > 0 {
         let regions = counted(found.unfolded, "flat region", "flat regions");
-        lines.push(format!("{regions} would fold by the scheme's rules: what the rim encloses stands there"));
+        lines.push(format!(
+            "{regions} would fold by the scheme's rules: what the rim encloses stands there"
+        ));
     }
     let is_reached = matches!(found.stop, ExactStop::Met | ExactStop::Triangles);
     if arguments.exact.optimize && !found.is_optimized && is_reached && found.levels > 0 {
@@ -214,7 +283,12 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
             optimize: options.optimize,
             divide_flat: arguments.divides_flat(),
             max_memory: options.max_memory,
-            ..ExactParametersReport::new(goals.length, goals.diagonal, options.max_levels, &arguments.exact)
+            ..ExactParametersReport::new(
+                goals.length,
+                goals.diagonal,
+                options.max_levels,
+                &arguments.exact,
+            )
         }),
         ..ParametersReport::common(arguments)
     }
@@ -224,9 +298,14 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
 fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArguments) -> Outcome {
     let triangles = found.mesh.face_count();
     let cap = match found.stop {
-        ExactStop::TriangleCap => format!("--max-triangles {}", thousands(arguments.max_triangles())),
+        ExactStop::TriangleCap => {
+            format!("--max-triangles {}", thousands(arguments.max_triangles()))
+        }
         ExactStop::MemoryCap => {
-            format!("--max-memory {}", bytes(arguments.exact.max_memory.unwrap_or_default()))
+            format!(
+                "--max-memory {}",
+                bytes(arguments.exact.max_memory.unwrap_or_default())
+            )
         }
         ExactStop::LevelCap => format!("--max-levels {}", goals.options(arguments).max_levels),
         _ => String::new(),
@@ -241,12 +320,17 @@ fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArgum
             format!("the control mesh has more than --max-triangles {most} already")
         }
         ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control.face_count() => {
-            format!("{} would take more than {cap}, and nothing was divided", goals.in_words(found))
+            format!(
+                "{} would take more than {cap}, and nothing was divided",
+                goals.in_words(found)
+            )
         }
         ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::LevelCap => {
             format!("{cap} was reached before {}", goals.in_words(found))
         }
-        ExactStop::Triangles | ExactStop::Met if goals.triangles.is_some_and(|wanted| triangles > wanted) => {
+        ExactStop::Triangles | ExactStop::Met
+            if goals.triangles.is_some_and(|wanted| triangles > wanted) =>
+        {
             let wanted = thousands(goals.triangles.unwrap_or_default());
             if arguments.exact.optimize {
                 format!("no more edges could be collapsed before --triangles {wanted}")
@@ -257,7 +341,10 @@ fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArgum
                 )
             }
         }
-        ExactStop::Rounding => format!("{} is finer than rounding leaves certain", goals.in_words(found)),
+        ExactStop::Rounding => format!(
+            "{} is finer than rounding leaves certain",
+            goals.in_words(found)
+        ),
         _ => return Outcome::Done,
     };
     let written = format!(

@@ -26,18 +26,28 @@ use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
-use crate::report::{ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION, percent};
+use crate::report::{
+    ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION, percent,
+};
 
 /// Refines all inputs as frames of one mesh.
 pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     refuse(arguments)?;
     // The report is about all of them.
-    let each = RefineArguments { report: None, ..arguments.clone() };
+    let each = RefineArguments {
+        report: None,
+        ..arguments.clone()
+    };
     let jobs = jobs::jobs(&each)?;
     check::together(arguments, &jobs)?;
-    let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
+    let formats = jobs
+        .iter()
+        .map(check::options)
+        .collect::<anyhow::Result<Vec<_>>>()?;
     if let Some(Some(format)) = formats.iter().find(|format| format.is_none_or(is_scene)) {
-        return usage(format!("--shared-topology is for OBJ, PLY, OFF and STL files, not {format:?}"));
+        return usage(format!(
+            "--shared-topology is for OBJ, PLY, OFF and STL files, not {format:?}"
+        ));
     }
     jobs::make_folders(&each)?;
     jobs.iter().try_for_each(check::files)?;
@@ -46,13 +56,35 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     let (decided, note) = looked_at(&jobs[0], (&first.mesh, &first.trace.faces), &first.hints());
     note.into_iter().for_each(|note| progress.note(note));
     let first = first.with_creases(decided.features.creases_from)?;
-    let Input { mesh, diagnosis, trace, name, channels, material_libraries, texture_files, .. } = first;
+    let Input {
+        mesh,
+        diagnosis,
+        trace,
+        name,
+        channels,
+        material_libraries,
+        texture_files,
+        ..
+    } = first;
     let files = [material_libraries, texture_files];
-    let channels = Channels::of_input(channels, files, &Destination::of(&jobs[0], formats[0]), progress);
-    let arguments_of_one = RefineArguments { exact: without_input_distance(arguments), ..decided };
+    let channels = Channels::of_input(
+        channels,
+        files,
+        &Destination::of(&jobs[0], formats[0]),
+        progress,
+    );
+    let arguments_of_one = RefineArguments {
+        exact: without_input_distance(arguments),
+        ..decided
+    };
     let count = mesh.vertex_count();
-    let control =
-        Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, &arguments_of_one, progress)?;
+    let control = Control::new(
+        (mesh, diagnosis, trace.faces),
+        Shown::default(),
+        None,
+        &arguments_of_one,
+        progress,
+    )?;
     let (control, diagonal) = (control.featured.mesh, control.diagonal);
     if control.vertex_count() != count {
         return usage(format!(
@@ -67,9 +99,18 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         counted(control.face_count(), "triangle", "triangles"),
         counted(frames.len(), "frame", "frames")
     ));
-    let options = goals.options(&arguments_of_one).flat_regions(false).origins(true);
+    let options = goals
+        .options(&arguments_of_one)
+        .flat_regions(false)
+        .origins(true);
     let scheme = arguments.scheme()?;
-    let found = exact_frames_observed(&control, scheme, &frames, &options, &mut progress.observer())?;
+    let found = exact_frames_observed(
+        &control,
+        scheme,
+        &frames,
+        &options,
+        &mut progress.observer(),
+    )?;
     let refining = start.elapsed();
     let start = Instant::now();
     let carried = channels.refined(&control, &found.refined, scheme)?;
@@ -85,11 +126,15 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         stop => stop,
     };
     if let Some(path) = &arguments.report {
-        let frames = jobs.iter().zip(&errors).zip(&frames).map(|((job, error), positions)| FrameReport {
-            input: input::display_name(job.input()),
-            output: job.output_name(),
-            error: ErrorReport::new(error, diagonal_of(&control, positions)),
-        });
+        let frames = jobs
+            .iter()
+            .zip(&errors)
+            .zip(&frames)
+            .map(|((job, error), positions)| FrameReport {
+                input: input::display_name(job.input()),
+                output: job.output_name(),
+                error: ErrorReport::new(error, diagonal_of(&control, positions)),
+            });
         let report = FramesReport {
             version: VERSION,
             frames: frames.collect(),
@@ -101,7 +146,10 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             pixels: found.refined.pixels.filter(|pixels| pixels.is_finite()),
             open_cones: arguments.angle.map(|_| found.refined.open_cones),
             table_bytes: found.replay.table_bytes(),
-            seconds: FramesSeconds { refine: refining.as_secs_f64(), write: writing.as_secs_f64() },
+            seconds: FramesSeconds {
+                refine: refining.as_secs_f64(),
+                write: writing.as_secs_f64(),
+            },
         };
         progress.clear();
         output::write_json(path, &report)?;
@@ -121,7 +169,12 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
 }
 
 /// What came of all frames: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
-fn in_words(found: &Frames, (worst, diagonal): (f64, f64), name: &str, refining: Duration) -> String {
+fn in_words(
+    found: &Frames,
+    (worst, diagonal): (f64, f64),
+    name: &str,
+    refining: Duration,
+) -> String {
     let mesh = &found.refined.mesh;
     let made = format!(
         "{}: {}, {} each ({}, {} for all frames; {})",
@@ -147,7 +200,9 @@ fn is_scene(format: Format) -> bool {
 
 /// Checks that the report of all frames can be written, and replaces none.
 fn check_report(arguments: &RefineArguments, jobs: &[RefineArguments]) -> anyhow::Result<()> {
-    let Some(report) = arguments.report.as_deref() else { return Ok(()) };
+    let Some(report) = arguments.report.as_deref() else {
+        return Ok(());
+    };
     output::check_writable(report)?;
     let inputs: Vec<&Path> = jobs.iter().map(RefineArguments::input).collect();
     output::check_replaced(&[report], &inputs, None)?;
@@ -173,7 +228,10 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     if let Some((option, _)) = given.into_iter().find(|&(_, given)| given) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
-    let others = arguments.channels.given_tolerance().or(arguments.asset.given());
+    let others = arguments
+        .channels
+        .given_tolerance()
+        .or(arguments.asset.given());
     if let Some(option) = others.or(arguments.interpolation.given()) {
         return usage(format!("{option} does not go with --shared-topology"));
     }
@@ -182,7 +240,10 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
 
 /// How far results are from the inputs is not looked at.
 fn without_input_distance(arguments: &RefineArguments) -> crate::arguments::ExactArguments {
-    crate::arguments::ExactArguments { no_input_distance: true, ..arguments.exact.clone() }
+    crate::arguments::ExactArguments {
+        no_input_distance: true,
+        ..arguments.exact.clone()
+    }
 }
 
 /// The first frame, and the positions of all.
@@ -199,10 +260,17 @@ fn read(
     let soup = read.soup.clone();
     // Polygons are cut into triangles by where their corners are: as in the first frame, in all.
     let first = input::connect(read, &job.build, kept, progress)?;
-    let own =
-        Own { name: &first.name, mesh: &first.mesh, vertices: first.trace.vertices(&soup), soup: &soup };
+    let own = Own {
+        name: &first.name,
+        mesh: &first.mesh,
+        vertices: first.trace.vertices(&soup),
+        soup: &soup,
+    };
     if own.positions(&soup)? != first.mesh.positions() {
-        anyhow::bail!("{}: sheets are cut apart within edges there, which frames do not share", first.name);
+        anyhow::bail!(
+            "{}: sheets are cut apart within edges there, which frames do not share",
+            first.name
+        );
     }
     let mut frames = vec![first.mesh.positions().to_vec()];
     for job in &jobs[1..] {
@@ -210,7 +278,10 @@ fn read(
         if let Some(what) = own.difference(&frame.soup) {
             anyhow::bail!("{}: {what}; frames must share faces and tags", frame.name);
         }
-        frames.push(own.positions(&frame.soup).with_context(|| frame.name.clone())?);
+        frames.push(
+            own.positions(&frame.soup)
+                .with_context(|| frame.name.clone())?,
+        );
     }
     Ok((first, frames))
 }
@@ -228,14 +299,25 @@ impl Own<'_> {
     /// The positions of the mesh's vertices in a frame.
     fn positions(&self, frame: &PolygonSoup) -> anyhow::Result<Vec<[f64; 3]>> {
         let mut found: Vec<Option<u32>> = vec![None; self.mesh.vertex_count()];
-        for (&corner, &vertex) in self.mesh.triangles().as_flattened().iter().zip(&self.vertices) {
+        for (&corner, &vertex) in self
+            .mesh
+            .triangles()
+            .as_flattened()
+            .iter()
+            .zip(&self.vertices)
+        {
             let first = *found[corner as usize].get_or_insert(vertex);
             let [a, b] = [first, vertex].map(|vertex| frame.positions[vertex as usize]);
             if a != b {
-                anyhow::bail!("vertices {first} and {vertex} are apart, which are one in {}", self.name);
+                anyhow::bail!(
+                    "vertices {first} and {vertex} are apart, which are one in {}",
+                    self.name
+                );
             }
         }
-        let place = |vertex: Option<u32>| vertex.map_or([0.0; 3], |vertex| frame.positions[vertex as usize]);
+        let place = |vertex: Option<u32>| {
+            vertex.map_or([0.0; 3], |vertex| frame.positions[vertex as usize])
+        };
         Ok(found.into_iter().map(place).collect())
     }
 
@@ -243,36 +325,70 @@ impl Own<'_> {
     fn difference(&self, frame: &PolygonSoup) -> Option<String> {
         let (name, first) = (self.name, self.soup);
         let counts = [
-            ("vertex", "vertices", frame.positions.len(), first.positions.len()),
+            (
+                "vertex",
+                "vertices",
+                frame.positions.len(),
+                first.positions.len(),
+            ),
             ("face", "faces", frame.faces.len(), first.faces.len()),
         ];
         for (one, many, own, theirs) in counts {
             if own != theirs {
-                return Some(format!("{}, where {name} has {theirs}", counted(own, one, many)));
+                return Some(format!(
+                    "{}, where {name} has {theirs}",
+                    counted(own, one, many)
+                ));
             }
         }
         let differs = |(_, (own, theirs)): &(usize, (&[u32], &[u32]))| own != theirs;
-        if let Some((face, (own, theirs))) =
-            frame.faces.iter().zip(first.faces.iter()).enumerate().find(differs)
+        if let Some((face, (own, theirs))) = frame
+            .faces
+            .iter()
+            .zip(first.faces.iter())
+            .enumerate()
+            .find(differs)
         {
-            return Some(format!("face {face} is {own:?}, where that of {name} is {theirs:?}"));
+            return Some(format!(
+                "face {face} is {own:?}, where that of {name} is {theirs:?}"
+            ));
         }
-        let tags = |soup: &PolygonSoup| Tags { creases: soup.creases.clone(), corners: soup.corners.clone() };
+        let tags = |soup: &PolygonSoup| Tags {
+            creases: soup.creases.clone(),
+            corners: soup.corners.clone(),
+        };
         tag_difference(name, &tags(first), &tags(frame))
     }
 }
 
 fn tag_difference(name: &str, first: &Tags, frame: &Tags) -> Option<String> {
     let counts = [
-        ("crease tag", "crease tags", frame.creases.len(), first.creases.len()),
-        ("corner tag", "corner tags", frame.corners.len(), first.corners.len()),
+        (
+            "crease tag",
+            "crease tags",
+            frame.creases.len(),
+            first.creases.len(),
+        ),
+        (
+            "corner tag",
+            "corner tags",
+            frame.corners.len(),
+            first.corners.len(),
+        ),
     ];
     for (one, many, own, theirs) in counts {
         if own != theirs {
-            return Some(format!("{}, where {name} has {theirs}", counted(own, one, many)));
+            return Some(format!(
+                "{}, where {name} has {theirs}",
+                counted(own, one, many)
+            ));
         }
     }
-    let crease = frame.creases.iter().zip(&first.creases).find(|(own, theirs)| own != theirs);
+    let crease = frame
+        .creases
+        .iter()
+        .zip(&first.creases)
+        .find(|(own, theirs)| own != theirs);
     if let Some((own, theirs)) = crease {
         let [a, b] = own.vertices;
         return Some(format!(
@@ -280,7 +396,11 @@ fn tag_difference(name: &str, first: &Tags, frame: &Tags) -> Option<String> {
             own.sharpness, theirs.sharpness, theirs.vertices[0], theirs.vertices[1]
         ));
     }
-    let corner = frame.corners.iter().zip(&first.corners).find(|(own, theirs)| own != theirs);
+    let corner = frame
+        .corners
+        .iter()
+        .zip(&first.corners)
+        .find(|(own, theirs)| own != theirs);
     corner.map(|(own, theirs)| {
         format!(
             "a corner of sharpness {} at vertex {}, where {name} has one of {} at {}",
@@ -301,7 +421,9 @@ fn write_all(
     let mut refined = refined(&found.refined, channels);
     let mut errors = Vec::with_capacity(frames.len());
     for (number, (job, format)) in jobs.iter().zip(formats).enumerate() {
-        let (Some(path), &Some(format)) = (&job.output, format) else { continue };
+        let (Some(path), &Some(format)) = (&job.output, format) else {
+            continue;
+        };
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
         let mut moved = found.refined.clone().moved_to(&frame)?;
@@ -313,12 +435,23 @@ fn write_all(
         errors.push(error);
         refined.normals = Normals::are_held(format).then(|| Normals::of_exact(&mut moved));
         if number == 0 {
-            let splits = refined.channels.split_vertices(format, moved.mesh.as_triangles());
+            let splits = refined
+                .channels
+                .split_vertices(format, moved.mesh.as_triangles());
             let notes = [
-                refined.normals.as_ref().and_then(|all| all.note(format, false)).map(str::to_owned),
-                refined.channels.note(format, moved.mesh.as_triangles(), splits),
+                refined
+                    .normals
+                    .as_ref()
+                    .and_then(|all| all.note(format, false))
+                    .map(str::to_owned),
+                refined
+                    .channels
+                    .note(format, moved.mesh.as_triangles(), splits),
             ];
-            notes.into_iter().flatten().for_each(|note| progress.note(note));
+            notes
+                .into_iter()
+                .flatten()
+                .for_each(|note| progress.note(note));
         }
         refined.mesh = moved.mesh;
         // Frames have as many vertices as each other, whatever their normals.
@@ -345,5 +478,9 @@ fn refined(found: &Exact, channels: Channels) -> Refined {
 
 /// The diagonal of a frame's control mesh.
 fn diagonal_of(control: &Mesh, positions: &[[f64; 3]]) -> f64 {
-    limitmesh::Triangles { positions, triangles: control.triangles() }.diagonal()
+    limitmesh::Triangles {
+        positions,
+        triangles: control.triangles(),
+    }
+    .diagonal()
 }

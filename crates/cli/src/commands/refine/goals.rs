@@ -50,7 +50,11 @@ impl Goals {
     ///
     /// # Errors
     /// A file of cameras that cannot be read, or a camera inside the mesh.
-    pub(super) fn new(arguments: &RefineArguments, control: &Mesh, diagonal: f64) -> anyhow::Result<Self> {
+    pub(super) fn new(
+        arguments: &RefineArguments,
+        control: &Mesh,
+        diagonal: f64,
+    ) -> anyhow::Result<Self> {
         let exact = &arguments.exact;
         let cameras = cameras::all(arguments)?;
         cameras::check(&cameras, control, arguments)?;
@@ -91,7 +95,8 @@ impl Goals {
     ) -> anyhow::Result<Self> {
         self.kept_edges = borders(channels.all(), control);
         self.tells_faces_apart = channels.vary_within_faces();
-        self.attributes.add_channels(channels, control, &arguments.channels)?;
+        self.attributes
+            .add_channels(channels, control, &arguments.channels)?;
         Ok(self)
     }
 
@@ -121,7 +126,9 @@ impl Goals {
             .optimize(arguments.exact.optimize)
             .kept_edges(self.kept_edges.clone())
             .attributes(self.attributes.options())
-            .flat_regions(!arguments.divides_flat() && !self.tells_faces_apart && self.near.is_none())
+            .flat_regions(
+                !arguments.divides_flat() && !self.tells_faces_apart && self.near.is_none(),
+            )
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
             .origins(
                 arguments.exact.provenance
@@ -154,18 +161,44 @@ impl Goals {
     /// The goals on quality that were not met, or all where nobody knows which, as a list in words.
     pub(super) fn in_words(&self, found: &Exact) -> String {
         let is_far = self.length.is_some_and(|length| found.error.upper > length);
-        let is_off = self.attributes.reached(found).iter().any(AttributeReport::is_missed);
-        let tolerance = self.tolerance.filter(|_| is_far || !is_off).map(|tolerance| match tolerance {
-            Extent::Length(Length { value, unit }) => {
-                format!("the tolerance of {}{}", as_typed(value), unit_in_words(unit))
-            }
-            Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
-        });
-        let angle = self.angle_degrees.map(|degrees| format!("the angle of {}°", as_typed(degrees)));
-        let pixels = self.pixels.map(|pixels| format!("the {} pixels", as_typed(pixels)));
-        let attributes = self.attributes.in_words().filter(|_| is_off || !is_far).map(str::to_owned);
-        let goals: Vec<String> = [tolerance, angle, pixels, attributes].into_iter().flatten().collect();
-        if goals.is_empty() { "the triangles asked for".to_owned() } else { goals.join(" and ") }
+        let is_off = self
+            .attributes
+            .reached(found)
+            .iter()
+            .any(AttributeReport::is_missed);
+        let tolerance =
+            self.tolerance
+                .filter(|_| is_far || !is_off)
+                .map(|tolerance| match tolerance {
+                    Extent::Length(Length { value, unit }) => {
+                        format!(
+                            "the tolerance of {}{}",
+                            as_typed(value),
+                            unit_in_words(unit)
+                        )
+                    }
+                    Extent::Percent(percent) => format!("the tolerance of {} %", as_typed(percent)),
+                });
+        let angle = self
+            .angle_degrees
+            .map(|degrees| format!("the angle of {}°", as_typed(degrees)));
+        let pixels = self
+            .pixels
+            .map(|pixels| format!("the {} pixels", as_typed(pixels)));
+        let attributes = self
+            .attributes
+            .in_words()
+            .filter(|_| is_off || !is_far)
+            .map(str::to_owned);
+        let goals: Vec<String> = [tolerance, angle, pixels, attributes]
+            .into_iter()
+            .flatten()
+            .collect();
+        if goals.is_empty() {
+            "the triangles asked for".to_owned()
+        } else {
+            goals.join(" and ")
+        }
     }
 }
 
@@ -182,7 +215,11 @@ pub(super) fn unit_in_words(unit: Option<Unit>) -> String {
 
 /// The fewest digits that say exactly this number, as a person would write it.
 fn as_typed(x: f64) -> String {
-    if (1e-6..1e9).contains(&x) { format!("{x}") } else { format!("{x:e}") }
+    if (1e-6..1e9).contains(&x) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
+    }
 }
 
 /// The format and options of the output, if there is one.
@@ -193,10 +230,16 @@ pub(super) fn written(arguments: &RefineArguments) -> Option<(Format, WriteOptio
 
 /// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.
 pub(super) fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
-    let largest = control.positions().as_flattened().iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let largest = control
+        .positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |most, x| most.max(x.abs()));
     // Half of the last place of `f32`, and of its least number, along each axis.
-    let most = 3f64.sqrt() * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)));
-    let is_rounded = written(arguments)
-        .is_some_and(|(format, options)| limitmesh_io::rounding(format, &options, &[[0.1; 3]]) > 0.0);
+    let most = 3f64.sqrt()
+        * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)));
+    let is_rounded = written(arguments).is_some_and(|(format, options)| {
+        limitmesh_io::rounding(format, &options, &[[0.1; 3]]) > 0.0
+    });
     if is_rounded { most } else { 0.0 }
 }

@@ -32,8 +32,17 @@ pub(super) fn measured(
     arguments: &RefineArguments,
     progress: &Progress,
 ) -> anyhow::Result<Option<InputDistance>> {
-    let Some(BeforeSurface { positions, triangles }) = &before.surface else { return Ok(None) };
-    let input = Triangles { positions, triangles };
+    let Some(BeforeSurface {
+        positions,
+        triangles,
+    }) = &before.surface
+    else {
+        return Ok(None);
+    };
+    let input = Triangles {
+        positions,
+        triangles,
+    };
     let residual = before.residual.unwrap_or(0.0);
     let origins = on_whole(parts, found);
     let narrowed = |moved: InputDistance| {
@@ -53,11 +62,20 @@ pub(super) fn measured(
     // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
     let most = STAND_IN * goals.diagonal;
     let tolerance = goals.near.map_or(most, |near| most.min(near.tolerance));
-    let options = ExactOptions::default().tolerance(tolerance).max_triangles(Some(MOST_EXACT));
-    let between = exact_observed(control, arguments.scheme()?, &options, &mut progress.observer())?;
+    let options = ExactOptions::default()
+        .tolerance(tolerance)
+        .max_triangles(Some(MOST_EXACT));
+    let between = exact_observed(
+        control,
+        arguments.scheme()?,
+        &options,
+        &mut progress.observer(),
+    )?;
     let apart = between.error.upper + found.error.upper;
     let moved = InputDistance::new(input, &between, &on_whole(parts, &between), residual)?;
-    Ok(moved.map(|moved| narrowed(moved.of_other(input, found, &origins, apart)?)).transpose()?)
+    Ok(moved
+        .map(|moved| narrowed(moved.of_other(input, found, &origins, apart)?))
+        .transpose()?)
 }
 
 /// Where vertices came from, on faces that were divided where they are whole.
@@ -65,8 +83,13 @@ fn on_whole<'a>(parts: &FaceParts, found: &'a Exact) -> Cow<'a, [Origin]> {
     if parts.is_empty() {
         return Cow::Borrowed(&found.origins);
     }
-    let origins = found.origins.iter().map(|origin| parts.on_whole(origin.face, origin.barycentric));
-    origins.map(|(face, barycentric)| Origin { face, barycentric }).collect()
+    let origins = found
+        .origins
+        .iter()
+        .map(|origin| parts.on_whole(origin.face, origin.barycentric));
+    origins
+        .map(|(face, barycentric)| Origin { face, barycentric })
+        .collect()
 }
 
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
@@ -84,14 +107,22 @@ pub(super) fn in_words(
     let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
     if lies_in_a_plane(control) {
         // All that can move is the outline.
-        let is_open = arguments.features.boundary.is_none() && control.topology().boundary_edge_count() > 0;
+        let is_open =
+            arguments.features.boundary.is_none() && control.topology().boundary_edge_count() > 0;
         lines.extend(is_open.then(|| "(--boundary fixed would keep the outline)".to_owned()));
         return lines;
     }
     let is_decided = arguments.features.angle().is_some() || !control.tags().creases.is_empty();
     if let Some(Look::Part(part)) = (!is_decided).then(|| Look::of(control, &[])) {
-        let edges = counted(part.creases.edges.len(), "edge that looks", "edges that look");
-        lines.push(format!("(--crease-angle {} would keep {edges} sharp)", number(part.degrees)));
+        let edges = counted(
+            part.creases.edges.len(),
+            "edge that looks",
+            "edges that look",
+        );
+        lines.push(format!(
+            "(--crease-angle {} would keep {edges} sharp)",
+            number(part.degrees)
+        ));
     }
     if arguments
         .interpolation
@@ -111,5 +142,6 @@ fn lies_in_a_plane(mesh: &Mesh) -> bool {
     let normals = || (0..mesh.face_count() as u32).map(|face| mesh.face_normal(FaceId(face)));
     let largest = normals().max_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)));
     let Some(plane) = largest else { return false };
-    normals().all(|normal| length(cross(normal, plane)) <= IN_PLANE * length(normal) * length(plane))
+    normals()
+        .all(|normal| length(cross(normal, plane)) <= IN_PLANE * length(normal) * length(plane))
 }

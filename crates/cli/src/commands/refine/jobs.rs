@@ -19,35 +19,68 @@ pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArgu
         let name = input.to_str().unwrap_or_default();
         name == "%" || <Unit as ValueEnum>::from_str(name, false).is_ok()
     };
-    if let Some(unit) = arguments.inputs.iter().find(is_unit).filter(|unit| !unit.exists()) {
+    if let Some(unit) = arguments
+        .inputs
+        .iter()
+        .find(is_unit)
+        .filter(|unit| !unit.exists())
+    {
         let unit = unit.display();
         return usage(format!(
             "'{unit}' is no file; a length has its unit right behind the number, such as 0.1{unit}"
         ));
     }
-    let RefineArguments { output, report, picture, proof, .. } = arguments;
-    let named = [("--output", output), ("--report", report), ("--picture", picture), ("--proof", proof)];
+    let RefineArguments {
+        output,
+        report,
+        picture,
+        proof,
+        ..
+    } = arguments;
+    let named = [
+        ("--output", output),
+        ("--report", report),
+        ("--picture", picture),
+        ("--proof", proof),
+    ];
     if arguments.inputs.len() > 1
-        && let Some((option, _)) =
-            named.iter().find(|(_, path)| path.as_deref().is_some_and(|path| !is_folder(path)))
+        && let Some((option, _)) = named
+            .iter()
+            .find(|(_, path)| path.as_deref().is_some_and(|path| !is_folder(path)))
     {
-        return usage(format!("several inputs need a folder for {option}, such as {option} FOLDER/"));
+        return usage(format!(
+            "several inputs need a folder for {option}, such as {option} FOLDER/"
+        ));
     }
     input::check_once(arguments.inputs.iter())?;
-    arguments.inputs.iter().map(|input| job(arguments, input)).collect()
+    arguments
+        .inputs
+        .iter()
+        .map(|input| job(arguments, input))
+        .collect()
 }
 
 fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArguments> {
     let extension = || {
-        Ok(match (arguments.to.map(FileFormat::format), input::builtin_name(input)) {
-            (Some(to), _) => to.extension(),
-            (None, Some(_)) => "ply",
-            (None, None) => input::format_of(input, arguments.build.from)?.extension(),
-        })
+        Ok(
+            match (
+                arguments.to.map(FileFormat::format),
+                input::builtin_name(input),
+            ) {
+                (Some(to), _) => to.extension(),
+                (None, Some(_)) => "ply",
+                (None, None) => input::format_of(input, arguments.build.from)?.extension(),
+            },
+        )
     };
     let place = |path: &Option<PathBuf>, extension: &dyn Fn() -> anyhow::Result<&'static str>| {
-        path.as_deref()
-            .map(|path| if is_folder(path) { file_in(path, input, extension()?) } else { Ok(path.into()) })
+        path.as_deref().map(|path| {
+            if is_folder(path) {
+                file_in(path, input, extension()?)
+            } else {
+                Ok(path.into())
+            }
+        })
     };
     let output = match place(&arguments.output, &extension).transpose()? {
         None if !arguments.exact.dry_run => Some(smooth_file(input, extension()?)?),
@@ -69,7 +102,10 @@ fn is_folder(path: &Path) -> bool {
 }
 
 fn ends_with_separator(path: &Path) -> bool {
-    path.as_os_str().as_encoded_bytes().last().is_some_and(|&last| is_separator(char::from(last)))
+    path.as_os_str()
+        .as_encoded_bytes()
+        .last()
+        .is_some_and(|&last| is_separator(char::from(last)))
 }
 
 /// The file in a folder that is called as the input is.
@@ -87,7 +123,9 @@ fn smooth_file(input: &Path, extension: &str) -> anyhow::Result<PathBuf> {
 }
 
 fn named(stem: &OsStr, middle: &str, extension: &str) -> OsString {
-    [stem, OsStr::new(middle), OsStr::new(extension)].into_iter().collect()
+    [stem, OsStr::new(middle), OsStr::new(extension)]
+        .into_iter()
+        .collect()
 }
 
 /// The input's name without its folder and its extension.
@@ -110,9 +148,20 @@ fn stem(input: &Path) -> anyhow::Result<&OsStr> {
 /// # Errors
 /// One cannot be made.
 pub(super) fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let mesh = arguments.output.as_ref().filter(|_| !arguments.exact.dry_run);
-    let RefineArguments { report, picture, proof, .. } = arguments;
-    for folder in [mesh, report.as_ref(), picture.as_ref(), proof.as_ref()].into_iter().flatten() {
+    let mesh = arguments
+        .output
+        .as_ref()
+        .filter(|_| !arguments.exact.dry_run);
+    let RefineArguments {
+        report,
+        picture,
+        proof,
+        ..
+    } = arguments;
+    for folder in [mesh, report.as_ref(), picture.as_ref(), proof.as_ref()]
+        .into_iter()
+        .flatten()
+    {
         if ends_with_separator(folder) {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("the folder {} cannot be made", folder.display()))?;
@@ -142,7 +191,10 @@ pub(super) fn each<T>(
             }
         }
     }
-    anyhow::ensure!(failed == 0, "{failed} of {count} inputs failed, as told above");
+    anyhow::ensure!(
+        failed == 0,
+        "{failed} of {count} inputs failed, as told above"
+    );
     Ok(match short {
         0 => Outcome::Done,
         _ => Outcome::StoppedShort(format!("{short} of {count} inputs, as told above")),

@@ -49,8 +49,8 @@ use crate::output;
 use crate::parts::{self, Decided};
 use crate::progress::Progress;
 use crate::report::{
-    InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport, SecondsReport,
-    SizeReport, VERSION, ViewReport,
+    InputReport, MeshReport, MethodReport, OutputReport, ParametersReport, RefineReport,
+    SecondsReport, SizeReport, VERSION, ViewReport,
 };
 use crate::written_unit::WrittenUnit;
 use control::Control;
@@ -85,7 +85,10 @@ pub(crate) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     }
     let jobs = jobs::jobs(arguments)?;
     check::together(arguments, &jobs)?;
-    let formats = jobs.iter().map(check::options).collect::<anyhow::Result<Vec<_>>>()?;
+    let formats = jobs
+        .iter()
+        .map(check::options)
+        .collect::<anyhow::Result<Vec<_>>>()?;
     jobs::make_folders(arguments)?;
     jobs.iter().try_for_each(check::files)?;
     match (jobs.as_slice(), formats.as_slice()) {
@@ -114,7 +117,10 @@ fn refine(
     }
     let asked = (Normals::kept(format), &arguments.channels);
     let input = input::load_for(arguments.input(), &arguments.build, asked, progress)?;
-    let arguments = &RefineArguments { build: arguments.build.in_unit(input.unit), ..arguments.clone() };
+    let arguments = &RefineArguments {
+        build: arguments.build.in_unit(input.unit),
+        ..arguments.clone()
+    };
     let (decided, note) = looked_at(arguments, (&input.mesh, &input.trace.faces), &input.hints());
     let arguments = &decided;
     let notes = [
@@ -122,7 +128,10 @@ fn refine(
         format.and_then(|format| lost_tags(input.mesh.tags(), format)),
         split_normals((&input.hints(), &input.mesh), arguments),
     ];
-    notes.into_iter().flatten().for_each(|note| progress.note(note));
+    notes
+        .into_iter()
+        .flatten()
+        .for_each(|note| progress.note(note));
     let input = input.with_creases(arguments.features.creases_from)?;
     let input_report = InputReport::of(&input, &arguments.channels);
     let files = [input.material_libraries, input.texture_files];
@@ -130,12 +139,31 @@ fn refine(
         true => sqrt3::without_channels(input.channels, progress),
         false => input.channels,
     };
-    let mut channels = Channels::of_input(own, files, &Destination::of(arguments, format), progress);
+    let mut channels =
+        Channels::of_input(own, files, &Destination::of(arguments, format), progress);
     let texture = |own: &Channel| own.semantic == Semantic::TextureCoordinates;
-    let names = channels.all().iter().map(|own| (own.name.as_str(), texture(own)));
-    arguments.channels.check_tolerances(&input_report.path, names)?;
-    let Input { mesh, diagnosis, trace, reading, building, .. } = input;
-    let control = Control::new((mesh, diagnosis, trace.faces), Shown::default(), None, arguments, progress)?;
+    let names = channels
+        .all()
+        .iter()
+        .map(|own| (own.name.as_str(), texture(own)));
+    arguments
+        .channels
+        .check_tolerances(&input_report.path, names)?;
+    let Input {
+        mesh,
+        diagnosis,
+        trace,
+        reading,
+        building,
+        ..
+    } = input;
+    let control = Control::new(
+        (mesh, diagnosis, trace.faces),
+        Shown::default(),
+        None,
+        arguments,
+        progress,
+    )?;
     let Control {
         featured: control,
         diagnosis,
@@ -147,14 +175,20 @@ fn refine(
         ..
     } = control;
     channels.on_parts(&control.concave.parts, &control.mesh);
-    let proven = arguments.proof.as_deref().map(|path| (path, control.mesh.clone()));
+    let proven = arguments
+        .proof
+        .as_deref()
+        .map(|path| (path, control.mesh.clone()));
     let way = Prepared::new(arguments, (&control.mesh, &channels), diagonal)?;
     let parameters = ParametersReport {
-        interpolate_within: arguments.interpolation.within(diagonal, arguments.build.unit)?,
+        interpolate_within: arguments
+            .interpolation
+            .within(diagonal, arguments.build.unit)?,
         ..way.parameters(arguments, diagonal)?
     };
     // Without a name to write to, this is a dry run, and that is exact: the checks of the arguments see to both.
-    let (Some(path), Some(format), false) = (&arguments.output, format, arguments.exact.dry_run) else {
+    let (Some(path), Some(format), false) = (&arguments.output, format, arguments.exact.dry_run)
+    else {
         if let Prepared::Exact(goals) = &way {
             let told = (input_report, (&diagnosis).into(), parameters);
             estimate::run(&control.mesh, goals, arguments, told, progress)?;
@@ -162,7 +196,12 @@ fn refine(
         return Ok(Outcome::Done);
     };
     let start = Instant::now();
-    let mut refined = way.run((control, &read, diagonal), &channels, (arguments, format), progress)?;
+    let mut refined = way.run(
+        (control, &read, diagonal),
+        &channels,
+        (arguments, format),
+        progress,
+    )?;
     let refining = took + start.elapsed();
 
     let after = Bulk::of(&refined.mesh);
@@ -181,12 +220,22 @@ fn refine(
         progress.stage("checking the proof");
         let proven = proof::write(path, &control, &refined, arguments)?;
         proven.note.into_iter().for_each(|note| progress.note(note));
-        refined.report.error = refined.report.error.map(|error| error.proven(proven.within));
+        refined.report.error = refined
+            .report
+            .error
+            .map(|error| error.proven(proven.within));
         if let Outcome::Done = refined.outcome {
             refined.outcome = proven.outcome;
         }
     }
-    let Refined { mesh, normals, inverted, report, outcome, .. } = refined;
+    let Refined {
+        mesh,
+        normals,
+        inverted,
+        report,
+        outcome,
+        ..
+    } = refined;
     if let Some(report_path) = &arguments.report {
         progress.stage("examining the result");
         let report = RefineReport {
@@ -224,9 +273,24 @@ fn looked_at(
         _ => arguments.features,
     };
     let can_be_led = !arguments.way().is_sqrt3() && !arguments.shared_topology && !is_smoothed;
-    let Decided { features, interpolation, note } =
-        parts::decided((features, arguments.interpolation), (mesh, faces), hints, can_be_led);
-    (RefineArguments { features, interpolation, ..arguments.clone() }, note)
+    let Decided {
+        features,
+        interpolation,
+        note,
+    } = parts::decided(
+        (features, arguments.interpolation),
+        (mesh, faces),
+        hints,
+        can_be_led,
+    );
+    (
+        RefineArguments {
+            features,
+            interpolation,
+            ..arguments.clone()
+        },
+        note,
+    )
 }
 
 /// Writes a mesh, and says what becomes of normals and of values where vertices have several.
@@ -237,15 +301,27 @@ fn write_told(
     refined: &Refined,
     progress: &Progress,
 ) -> anyhow::Result<()> {
-    let splits = refined.channels.split_vertices(format, refined.mesh.as_triangles());
+    let splits = refined
+        .channels
+        .split_vertices(format, refined.mesh.as_triangles());
     // Vertices on sharp edges stand once for each side as asked for, or as a file has vertices several times anyway.
     let is_split = arguments.split_normals || splits;
     let notes = [
-        refined.normals.as_ref().and_then(|all| all.note(format, is_split)).map(str::to_owned),
-        refined.channels.note(format, refined.mesh.as_triangles(), splits),
+        refined
+            .normals
+            .as_ref()
+            .and_then(|all| all.note(format, is_split))
+            .map(str::to_owned),
+        refined
+            .channels
+            .note(format, refined.mesh.as_triangles(), splits),
     ];
-    notes.into_iter().flatten().for_each(|note| progress.note(note));
-    WrittenUnit::of(arguments.input(), &arguments.build, format).note(&arguments.output_name(), progress);
+    notes
+        .into_iter()
+        .flatten()
+        .for_each(|note| progress.note(note));
+    WrittenUnit::of(arguments.input(), &arguments.build, format)
+        .note(&arguments.output_name(), progress);
     write(path, (format, is_split), arguments, refined)
 }
 
@@ -266,7 +342,14 @@ fn draw(
         }
     };
     let view = picture::view_direction(arguments.view);
-    picture::draw(path, surface, Some(normals), view, &Style::default().wireframe(true), picture::SIZE)?;
+    picture::draw(
+        path,
+        surface,
+        Some(normals),
+        view,
+        &Style::default().wireframe(true),
+        picture::SIZE,
+    )?;
     progress.note(picture::drawn(path, mesh.face_count()));
     Ok(())
 }
@@ -294,14 +377,20 @@ fn capped(mesh: &Mesh, stop: ExactStop, arguments: &RefineArguments) -> Outcome 
 }
 
 /// Tells about normals that say that edges are sharp, where nothing says what to do about that.
-fn split_normals((hints, mesh): (&Hints<'_>, &Mesh), arguments: &RefineArguments) -> Option<String> {
-    if arguments.features.angle().is_some() || arguments.features.creases_from != CreasesFrom::None {
+fn split_normals(
+    (hints, mesh): (&Hints<'_>, &Mesh),
+    arguments: &RefineArguments,
+) -> Option<String> {
+    if arguments.features.angle().is_some() || arguments.features.creases_from != CreasesFrom::None
+    {
         return None;
     }
     let edges = hints.split_edges(mesh);
     let have = counted(edges, "edge has", "edges have");
     (edges > 0).then(|| {
-        format!("{have} different normals on both sides; --creases-from normals keeps such edges sharp")
+        format!(
+            "{have} different normals on both sides; --creases-from normals keeps such edges sharp"
+        )
     })
 }
 
@@ -319,13 +408,17 @@ fn lost_tags(tags: &Tags, format: Format) -> Option<String> {
         .filter(|&(count, ..)| count > 0)
         .map(|(count, one, many)| counted(count, one, many))
         .collect();
-    Some(format!("{}: followed, but left out of the output, whose format has none", found.join(" and ")))
+    Some(format!(
+        "{}: followed, but left out of the output, whose format has none",
+        found.join(" and ")
+    ))
 }
 
 /// Tells about triangles that are turned over.
 fn turned_over(inverted: usize) -> Option<String> {
     let triangles = counted(inverted, "triangle is", "triangles are");
-    (inverted > 0).then(|| format!("{triangles} turned over against the limit surface: it folds there"))
+    (inverted > 0)
+        .then(|| format!("{triangles} turned over against the limit surface: it folds there"))
 }
 
 /// Writes a mesh; vertices on sharp edges once for each side if it `is_split`.
@@ -335,35 +428,67 @@ fn write(
     arguments: &RefineArguments,
     refined: &Refined,
 ) -> anyhow::Result<()> {
-    let Refined { mesh, normals, channels, provenance, .. } = refined;
+    let Refined {
+        mesh,
+        normals,
+        channels,
+        provenance,
+        ..
+    } = refined;
     let mut output = channels.add_to(Output::new(mesh.as_triangles()));
     if let Some(normals) = normals {
         output = normals.add_to(output, format, is_split);
     }
-    let sources = normals.as_ref().and_then(|all| all.sources(format, is_split));
-    let provenance =
-        provenance.as_ref().map(|all| sources.map_or(Cow::Borrowed(all), |list| Cow::Owned(all.of(list))));
+    let sources = normals
+        .as_ref()
+        .and_then(|all| all.sources(format, is_split));
+    let provenance = provenance
+        .as_ref()
+        .map(|all| sources.map_or(Cow::Borrowed(all), |list| Cow::Owned(all.of(list))));
     let of_vertices = provenance.as_deref().map(Provenance::of_vertices);
     let of_faces = provenance.as_deref().map(Provenance::of_faces);
     if let (Some(vertices), Some(faces)) = (&of_vertices, &of_faces) {
         output = output.vertex_properties(vertices).face_properties(faces);
     }
-    let output = output.creases(&mesh.tags().creases).corners(&mesh.tags().corners);
+    let output = output
+        .creases(&mesh.tags().creases)
+        .corners(&mesh.tags().corners);
     let unit = WrittenUnit::of(arguments.input(), &arguments.build, format);
     let positions = unit.positions(output.surface.positions);
-    let output = Output { surface: Triangles { positions: &positions, ..output.surface }, ..output };
-    output::write_mesh(path, format, &output, &unit.options(arguments.write_options()))
+    let output = Output {
+        surface: Triangles {
+            positions: &positions,
+            ..output.surface
+        },
+        ..output
+    };
+    output::write_mesh(
+        path,
+        format,
+        &output,
+        &unit.options(arguments.write_options()),
+    )
 }
 
 /// The view that makes the angle depend on the viewer.
 fn view(arguments: &RefineArguments) -> Option<View> {
-    let viewpoint = arguments.view.map(Viewpoint::Direction).or(arguments.eye.map(Viewpoint::Eye))?;
-    Some(View { viewpoint, dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION) })
+    let viewpoint = arguments
+        .view
+        .map(Viewpoint::Direction)
+        .or(arguments.eye.map(Viewpoint::Eye))?;
+    Some(View {
+        viewpoint,
+        dilatation: arguments.dilatation.unwrap_or(USUAL_DILATATION),
+    })
 }
 
 fn view_report(arguments: &RefineArguments) -> Option<ViewReport> {
     let dilatation = view(arguments)?.dilatation;
-    Some(ViewReport { direction: arguments.view, eye: arguments.eye, dilatation })
+    Some(ViewReport {
+        direction: arguments.view,
+        eye: arguments.eye,
+        dilatation,
+    })
 }
 
 fn phases(read: Duration, repair: Duration, refine: Duration, write: Duration) -> SecondsReport {
@@ -385,11 +510,13 @@ const INTERPOLATE: &str = "(--interpolate would lead the surface through the ver
 impl Refined {
     /// Adds what became of area and volume to what is said, and what would have kept much of the volume that is gone.
     fn tell_size(&mut self, [before, after]: [Bulk; 2], arguments: &RefineArguments) {
-        self.achieved.push(change_in_words(before, after, arguments.build.unit));
+        self.achieved
+            .push(change_in_words(before, after, arguments.build.unit));
         let is_led = arguments.interpolation.is_led() || arguments.exact.within.is_some();
         let is_kept = is_led || arguments.way().is_sqrt3();
         let is_told = self.achieved.iter().any(|line| line == INTERPOLATE);
-        if let (Some(before), Some(after), false) = (before.volume, after.volume, is_kept || is_told)
+        if let (Some(before), Some(after), false) =
+            (before.volume, after.volume, is_kept || is_told)
             && after / before < 1.0 - MUCH_VOLUME
         {
             self.achieved.push(INTERPOLATE.to_owned());
@@ -401,13 +528,25 @@ impl Refined {
 fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
     let unit = unit.map_or("", Unit::name);
     let change = |what: &str, power: &str, before: f64, after: f64| {
-        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}{power}") };
+        let unit = if unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {unit}{power}")
+        };
         if !(before.is_finite() && after.is_finite()) {
             return format!("{what} too large to be told");
         }
         let percent = 100.0 * (after / before - 1.0);
-        let percent = if percent.is_finite() { format!(" ({percent:+.2} %)") } else { String::new() };
-        format!("{what} {} to {}{unit}{percent}", number(before), number(after))
+        let percent = if percent.is_finite() {
+            format!(" ({percent:+.2} %)")
+        } else {
+            String::new()
+        };
+        format!(
+            "{what} {} to {}{unit}{percent}",
+            number(before),
+            number(after)
+        )
     };
     let area = change("area", "²", before.area, after.area);
     match (before.volume, after.volume) {
@@ -418,7 +557,12 @@ fn change_in_words(before: Bulk, after: Bulk, unit: Option<Unit>) -> String {
 
 /// The result in lines of at most 100 columns, names of files aside.
 fn summary(name: &str, refined: &Refined, refining: Duration) -> String {
-    let Refined { mesh, achieved, how, .. } = refined;
+    let Refined {
+        mesh,
+        achieved,
+        how,
+        ..
+    } = refined;
     let edges = match mesh.open_edge_count() {
         0 => "closed".to_owned(),
         open => counted(open, "open edge", "open edges"),
@@ -429,5 +573,8 @@ fn summary(name: &str, refined: &Refined, refining: Duration) -> String {
         counted(mesh.vertex_count(), "vertex", "vertices"),
         seconds(refining.as_secs_f64())
     );
-    std::iter::once(first).chain(achieved.iter().cloned()).collect::<Vec<_>>().join("\n  ")
+    std::iter::once(first)
+        .chain(achieved.iter().cloned())
+        .collect::<Vec<_>>()
+        .join("\n  ")
 }

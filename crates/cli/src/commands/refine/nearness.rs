@@ -32,10 +32,15 @@ impl Nearness {
         mesh: &Mesh,
         diagonal: f64,
     ) -> anyhow::Result<Option<Self>> {
-        let Some(within) = arguments.exact.within else { return Ok(None) };
+        let Some(within) = arguments.exact.within else {
+            return Ok(None);
+        };
         let within = within.length(diagonal, arguments.build.unit)?;
         let kept = with_room(within, most_rounding(arguments, mesh));
-        Ok(Some(Self { within, tolerance: WithinOptions::usual_tolerance(kept, diagonal) }))
+        Ok(Some(Self {
+            within,
+            tolerance: WithinOptions::usual_tolerance(kept, diagonal),
+        }))
     }
 
     /// The control mesh whose limit surface is so near a mesh, and where its faces are on those of that mesh.
@@ -48,15 +53,26 @@ impl Nearness {
         arguments: &RefineArguments,
         progress: &Progress,
     ) -> anyhow::Result<(Mesh, FaceParts)> {
-        let refining = if arguments.exact.optimize { COLLAPSING * self.tolerance } else { self.tolerance };
+        let refining = if arguments.exact.optimize {
+            COLLAPSING * self.tolerance
+        } else {
+            self.tolerance
+        };
         let options = WithinOptions::default()
             .within(with_room(self.within, most_rounding(arguments, mesh)))
             .tolerance(Some(refining))
             .max_triangles(Some(arguments.max_triangles()));
-        let found = within_observed(mesh, arguments.scheme()?, &options, &mut progress.observer())?;
+        let found = within_observed(
+            mesh,
+            arguments.scheme()?,
+            &options,
+            &mut progress.observer(),
+        )?;
         if found.sharpened > 0 {
             let edges = counted(found.sharpened, "edge stays", "edges stay");
-            progress.note(format!("{edges} sharp: nothing smoother is within --within there"));
+            progress.note(format!(
+                "{edges} sharp: nothing smoother is within --within there"
+            ));
         }
         Ok((found.control, found.parts))
     }

@@ -35,21 +35,35 @@ pub(super) struct Job {
 
 impl Job {
     /// The job that a command line asks for, if that is to edit a package.
-    pub(super) fn of(arguments: &RefineArguments, output: Option<Format>) -> anyhow::Result<Option<Self>> {
+    pub(super) fn of(
+        arguments: &RefineArguments,
+        output: Option<Format>,
+    ) -> anyhow::Result<Option<Self>> {
         let path = arguments.input();
-        if input::builtin_name(path).is_some() || output.is_some_and(|format| format != Format::ThreeMf) {
+        if input::builtin_name(path).is_some()
+            || output.is_some_and(|format| format != Format::ThreeMf)
+        {
             return Ok(None);
         }
         if input::format_of(path, arguments.build.from)? != Format::ThreeMf {
             return Ok(None);
         }
-        let RefineArguments { exact, view, eye, .. } = arguments;
-        if !exact.camera.is_empty() || !exact.camera_path.is_empty() || view.is_some() || eye.is_some() {
+        let RefineArguments {
+            exact, view, eye, ..
+        } = arguments;
+        if !exact.camera.is_empty()
+            || !exact.camera_path.is_empty()
+            || view.is_some()
+            || eye.is_some()
+        {
             return usage(
                 "cameras and views look at one mesh; the objects of a package may be built many times",
             );
         }
-        Ok(Some(Self { arguments: arguments.clone(), writes: output.is_some() && !exact.dry_run }))
+        Ok(Some(Self {
+            arguments: arguments.clone(),
+            writes: output.is_some() && !exact.dry_run,
+        }))
     }
 
     /// Refines all objects and writes the package.
@@ -63,9 +77,17 @@ impl Job {
         let Some(bounds) = bounds else {
             anyhow::bail!("{name}: nothing is built that has triangles");
         };
-        self.arguments.build.unit = Some(input::unit_of_package(&package, self.arguments.build.unit, &name)?);
+        self.arguments.build.unit = Some(input::unit_of_package(
+            &package,
+            self.arguments.build.unit,
+            &name,
+        )?);
         let contents = package.contents();
-        let names = contents.objects.iter().flat_map(|object| &object.attributes).map(String::as_str);
+        let names = contents
+            .objects
+            .iter()
+            .flat_map(|object| &object.attributes)
+            .map(String::as_str);
         self.arguments.channels.check(&name, names)?;
         self.arguments.channels.check_inherited()?;
         let diagonal = several::diagonal(bounds);
@@ -95,9 +117,15 @@ impl Job {
             return Ok(());
         }
         let stretch = package.stretch(object);
-        own.soup.positions.iter_mut().flatten().for_each(|x| *x *= stretch);
+        own.soup
+            .positions
+            .iter_mut()
+            .flatten()
+            .for_each(|x| *x *= stretch);
         let weld = if own.is_joined { Weld::Never } else { weld };
-        let options = BuildOptions::default().weld(weld).strict(self.arguments.build.strict);
+        let options = BuildOptions::default()
+            .weld(weld)
+            .strict(self.arguments.build.strict);
         let (built, diagnosis, trace) = match Mesh::from_soup_traced(&own.soup, &options) {
             Err(MeshError::NoFaces { reason }) => {
                 progress.note(format!("{name}: kept as it is: {reason}"));
@@ -109,7 +137,11 @@ impl Job {
             progress.note(format!("{name}: {line}"));
         }
         let Trace { faces, corners, .. } = trace;
-        let hints = Hints { is_tagged: false, normals: None, channels: &[] };
+        let hints = Hints {
+            is_tagged: false,
+            normals: None,
+            channels: &[],
+        };
         let (arguments, note) = looked_at(&self.arguments, (&built, &faces), &hints);
         if let Some(note) = note {
             progress.note(format!("{name}: {note}"));
@@ -118,12 +150,26 @@ impl Job {
         // A flat region has triangles across faces that carry different things.
         arguments.exact.divide_flat |= self.is_traced() && (own.varies_within || !own.is_uniform);
         let shown = Shown::of(package.largest(object), stretch);
-        let control = Control::new((built, diagnosis, faces), shown, Some(diagonal), &arguments, progress)?;
+        let control = Control::new(
+            (built, diagnosis, faces),
+            shown,
+            Some(diagonal),
+            &arguments,
+            progress,
+        )?;
         let goals = Goals::new(&arguments, &control.featured.mesh, diagonal)?;
-        let goals = if self.is_traced() { goals.keeping_origins(Vec::new()) } else { goals };
+        let goals = if self.is_traced() {
+            goals.keeping_origins(Vec::new())
+        } else {
+            goals
+        };
         let parameters = several::parameters(&arguments, &goals);
         if !self.writes {
-            let told = (self.input_report(&name, &own), (&control.diagnosis).into(), parameters);
+            let told = (
+                self.input_report(&name, &own),
+                (&control.diagnosis).into(),
+                parameters,
+            );
             return estimate::run(&control.featured.mesh, &goals, &arguments, told, progress);
         }
         let one = several::one(
@@ -133,7 +179,9 @@ impl Job {
             &arguments,
             progress,
         )?;
-        let Control { featured, before, .. } = &control;
+        let Control {
+            featured, before, ..
+        } = &control;
         let carried = Carried {
             trail: &one.refined.trail,
             control: featured.mesh.triangles(),
@@ -142,7 +190,9 @@ impl Job {
             vertices: &corners,
         };
         let told = self.put_back((package, object), (&one.refined, &carried), stretch)?;
-        inherited_in_words(told).iter().for_each(|line| progress.note(format!("{name}: {line}")));
+        inherited_in_words(told)
+            .iter()
+            .for_each(|line| progress.note(format!("{name}: {line}")));
         let told = (self.input_report(&name, &own), control, parameters);
         done.add((&name, object, stretch), one, told, &arguments);
         Ok(())
@@ -151,11 +201,15 @@ impl Job {
     /// Why an object cannot be refined.
     fn kept(&self, own: &ObjectSoup) -> Option<String> {
         if !own.others.is_empty() {
-            return Some(format!("{} names its vertices or triangles by number", own.others.join(", ")));
+            return Some(format!(
+                "{} names its vertices or triangles by number",
+                own.others.join(", ")
+            ));
         }
         let needs_sources = !own.is_uniform || own.varies_within;
-        (needs_sources && !self.is_traced())
-            .then(|| "its triangles carry different things, which do not follow with --optimize".to_owned())
+        (needs_sources && !self.is_traced()).then(|| {
+            "its triangles carry different things, which do not follow with --optimize".to_owned()
+        })
     }
 
     /// Whether it is known of triangles which face they came from, and where on it.
@@ -170,12 +224,19 @@ impl Job {
         (refined, carried): (&Refined, &Carried<'_>),
         stretch: f64,
     ) -> anyhow::Result<Inherited> {
-        let positions: Vec<[f64; 3]> =
-            refined.mesh.positions().iter().map(|p| p.map(|x| x / stretch)).collect();
+        let positions: Vec<[f64; 3]> = refined
+            .mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| x / stretch))
+            .collect();
         let triangles = refined.mesh.triangles();
         let source = |triangle: usize| {
             if carried.trail.parents.is_empty() {
-                return Source { face: 0, corners: None };
+                return Source {
+                    face: 0,
+                    corners: None,
+                };
             }
             let face = carried.input(triangle);
             let corner = |corner: usize| {
@@ -192,13 +253,19 @@ impl Job {
             Source { face, corners }
         };
         let keeps = |name: &str| !self.arguments.channels.drops(name);
-        let new = NewTriangles { positions: &positions, triangles, source: &source, keeps: &keeps };
+        let new = NewTriangles {
+            positions: &positions,
+            triangles,
+            source: &source,
+            keeps: &keeps,
+        };
         Ok(package.replace(object, &new)?)
     }
 
     fn input_report(&self, name: &str, own: &ObjectSoup) -> InputReport {
         let faces = own.soup.faces.len();
-        let channel = |name: &String| ChannelReport::inherited(name, faces, &self.arguments.channels);
+        let channel =
+            |name: &String| ChannelReport::inherited(name, faces, &self.arguments.channels);
         InputReport {
             path: name.to_owned(),
             format: Format::ThreeMf.extension(),
@@ -227,9 +294,19 @@ impl Job {
         let bytes = package.to_bytes()?;
         output::write_file(path, &bytes)?;
         let writing = start.elapsed();
-        let outcome = done.finish(name, [reading, writing], (arguments, ["object", "objects"]), progress)?;
+        let outcome = done.finish(
+            name,
+            [reading, writing],
+            (arguments, ["object", "objects"]),
+            progress,
+        )?;
         if let Some(picture) = &arguments.picture {
-            several::draw(picture, &Package::from_bytes(bytes)?.scene_soup()?, arguments, progress)?;
+            several::draw(
+                picture,
+                &Package::from_bytes(bytes)?.scene_soup()?,
+                arguments,
+                progress,
+            )?;
         }
         Ok(outcome)
     }
@@ -237,13 +314,26 @@ impl Job {
 
 /// What triangles could not inherit as it was.
 fn inherited_in_words(told: Inherited) -> Vec<String> {
-    let Inherited { painted_at_centre, unreadable_paint, nearest_corner, .. } = told;
+    let Inherited {
+        painted_at_centre,
+        unreadable_paint,
+        nearest_corner,
+        ..
+    } = told;
     let triangles = |count: usize| counted(count, "triangle", "triangles");
     let lines = [
-        (painted_at_centre, "took paint at the centre, where the input's were painted in parts"),
-        (nearest_corner, "took properties of the nearest corner, where these differ between corners"),
+        (
+            painted_at_centre,
+            "took paint at the centre, where the input's were painted in parts",
+        ),
+        (
+            nearest_corner,
+            "took properties of the nearest corner, where these differ between corners",
+        ),
         (unreadable_paint, "lost paint whose code cannot be read"),
     ];
     let found = lines.into_iter().filter(|&(count, _)| count > 0);
-    found.map(|(count, what)| format!("{} {what}", triangles(count))).collect()
+    found
+        .map(|(count, what)| format!("{} {what}", triangles(count)))
+        .collect()
 }

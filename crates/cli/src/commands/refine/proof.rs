@@ -17,8 +17,9 @@ use crate::input;
 use crate::output;
 
 /// What is tried, as multiples of what refinement certifies. Where that came from a search, or is next to nothing, triangles prove a little less.
-const TRIED: [f64; 18] =
-    [1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 16.0, 32.0, 64.0];
+const TRIED: [f64; 18] = [
+    1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 16.0, 32.0, 64.0,
+];
 
 /// Refuses options of which there is no proof.
 pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyhow::Result<()> {
@@ -29,8 +30,16 @@ pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyh
     let is_proven = arguments.way() == Way::Exact && arguments.scheme()?.loop_family().is_some();
     let given = [
         ("--dry-run", exact.dry_run, "writes no mesh"),
-        ("--optimize", exact.optimize, "gives triangles that reach over several control faces"),
-        ("--split-normals", arguments.split_normals, "writes vertices several times"),
+        (
+            "--optimize",
+            exact.optimize,
+            "gives triangles that reach over several control faces",
+        ),
+        (
+            "--split-normals",
+            arguments.split_normals,
+            "writes vertices several times",
+        ),
     ];
     if !is_proven {
         return usage("--proof is for --method exact and the schemes loop and loop-warren");
@@ -39,8 +48,15 @@ pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyh
         return usage(format!("{option} {why}; of that --proof has no proof"));
     }
     let is_read = matches!(format, Some(Format::Obj | Format::Off | Format::Ply));
-    if !is_read || arguments.output.as_deref().is_some_and(output::is_standard_output) {
-        return usage("--proof needs a result in a file that limitmesh-check reads: -o NAME.ply, NAME.obj or NAME.off");
+    if !is_read
+        || arguments
+            .output
+            .as_deref()
+            .is_some_and(output::is_standard_output)
+    {
+        return usage(
+            "--proof needs a result in a file that limitmesh-check reads: -o NAME.ply, NAME.obj or NAME.off",
+        );
     }
     Ok(())
 }
@@ -65,17 +81,28 @@ pub(super) fn write(
     arguments: &RefineArguments,
 ) -> anyhow::Result<Proven> {
     let written = arguments.output.as_deref().unwrap_or(Path::new(""));
-    let result =
-        read_plain(written).with_context(|| format!("{} cannot be read again", written.display()))?;
-    let Trail { origins, parents, .. } = &refined.trail;
+    let result = read_plain(written)
+        .with_context(|| format!("{} cannot be read again", written.display()))?;
+    let Trail {
+        origins, parents, ..
+    } = &refined.trail;
     let none = |why: String| {
         let text = format!("no proof was written: {why}");
-        Ok(Proven { within: None, note: None, outcome: Outcome::StoppedShort(text) })
+        Ok(Proven {
+            within: None,
+            note: None,
+            outcome: Outcome::StoppedShort(text),
+        })
     };
     if result.positions.len() != origins.len() || result.triangles.len() != parents.len() {
-        return none(format!("vertices stand several times in {}", written.display()));
+        return none(format!(
+            "vertices stand several times in {}",
+            written.display()
+        ));
     }
-    let Some(scheme) = arguments.scheme()?.loop_family() else { return none("of this scheme".into()) };
+    let Some(scheme) = arguments.scheme()?.loop_family() else {
+        return none("of this scheme".into());
+    };
     let own = Plain {
         positions: control.positions().to_vec(),
         triangles: control.as_triangles().triangles.to_vec(),
@@ -85,7 +112,10 @@ pub(super) fn write(
         control,
         holds_control: !is_file || read_plain(arguments.input()).ok().as_ref() != Some(&own),
         scheme,
-        result: Triangles { positions: &result.positions, triangles: &result.triangles },
+        result: Triangles {
+            positions: &result.positions,
+            triangles: &result.triangles,
+        },
         origins,
         parents,
     };
@@ -103,7 +133,9 @@ pub(super) fn write(
         if refused.is_empty() {
             output::write_file(path, &bytes)?;
             let why = match within > upper {
-                true => ": more than is certified, since a search over several triangles is in no proof",
+                true => {
+                    ": more than is certified, since a search over several triangles is in no proof"
+                }
                 false => "",
             };
             let note = format!(
@@ -111,12 +143,22 @@ pub(super) fn write(
                 path.display(),
                 upper_bound(within)
             );
-            return Ok(Proven { within: Some(within), note: Some(note), outcome: Outcome::Done });
+            return Ok(Proven {
+                within: Some(within),
+                note: Some(note),
+                outcome: Outcome::Done,
+            });
         }
     }
     let count = counted(refused.len(), "triangle is", "triangles are");
-    let example = refused.first().map(|(t, what)| format!(": triangle {t} {what}")).unwrap_or_default();
-    none(format!("{count} not proven within {}{example}", upper_bound(TRIED[TRIED.len() - 1] * upper)))
+    let example = refused
+        .first()
+        .map(|(t, what)| format!(": triangle {t} {what}"))
+        .unwrap_or_default();
+    none(format!(
+        "{count} not proven within {}{example}",
+        upper_bound(TRIED[TRIED.len() - 1] * upper)
+    ))
 }
 
 /// A mesh as the checker reads it.

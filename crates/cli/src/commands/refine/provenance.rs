@@ -19,14 +19,26 @@ pub(super) struct Provenance {
 impl Provenance {
     /// Takes the origins of the vertices and the parents of the triangles apart; those on parts of faces are told of the
     /// whole ones, and `inputs` is the input's face of each of these.
-    pub(super) fn new(origins: &[Origin], parents: Vec<u32>, (inputs, parts): (&[u32], &FaceParts)) -> Self {
+    pub(super) fn new(
+        origins: &[Origin],
+        parents: Vec<u32>,
+        (inputs, parts): (&[u32], &FaceParts),
+    ) -> Self {
         let input = |face: u32| inputs[parts.whole(face) as usize];
         let of_vertices = origins.iter().map(|origin| input(origin.face)).collect();
         let of_triangles = parents.iter().map(|&face| input(face)).collect();
         let on_whole = |origin: &Origin| parts.on_whole(origin.face, origin.barycentric);
-        let column = |corner: usize| origins.iter().map(|origin| on_whole(origin).1[corner]).collect();
+        let column = |corner: usize| {
+            origins
+                .iter()
+                .map(|origin| on_whole(origin).1[corner])
+                .collect()
+        };
         Self {
-            faces: origins.iter().map(|origin| parts.whole(origin.face)).collect(),
+            faces: origins
+                .iter()
+                .map(|origin| parts.whole(origin.face))
+                .collect(),
             barycentric: [0, 1, 2].map(column),
             parents: parents.into_iter().map(|face| parts.whole(face)).collect(),
             inputs: [of_vertices, of_triangles],

@@ -10,7 +10,9 @@ use limitmesh::mesh::{Channel, Domain, Semantic};
 use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, LimitSurface, Mesh};
 use limitmesh_io::Asset;
-use limitmesh_io::gltf::{CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute, WithTangents};
+use limitmesh_io::gltf::{
+    CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute, WithTangents,
+};
 
 use super::super::channels::Channels;
 use super::Refined;
@@ -30,8 +32,13 @@ pub(super) fn channel(attribute: &CornerAttribute) -> Channel {
         _ if attribute.is_integer => Semantic::Label,
         _ => Semantic::Other,
     };
-    Channel::new(attribute.name.clone(), semantic, Domain::Corner, attribute.width)
-        .with(attribute.values.clone(), attribute.corners.concat())
+    Channel::new(
+        attribute.name.clone(),
+        semantic,
+        Domain::Corner,
+        attribute.width,
+    )
+    .with(attribute.values.clone(), attribute.corners.concat())
 }
 
 /// A mesh that was refined, and all that its primitives are put together from.
@@ -74,12 +81,24 @@ impl PutBack<'_> {
         mesh: usize,
         (stretch, scheme): (f64, SchemeName),
     ) -> anyhow::Result<Told> {
-        let Some(normals) = &self.refined.normals else { anyhow::bail!("no normals were found") };
+        let Some(normals) = &self.refined.normals else {
+            anyhow::bail!("no normals were found")
+        };
         let (surface, normals) = normals.surface(&self.refined.mesh);
-        let count = self.own.parts.iter().map(|part| part.targets.len()).max().unwrap_or(0);
+        let count = self
+            .own
+            .parts
+            .iter()
+            .map(|part| part.targets.len())
+            .max()
+            .unwrap_or(0);
         let mut moved_normals = Vec::with_capacity(count);
         for target in 0..count {
-            let is_asked = self.own.parts.iter().any(|part| self.has_normals(part, target));
+            let is_asked = self
+                .own
+                .parts
+                .iter()
+                .any(|part| self.has_normals(part, target));
             let found = match self.displacement(target).filter(|_| is_asked) {
                 Some(channel) => {
                     let asked = (surface.triangles, normals.len());
@@ -91,11 +110,17 @@ impl PutBack<'_> {
         }
         let weights = self.weights(scheme)?;
         let notes = weights.as_ref().map(Weights::notes).unwrap_or_default();
-        let mut told = Told { notes, left_out: Vec::new() };
+        let mut told = Told {
+            notes,
+            left_out: Vec::new(),
+        };
         for (number, part) in self.own.parts.iter().enumerate() {
             let channels: Vec<&Channel> = self.decisive(number).collect();
             let is_skinned = part.attributes.iter().any(|name| name == "JOINTS_0");
-            let moving = weights.as_ref().filter(|_| is_skinned).map(|weights| &weights.joints[..]);
+            let moving = weights
+                .as_ref()
+                .filter(|_| is_skinned)
+                .map(|weights| &weights.joints[..]);
             let mut vertices = Vertices::new(&channels, moving, surface.positions.len());
             let numbered = self.numbered(part, surface.triangles, &mut vertices);
             // A primitive of which nothing is left, as it had no area, stays as it is.
@@ -104,8 +129,11 @@ impl PutBack<'_> {
             }
             let at = |v: &u32| surface.positions[*v as usize].map(|x| x / stretch);
             let positions: Vec<[f64; 3]> = numbered.surface.iter().map(at).collect();
-            let directions: Vec<[f64; 3]> =
-                numbered.surface.iter().map(|&v| unit(normals[v as usize])).collect();
+            let directions: Vec<[f64; 3]> = numbered
+                .surface
+                .iter()
+                .map(|&v| unit(normals[v as usize]))
+                .collect();
             let mut attributes = Vec::new();
             let mut targets: Vec<Vec<VertexAttribute>> = vec![Vec::new(); part.targets.len()];
             for (target, own) in targets.iter_mut().enumerate() {
@@ -113,7 +141,8 @@ impl PutBack<'_> {
                 let names = &part.targets[target];
                 let has = |name: &str| names.iter().any(|own| own == name);
                 if has("NORMAL") && !has("POSITION") {
-                    told.left_out.push("NORMAL of morph targets that move nothing".to_owned());
+                    told.left_out
+                        .push("NORMAL of morph targets that move nothing".to_owned());
                 }
                 if self.has_normals(part, target) {
                     let moved = moved_normals[target].as_deref();
@@ -121,10 +150,17 @@ impl PutBack<'_> {
                 }
             }
             for attribute in vertices.into_attributes() {
-                let table = self.own.attributes.iter().find(|table| table.name == attribute.name);
+                let table = self
+                    .own
+                    .attributes
+                    .iter()
+                    .find(|table| table.name == attribute.name);
                 match table.and_then(|table| Some((table, targets.get_mut(table.target?)?))) {
                     Some((table, own)) => {
-                        own.push(VertexAttribute { name: table.plain_name().to_owned(), ..attribute });
+                        own.push(VertexAttribute {
+                            name: table.plain_name().to_owned(),
+                            ..attribute
+                        });
                     }
                     None => attributes.push(attribute),
                 }
@@ -140,7 +176,8 @@ impl PutBack<'_> {
                 attributes: &attributes,
                 targets: &targets,
             };
-            let tangents = self.with_tangents(&geometry, (&*asset, mesh, part), &mut told.left_out)?;
+            let tangents =
+                self.with_tangents(&geometry, (&*asset, mesh, part), &mut told.left_out)?;
             let geometry = tangents.as_ref().map_or(geometry, WithTangents::geometry);
             asset.replace(mesh, part.primitive, &geometry)?;
         }
@@ -156,14 +193,17 @@ impl PutBack<'_> {
         left_out: &mut Vec<String>,
     ) -> anyhow::Result<Option<WithTangents>> {
         let has = |names: &[String]| names.iter().any(|name| name == "TANGENT");
-        let moved: Vec<usize> =
-            (0..part.targets.len()).filter(|&target| has(&part.targets[target])).collect();
+        let moved: Vec<usize> = (0..part.targets.len())
+            .filter(|&target| has(&part.targets[target]))
+            .collect();
         let found = match has(&part.attributes) {
             true => {
                 let texture = asset.tangent_coordinates(mesh, part.primitive)?;
                 let found = WithTangents::of(geometry, &texture, &moved);
                 if found.is_none() {
-                    left_out.push(format!("TANGENT (there is no {texture} that it could follow)"));
+                    left_out.push(format!(
+                        "TANGENT (there is no {texture} that it could follow)"
+                    ));
                 }
                 found
             }
@@ -191,32 +231,51 @@ impl PutBack<'_> {
     /// a vertex of the surface has one each.
     fn decisive(&self, part: usize) -> impl Iterator<Item = &Channel> {
         self.refined.channels.all().iter().filter(move |channel| {
-            let table = self.own.attributes.iter().find(|table| table.name == channel.name);
+            let table = self
+                .own
+                .attributes
+                .iter()
+                .find(|table| table.name == channel.name);
             table.is_some_and(|table| table.is_in[part] && !table.is_displacement())
         })
     }
 
     /// Whether a target is to say how normals change: where it did, and where it moves vertices, whose normals do not follow by themselves.
     fn has_normals(&self, part: &Part, target: usize) -> bool {
-        let has =
-            |name: &str| part.targets.get(target).is_some_and(|names| names.iter().any(|own| own == name));
+        let has = |name: &str| {
+            part.targets
+                .get(target)
+                .is_some_and(|names| names.iter().any(|own| own == name))
+        };
         has("NORMAL") || has("POSITION") && self.displacement(target).is_some()
     }
 
     /// The table of a target's displacements.
     fn table(&self, target: usize) -> Option<&CornerAttribute> {
-        self.own.attributes.iter().find(|table| table.target == Some(target) && table.is_displacement())
+        self.own
+            .attributes
+            .iter()
+            .find(|table| table.target == Some(target) && table.is_displacement())
     }
 
     /// The control mesh's channel of a target's displacements, unless these are all zero.
     fn displacement(&self, target: usize) -> Option<&Channel> {
         let table = self.table(target)?;
-        let channel = self.channels.all().iter().find(|channel| channel.name == table.name)?;
+        let channel = self
+            .channels
+            .all()
+            .iter()
+            .find(|channel| channel.name == table.name)?;
         channel.values.iter().any(|&x| x != 0.0).then_some(channel)
     }
 
     /// The vertices of a primitive and its triangles.
-    fn numbered(&self, part: &Part, triangles: &[[u32; 3]], vertices: &mut Vertices<'_>) -> Numbered {
+    fn numbered(
+        &self,
+        part: &Part,
+        triangles: &[[u32; 3]],
+        vertices: &mut Vertices<'_>,
+    ) -> Numbered {
         let mut found = Numbered::default();
         for (triangle, corners) in triangles.iter().enumerate() {
             if self.own.parts.len() > 1 && !part.faces.contains(&self.carried.input(triangle)) {
@@ -238,10 +297,23 @@ impl PutBack<'_> {
     }
 
     /// How a target moves the vertices of a primitive, if it says so.
-    fn added_positions(&self, part: usize, target: usize, numbered: &Numbered) -> Option<VertexAttribute> {
+    fn added_positions(
+        &self,
+        part: usize,
+        target: usize,
+        numbered: &Numbered,
+    ) -> Option<VertexAttribute> {
         let table = self.table(target).filter(|table| table.is_in[part])?;
-        let channel = self.refined.channels.all().iter().find(|channel| channel.name == table.name)?;
-        let values = numbered.corners.iter().flat_map(|&corner| channel.value(corner as usize));
+        let channel = self
+            .refined
+            .channels
+            .all()
+            .iter()
+            .find(|channel| channel.name == table.name)?;
+        let values = numbered
+            .corners
+            .iter()
+            .flat_map(|&corner| channel.value(corner as usize));
         Some(added("POSITION", values.copied().collect()))
     }
 
@@ -254,7 +326,11 @@ impl PutBack<'_> {
     ) -> anyhow::Result<Vec<[f64; 3]>> {
         let positions = moved_positions(self.control, displacement, stretch);
         let name = &displacement.name;
-        let moved = self.control.clone().with_positions(positions).with_context(|| name.clone())?;
+        let moved = self
+            .control
+            .clone()
+            .with_positions(positions)
+            .with_context(|| name.clone())?;
         let limit = LimitSurface::new(&moved, scheme).with_context(|| name.clone())?;
         // A corner for each vertex, those of one face together.
         let mut is_met = vec![false; count];
@@ -288,14 +364,21 @@ pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, stretch: f64)
     for (corner, &v) in mesh.triangles().as_flattened().iter().enumerate() {
         if !std::mem::replace(&mut is_moved[v as usize], true) {
             let own = displacement.value(corner);
-            positions[v as usize].iter_mut().zip(own).for_each(|(x, d)| *x += stretch * d);
+            positions[v as usize]
+                .iter_mut()
+                .zip(own)
+                .for_each(|(x, d)| *x += stretch * d);
         }
     }
     positions
 }
 
 /// What a target adds to the normals of vertices of the surface; nothing where it does not move them, or they have none then.
-fn added_normals(moved: Option<&[[f64; 3]]>, vertices: &[u32], base: &[[f64; 3]]) -> VertexAttribute {
+fn added_normals(
+    moved: Option<&[[f64; 3]]>,
+    vertices: &[u32],
+    base: &[[f64; 3]],
+) -> VertexAttribute {
     let mut values = Vec::with_capacity(3 * vertices.len());
     for (&v, base) in vertices.iter().zip(base) {
         let moved = moved.map_or([0.0; 3], |moved| moved[v as usize]);
@@ -306,12 +389,21 @@ fn added_normals(moved: Option<&[[f64; 3]]>, vertices: &[u32], base: &[[f64; 3]]
 }
 
 fn added(name: &str, values: Vec<f64>) -> VertexAttribute {
-    VertexAttribute { name: name.to_owned(), width: 3, values, is_integer: false }
+    VertexAttribute {
+        name: name.to_owned(),
+        width: 3,
+        values,
+        is_integer: false,
+    }
 }
 
 /// Of length 1; upwards where there is no direction, as files need one.
 fn unit(n: [f64; 3]) -> [f64; 3] {
     let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
     let has_direction = length > 0.0 && length.is_finite();
-    if has_direction { n.map(|x| x / length) } else { [0.0, 0.0, 1.0] }
+    if has_direction {
+        n.map(|x| x / length)
+    } else {
+        [0.0, 0.0, 1.0]
+    }
 }

@@ -47,17 +47,32 @@ impl Goal {
                 let usual = (!is_counted).then_some(Extent::Percent(USUAL_PERCENT));
                 let tolerance = tolerance.or(usual).map(length).transpose()?;
                 let limit = tolerance.unwrap_or(0.0);
-                Self { measure: Measure::VertexError, limit, angle_degrees: None, tolerance }
+                Self {
+                    measure: Measure::VertexError,
+                    limit,
+                    angle_degrees: None,
+                    tolerance,
+                }
             }
             (_, Some(tolerance)) => {
                 let tolerance = length(tolerance)?;
                 let measure = Measure::PlanarityDistance;
-                Self { measure, limit: tolerance, angle_degrees: None, tolerance: Some(tolerance) }
+                Self {
+                    measure,
+                    limit: tolerance,
+                    angle_degrees: None,
+                    tolerance: Some(tolerance),
+                }
             }
             (_, None) => {
                 let angle_degrees = angle.or((!is_counted).then_some(USUAL_ANGLE));
                 let limit = angle_degrees.unwrap_or(0.0).to_radians();
-                Self { measure: Measure::PlanarityAngle, limit, angle_degrees, tolerance: None }
+                Self {
+                    measure: Measure::PlanarityAngle,
+                    limit,
+                    angle_degrees,
+                    tolerance: None,
+                }
             }
         })
     }
@@ -87,30 +102,45 @@ impl Goal {
             }
             Measure::PlanarityDistance => {
                 let worst = number(worst);
-                format!("planar to {worst}{unit} in the middles of edges, by samples; no distance is proven")
+                format!(
+                    "planar to {worst}{unit} in the middles of edges, by samples; no distance is proven"
+                )
             }
             _ => {
                 let worst = number(worst);
-                format!("control points are within {worst}{unit} of their limits; no distance is proven")
+                format!(
+                    "control points are within {worst}{unit} of their limits; no distance is proven"
+                )
             }
         }
     }
 }
 
 /// What was asked for, defaults filled in.
-pub(super) fn parameters(arguments: &RefineArguments, diagonal: f64) -> anyhow::Result<ParametersReport> {
+pub(super) fn parameters(
+    arguments: &RefineArguments,
+    diagonal: f64,
+) -> anyhow::Result<ParametersReport> {
     let goal = Goal::of(arguments, diagonal)?;
     let max_levels = most_levels(arguments) as usize;
     Ok(ParametersReport {
         angle_degrees: goal.angle_degrees,
-        exact: Some(ExactParametersReport::new(goal.tolerance, diagonal, max_levels, &arguments.exact)),
+        exact: Some(ExactParametersReport::new(
+            goal.tolerance,
+            diagonal,
+            max_levels,
+            &arguments.exact,
+        )),
         ..ParametersReport::common(arguments)
     })
 }
 
 /// Levels at most.
 fn most_levels(arguments: &RefineArguments) -> u32 {
-    arguments.exact.max_levels.map_or(MOST_LEVELS, |levels| levels as u32)
+    arguments
+        .exact
+        .max_levels
+        .map_or(MOST_LEVELS, |levels| levels as u32)
 }
 
 /// The limit normals of the control mesh's surface at the vertices, by side where edges are sharp.
@@ -119,16 +149,28 @@ fn normals(found: &Snapshot, control: &Mesh, scheme: &dyn Scheme) -> anyhow::Res
     let place = |origin: &Origin| (FaceId(origin.face), origin.barycentric);
     if found.mesh.tags().creases.is_empty() {
         let places: Vec<_> = found.origins.iter().map(place).collect();
-        let normals = surface.at_all(&places).into_iter().map(|point| point.normal);
+        let normals = surface
+            .at_all(&places)
+            .into_iter()
+            .map(|point| point.normal);
         return Ok(Normals::ByVertex(normals.collect()));
     }
     // A control face that a corner is not of has no points.
-    let nowhere = Origin { face: u32::MAX, barycentric: [0.0; 3] };
+    let nowhere = Origin {
+        face: u32::MAX,
+        barycentric: [0.0; 3],
+    };
     let corners = (0..3 * found.mesh.face_count() as u32).map(HalfEdgeId);
-    let origin = |h| found.corner_origin(control.triangles(), h).unwrap_or(nowhere);
+    let origin = |h| {
+        found
+            .corner_origin(control.triangles(), h)
+            .unwrap_or(nowhere)
+    };
     let places: Vec<_> = corners.map(|h| place(&origin(h))).collect();
     let points = surface.at_all(&places);
-    Ok(Normals::BySide(SplitSurface::new(&found.mesh, |h| points[h.index()].normal)))
+    Ok(Normals::BySide(SplitSurface::new(&found.mesh, |h| {
+        points[h.index()].normal
+    })))
 }
 
 /// Divides nodes until all meet the criterion.
@@ -141,21 +183,50 @@ pub(super) fn run(
 ) -> anyhow::Result<Refined> {
     let goal = Goal::of(arguments, diagonal)?;
     let scheme = arguments.scheme()?;
-    progress.stage(format!("refining {}", counted(control.mesh.face_count(), "triangle", "triangles")));
-    let mut front =
-        Front::measured_by_observed(&control.mesh, scheme, goal.measure, &mut progress.observer())?;
-    let most = arguments.exact.triangles.unwrap_or(usize::MAX).min(arguments.max_triangles());
-    let demand = Demand::tolerance(goal.limit).triangles(most).max_levels(most_levels(arguments));
+    progress.stage(format!(
+        "refining {}",
+        counted(control.mesh.face_count(), "triangle", "triangles")
+    ));
+    let mut front = Front::measured_by_observed(
+        &control.mesh,
+        scheme,
+        goal.measure,
+        &mut progress.observer(),
+    )?;
+    let most = arguments
+        .exact
+        .triangles
+        .unwrap_or(usize::MAX)
+        .min(arguments.max_triangles());
+    let demand = Demand::tolerance(goal.limit)
+        .triangles(most)
+        .max_levels(most_levels(arguments));
     front.update_observed(&demand, &mut progress.observer())?;
-    let (worst, levels, stop) = (front.worst(), front.depth() as usize, goal.stop(&front, arguments));
+    let (worst, levels, stop) = (
+        front.worst(),
+        front.depth() as usize,
+        goal.stop(&front, arguments),
+    );
     let found = front.snapshot()?;
     drop(front);
     let channels = channels.refined(&control.mesh, &found, arguments.scheme()?)?;
     let wanted = Normals::are_held(format) || arguments.picture.is_some();
-    let normals = if wanted { Some(normals(&found, &control.mesh, scheme)?) } else { None };
-    let Snapshot { mesh, origins, parents, .. } = found;
+    let normals = if wanted {
+        Some(normals(&found, &control.mesh, scheme)?)
+    } else {
+        None
+    };
+    let Snapshot {
+        mesh,
+        origins,
+        parents,
+        ..
+    } = found;
     let places = (&before.faces[..], &control.concave.parts);
-    let provenance = arguments.exact.provenance.then(|| Provenance::new(&origins, parents, places));
+    let provenance = arguments
+        .exact
+        .provenance
+        .then(|| Provenance::new(&origins, parents, places));
     Ok(Refined {
         normals,
         channels,

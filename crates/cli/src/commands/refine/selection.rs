@@ -23,8 +23,10 @@ impl Selection {
             .enumerate()
             .map(|(i, mesh)| mesh.name.clone().unwrap_or_else(|| format!("meshes[{i}]")))
             .collect();
-        let materials =
-            meshes.iter().flat_map(|mesh| &mesh.primitives).filter_map(|own| own.material.clone());
+        let materials = meshes
+            .iter()
+            .flat_map(|mesh| &mesh.primitives)
+            .filter_map(|own| own.material.clone());
         let materials: Vec<String> = materials.collect();
         check(&arguments.mesh, "mesh", &mesh_names)?;
         check(&arguments.material, "material", &materials)?;
@@ -34,7 +36,8 @@ impl Selection {
         let of_mesh = |(mesh, name)| {
             let mesh: &limitmesh_io::gltf::MeshContents = mesh;
             let of_primitives = mesh.primitives.iter().map(|own| {
-                is_named(&arguments.mesh, Some(name)) && is_named(&arguments.material, own.material.as_ref())
+                is_named(&arguments.mesh, Some(name))
+                    && is_named(&arguments.material, own.material.as_ref())
             });
             of_primitives.collect()
         };
@@ -48,23 +51,36 @@ impl Selection {
 
     /// Whether a primitive is refined.
     pub(super) fn has(&self, mesh: usize, primitive: usize) -> bool {
-        self.0.get(mesh).and_then(|own| own.get(primitive)).is_some_and(|&is_wanted| is_wanted)
+        self.0
+            .get(mesh)
+            .and_then(|own| own.get(primitive))
+            .is_some_and(|&is_wanted| is_wanted)
     }
 }
 
 fn check(names: &[String], what: &str, known: &[String]) -> anyhow::Result<()> {
-    let Some(name) = names.iter().find(|name| !known.contains(name)) else { return Ok(()) };
+    let Some(name) = names.iter().find(|name| !known.contains(name)) else {
+        return Ok(());
+    };
     let mut unique: Vec<&String> = Vec::new();
     known.iter().for_each(|name| {
         if !unique.contains(&name) {
             unique.push(name);
         }
     });
-    let listed: Vec<String> = unique.iter().take(MOST_NAMES).map(|name| format!("'{name}'")).collect();
+    let listed: Vec<String> = unique
+        .iter()
+        .take(MOST_NAMES)
+        .map(|name| format!("'{name}'"))
+        .collect();
     let more = match unique.len().saturating_sub(MOST_NAMES) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let there = if listed.is_empty() { "none with a name".to_owned() } else { listed.join(", ") };
+    let there = if listed.is_empty() {
+        "none with a name".to_owned()
+    } else {
+        listed.join(", ")
+    };
     anyhow::bail!("no {what} is called '{name}'; there is {there}{more}")
 }

@@ -20,8 +20,8 @@ use crate::format::counted;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::{
-    AssetMeshReport, AssetReport, InputReport, MeshReport, OutputReport, ParametersReport, SizeReport,
-    VERSION,
+    AssetMeshReport, AssetReport, InputReport, MeshReport, OutputReport, ParametersReport,
+    SizeReport, VERSION,
 };
 
 /// What became of the meshes so far.
@@ -46,7 +46,11 @@ pub(super) struct One {
 
 /// The diagonal of a box.
 pub(super) fn diagonal([low, high]: [[f64; 3]; 2]) -> f64 {
-    low.iter().zip(high).map(|(a, b)| (b - a).powi(2)).sum::<f64>().sqrt()
+    low.iter()
+        .zip(high)
+        .map(|(a, b)| (b - a).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// Makes lengths in per cent that hold for all meshes lengths, of this diagonal.
@@ -54,8 +58,12 @@ pub(super) fn diagonal([low, high]: [[f64; 3]; 2]) -> f64 {
 /// # Errors
 /// A length has a unit, and the mesh's is not known.
 pub(super) fn set_lengths(arguments: &mut RefineArguments, diagonal: f64) -> anyhow::Result<()> {
-    if let Some(value) = arguments.interpolation.within(diagonal, arguments.build.unit)? {
-        arguments.interpolation.interpolate_within = Some(Extent::Length(Length { value, unit: None }));
+    if let Some(value) = arguments
+        .interpolation
+        .within(diagonal, arguments.build.unit)?
+    {
+        arguments.interpolation.interpolate_within =
+            Some(Extent::Length(Length { value, unit: None }));
     }
     Ok(())
 }
@@ -77,26 +85,51 @@ pub(super) fn one(
     progress: &Progress,
 ) -> anyhow::Result<One> {
     let start = Instant::now();
-    let Control { featured, before, bulk, shown, took, .. } = control;
+    let Control {
+        featured,
+        before,
+        bulk,
+        shown,
+        took,
+        ..
+    } = control;
     let mut refined = match arguments.way() {
         Way::Exact => exact::run((featured, before, channels), goals, arguments, progress)?,
-        _ => stepwise::run((featured.mesh.clone(), channels, keeps_origins), arguments, format, progress)?,
+        _ => stepwise::run(
+            (featured.mesh.clone(), channels, keeps_origins),
+            arguments,
+            format,
+            progress,
+        )?,
     };
     let refining = *took + start.elapsed();
-    let size = SizeReport { before: *bulk, after: Bulk::as_shown(&refined.mesh, shown) };
+    let size = SizeReport {
+        before: *bulk,
+        after: Bulk::as_shown(&refined.mesh, shown),
+    };
     refined.tell_size([size.before, size.after], arguments);
     progress.note(summary(name, &refined, refining));
     if let Some(note) = refined.inverted.and_then(turned_over) {
         progress.note(format!("{name}: {note}"));
     }
-    Ok(One { refined, size, refining })
+    Ok(One {
+        refined,
+        size,
+        refining,
+    })
 }
 
 impl Progressed {
     /// The arguments for the next mesh: what the others left of the cap.
     pub(super) fn share(&self, arguments: &RefineArguments) -> RefineArguments {
-        let left = arguments.max_triangles().saturating_sub(self.triangles).max(1);
-        RefineArguments { max_triangles: Some(left), ..arguments.clone() }
+        let left = arguments
+            .max_triangles()
+            .saturating_sub(self.triangles)
+            .max(1);
+        RefineArguments {
+            max_triangles: Some(left),
+            ..arguments.clone()
+        }
     }
 
     /// Adds a mesh: its name, its number and how many times larger it appears, what was read and asked for. It is examined for a report
@@ -104,7 +137,11 @@ impl Progressed {
     pub(super) fn add(
         &mut self,
         (name, mesh, scale): (&str, usize, f64),
-        One { refined, size, refining }: One,
+        One {
+            refined,
+            size,
+            refining,
+        }: One,
         (input, control, parameters): (InputReport, Control, ParametersReport),
         arguments: &RefineArguments,
     ) {
@@ -138,7 +175,10 @@ impl Progressed {
     ) -> anyhow::Result<Outcome> {
         let meshes = counted(self.meshes, one, many);
         let triangles = counted(self.triangles, "triangle", "triangles");
-        progress.note(format!("{}: {meshes} with {triangles}", arguments.output_name()));
+        progress.note(format!(
+            "{}: {meshes} with {triangles}",
+            arguments.output_name()
+        ));
         if let Some(path) = &arguments.report {
             let report = AssetReport {
                 version: VERSION,
@@ -166,14 +206,24 @@ pub(super) fn draw(
 ) -> anyhow::Result<()> {
     progress.stage(format!("drawing {}", path.display()));
     let (mesh, _, trace) = Mesh::from_soup_traced(scene, &Default::default())?;
-    let normals = scene.channels.iter().find(|channel| channel.name == NORMALS);
+    let normals = scene
+        .channels
+        .iter()
+        .find(|channel| channel.name == NORMALS);
     let split = match normals {
         Some(normals) => shading::by_normals(&mesh, &normals.on_mesh(scene, &mesh, &trace)?),
         None => shading::without_normals(&mesh)?,
     };
     let style = Style::default().wireframe(true);
     let view = picture::view_direction(arguments.view);
-    picture::draw(path, split.as_triangles(), Some(&split.normals), view, &style, picture::SIZE)?;
+    picture::draw(
+        path,
+        split.as_triangles(),
+        Some(&split.normals),
+        view,
+        &style,
+        picture::SIZE,
+    )?;
     progress.note(picture::drawn(path, mesh.face_count()));
     Ok(())
 }

@@ -43,17 +43,35 @@ pub(super) fn run(
     let refined = refine(&control, is_traced, arguments, progress)?;
     // Where nothing moves, values stay what they are, too.
     let is_same = refined.mesh.positions() == control.positions() && !arguments.limit;
-    let channels =
-        if is_same { channels.clone() } else { channels.refined(&control, &refined, arguments.scheme()?)? };
+    let channels = if is_same {
+        channels.clone()
+    } else {
+        channels.refined(&control, &refined, arguments.scheme()?)?
+    };
     drop(control);
-    let Refinement { mesh, steps, stop, origins, parents, .. } = refined;
+    let Refinement {
+        mesh,
+        steps,
+        stop,
+        origins,
+        parents,
+        ..
+    } = refined;
     let (mesh, normals) = finish(mesh, arguments, format, progress)?;
-    let early = if stop == Stop::Satisfied { ", no face is divisible any more" } else { "" };
+    let early = if stop == Stop::Satisfied {
+        ", no face is divisible any more"
+    } else {
+        ""
+    };
     Ok(Refined {
         normals,
         channels,
         provenance: None,
-        trail: Trail { origins, parents, sides: None },
+        trail: Trail {
+            origins,
+            parents,
+            sides: None,
+        },
         achieved: Vec::new(),
         inverted: None,
         how: counted(steps.len(), "step", "steps") + early,
@@ -84,7 +102,11 @@ pub(super) fn watch(
     move |at| {
         if at.done < levels && shown.replace(at.done) != Some(at.done) {
             let faces = counted(at.triangles, "triangle", "triangles");
-            progress.stage(format!("{}: step {} of at most {levels}, from {faces}", at.stage, at.done + 1));
+            progress.stage(format!(
+                "{}: step {} of at most {levels}, from {faces}",
+                at.stage,
+                at.done + 1
+            ));
         }
         progress.answer(at)
     }
@@ -102,7 +124,10 @@ fn refine(
     let scheme = arguments.scheme()?;
     let cap = Some(arguments.max_triangles());
     let Some(criterion) = criterion(arguments) else {
-        let options = UniformOptions::default().levels(levels).origins(keeps_origins).max_triangles(cap);
+        let options = UniformOptions::default()
+            .levels(levels)
+            .origins(keeps_origins)
+            .max_triangles(cap);
         return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
     };
     let options = StepwiseOptions::default()
@@ -110,7 +135,13 @@ fn refine(
         .seam(arguments.seam.unwrap_or_default().rule())
         .origins(keeps_origins)
         .max_triangles(cap);
-    Ok(stepwise_observed(control, scheme, criterion.as_ref(), &options, &mut observer)?)
+    Ok(stepwise_observed(
+        control,
+        scheme,
+        criterion.as_ref(),
+        &options,
+        &mut observer,
+    )?)
 }
 
 /// What marks the faces that a step divides; none where it divides all.
@@ -165,8 +196,15 @@ pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
     }
 }
 
-pub(super) fn outcome(arguments: &RefineArguments, mesh: &Mesh, steps: &[StepReport], stop: Stop) -> Outcome {
-    let Stop::TriangleCap { needed } = stop else { return Outcome::Done };
+pub(super) fn outcome(
+    arguments: &RefineArguments,
+    mesh: &Mesh,
+    steps: &[StepReport],
+    stop: Stop,
+) -> Outcome {
+    let Stop::TriangleCap { needed } = stop else {
+        return Outcome::Done;
+    };
     Outcome::StoppedShort(format!(
         "step {} of {} would have given {}, more than --max-triangles {}; {} was written with {}",
         steps.len() + 1,

@@ -74,15 +74,26 @@ impl Prepared {
         progress: &Progress,
     ) -> anyhow::Result<Refined> {
         match self {
-            Self::Exact(goals) => exact::run((&control, before, channels), goals, arguments, progress),
-            Self::Stepwise => {
-                stepwise::run((control.mesh, channels, false), arguments, Some(format), progress)
+            Self::Exact(goals) => {
+                exact::run((&control, before, channels), goals, arguments, progress)
             }
+            Self::Stepwise => stepwise::run(
+                (control.mesh, channels, false),
+                arguments,
+                Some(format),
+                progress,
+            ),
             Self::Sqrt3Steps => sqrt3::by_steps(&control.mesh, arguments, format, progress),
-            Self::Sqrt3 => sqrt3::to_goals((&control, before, diagonal), arguments, format, progress),
-            Self::Restricted => {
-                restricted::run((&control, before, diagonal), channels, arguments, format, progress)
+            Self::Sqrt3 => {
+                sqrt3::to_goals((&control, before, diagonal), arguments, format, progress)
             }
+            Self::Restricted => restricted::run(
+                (&control, before, diagonal),
+                channels,
+                arguments,
+                format,
+                progress,
+            ),
         }
     }
 }

@@ -71,7 +71,10 @@ pub(super) fn weights(
     // Places of one face together, whatever order vertices have.
     let mut by_face: Vec<u32> = (0..places.len() as u32).collect();
     by_face.sort_by_key(|&v| places[v as usize].face);
-    let mut found = Weights { joints: vec![[(0, 0.0); MOST_JOINTS]; places.len()], ..Default::default() };
+    let mut found = Weights {
+        joints: vec![[(0, 0.0); MOST_JOINTS]; places.len()],
+        ..Default::default()
+    };
     let mut totals = vec![0.0; places.len()];
     let mut is_clamped = vec![false; places.len()];
     let mut heights = control.clone();
@@ -79,16 +82,27 @@ pub(super) fn weights(
         let mut positions = vec![[0.0; 3]; control.vertex_count()];
         for (position, list) in positions.iter_mut().zip(lists) {
             for (x, joint) in position.iter_mut().zip(together) {
-                *x = list.iter().find(|(own, _)| own == joint).map_or(0.0, |&(_, weight)| weight);
+                *x = list
+                    .iter()
+                    .find(|(own, _)| own == joint)
+                    .map_or(0.0, |&(_, weight)| weight);
             }
         }
         let is_moved = moved_faces(control, &positions, is_near);
-        heights = heights.with_positions(positions).context("weights of joints")?;
-        let surface = LimitSurface::without_normals(&heights, scheme).context("weights of joints")?;
-        let own = by_face.iter().copied().filter(|&v| is_moved[places[v as usize].face as usize]);
+        heights = heights
+            .with_positions(positions)
+            .context("weights of joints")?;
+        let surface =
+            LimitSurface::without_normals(&heights, scheme).context("weights of joints")?;
+        let own = by_face
+            .iter()
+            .copied()
+            .filter(|&v| is_moved[places[v as usize].face as usize]);
         let own: Vec<u32> = own.collect();
         let at = own.iter().map(|&v| &places[v as usize]);
-        let at: Vec<(FaceId, [f64; 3])> = at.map(|place| (FaceId(place.face), place.barycentric)).collect();
+        let at: Vec<(FaceId, [f64; 3])> = at
+            .map(|place| (FaceId(place.face), place.barycentric))
+            .collect();
         let points = surface.at_all(&at);
         if let Some(error) = surface.failure() {
             anyhow::bail!("weights of joints: {error}");
@@ -115,14 +129,19 @@ pub(super) fn weights(
 
 /// Puts a joint in its place among those with the greatest weights; joints come in ascending order.
 fn insert(joints: &mut Joints, joint: u32, weight: f64) {
-    let Some(place) = joints.iter().position(|&(_, own)| weight > own) else { return };
+    let Some(place) = joints.iter().position(|&(_, own)| weight > own) else {
+        return;
+    };
     joints[place..].rotate_right(1);
     joints[place] = (joint, weight);
 }
 
 /// By face, whether any of three weights counts there.
 fn moved_faces(mesh: &Mesh, weights: &[[f64; 3]], is_near: bool) -> Vec<bool> {
-    let has_one: Vec<bool> = weights.iter().map(|own| own.iter().any(|&weight| weight > 0.0)).collect();
+    let has_one: Vec<bool> = weights
+        .iter()
+        .map(|own| own.iter().any(|&weight| weight > 0.0))
+        .collect();
     if !is_near {
         return vec![true; mesh.face_count()];
     }
@@ -132,7 +151,10 @@ fn moved_faces(mesh: &Mesh, weights: &[[f64; 3]], is_near: bool) -> Vec<bool> {
             corners.iter().for_each(|&v| is_beside[v as usize] = true);
         }
     }
-    mesh.triangles().iter().map(|corners| corners.iter().any(|&v| is_beside[v as usize])).collect()
+    mesh.triangles()
+        .iter()
+        .map(|corners| corners.iter().any(|&v| is_beside[v as usize]))
+        .collect()
 }
 
 #[cfg(test)]
@@ -142,7 +164,15 @@ mod tests {
     #[test]
     fn the_greatest_are_kept_and_ties_go_by_index() {
         let mut joints = [(0, 0.0); MOST_JOINTS];
-        for (joint, weight) in [(1, 0.1), (3, 0.3), (4, 0.1), (6, 0.2), (7, 0.1), (9, 0.3), (11, 0.0)] {
+        for (joint, weight) in [
+            (1, 0.1),
+            (3, 0.3),
+            (4, 0.1),
+            (6, 0.2),
+            (7, 0.1),
+            (9, 0.3),
+            (11, 0.0),
+        ] {
             insert(&mut joints, joint, weight);
         }
         assert_eq!(joints, [(3, 0.3), (9, 0.3), (6, 0.2), (1, 0.1)]);

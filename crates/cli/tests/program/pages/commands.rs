@@ -21,10 +21,18 @@ const FROM_SOURCE: &str = "cargo run --release -- ";
 #[test]
 fn commands_give_what_their_pages_show() {
     let pages = pages();
-    let shown: Vec<&Page> = pages.iter().filter(|page| page.text.contains("```console")).collect();
+    let shown: Vec<&Page> = pages
+        .iter()
+        .filter(|page| page.text.contains("```console"))
+        .collect();
     let wrong: Vec<String> = thread::scope(|scope| {
-        let runs: Vec<_> = shown.iter().map(|page| scope.spawn(|| checked(page))).collect();
-        runs.into_iter().flat_map(|run| run.join().expect("a page is read to its end")).collect()
+        let runs: Vec<_> = shown
+            .iter()
+            .map(|page| scope.spawn(|| checked(page)))
+            .collect();
+        runs.into_iter()
+            .flat_map(|run| run.join().expect("a page is read to its end"))
+            .collect()
     });
     assert!(
         wrong.is_empty(),
@@ -35,7 +43,10 @@ fn commands_give_what_their_pages_show() {
 
 #[test]
 fn what_can_run_is_run() {
-    for page in pages().iter().filter(|page| !MEASURED.contains(&page.name.as_str())) {
+    for page in pages()
+        .iter()
+        .filter(|page| !MEASURED.contains(&page.name.as_str()))
+    {
         let mut is_shell = false;
         for line in page.text.lines() {
             if line.starts_with("```") {
@@ -53,7 +64,10 @@ fn what_can_run_is_run() {
 #[test]
 fn elided_lines_are_any_number() {
     let fits = |shown: &[&str], said: &[&str]| {
-        fits(shown, &said.iter().map(|&line| line.to_owned()).collect::<Vec<_>>())
+        fits(
+            shown,
+            &said.iter().map(|&line| line.to_owned()).collect::<Vec<_>>(),
+        )
     };
     assert!(fits(&["a", "...", "c"], &["a", "b", "b", "c"]));
     assert!(fits(&["...", "c"], &["c"]));
@@ -68,7 +82,8 @@ fn checked(page: &Page) -> Vec<String> {
     let folder = folder();
     for entry in std::fs::read_dir(root().join("examples/models")).expect("the example models") {
         let path = entry.expect("an entry").path();
-        std::fs::copy(&path, folder.path().join(path.file_name().expect("a name"))).expect("copied");
+        std::fs::copy(&path, folder.path().join(path.file_name().expect("a name")))
+            .expect("copied");
     }
     let mut wrong = Vec::new();
     let mut anew = Vec::new();
@@ -79,13 +94,21 @@ fn checked(page: &Page) -> Vec<String> {
         if line.starts_with("```") {
             is_console = line == "```console";
         }
-        let Some(command) = line.strip_prefix("$ ").filter(|_| is_console) else { continue };
+        let Some(command) = line.strip_prefix("$ ").filter(|_| is_console) else {
+            continue;
+        };
         let mut shown = Vec::new();
-        while let Some(line) = lines.next_if(|line| !line.starts_with("$ ") && !line.starts_with("```")) {
+        while let Some(line) =
+            lines.next_if(|line| !line.starts_with("$ ") && !line.starts_with("```"))
+        {
             shown.push(line);
         }
         // Lines without a word part commands.
-        let blank = shown.iter().rev().take_while(|line| line.is_empty()).count();
+        let blank = shown
+            .iter()
+            .rev()
+            .take_while(|line| line.is_empty())
+            .count();
         let shown = &shown[..shown.len() - blank];
         let said = said(command, folder.path());
         if fits(shown, &said) {
@@ -102,7 +125,8 @@ fn checked(page: &Page) -> Vec<String> {
         anew.extend(std::iter::repeat_n(String::new(), blank));
     }
     if is_rewriting() && !wrong.is_empty() {
-        std::fs::write(root().join(&page.name), anew.join("\n") + "\n").expect("the page can be written");
+        std::fs::write(root().join(&page.name), anew.join("\n") + "\n")
+            .expect("the page can be written");
         wrong.clear();
     }
     wrong
@@ -114,7 +138,10 @@ fn said(command: &str, folder: &Path) -> Vec<String> {
         Some(arguments) => format!("limitmesh {arguments}"),
         None => command.to_owned(),
     };
-    let program = Path::new(env!("CARGO_BIN_EXE_limitmesh")).parent().expect("a folder").display();
+    let program = Path::new(env!("CARGO_BIN_EXE_limitmesh"))
+        .parent()
+        .expect("a folder")
+        .display();
     let path = std::env::var("PATH").unwrap_or_default();
     let run = Command::new("sh")
         .args(["-c", &format!("{{ {command}\n}} 2>&1")])
@@ -125,13 +152,15 @@ fn said(command: &str, folder: &Path) -> Vec<String> {
         .output()
         .expect("a shell");
     let text = String::from_utf8(run.stdout).expect("output is UTF-8");
-    let mut lines: Vec<String> = text.lines().map(|line| line.trim_end().to_owned()).collect();
+    let mut lines: Vec<String> = text
+        .lines()
+        .map(|line| line.trim_end().to_owned())
+        .collect();
     if !run.status.success() {
-        lines.push(
-            run.status
-                .code()
-                .map_or_else(|| "ended by a signal".to_owned(), |code| format!("exit code {code}")),
-        );
+        lines.push(run.status.code().map_or_else(
+            || "ended by a signal".to_owned(),
+            |code| format!("exit code {code}"),
+        ));
     }
     while lines.last().is_some_and(String::is_empty) {
         lines.pop();
@@ -141,15 +170,29 @@ fn said(command: &str, folder: &Path) -> Vec<String> {
 
 /// A line that was said, or the one on the page that differs from it in durations alone.
 fn as_shown(line: String, shown: &[&str]) -> String {
-    let same = shown.iter().find(|shown| without_durations(shown) == without_durations(&line));
+    let same = shown
+        .iter()
+        .find(|shown| without_durations(shown) == without_durations(&line));
     same.map_or(line, |&shown| shown.to_owned())
 }
 
 /// What was said, as the page would show it: it ends after as many lines as there were if it ended with `...`.
 fn elided(said: Vec<String>, shown: &[&str]) -> Vec<String> {
-    let kept = if shown.last() == Some(&"...") { shown.len() - 1 } else { said.len() };
-    let rest = if kept < said.len() { vec!["...".to_owned()] } else { Vec::new() };
-    said.into_iter().take(kept).map(|line| as_shown(line, shown)).chain(rest).collect()
+    let kept = if shown.last() == Some(&"...") {
+        shown.len() - 1
+    } else {
+        said.len()
+    };
+    let rest = if kept < said.len() {
+        vec!["...".to_owned()]
+    } else {
+        Vec::new()
+    };
+    said.into_iter()
+        .take(kept)
+        .map(|line| as_shown(line, shown))
+        .chain(rest)
+        .collect()
 }
 
 /// Whether lines on a page are those that were said.

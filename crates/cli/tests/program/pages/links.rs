@@ -10,12 +10,20 @@ fn links_between_files_lead_somewhere() {
     let pages = pages();
     let mut dead = Vec::new();
     for page in &pages {
-        let folder = root().join(&page.name).parent().expect("a folder").to_owned();
+        let folder = root()
+            .join(&page.name)
+            .parent()
+            .expect("a folder")
+            .to_owned();
         for target in targets(&page.text) {
             let (path, heading) = target.split_once('#').unwrap_or((target, ""));
-            let file = if path.is_empty() { root().join(&page.name) } else { folder.join(path) };
-            let is_there =
-                file.exists() && (heading.is_empty() || headings(&file).iter().any(|own| own == heading));
+            let file = if path.is_empty() {
+                root().join(&page.name)
+            } else {
+                folder.join(path)
+            };
+            let is_there = file.exists()
+                && (heading.is_empty() || headings(&file).iter().any(|own| own == heading));
             if !is_there {
                 dead.push(format!("{}: {target}", page.name));
             }
@@ -31,7 +39,9 @@ fn pages_are_all_reached_from_the_readme() {
     let mut next = 0;
     while let Some(name) = reached.get(next).cloned() {
         next += 1;
-        let Some(page) = pages.iter().find(|page| page.name == name) else { continue };
+        let Some(page) = pages.iter().find(|page| page.name == name) else {
+            continue;
+        };
         for target in targets(&page.text) {
             let path = target.split('#').next().unwrap_or_default();
             let file = Path::new(&page.name).parent().expect("a folder").join(path);
@@ -51,7 +61,10 @@ fn pages_are_all_reached_from_the_readme() {
 
 #[test]
 fn the_readme_is_short() {
-    let Page { text, .. } = pages().into_iter().find(|page| page.name == "README.md").expect("a README");
+    let Page { text, .. } = pages()
+        .into_iter()
+        .find(|page| page.name == "README.md")
+        .expect("a README");
     assert!(
         text.lines().count() <= 150 && text.len() <= 8192,
         "{} lines, {} bytes",
@@ -71,8 +84,13 @@ fn targets(text: &str) -> Vec<&str> {
         if is_code {
             continue;
         }
-        let parts = line.split("](").skip(1).filter_map(|after| after.split(')').next());
-        found.extend(parts.filter(|target| !target.contains("://") && !target.starts_with("mailto:")));
+        let parts = line
+            .split("](")
+            .skip(1)
+            .filter_map(|after| after.split(')').next());
+        found.extend(
+            parts.filter(|target| !target.contains("://") && !target.starts_with("mailto:")),
+        );
     }
     found
 }
@@ -80,11 +98,17 @@ fn targets(text: &str) -> Vec<&str> {
 /// The names by which GitHub links to the headings of a page.
 fn headings(file: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(file).unwrap_or_default();
-    let titles =
-        text.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
+    let titles = text
+        .lines()
+        .filter(|line| line.starts_with('#'))
+        .map(|line| line.trim_start_matches('#').trim());
     let slug = |title: &str| {
-        let kept = title.chars().filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
-        kept.map(|c| if c == ' ' { '-' } else { c }).collect::<String>().to_lowercase()
+        let kept = title
+            .chars()
+            .filter(|c| c.is_alphanumeric() || [' ', '-', '_'].contains(c));
+        kept.map(|c| if c == ' ' { '-' } else { c })
+            .collect::<String>()
+            .to_lowercase()
     };
     titles.map(slug).collect()
 }

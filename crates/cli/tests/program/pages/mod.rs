@@ -31,7 +31,10 @@ fn pages() -> Vec<Page> {
     let page = |file: PathBuf| {
         let below = file.strip_prefix(root()).expect("below the root");
         let name = below.to_str().expect("a name in UTF-8").to_owned();
-        Page { name, text: std::fs::read_to_string(file).expect("a page in UTF-8") }
+        Page {
+            name,
+            text: std::fs::read_to_string(file).expect("a page in UTF-8"),
+        }
     };
     files.into_iter().map(page).collect()
 }
@@ -39,7 +42,9 @@ fn pages() -> Vec<Page> {
 fn markdown_in(folder: &Path, goes_below: bool, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
-        let is_built = path.file_name().is_some_and(|name| name == "target" || name == "node_modules");
+        let is_built = path
+            .file_name()
+            .is_some_and(|name| name == "target" || name == "node_modules");
         if path.is_dir() && goes_below && !is_built {
             markdown_in(&path, true, found);
         } else if path.extension().is_some_and(|extension| extension == "md") {

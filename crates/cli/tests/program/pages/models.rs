@@ -9,12 +9,26 @@ use crate::kept::check;
 type Point = [f64; 3];
 
 /// Corners of the flange's cross-section in millimetres: radius and height.
-const FLANGE: [[f64; 2]; 6] = [[7.0, 0.0], [20.0, 0.0], [20.0, 5.0], [12.0, 5.0], [12.0, 18.0], [7.0, 18.0]];
+const FLANGE: [[f64; 2]; 6] = [
+    [7.0, 0.0],
+    [20.0, 0.0],
+    [20.0, 5.0],
+    [12.0, 5.0],
+    [12.0, 18.0],
+    [7.0, 18.0],
+];
 const FLANGE_FACETS: usize = 16;
 
 /// The vase's profile from the foot to the rim.
-const VASE: [[f64; 2]; 7] =
-    [[0.30, 0.0], [0.42, 0.10], [0.50, 0.35], [0.42, 0.65], [0.24, 0.90], [0.20, 1.05], [0.28, 1.20]];
+const VASE: [[f64; 2]; 7] = [
+    [0.30, 0.0],
+    [0.42, 0.10],
+    [0.50, 0.35],
+    [0.42, 0.65],
+    [0.24, 0.90],
+    [0.20, 1.05],
+    [0.28, 1.20],
+];
 const VASE_FACETS: usize = 12;
 
 /// The radius of the ball of voxels, in voxels.
@@ -28,11 +42,17 @@ fn example_models_are_those_that_are_made_here() {
     check("examples/models/flange.stl", &stl(&flange()));
     check("examples/models/voxels.stl", &stl(&voxels()));
     check("examples/models/vase.obj", vase_obj().as_bytes());
-    check("examples/models/vase.mtl", b"newmtl clay\nKd 0.9 0.8 0.7\nmap_Kd vase.png\n");
+    check(
+        "examples/models/vase.mtl",
+        b"newmtl clay\nKd 0.9 0.8 0.7\nmap_Kd vase.png\n",
+    );
     check("examples/models/vase.png", &checker());
     check("examples/models/vase.glb", &vase_glb());
     for frame in 1..=3 {
-        check(&format!("examples/models/flag_{frame}.obj"), flag(frame).as_bytes());
+        check(
+            &format!("examples/models/flag_{frame}.obj"),
+            flag(frame).as_bytes(),
+        );
     }
 }
 
@@ -49,11 +69,19 @@ fn turned([radius, height]: [f64; 2], turn: f64) -> Point {
 /// A ring with a hub and a bore, of flat facets.
 fn flange() -> Vec<[Point; 3]> {
     let at = |corner: usize, facet: usize| {
-        turned(FLANGE[corner % FLANGE.len()], (facet % FLANGE_FACETS) as f64 / FLANGE_FACETS as f64)
+        turned(
+            FLANGE[corner % FLANGE.len()],
+            (facet % FLANGE_FACETS) as f64 / FLANGE_FACETS as f64,
+        )
     };
     let quads = (0..FLANGE_FACETS).flat_map(|facet| {
         (0..FLANGE.len()).map(move |corner| {
-            [at(corner, facet), at(corner, facet + 1), at(corner + 1, facet + 1), at(corner + 1, facet)]
+            [
+                at(corner, facet),
+                at(corner, facet + 1),
+                at(corner + 1, facet + 1),
+                at(corner + 1, facet),
+            ]
         })
     });
     quads.flat_map(halves).collect()
@@ -87,7 +115,9 @@ fn cells(reach: i32) -> impl Iterator<Item = [i32; 3]> {
     let range = -reach..=reach;
     range.clone().flat_map(move |x| {
         let range = range.clone();
-        range.clone().flat_map(move |y| range.clone().map(move |z| [x, y, z]))
+        range
+            .clone()
+            .flat_map(move |y| range.clone().map(move |z| [x, y, z]))
     })
 }
 
@@ -101,7 +131,12 @@ fn stl(triangles: &[[Point; 3]]) -> Vec<u8> {
     bytes.extend((triangles.len() as u32).to_le_bytes());
     for corners in triangles {
         bytes.extend([0; 12]);
-        bytes.extend(corners.as_flattened().iter().flat_map(|&x| (x as f32).to_le_bytes()));
+        bytes.extend(
+            corners
+                .as_flattened()
+                .iter()
+                .flat_map(|&x| (x as f32).to_le_bytes()),
+        );
         bytes.extend([0; 2]);
     }
     bytes
@@ -113,7 +148,10 @@ fn vase() -> (Vec<Point>, Vec<[f64; 2]>, Vec<[usize; 3]>) {
     let (mut points, mut texture) = (Vec::new(), Vec::new());
     for (level, &corner) in VASE.iter().enumerate() {
         for facet in 0..row {
-            points.push(turned(corner, (facet % VASE_FACETS) as f64 / VASE_FACETS as f64));
+            points.push(turned(
+                corner,
+                (facet % VASE_FACETS) as f64 / VASE_FACETS as f64,
+            ));
             texture.push([
                 rounded(facet as f64 / VASE_FACETS as f64),
                 rounded(level as f64 / (VASE.len() - 1) as f64),
@@ -137,8 +175,12 @@ fn vase() -> (Vec<Point>, Vec<[f64; 2]>, Vec<[usize; 3]>) {
 fn vase_obj() -> String {
     let (points, texture, triangles) = vase();
     let mut text = "mtllib vase.mtl\n".to_owned();
-    points.iter().for_each(|[x, y, z]| text.push_str(&format!("v {x} {y} {z}\n")));
-    texture.iter().for_each(|[u, v]| text.push_str(&format!("vt {u} {v}\n")));
+    points
+        .iter()
+        .for_each(|[x, y, z]| text.push_str(&format!("v {x} {y} {z}\n")));
+    texture
+        .iter()
+        .for_each(|[u, v]| text.push_str(&format!("vt {u} {v}\n")));
     text.push_str("usemtl clay\n");
     for triangle in triangles {
         let [a, b, c] = triangle.map(|i| i + 1);
@@ -154,8 +196,13 @@ fn checker() -> Vec<u8> {
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::NoCompression);
     let colours = [[214, 120, 72], [250, 232, 200]];
-    let pixels: Vec<u8> = (0..16 * 8).flat_map(|i| colours[(i % 16 + i / 16) % 2]).collect();
-    encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels)).expect("a picture");
+    let pixels: Vec<u8> = (0..16 * 8)
+        .flat_map(|i| colours[(i % 16 + i / 16) % 2])
+        .collect();
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&pixels))
+        .expect("a picture");
     bytes
 }
 
@@ -164,15 +211,29 @@ fn vase_glb() -> Vec<u8> {
     let (points, texture, triangles) = vase();
     let floats = |x: f64| (x as f32).to_le_bytes();
     let mut parts: [Vec<u8>; 4] = [
-        points.as_flattened().iter().flat_map(|&x| floats(x)).collect(),
-        texture.iter().flat_map(|&[u, v]| [u, 1.0 - v]).flat_map(floats).collect(),
-        triangles.as_flattened().iter().flat_map(|&i| (i as u16).to_le_bytes()).collect(),
+        points
+            .as_flattened()
+            .iter()
+            .flat_map(|&x| floats(x))
+            .collect(),
+        texture
+            .iter()
+            .flat_map(|&[u, v]| [u, 1.0 - v])
+            .flat_map(floats)
+            .collect(),
+        triangles
+            .as_flattened()
+            .iter()
+            .flat_map(|&i| (i as u16).to_le_bytes())
+            .collect(),
         checker(),
     ];
     let mut views = Vec::new();
     let mut start = 0;
     for part in &mut parts {
-        views.push(serde_json::json!({ "buffer": 0, "byteOffset": start, "byteLength": part.len() }));
+        views.push(
+            serde_json::json!({ "buffer": 0, "byteOffset": start, "byteLength": part.len() }),
+        );
         part.resize(part.len().next_multiple_of(4), 0);
         start += part.len();
     }
@@ -198,8 +259,9 @@ fn vase_glb() -> Vec<u8> {
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
     let mut bytes = b"glTF".to_vec();
-    let chunk =
-        |kind: &[u8; 4], content: &[u8]| [&(content.len() as u32).to_le_bytes()[..], kind, content].concat();
+    let chunk = |kind: &[u8; 4], content: &[u8]| {
+        [&(content.len() as u32).to_le_bytes()[..], kind, content].concat()
+    };
     let chunks = [chunk(b"JSON", &text), chunk(b"BIN\0", &parts.concat())].concat();
     bytes.extend(2u32.to_le_bytes());
     bytes.extend((12 + chunks.len() as u32).to_le_bytes());

@@ -69,32 +69,49 @@ impl MovedFour {
     #[inline(never)]
     pub(crate) fn bounds(&self, part: &BentFour, scale: f64) -> FoundFour {
         let [from, second, third] = self.corners.each_ref().map(vectors);
-        let [to_second, to_third] = [second, third].map(|to| minus(&to, &from).map(|axis| axis * scale));
+        let [to_second, to_third] =
+            [second, third].map(|to| minus(&to, &from).map(|axis| axis * scale));
         let triangle = Triangle::of(to_second, to_third);
-        let bends = part.bends.each_ref().map(|bend| bend.each_ref().map(single));
-        let [rest, curve, steep, first] = [&part.rest, &part.curve, &part.steep, &part.first].map(single);
+        let bends = part
+            .bends
+            .each_ref()
+            .map(|bend| bend.each_ref().map(single));
+        let [rest, curve, steep, first] =
+            [&part.rest, &part.curve, &part.steep, &part.first].map(single);
         let (lifts, moved, aside) = triangle.lifts(self.steps.each_ref().map(vectors), scale);
-        let (low, high) = quadratic_range(bends.each_ref().map(|bend| dot(bend, &triangle.normal)), lifts);
+        let (low, high) = quadratic_range(
+            bends.each_ref().map(|bend| dot(bend, &triangle.normal)),
+            lifts,
+        );
         let height = high.fast_max(-low);
         let beside = triangle.beside(&bends, curve, steep);
         let opposite = [from, second, third].map(|corner| corner.map(|axis| axis * scale));
         let around = triangle.around(&opposite, self.opposite.each_ref().map(vectors), scale);
-        let is_plain =
-            triangle.has_plane & beside.is_plain & triangle.is_unfolded(&bends, first) & around.is_known;
+        let is_plain = triangle.has_plane
+            & beside.is_plain
+            & triangle.is_unfolded(&bends, first)
+            & around.is_known;
         // As `BesideEdges::deviation_off` and `Deviation::bound` have it.
         let (most, off) = (height + rest, beside.side + aside);
         let own = (most * most + off * off).sqrt().fast_max(moved);
         let at_corners = most.fast_max(moved);
         let apart = (at_corners * at_corners + 4.0 * aside * aside).sqrt();
         let within = |edge: usize| beside.slopes[edge].simd_le(around.slopes[edge]);
-        let is_helped = within(0) & within(1) & within(2) & around.squared.simd_le(f64x4::splat(SHARPEST));
-        let among = apart * (1.0 + 0.5 * around.squared) + around.squared.sqrt() * (beside.drift + aside);
+        let is_helped =
+            within(0) & within(1) & within(2) & around.squared.simd_le(f64x4::splat(SHARPEST));
+        let among =
+            apart * (1.0 + 0.5 * around.squared) + around.squared.sqrt() * (beside.drift + aside);
         let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
         FoundFour {
-            bound: is_plain.bitselect(bound * share, f64x4::splat(f64::INFINITY)).to_array(),
+            bound: is_plain
+                .bitselect(bound * share, f64x4::splat(f64::INFINITY))
+                .to_array(),
             height: (height * share).to_array(),
-            least: triangle.has_plane.bitselect((height - rest) * share, f64x4::ZERO).to_array(),
+            least: triangle
+                .has_plane
+                .bitselect((height - rest) * share, f64x4::ZERO)
+                .to_array(),
         }
     }
 }
@@ -103,7 +120,11 @@ impl Triangle {
     /// The triangles with these edges from their first corners.
     #[inline(always)]
     fn of(to_second: Vectors, to_third: Vectors) -> Self {
-        let edges = [to_second, minus(&to_third, &to_second), to_third.map(|axis| -axis)];
+        let edges = [
+            to_second,
+            minus(&to_third, &to_second),
+            to_third.map(|axis| -axis),
+        ];
         let across = cross(&to_second, &to_third);
         let area = dot(&across, &across).sqrt();
         let share = 1.0 / area;
@@ -125,7 +146,8 @@ impl Triangle {
         let lifts = steps.map(|step| {
             let step = step.map(|axis| axis * scale);
             let lift = dot(&step, &self.normal);
-            let within: Vectors = core::array::from_fn(|axis| step[axis] - lift * self.normal[axis]);
+            let within: Vectors =
+                core::array::from_fn(|axis| step[axis] - lift * self.normal[axis]);
             moved = moved.fast_max(dot(&step, &step));
             aside = aside.fast_max(dot(&within, &within));
             -lift
@@ -146,15 +168,20 @@ impl Triangle {
             let along = (dot(&bends[edge], &self.edges[edge]) * share).abs();
             let room = self.lengths[edge] - (0.5 * along + steep);
             let half = 0.5 * outward;
-            let stays =
-                (half.abs() + steep).simd_le(room * tangents[edge].fast_min(tangents[(edge + 1) % 3]));
+            let stays = (half.abs() + steep)
+                .simd_le(room * tangents[edge].fast_min(tangents[(edge + 1) % 3]));
             is_plain = is_plain & room.simd_gt(zero) & stays;
             side = side.fast_max(0.125 * outward.abs() + curve);
             // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
             drift = drift.fast_max(0.125 * outward.fast_max(zero) + curve);
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
-        Beside { side, drift, slopes, is_plain }
+        Beside {
+            side,
+            drift,
+            slopes,
+            is_plain,
+        }
     }
 
     /// Whether no two points come to one place, by changes of barycentric coordinates times the area.
@@ -171,8 +198,11 @@ impl Triangle {
         let [a, b, c] = self.lengths.map(|length| length * length);
         // What the metric stretches lengths by at most, times the area.
         let half_trace = 0.25 * (a + b + c);
-        let stretch =
-            (half_trace + (half_trace * half_trace - 0.75 * square).fast_max(f64x4::ZERO).sqrt()).sqrt();
+        let stretch = (half_trace
+            + (half_trace * half_trace - 0.75 * square)
+                .fast_max(f64x4::ZERO)
+                .sqrt())
+        .sqrt();
         (most.sqrt() + DIRECTIONS * first * stretch).simd_lt(NEARLY_ONE * self.area)
     }
 
@@ -184,8 +214,11 @@ impl Triangle {
             let lengths = self.lengths[corner] * self.lengths[(corner + 2) % 3];
             (lengths + self.products[corner]) * share
         });
-        let mut around =
-            Around { squared: f64x4::ZERO, slopes: free, is_known: f64x4::ZERO.simd_eq(f64x4::ZERO) };
+        let mut around = Around {
+            squared: f64x4::ZERO,
+            slopes: free,
+            is_known: f64x4::ZERO.simd_eq(f64x4::ZERO),
+        };
         for edge in 0..3 {
             let out = minus(&opposite[edge].map(|axis| axis * scale), &corners[edge]);
             let across = cross(&out, &self.edges[edge]);
@@ -195,9 +228,12 @@ impl Triangle {
             around.squared = around.squared.fast_max(dot(&apart, &apart));
             let at_start = dot(&out, &self.edges[edge]);
             let product = at_start.fast_max(self.lengths[edge] * self.lengths[edge] - at_start);
-            around.slopes[edge] = free[edge].fast_min(free[(edge + 1) % 3]).fast_min(area / product);
-            around.is_known =
-                around.is_known & area.simd_gt(f64x4::ZERO) & area.simd_lt(f64x4::splat(f64::INFINITY));
+            around.slopes[edge] = free[edge]
+                .fast_min(free[(edge + 1) % 3])
+                .fast_min(area / product);
+            around.is_known = around.is_known
+                & area.simd_gt(f64x4::ZERO)
+                & area.simd_lt(f64x4::splat(f64::INFINITY));
         }
         around
     }
@@ -216,7 +252,10 @@ pub(super) fn quadratic_range([p, q, s]: [f64x4; 3], [a, b, c]: [f64x4; 3]) -> (
         let rise = to - from;
         // Where the derivative along the edge vanishes.
         let is_met = (2.0 * rise.abs()).simd_lt(bend.abs());
-        take(is_met, 0.5 * (from + to) - 0.125 * bend - 0.5 * rise * rise / bend);
+        take(
+            is_met,
+            0.5 * (from + to) - 0.125 * bend - 0.5 * rise * rise / bend,
+        );
     }
     // Where both derivatives from the first corner do.
     let mixed = p + s - q;
@@ -230,13 +269,20 @@ pub(super) fn quadratic_range([p, q, s]: [f64x4; 3], [a, b, c]: [f64x4; 3]) -> (
         & second.simd_gt(zero)
         & third.simd_gt(zero)
         & (second + third).simd_lt(f64x4::splat(1.0));
-    take(is_inside, a - 0.25 * (second * by_second + third * by_third));
+    take(
+        is_inside,
+        a - 0.25 * (second * by_second + third * by_third),
+    );
     (low, high)
 }
 
 #[inline(always)]
 fn vectors(rows: &[[f64; FOUR]; 3]) -> Vectors {
-    [f64x4::new(rows[0]), f64x4::new(rows[1]), f64x4::new(rows[2])]
+    [
+        f64x4::new(rows[0]),
+        f64x4::new(rows[1]),
+        f64x4::new(rows[2]),
+    ]
 }
 
 #[inline(always)]

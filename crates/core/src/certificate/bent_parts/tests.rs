@@ -35,12 +35,20 @@ impl Case {
         let spots: [[f64; 3]; FOUR] = from_fn(|_| {
             let size = 0.5f64.powi(1 + (4.0 * random.signed().abs()) as i32);
             let [u, v] = [0.25 + 0.24 * random.signed(), 0.25 + 0.24 * random.signed()];
-            if random.signed() > 0.0 { [u, v, size] } else { [u + size, v + size, -size] }
+            if random.signed() > 0.0 {
+                [u, v, size]
+            } else {
+                [u + size, v + size, -size]
+            }
         });
         let cells = spots.map(|[u, v, size]| {
             let [a, b, c] = [[u, v], [u + size, v], [u, v + size]];
             let half = [u + 0.5 * size, v + 0.5 * size];
-            if is_even { Cell([a, b, c]) } else { Cell([a, b, half]) }
+            if is_even {
+                Cell([a, b, c])
+            } else {
+                Cell([a, b, half])
+            }
         });
         let jet = QuarticJet::of(&piece);
         let bender = Bender::of(&jet);
@@ -48,7 +56,9 @@ impl Case {
             let [u, v, size] = from_fn(|i| f64x4::new(spots.map(|spot| spot[i])));
             bender.even([u, v], size)
         } else {
-            bender.any(from_fn(|i| from_fn(|axis| f64x4::new(cells.map(|cell| cell.0[i][axis])))))
+            bender.any(from_fn(|i| {
+                from_fn(|axis| f64x4::new(cells.map(|cell| cell.0[i][axis])))
+            }))
         };
         let mut moved = MovedFour::default();
         for (l, cell) in cells.iter().enumerate() {
@@ -59,7 +69,8 @@ impl Case {
                 let [by_u, by_v] = piece.tangents(u, v);
                 (1.0 + 0.3 * random.signed()) * far * (by_u / unit).cross(by_v / unit).normalize()
             });
-            let corners: [DVec3; 3] = from_fn(|i| piece.point(cell.0[i][0], cell.0[i][1]) + steps[i]);
+            let corners: [DVec3; 3] =
+                from_fn(|i| piece.point(cell.0[i][0], cell.0[i][1]) + steps[i]);
             for i in 0..3 {
                 let [start, end, other] = [0, 1, 2].map(|k| corners[(i + k) % 3]);
                 let opposite = start + end - other + 0.1 * size * random.vector();
@@ -70,7 +81,13 @@ impl Case {
                 }
             }
         }
-        Self { piece, cells, bent, moved, scale: crate::patch::reciprocal_power(unit) }
+        Self {
+            piece,
+            cells,
+            bent,
+            moved,
+            scale: crate::patch::reciprocal_power(unit),
+        }
     }
 
     fn vectors(rows: &[[[f64; FOUR]; 3]; 3], l: usize) -> [DVec3; 3] {
@@ -79,7 +96,8 @@ impl Case {
 
     /// The corners of a triangle, how they were moved, and those opposite.
     fn triangle(&self, l: usize) -> [[DVec3; 3]; 3] {
-        [&self.moved.corners, &self.moved.steps, &self.moved.opposite].map(|rows| Self::vectors(rows, l))
+        [&self.moved.corners, &self.moved.steps, &self.moved.opposite]
+            .map(|rows| Self::vectors(rows, l))
     }
 }
 
@@ -96,7 +114,9 @@ fn four_at_once_come_to_what_each_comes_to() {
             let frame = TriangleFrame::new(corners);
             let lifts = steps.map(|step| -frame.normal().dot(step));
             let aside = steps.map(|step| step.reject_from_normalized(frame.normal()).length());
-            let (height, rest) = jet.heights(&case.cells[l], frame.normal()).lifted_range(lifts);
+            let (height, rest) = jet
+                .heights(&case.cells[l], frame.normal())
+                .lifted_range(lifts);
             let open = [false; 3];
             let by_piece = jet.beside(&case.cells[l], &frame, open);
             let beside = jet.beside_closely(&by_piece, &case.cells[l], &frame, open);
@@ -105,21 +125,35 @@ fn four_at_once_come_to_what_each_comes_to() {
             let (squared, slopes) = around(corners, &opposite.map(Some));
             // By derivatives of the part itself, and by those of all of its piece.
             let [expected, loosely] = [beside, by_piece].map(|beside| {
-                beside.deviation_off(height + rest, moved, aside).bound(squared.sqrt(), slopes)
+                beside
+                    .deviation_off(height + rest, moved, aside)
+                    .bound(squared.sqrt(), slopes)
             });
             let unit = 1.0 / case.scale;
-            assert!((found.height[l] - height).abs() <= 1e-6 * unit, "round {round}: {found:?} {height}");
-            assert!(found.least[l] <= height - rest + 1e-12 * unit, "round {round}: {found:?}");
+            assert!(
+                (found.height[l] - height).abs() <= 1e-6 * unit,
+                "round {round}: {found:?} {height}"
+            );
+            assert!(
+                found.least[l] <= height - rest + 1e-12 * unit,
+                "round {round}: {found:?}"
+            );
             if found.bound[l].is_infinite() {
                 continue;
             }
             assert!(!beside.is_loose(), "round {round}");
-            assert!(found.bound[l] >= expected - 1e-12 * unit, "round {round}: {found:?} {expected}");
+            assert!(
+                found.bound[l] >= expected - 1e-12 * unit,
+                "round {round}: {found:?} {expected}"
+            );
             bounded += 1;
             tight += usize::from(found.bound[l] <= 1.05 * loosely + 1e-6 * unit);
         }
     }
-    assert!(bounded > 4000 && tight * 10 > bounded * 8, "{tight} of {bounded}");
+    assert!(
+        bounded > 4000 && tight * 10 > bounded * 8,
+        "{tight} of {bounded}"
+    );
 }
 
 #[test]
@@ -150,8 +184,14 @@ fn dense_samples_lie_within_the_bounds_of_moved_triangles() {
                     from_fn(|axis| a[axis] + s * (b[axis] - a[axis]) + r * (c[axis] - a[axis]));
                 let point = case.piece.point(u, v) * case.scale;
                 let distance = frame.squared(point).sqrt() * unit;
-                assert!(distance <= found.bound[l] + 1e-12 * unit, "round {round}: {distance} {found:?}");
-                assert!(i + j > 0 || found.least[l] <= found.height[l], "round {round}");
+                assert!(
+                    distance <= found.bound[l] + 1e-12 * unit,
+                    "round {round}: {distance} {found:?}"
+                );
+                assert!(
+                    i + j > 0 || found.least[l] <= found.height[l],
+                    "round {round}"
+                );
             }
             counted += 1;
         }
@@ -185,7 +225,10 @@ fn what_is_no_number_has_no_bound() {
         let fails = found.least[1] > 0.0;
         assert!(found.bound[1] == f64::INFINITY && !fails, "{found:?}");
         let unknown = case.moved.bounds(&BentFour::UNKNOWN, case.scale);
-        assert!(unknown.bound == [f64::INFINITY; FOUR] && unknown.least.iter().all(|&least| least <= 0.0));
+        assert!(
+            unknown.bound == [f64::INFINITY; FOUR]
+                && unknown.least.iter().all(|&least| least <= 0.0)
+        );
         let overflowing = Case::random(&mut random, 0).bent.kept(1e40);
         assert_eq!(overflowing.rest, [f32::INFINITY; FOUR]);
     }

@@ -26,7 +26,13 @@ fn piece(random: &mut Random, valence: usize, noise: f64) -> ExtraordinaryPatch 
 }
 
 /// Points of the surface over a patch, with their barycentric coordinates.
-fn sample(patch: &Patch, rules: &Rules<'_>, at: [DVec3; 3], depth: usize, found: &mut Vec<(DVec3, DVec3)>) {
+fn sample(
+    patch: &Patch,
+    rules: &Rules<'_>,
+    at: [DVec3; 3],
+    depth: usize,
+    found: &mut Vec<(DVec3, DVec3)>,
+) {
     let refined = patch.refined(rules);
     let middles = [0, 1, 2].map(|edge| 0.5 * (at[edge] + at[(edge + 1) % 3]));
     (0..3).for_each(|edge| found.push((middles[edge], refined.middle(edge).position)));
@@ -74,9 +80,11 @@ fn corners(part: SubTriangle) -> [DVec3; 3] {
             corners[(part + 2) % 3] = middle(part + 2);
             corners
         }
-        SubTriangle::Quarter { edge, at_end } => {
-            [whole[(edge + usize::from(at_end)) % 3], middle(edge + 1), middle(edge + 2)]
-        }
+        SubTriangle::Quarter { edge, at_end } => [
+            whole[(edge + usize::from(at_end)) % 3],
+            middle(edge + 1),
+            middle(edge + 2),
+        ],
     }
 }
 
@@ -88,9 +96,17 @@ fn bounds_hold_for_every_part_and_valence() {
     let parts = (0..3).flat_map(|edge| {
         let half = |second| SubTriangle::Half { edge, second };
         let quarter = |at_end| SubTriangle::Quarter { edge, at_end };
-        [SubTriangle::Child(edge), half(false), half(true), quarter(false), quarter(true)]
+        [
+            SubTriangle::Child(edge),
+            half(false),
+            half(true),
+            quarter(false),
+            quarter(true),
+        ]
     });
-    let parts: Vec<SubTriangle> = parts.chain([SubTriangle::Whole, SubTriangle::Child(3)]).collect();
+    let parts: Vec<SubTriangle> = parts
+        .chain([SubTriangle::Whole, SubTriangle::Child(3)])
+        .collect();
     for valence in 3..=20 {
         for noise in [0.0, 0.01, 0.2] {
             let patch = match piece(&mut random, valence, noise) {
@@ -99,21 +115,42 @@ fn bounds_hold_for_every_part_and_valence() {
                 piece => Patch::Extraordinary(Box::new(piece)),
             };
             let mut samples = Vec::new();
-            sample(&patch, &rules, [DVec3::X, DVec3::Y, DVec3::Z], 5, &mut samples);
+            sample(
+                &patch,
+                &rules,
+                [DVec3::X, DVec3::Y, DVec3::Z],
+                5,
+                &mut samples,
+            );
             for (corner, at) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
                 samples.push((at, limit(&patch, &rules, corner)));
             }
             for &part in &parts {
                 let at = corners(part);
-                let position = |at: DVec3| samples.iter().find(|s| s.0.distance(at) < 1e-12).unwrap().1;
+                let position =
+                    |at: DVec3| samples.iter().find(|s| s.0.distance(at) < 1e-12).unwrap().1;
                 let triangle = at.map(position);
                 let frame = TriangleFrame::new(triangle);
                 let matrix = glam::DMat3::from_cols(at[0], at[1], at[2]).inverse();
-                let inside: Vec<DVec3> =
-                    samples.iter().filter(|s| (matrix * s.0).min_element() > -1e-12).map(|s| s.1).collect();
-                let farthest = inside.iter().map(|&p| frame.squared(p)).fold(0.0, f64::max).sqrt();
-                let highest = inside.iter().map(|&p| frame.height(p).abs()).fold(0.0, f64::max);
-                for (target, slope) in [(0.0, 0.5), (0.5 * farthest, 0.2), (2.0 * farthest, f64::MAX)] {
+                let inside: Vec<DVec3> = samples
+                    .iter()
+                    .filter(|s| (matrix * s.0).min_element() > -1e-12)
+                    .map(|s| s.1)
+                    .collect();
+                let farthest = inside
+                    .iter()
+                    .map(|&p| frame.squared(p))
+                    .fold(0.0, f64::max)
+                    .sqrt();
+                let highest = inside
+                    .iter()
+                    .map(|&p| frame.height(p).abs())
+                    .fold(0.0, f64::max);
+                for (target, slope) in [
+                    (0.0, 0.5),
+                    (0.5 * farthest, 0.2),
+                    (2.0 * farthest, f64::MAX),
+                ] {
                     let effort = Effort {
                         target,
                         halvings: 3,
@@ -159,10 +196,20 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
         least_chord: None,
     };
     let fails = |patch: &Patch, corners: [DVec3; 3], open: bool, what: &str| {
-        let effort = Effort { open: [open; 3], ..effort };
-        let found =
-            Pieces::of(patch).deviation(SubTriangle::Whole, &TriangleFrame::new(corners), &rules, effort);
-        assert!(exceeds(found.bound(0.1, [0.5; 3]), f64::MAX), "{what}: {found:?}");
+        let effort = Effort {
+            open: [open; 3],
+            ..effort
+        };
+        let found = Pieces::of(patch).deviation(
+            SubTriangle::Whole,
+            &TriangleFrame::new(corners),
+            &rules,
+            effort,
+        );
+        assert!(
+            exceeds(found.bound(0.1, [0.5; 3]), f64::MAX),
+            "{what}: {found:?}"
+        );
     };
     for bad in [f64::NAN, f64::INFINITY] {
         for open in [false, true] {
@@ -177,17 +224,33 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
                 for at in 0..valence {
                     let mut piece = piece.clone();
                     piece.ring[at].y = bad;
-                    fails(&Patch::Extraordinary(Box::new(piece)), triangle, open, "ring");
+                    fails(
+                        &Patch::Extraordinary(Box::new(piece)),
+                        triangle,
+                        open,
+                        "ring",
+                    );
                 }
                 let mut piece = piece;
                 piece.at.x = bad;
-                fails(&Patch::Extraordinary(Box::new(piece)), triangle, open, "vertex");
+                fails(
+                    &Patch::Extraordinary(Box::new(piece)),
+                    triangle,
+                    open,
+                    "vertex",
+                );
             }
             for at in 0..12 {
-                let mut points = [DVec3::ZERO; 12].map(|_| DVec3::new(random.signed(), random.signed(), 0.0));
+                let mut points =
+                    [DVec3::ZERO; 12].map(|_| DVec3::new(random.signed(), random.signed(), 0.0));
                 points[at].x = bad;
                 fails(&Patch::Regular(points), triangle, open, "regular");
-                fails(&Patch::Regular(points), [DVec3::X; 3], open, "triangle without area");
+                fails(
+                    &Patch::Regular(points),
+                    [DVec3::X; 3],
+                    open,
+                    "triangle without area",
+                );
             }
         }
     }
@@ -214,12 +277,19 @@ fn nothing_is_given_up_that_could_pass() {
             gives_up: false,
             least_chord: None,
         };
-        let some = Effort { gives_up: true, least_chord: Some(chord.min(all.chord)), ..all };
+        let some = Effort {
+            gives_up: true,
+            least_chord: Some(chord.min(all.chord)),
+            ..all
+        };
         let [whole, found] = [all, some]
             .map(|effort| Pieces::of(&patch).deviation(SubTriangle::Whole, &frame, &rules, effort));
         if found.own == f64::INFINITY {
             given_up += 1;
-            assert!(whole.bound(chord, [0.4; 3]) > all.target && whole.bound(0.3, [0.6; 3]) > all.target);
+            assert!(
+                whole.bound(chord, [0.4; 3]) > all.target
+                    && whole.bound(0.3, [0.6; 3]) > all.target
+            );
         } else {
             kept += 1;
             assert_eq!(whole, found);

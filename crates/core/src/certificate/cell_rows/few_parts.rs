@@ -43,12 +43,18 @@ impl FewParts {
         let mut count = 0;
         for j in 0..=n {
             for i in 0..=n - j {
-                (u[count], v[count]) = (block.at[0] + step * i as f64, block.at[1] + step * j as f64);
+                (u[count], v[count]) =
+                    (block.at[0] + step * i as f64, block.at[1] + step * j as f64);
                 count += 1;
             }
         }
         let [mut points, mut normals] = [[[0.0; FEW_CORNERS]; 3]; 2];
-        let fours = u.as_chunks::<4>().0.iter().zip(v.as_chunks::<4>().0).enumerate();
+        let fours = u
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .zip(v.as_chunks::<4>().0)
+            .enumerate();
         for (four, (u, v)) in fours.take(count.div_ceil(4)) {
             let [at, normal] = block.piece.points_and_normals_at(u, v);
             for axis in 0..3 {
@@ -62,7 +68,11 @@ impl FewParts {
         for j in 0..n {
             for i in 0..n - j {
                 self.places[number] = (i, j, false);
-                self.set_corners(number, [corner(i, j), corner(i + 1, j), corner(i, j + 1)], all);
+                self.set_corners(
+                    number,
+                    [corner(i, j), corner(i + 1, j), corner(i, j + 1)],
+                    all,
+                );
                 number += 1;
             }
         }
@@ -71,10 +81,16 @@ impl FewParts {
         for j in 0..n - 1 {
             for i in 0..n - 1 - j {
                 self.places[number] = (i, j, true);
-                self.set_corners(number, [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)], all);
+                self.set_corners(
+                    number,
+                    [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)],
+                    all,
+                );
                 let beside = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
                 for (bends, from) in self.bends.iter_mut().zip(beside) {
-                    bends.iter_mut().for_each(|bends| bends[number] = bends[from]);
+                    bends
+                        .iter_mut()
+                        .for_each(|bends| bends[number] = bends[from]);
                 }
                 number += 1;
             }

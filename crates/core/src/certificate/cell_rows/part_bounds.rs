@@ -86,7 +86,13 @@ pub(super) struct Found {
 impl Default for Found {
     fn default() -> Self {
         let [bound, low, tilt, slope, drift_slope] = [[0.0; WIDTH]; 5];
-        Self { bound, low, tilt, slope, drift_slope }
+        Self {
+            bound,
+            low,
+            tilt,
+            slope,
+            drift_slope,
+        }
     }
 }
 
@@ -113,9 +119,15 @@ pub(super) fn measure(
     let [e0, e1] = parts.edges.map(|row| by_fours(row, fours));
     let [m0, m1, m2] = parts.normals.map(|row| by_fours(row, fours));
     let [w0, w1, w2] = parts.bends.map(|row| by_fours(row, fours));
-    let Found { bound, low, tilt: tilts, slope: slopes, drift_slope: drift_slopes } = found;
-    let [bound, low, tilts, slopes, drift_slopes] =
-        [bound, low, tilts, slopes, drift_slopes].map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
+    let Found {
+        bound,
+        low,
+        tilt: tilts,
+        slope: slopes,
+        drift_slope: drift_slopes,
+    } = found;
+    let [bound, low, tilts, slopes, drift_slopes] = [bound, low, tilts, slopes, drift_slopes]
+        .map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
     let (allowed, share) = (below(target.slope), below(target.drift_share));
     let neighbour = above(target.tilt);
     let range_share = below(target.range_share);
@@ -141,7 +153,9 @@ pub(super) fn measure(
             & beside.slope.simd_le(f32x4::splat(allowed))
             & (chord * chord).simd_le(f32x4::splat(SHARPEST));
         let value = (height * (1.0 + 0.5 * chord * chord) + chord * beside.drift) * A_LITTLE_MORE;
-        bound[i] = is_plain.bitselect(value, f32x4::splat(f32::INFINITY)).to_array();
+        bound[i] = is_plain
+            .bitselect(value, f32x4::splat(f32::INFINITY))
+            .to_array();
         low[i] = (least - rest.height).to_array();
         tilts[i] = tilt.to_array();
         slopes[i] = triangle.slope().to_array();
@@ -192,7 +206,19 @@ impl Triangle {
         let longest = larger(squares);
         let (length, unsure) = (longest.sqrt(), UNSURE * longest / area);
         let products = [dot(a, b), -dot(a, c), dot(b, c)];
-        Self { a, b, c, facing, area, normal, squares, longest, length, products, unsure }
+        Self {
+            a,
+            b,
+            c,
+            facing,
+            area,
+            normal,
+            squares,
+            longest,
+            length,
+            products,
+            unsure,
+        }
     }
 
     /// The chord between the triangle's normal and those at its corners.
@@ -213,16 +239,38 @@ impl Triangle {
 
     /// By the second derivatives outwards, times the edges' lengths.
     #[inline(always)]
-    fn beside(&self, [wa, wc, wb]: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder, share: f32) -> Beside {
-        let Self { a, b, c, normal, area, squares: [la, lb, lc], .. } = *self;
-        let out = [-dot(*wa, cross(a, normal)), dot(*wb, cross(b, normal)), -dot(*wc, cross(c, normal))];
+    fn beside(
+        &self,
+        [wa, wc, wb]: &[[f32x4; 3]; 3],
+        off: f32x4,
+        rest: &Remainder,
+        share: f32,
+    ) -> Beside {
+        let Self {
+            a,
+            b,
+            c,
+            normal,
+            area,
+            squares: [la, lb, lc],
+            ..
+        } = *self;
+        let out = [
+            -dot(*wa, cross(a, normal)),
+            dot(*wb, cross(b, normal)),
+            -dot(*wc, cross(c, normal)),
+        ];
         let out = out.map(|out| self.facing * out);
         let steep = rest.steep * self.length + off;
         let less = steep + self.unsure * self.longest;
         let ratio = |out: f32x4, bend: &[f32x4; 3], edge: [f32x4; 3], square: f32x4| {
             (0.5 * out.abs() + steep) / (square - 0.5 * dot(*bend, edge).abs() - less)
         };
-        let (ra, rb, rc) = (ratio(out[0], wa, a, la), ratio(out[1], wb, b, lb), ratio(out[2], wc, c, lc));
+        let (ra, rb, rc) = (
+            ratio(out[0], wa, a, la),
+            ratio(out[1], wb, b, lb),
+            ratio(out[2], wc, c, lc),
+        );
         // Negative where there is no room at all.
         let zero = f32x4::ZERO;
         let is_roomy = ra.simd_ge(zero) & rb.simd_ge(zero) & rc.simd_ge(zero);
@@ -233,7 +281,11 @@ impl Triangle {
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
             & (rb * larger([third, first, area])).simd_le(most);
-        Beside { drift, slope: larger([ra, rb, rc]) * A_LITTLE_MORE, is_plain: is_roomy & stays }
+        Beside {
+            drift,
+            slope: larger([ra, rb, rc]) * A_LITTLE_MORE,
+            is_plain: is_roomy & stays,
+        }
     }
 
     /// Whether no two points come to one place (see `quartic_cell`), by changes of barycentric coordinates times the area.
@@ -262,7 +314,9 @@ fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
     let total = l0 + l1 + l2;
     let share = 1.0 / total;
     let inner = (0.5 * (p * share) * q * s).abs();
-    let is_known = total.abs().simd_gt((UNKNOWN * most * most).fast_max(f32x4::splat(VANISHING)));
+    let is_known = total
+        .abs()
+        .simd_gt((UNKNOWN * most * most).fast_max(f32x4::splat(VANISHING)));
     let outside = f32x4::splat(-NEARLY);
     let is_inside = [l0, l1, l2].map(|l| (l * share).simd_gt(outside));
     let known = is_known & is_inside[0] & is_inside[1] & is_inside[2] & inner;
@@ -338,7 +392,11 @@ fn dot(a: [f32x4; 3], b: [f32x4; 3]) -> f32x4 {
 
 #[inline(always)]
 fn cross(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 #[inline(always)]

@@ -38,13 +38,23 @@ fn samples_lie_within(range_share: f64) {
     for round in 0..60 {
         let piece = piece(&mut random, [0.0, 0.01, 0.03][round % 3]);
         let jet = QuarticJet::of(&piece);
-        let (at, size) = if round % 2 == 0 { ([0.0, 0.0], 1.0) } else { ([0.5, 0.5], -0.5) };
+        let (at, size) = if round % 2 == 0 {
+            ([0.0, 0.0], 1.0)
+        } else {
+            ([0.5, 0.5], -0.5)
+        };
         let block = RowBlock::of(&piece, &jet, at, size);
         let divisions = 1 + (round % 4) as u32;
         let n = 1usize << divisions;
         let step = size / n as f64;
         let distance = 0.03 * (1.0 + range_share) * step * step * (1.0 + 0.5 * random.signed());
-        let target = RowTarget { distance, range_share, tilt: 0.2, slope: f64::INFINITY, drift_share: 0.3 };
+        let target = RowTarget {
+            distance,
+            range_share,
+            tilt: 0.2,
+            slope: f64::INFINITY,
+            drift_share: 0.3,
+        };
         let mut extent = RowExtent::NONE;
         let mut marks = Marks::default();
         CellRows::default().test(&block, divisions, &target, &mut extent, &mut marks);
@@ -90,17 +100,28 @@ fn samples_lie_within(range_share: f64) {
                             assert!(value <= distance, "round {round}: {value} of {distance}");
                             // Of ranges no more than the quadratic part is looked at.
                             let rest = 2.0 * block.rest(step.abs());
-                            assert!(range <= 1.001 * distance + rest, "round {round}: {range}, {distance}");
                             assert!(
-                                tilt <= extent.tilt && frame.least_slope() >= extent.slope * (1.0 - 1e-9)
+                                range <= 1.001 * distance + rest,
+                                "round {round}: {range}, {distance}"
+                            );
+                            assert!(
+                                tilt <= extent.tilt
+                                    && frame.least_slope() >= extent.slope * (1.0 - 1e-9)
                             );
                         }
                         Mark::Fails => {
                             let rest = 2.0 * block.rest(step.abs());
                             failed += 1;
                             uneven += usize::from(highest < 0.98 * distance);
-                            let counted = if highest < 0.98 * distance { range + rest } else { highest };
-                            assert!(counted > 0.98 * distance, "round {round}: {counted} of {distance}");
+                            let counted = if highest < 0.98 * distance {
+                                range + rest
+                            } else {
+                                highest
+                            };
+                            assert!(
+                                counted > 0.98 * distance,
+                                "round {round}: {counted} of {distance}"
+                            );
                         }
                         Mark::Open => open += 1,
                     }
@@ -108,8 +129,15 @@ fn samples_lie_within(range_share: f64) {
             }
         }
     }
-    assert!(passed > 500 && failed > 500 && open > 0, "{passed} {failed} {open}");
-    if range_share > 0.0 { assert!(uneven > 100, "{uneven}") } else { assert_eq!(uneven, 0) }
+    assert!(
+        passed > 500 && failed > 500 && open > 0,
+        "{passed} {failed} {open}"
+    );
+    if range_share > 0.0 {
+        assert!(uneven > 100, "{uneven}")
+    } else {
+        assert_eq!(uneven, 0)
+    }
 }
 
 /// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.
@@ -122,13 +150,19 @@ fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
         let c: [DVec3; 6] = from_fn(|_| size * random.vector().powf(3.0));
         let (u, v) = (random.signed(), random.signed());
         let (step, count) = (0.1 * random.signed(), 1 + round as usize % 65);
-        let mut bends = Bends { along: [[0.0; WIDTH]; 3], size: 0.0 };
+        let mut bends = Bends {
+            along: [[0.0; WIDTH]; 3],
+            size: 0.0,
+        };
         bends.fill(&c, [u, v], (step, count), 0.3);
         let most = f64::from(bends.size);
         for i in 0..count {
             let expected = 0.3 * quadratic(&c, [u + step * i as f64, v]);
             let found = DVec3::from_array([0, 1, 2].map(|axis| f64::from(bends.along[axis][i])));
-            assert!(expected.abs().element_sum() <= most * (1.0 + 1e-6), "round {round}");
+            assert!(
+                expected.abs().element_sum() <= most * (1.0 + 1e-6),
+                "round {round}"
+            );
             greatest = greatest.max((found - expected).abs().element_sum() / most);
         }
     }

@@ -80,7 +80,19 @@ impl Heights {
     /// Second derivatives along the edges in their middles: from the first corner to the second, on to the third, and back.
     #[inline]
     fn bends(&self) -> [f64; 3] {
-        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, ssrr, rrrr, .. } = *self;
+        let Self {
+            ss,
+            sr,
+            rr,
+            sss,
+            ssr,
+            srr,
+            rrr,
+            ssss,
+            ssrr,
+            rrrr,
+            ..
+        } = *self;
         let first = 2.0 * ss + 3.0 * (sss + ssss);
         let last = 2.0 * rr + 3.0 * (rrr + rrrr);
         let both = 2.0 * (ss + rr - sr) + 3.0 * (sss + rrr + ssss + rrrr) - (ssr + srr) - ssrr;
@@ -90,7 +102,18 @@ impl Heights {
     /// What the parts of third and fourth degree come to at most.
     #[inline]
     fn rest(&self) -> f64 {
-        let Self { sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr, .. } = *self;
+        let Self {
+            sss,
+            ssr,
+            srr,
+            rrr,
+            ssss,
+            sssr,
+            ssrr,
+            srrr,
+            rrrr,
+            ..
+        } = *self;
         // Third derivatives along the edges at the centroid, and the bubble's.
         let [a, b, c, d] = [
             6.0 * sss + 8.0 * ssss + 2.0 * sssr,
@@ -121,7 +144,20 @@ impl Heights {
 
     /// The least and the greatest height in a few places.
     pub(crate) fn sampled(&self) -> (f64, f64) {
-        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
+        let Self {
+            ss,
+            sr,
+            rr,
+            sss,
+            ssr,
+            srr,
+            rrr,
+            ssss,
+            sssr,
+            ssrr,
+            srrr,
+            rrrr,
+        } = *self;
         let (by_s, by_r) = (ss + sss + ssss, rr + rrr + rrrr);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (j, k) in (0..=4).flat_map(|k| (0..=4 - k).map(move |j| (j, k))) {
@@ -149,7 +185,20 @@ impl Heights {
 
     /// The coefficients in Bernstein's basis, in rows of constant power of r.
     fn bernstein(&self) -> [f64; 15] {
-        let Self { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *self;
+        let Self {
+            ss,
+            sr,
+            rr,
+            sss,
+            ssr,
+            srr,
+            rrr,
+            ssss,
+            sssr,
+            ssrr,
+            srrr,
+            rrrr,
+        } = *self;
         // Heights of 0 at the corners fix the first derivatives.
         let s = -(ss + sss + ssss);
         let r = -(rr + rrr + rrrr);
@@ -203,7 +252,9 @@ pub(super) fn halved(net: &[f64; 15], halvings: u32, enough: f64) -> f64 {
     if halvings == 0 || most <= enough {
         return most;
     }
-    halves(net).iter().fold(0.0, |most, half| most.larger(halved(half, halvings - 1, enough)))
+    halves(net).iter().fold(0.0, |most, half| {
+        most.larger(halved(half, halvings - 1, enough))
+    })
 }
 
 /// The halves of a net, each with the middle of its first edge between the corner that it keeps and the third, so that
@@ -274,7 +325,11 @@ pub(crate) fn quadratic_height([p, q, s]: [f64; 3]) -> f64 {
     let (l2, l1, l0) = (p * (q + s - p), s * (p + q - s), q * (p + s - q));
     let total = l0 + l1 + l2;
     let is_inside = l0 * total > 0.0 && l1 * total > 0.0 && l2 * total > 0.0;
-    if is_inside { edges.larger((0.5 * p * q * s / total).abs()) } else { edges }
+    if is_inside {
+        edges.larger((0.5 * p * q * s / total).abs())
+    } else {
+        edges
+    }
 }
 
 /// A form of second degree with one direction put in.

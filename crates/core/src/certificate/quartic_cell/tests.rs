@@ -16,7 +16,8 @@ fn stirred_triangle(random: &mut Random, noise: f64) -> BezierTriangle {
     for k in 0..5 {
         for j in 0..5 - k {
             let stir = random.vector() * noise;
-            points[at] = DVec3::new(j as f64 / 4.0 + 0.3 * k as f64 / 4.0, k as f64 / 4.0, 0.0) + stir;
+            points[at] =
+                DVec3::new(j as f64 / 4.0 + 0.3 * k as f64 / 4.0, k as f64 / 4.0, 0.0) + stir;
             at += 1;
         }
     }
@@ -30,7 +31,11 @@ fn cell(random: &mut Random) -> Cell {
     let corners = [[u, v], [u + turned * size, v], [u, v + turned * size]];
     match (4.0 * random.signed().abs()) as u32 {
         0 => Cell([corners[0], corners[1], halfway(corners[1], corners[2])]),
-        1 => Cell([halfway(corners[0], corners[2]), corners[1], halfway(corners[1], corners[2])]),
+        1 => Cell([
+            halfway(corners[0], corners[2]),
+            corners[1],
+            halfway(corners[1], corners[2]),
+        ]),
         _ => Cell(corners),
     }
 }
@@ -81,25 +86,46 @@ fn dense_samples_lie_within_the_bounds() {
                 // A point of the curve.
                 if weights[(edge + 2) % 3] == 0.0 {
                     let from_edge = frame.squared_to_edge(edge, point).sqrt();
-                    assert!(from_edge <= deviation.own + 1e-12, "round {round}, edge {edge}");
+                    assert!(
+                        from_edge <= deviation.own + 1e-12,
+                        "round {round}, edge {edge}"
+                    );
                     if edge == 1 {
-                        assert!(from_edge <= deviation.height + 1e-12, "round {round}, open edge");
+                        assert!(
+                            from_edge <= deviation.height + 1e-12,
+                            "round {round}, open edge"
+                        );
                     }
                 }
             }
         }
         let slack = 1e-12;
-        assert!(highest <= high + slack && highest <= refined + slack, "round {round}: {highest} {high}");
-        assert!(low <= highest * 1.003 + slack, "round {round}: {low} {highest}");
-        assert!(farthest <= deviation.own + slack, "round {round}: {farthest} {deviation:?}");
+        assert!(
+            highest <= high + slack && highest <= refined + slack,
+            "round {round}: {highest} {high}"
+        );
+        assert!(
+            low <= highest * 1.003 + slack,
+            "round {round}: {low} {highest}"
+        );
+        assert!(
+            farthest <= deviation.own + slack,
+            "round {round}: {farthest} {deviation:?}"
+        );
         if deviation.steepest().is_finite() {
             let most = outside[0].max(outside[2]);
-            assert!(most <= deviation.drift + slack, "round {round}: {most} {deviation:?}");
+            assert!(
+                most <= deviation.drift + slack,
+                "round {round}: {most} {deviation:?}"
+            );
         }
         counted += 1;
         tight += usize::from(refined.min(high) <= 1.06 * highest + 1e-9);
     }
-    assert!(counted > 2500 && tight * 10 > counted * 9, "{tight} of {counted}");
+    assert!(
+        counted > 2500 && tight * 10 > counted * 9,
+        "{tight} of {counted}"
+    );
     assert!(closer > 100, "{closer}");
 }
 
@@ -110,14 +136,20 @@ fn parts_that_do_not_fold_keep_their_orientation() {
     let mut random = Random::new(23);
     let (mut plain, mut bent, mut folding) = (0, 0, 0);
     for round in 0..4000 {
-        let BezierTriangle(points) = stirred_triangle(&mut random, [0.0, 0.002, 0.01, 0.1][round % 4]);
+        let BezierTriangle(points) =
+            stirred_triangle(&mut random, [0.0, 0.002, 0.01, 0.1][round % 4]);
         let slim = [1.0, 0.3, 0.05][round % 3];
         // Bends that keep their size all over the piece, beside what is stirred.
-        let bend: [[f64; 3]; 3] = core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * random.signed()));
+        let bend: [[f64; 3]; 3] =
+            core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * random.signed()));
         let points = points.map(|point| {
             let squares = [point.x * point.x, point.x * point.y, point.y * point.y];
             let along = |axis: usize| (0..3).map(|i| bend[axis][i] * squares[i]).sum::<f64>();
-            DVec3::new(point.x + along(0), slim * (point.y + along(1)), point.z + along(2))
+            DVec3::new(
+                point.x + along(0),
+                slim * (point.y + along(1)),
+                point.z + along(2),
+            )
         });
         let piece = Quartic::of(&BezierTriangle(points), 0);
         let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
@@ -137,12 +169,18 @@ fn parts_that_do_not_fold_keep_their_orientation() {
         let least = least.map(|area| turn * area).fold(f64::INFINITY, f64::min);
         let edges = [0, 1, 2].map(|edge| (cell.0[edge], cell.0[(edge + 1) % 3]));
         let bends = edges.map(|(from, to)| jet.bend(halfway(from, to), minus(to, from)));
-        let reach = s.iter().chain(&r).fold(0.0f64, |reach, x| reach.max(x.abs()));
+        let reach = s
+            .iter()
+            .chain(&r)
+            .fold(0.0f64, |reach, x| reach.max(x.abs()));
         let (third, fourth) = jet.most(reach.max((s[0] - r[0]).abs()).max((s[1] - r[1]).abs()));
         let rest = frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth);
         let is_plain = !jet.part(&cell).is_folding(&frame, &bends);
         assert!(!is_plain || least > 0.0, "round {round}: {least}");
-        assert!(is_plain || is_folding(&frame, &bends, rest), "round {round}: closer, but less sure");
+        assert!(
+            is_plain || is_folding(&frame, &bends, rest),
+            "round {round}: closer, but less sure"
+        );
         plain += usize::from(is_plain);
         folding += usize::from(least <= 0.0);
         let [a, b, c] = cell.0.map(|[u, v]| piece.point(u, v));
@@ -178,7 +216,9 @@ fn triangles_off_the_surface_are_bounded() {
         let aside = steps.map(|step| (step - frame.normal().dot(step) * frame.normal()).length());
         let aside = aside.into_iter().fold(0.0, f64::max);
         let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
-        let deviation = jet.beside(&cell, &frame, [false; 3]).deviation_off(bound, moved, aside);
+        let deviation = jet
+            .beside(&cell, &frame, [false; 3])
+            .deviation_off(bound, moved, aside);
         let (mut highest, mut farthest) = (0.0f64, 0.0f64);
         for weights in grid(GRID) {
             let [u, v] = place(&cell, weights);
@@ -187,11 +227,17 @@ fn triangles_off_the_surface_are_bounded() {
             farthest = farthest.max(frame.squared(point).sqrt());
         }
         assert!(highest <= bound + 1e-12, "round {round}: {highest} {bound}");
-        assert!(farthest <= deviation.own + 1e-12, "round {round}: {farthest} {deviation:?}");
+        assert!(
+            farthest <= deviation.own + 1e-12,
+            "round {round}: {farthest} {deviation:?}"
+        );
         counted += 1;
         tight += usize::from(bound <= 1.06 * highest);
     }
-    assert!(counted > 1700 && tight * 10 > counted * 9, "{tight} of {counted}");
+    assert!(
+        counted > 1700 && tight * 10 > counted * 9,
+        "{tight} of {counted}"
+    );
 }
 
 /// The range over a plane off the corners: nothing is farther off it than it says, and some point is as near to it.
@@ -214,7 +260,10 @@ fn ranges_over_planes_off_the_corners_hold() {
         for weights in grid(4) {
             let [u, v] = place(&cell, weights);
             let height = frame.height(piece.point(u, v));
-            assert!(height <= sampled.1 + 1e-12 && height >= sampled.0 - 1e-12, "round {round}: {sampled:?}");
+            assert!(
+                height <= sampled.1 + 1e-12 && height >= sampled.0 - 1e-12,
+                "round {round}: {sampled:?}"
+            );
         }
         let mut highest = 0.0f64;
         for weights in grid(GRID) {
@@ -222,10 +271,19 @@ fn ranges_over_planes_off_the_corners_hold() {
             let height = frame.height(piece.point(u, v));
             let lift: f64 = (0..3).map(|i| weights[i] * lifts[i]).sum();
             highest = highest.max((height + lift).abs());
-            assert!(low - rest - 1e-12 <= height && height <= high + rest + 1e-12, "round {round}");
+            assert!(
+                low - rest - 1e-12 <= height && height <= high + rest + 1e-12,
+                "round {round}"
+            );
         }
-        assert!(highest <= most + rest + 1e-12, "round {round}: {highest} {most} {rest}");
-        assert!(most - rest <= 1.003 * highest + 1e-12, "round {round}: {highest} {most} {rest}");
+        assert!(
+            highest <= most + rest + 1e-12,
+            "round {round}: {highest} {most} {rest}"
+        );
+        assert!(
+            most - rest <= 1.003 * highest + 1e-12,
+            "round {round}: {highest} {most} {rest}"
+        );
         tight += usize::from(rest < 0.1 * most);
     }
     assert!(tight > 300, "{tight}");
@@ -239,7 +297,8 @@ fn net(value: impl Fn([f64; 3]) -> f64) -> [f64; 15] {
         let [i, j, k] = [i, j, k].map(|x| (4.0 * x).round());
         24.0 / (factorial(i) * factorial(j) * factorial(k)) * a.powf(i) * b.powf(j) * c.powf(k)
     };
-    let matrix = nalgebra::SMatrix::<f64, 15, 15>::from_fn(|row, of| basis(places[row], places[of]));
+    let matrix =
+        nalgebra::SMatrix::<f64, 15, 15>::from_fn(|row, of| basis(places[row], places[of]));
     let values = nalgebra::SVector::<f64, 15>::from_fn(|row, _| value(places[row]));
     let found = matrix.lu().solve(&values).unwrap();
     core::array::from_fn(|of| found[of])
@@ -256,7 +315,11 @@ const SLACK: f64 = 1e-9;
 #[test]
 fn the_cubic_constant_holds() {
     let sum = |[a, b, c]: [f64; 3]| {
-        [(a, b), (b, c), (c, a)].into_iter().map(|(x, y)| x * y * f64::abs(y - x)).sum::<f64>() / 12.0
+        [(a, b), (b, c), (c, a)]
+            .into_iter()
+            .map(|(x, y)| x * y * f64::abs(y - x))
+            .sum::<f64>()
+            / 12.0
     };
     let sixth = |[u, v, w]: [f64; 3]| sum([u / 3.0, u / 3.0 + 0.5 * v, u / 3.0 + 0.5 * v + w]);
     let net = net(sixth);
@@ -266,7 +329,10 @@ fn the_cubic_constant_holds() {
     }
     let most = halved(&net, 2 * DIVISIONS, 0.0);
     let greatest = grid(200).map(sum).fold(0.0, f64::max);
-    assert!(greatest <= most && most + SLACK <= CUBIC, "{greatest} {most}");
+    assert!(
+        greatest <= most && most + SLACK <= CUBIC,
+        "{greatest} {most}"
+    );
 }
 
 /// The quartic part's constant: r is linear in the five fourth derivatives, so at each place it is greatest in a vertex of the
@@ -304,10 +370,15 @@ fn the_quartic_constant_holds() {
     let rest = |f: [f64; 5], [_, s, r]: [f64; 3]| remainder(&forms(f).0, s, r);
     let units: [[f64; 5]; 5] =
         core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));
-    let matrix: Vec<[f64; 5]> = (0..6).map(|row| units.map(|unit| forms(unit).1[row])).collect();
+    let matrix: Vec<[f64; 5]> = (0..6)
+        .map(|row| units.map(|unit| forms(unit).1[row]))
+        .collect();
     let mut vertices = Vec::new();
     for left_out in 0..6 {
-        let rows: Vec<&[f64; 5]> = (0..6).filter(|&row| row != left_out).map(|row| &matrix[row]).collect();
+        let rows: Vec<&[f64; 5]> = (0..6)
+            .filter(|&row| row != left_out)
+            .map(|row| &matrix[row])
+            .collect();
         for signs in 0..32u32 {
             let a = nalgebra::Matrix5::from_fn(|i, j| rows[i][j]);
             let b = nalgebra::Vector5::from_fn(|i, _| if signs >> i & 1 == 0 { 1.0 } else { -1.0 });
@@ -330,11 +401,19 @@ fn the_quartic_constant_holds() {
             steepest = steepest.max(halved(&net(slope), 2 * DIVISIONS, 0.0));
         }
         most = most.max(halved(&net(|place| rest(f, place)), 2 * DIVISIONS, 0.0));
-        greatest = grid(60).map(|place| rest(f, place).abs()).fold(greatest, f64::max);
+        greatest = grid(60)
+            .map(|place| rest(f, place).abs())
+            .fold(greatest, f64::max);
     }
-    assert!(greatest <= most + SLACK && most + SLACK <= QUARTIC, "{greatest} {most}");
+    assert!(
+        greatest <= most + SLACK && most + SLACK <= QUARTIC,
+        "{greatest} {most}"
+    );
     assert!(greatest > 0.9 * QUARTIC, "{greatest}");
-    assert!(steepest + SLACK <= QUARTIC_SLOPE && steepest > 0.99 * QUARTIC_SLOPE, "{steepest}");
+    assert!(
+        steepest + SLACK <= QUARTIC_SLOPE && steepest > 0.99 * QUARTIC_SLOPE,
+        "{steepest}"
+    );
 }
 
 /// Coefficients from values are those of the polynomial: cut finer, they close in on its greatest size.
@@ -348,13 +427,29 @@ fn nets_are_of_their_polynomials() {
         };
         let greatest = grid(64).map(|place| value(place).abs()).fold(0.0, f64::max);
         let most = halved(&net(value), 2 * DIVISIONS, 0.0);
-        assert!(greatest <= most + SLACK && most <= 1.02 * greatest, "{greatest} {most}");
+        assert!(
+            greatest <= most + SLACK && most <= 1.02 * greatest,
+            "{greatest} {most}"
+        );
     }
 }
 
 /// f − q − c at (s, r), the parts as the module's page gives them.
 fn remainder(heights: &Heights, s: f64, r: f64) -> f64 {
-    let Heights { ss, sr, rr, sss, ssr, srr, rrr, ssss, sssr, ssrr, srrr, rrrr } = *heights;
+    let Heights {
+        ss,
+        sr,
+        rr,
+        sss,
+        ssr,
+        srr,
+        rrr,
+        ssss,
+        sssr,
+        ssrr,
+        srrr,
+        rrrr,
+    } = *heights;
     let (cs, cr) = (-(ss + sss + ssss), -(rr + rrr + rrrr));
     let f = cs * s
         + cr * r
@@ -384,8 +479,12 @@ fn remainder(heights: &Heights, s: f64, r: f64) -> f64 {
             + 12.0 * rrrr * r * r
             + 6.0 * srrr * s * r
             + 2.0 * ssrr * s * s;
-        let by_sr =
-            sr + 2.0 * ssr * s + 2.0 * srr * r + 3.0 * sssr * s * s + 4.0 * ssrr * s * r + 3.0 * srrr * r * r;
+        let by_sr = sr
+            + 2.0 * ssr * s
+            + 2.0 * srr * r
+            + 3.0 * sssr * s * s
+            + 4.0 * ssrr * s * r
+            + 3.0 * srrr * r * r;
         a * a * by_ss + 2.0 * a * b * by_sr + b * b * by_rr
     };
     let third = |x: [f64; 2], y: [f64; 2], z: [f64; 2]| {
@@ -416,8 +515,8 @@ fn remainder(heights: &Heights, s: f64, r: f64) -> f64 {
         rest += third(edges[i], edges[i], edges[i]) / 12.0 * a * b * (b - a);
     }
     let [e1, e2, e3] = edges;
-    let bubble =
-        0.25 * (third(e1, e1, e3) - third(e1, e1, e2)) + (third(e2, e2, e2) - third(e3, e3, e3)) / 12.0;
+    let bubble = 0.25 * (third(e1, e1, e3) - third(e1, e1, e2))
+        + (third(e2, e2, e2) - third(e3, e3, e3)) / 12.0;
     rest - bubble * l[0] * l[1] * l[2]
 }
 

@@ -26,20 +26,49 @@ const CLEARLY: f64 = 1.0 + 1e-9;
 impl<P: HullPoint> Search<'_, P> {
     /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
     /// whether it did.
-    fn by_twin(&mut self, patch: &Patch, part: SubTriangle, borders: Borders, depth: usize) -> bool {
-        let Patch::SemiSharp(piece) = patch else { return false };
+    fn by_twin(
+        &mut self,
+        patch: &Patch,
+        part: SubTriangle,
+        borders: Borders,
+        depth: usize,
+    ) -> bool {
+        let Patch::SemiSharp(piece) = patch else {
+            return false;
+        };
         let aim = self.aim();
-        let Some((near, rest)) = piece.lasting_twin(self.rules).filter(|&(_, rest)| rest <= aim) else {
+        let Some((near, rest)) = piece
+            .lasting_twin(self.rules)
+            .filter(|&(_, rest)| rest <= aim)
+        else {
             return false;
         };
         // At corners of the triangle the twin is off by up to the rest: no division gets below that.
         let target = (aim - 2.0 * rest).max(1.5 * rest);
-        let effort = Effort { target, least_chord: None, ..self.effort };
-        let mut twin = Search { effort, found: Deviation::default(), ..*self };
+        let effort = Effort {
+            target,
+            least_chord: None,
+            ..self.effort
+        };
+        let mut twin = Search {
+            effort,
+            found: Deviation::default(),
+            ..*self
+        };
         twin.part(&near, part, borders, depth);
         let found = twin.found.off(rest, rest);
-        let Deviation { own, height, across, .. } = found;
-        let found = Deviation { own: own + rest, height: height + rest, across: across + rest, ..found };
+        let Deviation {
+            own,
+            height,
+            across,
+            ..
+        } = found;
+        let found = Deviation {
+            own: own + rest,
+            height: height + rest,
+            across: across + rest,
+            ..found
+        };
         let fails = exceeds(self.value(&twin.found) - CERTAIN * rest, aim);
         if fails || self.value(&found) <= aim {
             self.add(found);
@@ -78,7 +107,12 @@ impl<P: HullPoint> Search<'_, P> {
         depth: usize,
     ) {
         if !self.is_settled_at(piece, part, borders, depth) {
-            self.divided(&piece.refined(self.rules.beta(piece.ring.len())), part, borders, depth);
+            self.divided(
+                &piece.refined(self.rules.beta(piece.ring.len())),
+                part,
+                borders,
+                depth,
+            );
         }
     }
 
@@ -93,7 +127,11 @@ impl<P: HullPoint> Search<'_, P> {
         if self.found.own == f64::INFINITY {
             return true;
         }
-        let held = match self.rules.characteristic(piece.ring.len()).filter(|_| depth < DEEPEST) {
+        let held = match self
+            .rules
+            .characteristic(piece.ring.len())
+            .filter(|_| depth < DEEPEST)
+        {
             Some(map) => {
                 let sector = match part {
                     SubTriangle::Whole => Some(&map.sectors[0]),
@@ -133,9 +171,16 @@ impl<P: HullPoint> Search<'_, P> {
         borders: Borders,
     ) -> Option<Deviation> {
         let valence = piece.ring.len();
-        let sums = piece.ring.iter().zip(&map.control.ring).fold([P::default(); 3], |sums, (&point, at)| {
-            [sums[0] + point, sums[1] + point * at.x, sums[2] + point * at.y]
-        });
+        let sums = piece.ring.iter().zip(&map.control.ring).fold(
+            [P::default(); 3],
+            |sums, (&point, at)| {
+                [
+                    sums[0] + point,
+                    sums[1] + point * at.x,
+                    sums[2] + point * at.y,
+                ]
+            },
+        );
         let weight = 0.375 / self.rules.beta(valence);
         let limit = (piece.at * weight + sums[0]) / (weight + valence as f64);
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
@@ -145,7 +190,10 @@ impl<P: HullPoint> Search<'_, P> {
         let farthest = |points: &mut dyn Iterator<Item = (&P, &DVec3)>, most: f64| {
             let (mut farthest, most) = (0.0, CLEARLY * most * most);
             for (&point, &at) in points {
-                farthest = greater(farthest, (point - image(at)).length_squared(self.bound.frame));
+                farthest = greater(
+                    farthest,
+                    (point - image(at)).length_squared(self.bound.frame),
+                );
                 if exceeds(farthest, most) {
                     return None;
                 }
@@ -155,7 +203,11 @@ impl<P: HullPoint> Search<'_, P> {
         // Those beyond the ring first: they are farthest away, and most pieces are refined because of them.
         let share = map.outer_share;
         let outer = farthest(&mut piece.outer.iter().zip(&map.control.outer), aim / share)?;
-        let near = piece.ring.iter().zip(&map.control.ring).chain([(&piece.at, &map.control.at)]);
+        let near = piece
+            .ring
+            .iter()
+            .zip(&map.control.ring)
+            .chain([(&piece.at, &map.control.at)]);
         let near = farthest(&mut { near }, aim)?;
         let rest = near + share * (outer - near).max(0.0);
         if exceeds(rest, aim) {
@@ -179,7 +231,13 @@ impl<P: HullPoint> Search<'_, P> {
         sector.rim.iter().for_each(|&at| curve(rim, at));
         let is_inside = starts == INSIDE && ends == INSIDE;
         let vertex = is_inside.then_some(DVec3::ZERO);
-        let inner: SmallVec<[P; 16]> = sector.hull.iter().copied().chain(vertex).map(image).collect();
+        let inner: SmallVec<[P; 16]> = sector
+            .hull
+            .iter()
+            .copied()
+            .chain(vertex)
+            .map(image)
+            .collect();
         Some(self.bound.points(&inner, &curves).grown(rest))
     }
 
@@ -192,14 +250,20 @@ impl<P: HullPoint> Search<'_, P> {
         depth: usize,
     ) -> Option<Deviation> {
         let frame = self.bound.frame;
-        let limit = if depth < DEEPEST { self.aim() } else { f64::INFINITY };
+        let limit = if depth < DEEPEST {
+            self.aim()
+        } else {
+            f64::INFINITY
+        };
         let (mut greatest, limit) = (0.0f64, limit * limit);
         each_point(&mut |point| {
             if !self.effort.rim_alone {
                 greatest = greater(greatest, point.squared(frame));
             }
             let open = self.effort.open;
-            let counts = |&border: &u8| border != INSIDE && (!self.effort.rim_alone || open[border as usize]);
+            let counts = |&border: &u8| {
+                border != INSIDE && (!self.effort.rim_alone || open[border as usize])
+            };
             for border in borders.into_iter().filter(counts) {
                 greatest = greater(greatest, point.squared_to_edge(frame, border as usize));
             }

@@ -16,34 +16,53 @@ const TOLERANCE: f64 = 1e-10;
 type Matrix = Vec<Vec<f64>>;
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    let column =
-        |row: &[f64], j: usize| row.iter().zip(b).filter(|(w, _)| **w != 0.0).map(|(w, r)| w * r[j]).sum();
-    a.iter().map(|row| (0..b[0].len()).map(|j| column(row, j)).collect()).collect()
+    let column = |row: &[f64], j: usize| {
+        row.iter()
+            .zip(b)
+            .filter(|(w, _)| **w != 0.0)
+            .map(|(w, r)| w * r[j])
+            .sum()
+    };
+    a.iter()
+        .map(|row| (0..b[0].len()).map(|j| column(row, j)).collect())
+        .collect()
 }
 
 fn transposed(a: &Matrix) -> Matrix {
-    (0..a[0].len()).map(|j| a.iter().map(|row| row[j]).collect()).collect()
+    (0..a[0].len())
+        .map(|j| a.iter().map(|row| row[j]).collect())
+        .collect()
 }
 
 fn every_shape() -> Vec<RingShape> {
     let interior = (3..=12).map(RingShape::interior);
     let boundary = (2..=10).map(RingShape::boundary);
-    let corners = [false, true]
-        .into_iter()
-        .flat_map(|open| (2..=6).map(move |valence| RingShape { valence, open, corner: true, dart: false }));
+    let corners = [false, true].into_iter().flat_map(|open| {
+        (2..=6).map(move |valence| RingShape {
+            valence,
+            open,
+            corner: true,
+            dart: false,
+        })
+    });
     interior.chain(boundary).chain(corners).collect()
 }
 
 /// Random points around the vertex on a bumpy fan: any differences will do, but those of a fan are of one size.
 fn random_points(count: usize, seed: u64) -> Matrix {
     let mut random = Random::new(seed);
-    (0..count).map(|_| random.vector().to_array().to_vec()).collect()
+    (0..count)
+        .map(|_| random.vector().to_array().to_vec())
+        .collect()
 }
 
 #[test]
 fn positions() {
     for scheme in SCHEMES {
-        for shape in every_shape().into_iter().chain([RingShape::interior(64), RingShape::interior(2)]) {
+        for shape in every_shape()
+            .into_iter()
+            .chain([RingShape::interior(64), RingShape::interior(2)])
+        {
             let ring = ring_matrix(scheme, shape).unwrap();
             let start = random_points(ring.len(), u64::from(shape.valence));
             let weights = vec![stencil(scheme, shape).position_weights().to_vec()];
@@ -54,7 +73,11 @@ fn positions() {
             }
             for (axis, expected) in expected[0].iter().enumerate() {
                 let met = points[0][axis];
-                assert!((met - expected).abs() < TOLERANCE, "{} {shape:?}: {met}, {expected}", scheme.name());
+                assert!(
+                    (met - expected).abs() < TOLERANCE,
+                    "{} {shape:?}: {met}, {expected}",
+                    scheme.name()
+                );
             }
         }
     }
@@ -77,7 +100,10 @@ fn bivectors(differences: &Matrix) -> [Matrix; 3] {
     [0, 1, 2].map(|axis| {
         let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
         let entry = |p: &[f64], q: &[f64]| p[a] * q[b] - p[b] * q[a];
-        differences.iter().map(|p| differences.iter().map(|q| entry(p, q)).collect()).collect()
+        differences
+            .iter()
+            .map(|p| differences.iter().map(|q| entry(p, q)).collect())
+            .collect()
     })
 }
 
@@ -85,7 +111,9 @@ fn bivectors(differences: &Matrix) -> [Matrix; 3] {
 fn refined(matrix: &Matrix, normal: &Matrix, transpose: &Matrix) -> Matrix {
     let next = product(&product(matrix, normal), transpose);
     let n = next.len();
-    (0..n).map(|i| (0..n).map(|j| (next[i][j] - next[j][i]) / 2.0).collect()).collect()
+    (0..n)
+        .map(|i| (0..n).map(|j| (next[i][j] - next[j][i]) / 2.0).collect())
+        .collect()
 }
 
 /// Normals of the faces at the vertex after many refinements, first to last.
@@ -100,8 +128,16 @@ fn iterated_normals(
     let mut normals = bivectors(differences);
     for _ in 0..steps {
         normals = normals.map(|normal| refined(&matrix, &normal, &transpose));
-        let size = normals.iter().flatten().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
-        normals.iter_mut().flatten().flatten().for_each(|x| *x /= size);
+        let size = normals
+            .iter()
+            .flatten()
+            .flatten()
+            .fold(0.0, |size: f64, x| size.max(x.abs()));
+        normals
+            .iter_mut()
+            .flatten()
+            .flatten()
+            .for_each(|x| *x /= size);
     }
     let k = shape.valence as usize;
     let face = |j: usize| unit([0, 1, 2].map(|axis: usize| normals[axis][j][(j + 1) % k]));
@@ -118,12 +154,16 @@ fn normals() {
     for (which, scheme) in SCHEMES.into_iter().enumerate() {
         for shape in every_shape() {
             let stencil = stencil(scheme, shape);
-            let differences =
-                random_points(stencil.position_weights().len() - 1, 7 + u64::from(shape.valence));
+            let differences = random_points(
+                stencil.position_weights().len() - 1,
+                7 + u64::from(shape.valence),
+            );
             let met = match stencil.tangent_plane() {
                 TangentPlane::None => continue,
                 // Converges like 1/steps; see `jordan_block_at_a_tip`.
-                TangentPlane::Surface if stencil.next_eigenvalue() == stencil.tangent_eigenvalues()[1] => {
+                TangentPlane::Surface
+                    if stencil.next_eigenvalue() == stencil.tangent_eigenvalues()[1] =>
+                {
                     continue;
                 }
                 TangentPlane::Surface => iterated_normals(scheme, shape, &differences, STEPS),
@@ -135,7 +175,11 @@ fn normals() {
             let expected = predicted(&stencil, &differences);
             for normal in met {
                 let error = distance(normal, expected);
-                assert!(error < TOLERANCE, "{} {shape:?}: off by {error:e}", scheme.name());
+                assert!(
+                    error < TOLERANCE,
+                    "{} {shape:?}: off by {error:e}",
+                    scheme.name()
+                );
             }
             checked[which] += 1;
         }
@@ -153,9 +197,16 @@ fn normals_at_valence_64() {
         let start = random_points(stencil.position_weights().len() - 1, 64);
         let matrix = difference_matrix(&ring_matrix(scheme, shape).unwrap());
         let mut differences = start.clone();
-        for _ in 0..if scheme.name() == "butterfly" { 80 } else { 5500 } {
+        for _ in 0..if scheme.name() == "butterfly" {
+            80
+        } else {
+            5500
+        } {
             differences = product(&matrix, &differences);
-            let size = differences.iter().flatten().fold(0.0, |size: f64, x| size.max(x.abs()));
+            let size = differences
+                .iter()
+                .flatten()
+                .fold(0.0, |size: f64, x| size.max(x.abs()));
             differences.iter_mut().flatten().for_each(|x| *x /= size);
         }
         let expected = predicted(&stencil, &start);
@@ -181,7 +232,11 @@ fn jordan_block_at_a_tip() {
     let mut last = [[0.0; 3]; 2];
     for _ in 0..60 {
         normals = normals.map(|normal| refined(&matrix, &normal, &transpose));
-        normals.iter_mut().flatten().flatten().for_each(|x| *x *= 8.0);
+        normals
+            .iter_mut()
+            .flatten()
+            .flatten()
+            .for_each(|x| *x *= 8.0);
         last = [last[1], [0, 1, 2].map(|axis: usize| normals[axis][0][1])];
     }
     let growth = unit([0, 1, 2].map(|axis| last[1][axis] - last[0][axis]));
@@ -193,17 +248,26 @@ fn jordan_block_at_a_tip() {
 /// tend to its normal like 1/steps.
 #[test]
 fn boundary_edges_draw_along_the_inside_of_a_corner() {
-    let shape = RingShape { corner: true, ..RingShape::boundary(4) };
+    let shape = RingShape {
+        corner: true,
+        ..RingShape::boundary(4)
+    };
     for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
         let stencil = stencil(scheme, shape);
         let start = random_points(stencil.position_weights().len() - 1, 3);
         let expected = predicted(&stencil, &start);
         let off = |steps: usize| {
             let met = iterated_normals(scheme, shape, &start, steps);
-            met.into_iter().map(|normal| distance(normal, expected)).fold(0.0, f64::max)
+            met.into_iter()
+                .map(|normal| distance(normal, expected))
+                .fold(0.0, f64::max)
         };
         let (early, late) = (off(2000), off(8000));
-        assert!(early < 0.01 && (late / early - 0.25).abs() < 0.01, "{}: {early} {late}", scheme.name());
+        assert!(
+            early < 0.01 && (late / early - 0.25).abs() < 0.01,
+            "{}: {early} {late}",
+            scheme.name()
+        );
     }
 }
 
@@ -233,5 +297,8 @@ fn no_plane_where_all_patterns_shrink_alike() {
     let three = stencil(&WithoutException, RingShape::interior(3));
     assert_eq!(three.tangent_plane(), TangentPlane::None);
     assert!(three.normal_weights().is_none());
-    assert_eq!(stencil(&WithoutException, RingShape::interior(4)).tangent_plane(), TangentPlane::Surface);
+    assert_eq!(
+        stencil(&WithoutException, RingShape::interior(4)).tangent_plane(),
+        TangentPlane::Surface
+    );
 }

@@ -20,7 +20,12 @@ fn pair_weights_of_loop_are_sines() {
             assert_eq!(weights.len() as u32, k * (k - 1) / 2);
             for (weight, (i, j)) in weights.into_iter().zip(pairs) {
                 let expected = (TAU * f64::from(j - i) / f64::from(k)).sin();
-                assert_close(weight, expected, 1e-12, &format!("{} k={k} ({i},{j})", scheme.name()));
+                assert_close(
+                    weight,
+                    expected,
+                    1e-12,
+                    &format!("{} k={k} ({i},{j})", scheme.name()),
+                );
             }
             let eigenvalue = 0.375 + 0.25 * (TAU / f64::from(k)).cos();
             for met in stencil.tangent_eigenvalues() {
@@ -41,7 +46,9 @@ fn limit_positions_of_loop() {
         let expected = 1.0 / (f64::from(k) + 0.375 / beta);
         let weights = stencil.position_weights();
         assert_close(weights[0], 1.0 - f64::from(k) * expected, 1e-13, "vertex");
-        weights[1..].iter().for_each(|&weight| assert_close(weight, expected, 1e-14, &format!("k={k}")));
+        weights[1..]
+            .iter()
+            .for_each(|&weight| assert_close(weight, expected, 1e-14, &format!("k={k}")));
     }
 }
 
@@ -88,13 +95,27 @@ fn boundary_tangents_of_loop() {
             assert_close(-sum, -2.0 * end - sigma, 1e-12, "vertex");
             let [half, across] = stencil.tangent_eigenvalues();
             assert_close(half, 0.5, 1e-14, "eigenvalue along");
-            assert_close(across, 0.375 + 0.25 * theta.cos(), 1e-14, "eigenvalue across");
-            let plane = if k < 7 { TangentPlane::Surface } else { TangentPlane::BoundaryRibbon };
+            assert_close(
+                across,
+                0.375 + 0.25 * theta.cos(),
+                1e-14,
+                "eigenvalue across",
+            );
+            let plane = if k < 7 {
+                TangentPlane::Surface
+            } else {
+                TangentPlane::BoundaryRibbon
+            };
             assert_eq!(stencil.tangent_plane(), plane, "k={k}");
         }
         // v_1 − v_2 and v_1 + v_2 − 2v.
         let stencil = stencil(scheme, RingShape::boundary(2));
-        for (met, expected) in stencil.tangent_weights().unwrap().iter().zip([[1.0, 1.0], [-1.0, 1.0]]) {
+        for (met, expected) in stencil
+            .tangent_weights()
+            .unwrap()
+            .iter()
+            .zip([[1.0, 1.0], [-1.0, 1.0]])
+        {
             (0..2).for_each(|axis| assert_close(met[axis], expected[axis], 1e-14, "k=2"));
         }
     }
@@ -104,11 +125,20 @@ fn boundary_tangents_of_loop() {
 /// shrink more slowly, and there is no plane. A closed corner is the tip of a cone.
 #[test]
 fn corners_of_loop() {
-    let corner = |valence, open| RingShape { valence, open, corner: true, dart: false };
+    let corner = |valence, open| RingShape {
+        valence,
+        open,
+        corner: true,
+        dart: false,
+    };
     for k in 2..=12 {
         let open = stencil(&Loop, corner(k, true));
         assert_eq!(open.position_weights()[0], 1.0);
-        assert_eq!(open.tangent_plane() == TangentPlane::Surface, k <= 4, "k={k}");
+        assert_eq!(
+            open.tangent_plane() == TangentPlane::Surface,
+            k <= 4,
+            "k={k}"
+        );
         if let Some(weights) = open.normal_weights() {
             // Of the first neighbour and the last alone.
             for (place, &met) in (1..).zip(&weights) {
@@ -127,7 +157,10 @@ fn corners_of_loop() {
 /// Two faces on one interior vertex fold onto each other: no outside, no plane.
 #[test]
 fn interior_valence_two_has_no_plane() {
-    assert_eq!(stencil(&Loop, RingShape::interior(2)).tangent_plane(), TangentPlane::None);
+    assert_eq!(
+        stencil(&Loop, RingShape::interior(2)).tangent_plane(),
+        TangentPlane::None
+    );
 }
 
 #[test]
@@ -141,7 +174,11 @@ fn high_valences_are_quick() {
             assert_close(w, sine, 1e-12, "w");
         }
     }
-    assert!(stencil(&Loop, RingShape::boundary(360)).tangent_weights().is_some());
+    assert!(
+        stencil(&Loop, RingShape::boundary(360))
+            .tangent_weights()
+            .is_some()
+    );
     // 20 times what this takes unoptimised: it guards against a cubic cost in the valence.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }

@@ -14,9 +14,11 @@ const SCHEMES: [&dyn Scheme; 3] = [&Loop, &LoopWarren, &ModifiedButterfly];
 fn sphere(around: u32, rings: u32) -> Mesh {
     let mut positions = vec![[0.0, 0.0, 1.0]];
     for ring in 1..=rings {
-        let (sine, cosine) = (core::f64::consts::PI * f64::from(ring) / f64::from(rings + 1)).sin_cos();
+        let (sine, cosine) =
+            (core::f64::consts::PI * f64::from(ring) / f64::from(rings + 1)).sin_cos();
         for j in 0..around {
-            let turn = core::f64::consts::TAU * (f64::from(j) + 0.5 * f64::from(ring)) / f64::from(around);
+            let turn =
+                core::f64::consts::TAU * (f64::from(j) + 0.5 * f64::from(ring)) / f64::from(around);
             positions.push([sine * turn.cos(), sine * turn.sin(), cosine]);
         }
     }
@@ -38,8 +40,9 @@ fn sphere(around: u32, rings: u32) -> Mesh {
 /// A hilly sheet of n × n cells.
 fn sheet(n: u32) -> Mesh {
     let mut random = Random::new(u64::from(n));
-    let height =
-        |i: u32, j: u32, wobble: f64| (f64::from(i) * 0.7).sin() + (f64::from(j) * 0.4).cos() + 0.1 * wobble;
+    let height = |i: u32, j: u32, wobble: f64| {
+        (f64::from(i) * 0.7).sin() + (f64::from(j) * 0.4).cos() + 0.1 * wobble
+    };
     let positions = (0..=n)
         .flat_map(|j| (0..=n).map(move |i| (i, j)))
         .map(|(i, j)| [f64::from(i), f64::from(j), height(i, j, random.signed())])
@@ -48,7 +51,10 @@ fn sheet(n: u32) -> Mesh {
     let cells = (0..n).flat_map(|j| (0..n).map(move |i| (i, j)));
     let triangles = cells
         .flat_map(|(i, j)| {
-            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+            [
+                [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+            ]
         })
         .collect();
     Mesh::from_triangles(positions, triangles).unwrap()
@@ -74,7 +80,12 @@ fn normals_of_a_sphere_point_outside() {
 #[test]
 fn positions_of_a_sphere() {
     let mesh = sphere(8, 7);
-    assert_eq!(LimitTable::new(&ModifiedButterfly).positions(&mesh).unwrap(), mesh.positions());
+    assert_eq!(
+        LimitTable::new(&ModifiedButterfly)
+            .positions(&mesh)
+            .unwrap(),
+        mesh.positions()
+    );
     for position in LimitTable::new(&Loop).positions(&mesh).unwrap() {
         let radius = distance(position, [0.0; 3]);
         assert!(radius < 1.0 && radius > 0.8, "{radius}");
@@ -87,21 +98,41 @@ fn single_vertices_agree_with_the_mesh() {
     for scheme in SCHEMES {
         for mesh in [sphere(7, 4), sheet(6), with_corners(sheet(5))] {
             let table = LimitTable::new(scheme);
-            let (positions, normals) = (table.positions(&mesh).unwrap(), table.normals(&mesh).unwrap());
+            let (positions, normals) = (
+                table.positions(&mesh).unwrap(),
+                table.normals(&mesh).unwrap(),
+            );
             for v in 0..mesh.vertex_count() {
                 let vertex = VertexId(v as u32);
-                assert_eq!(table.position(&mesh, vertex).unwrap(), positions[v], "{}", scheme.name());
-                assert_eq!(table.normal(&mesh, vertex).unwrap(), normals[v], "{}", scheme.name());
+                assert_eq!(
+                    table.position(&mesh, vertex).unwrap(),
+                    positions[v],
+                    "{}",
+                    scheme.name()
+                );
+                assert_eq!(
+                    table.normal(&mesh, vertex).unwrap(),
+                    normals[v],
+                    "{}",
+                    scheme.name()
+                );
             }
         }
     }
 }
 
 fn with_corners(mesh: Mesh) -> Mesh {
-    let corner = |vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP };
+    let corner = |vertex| CornerTag {
+        vertex,
+        sharpness: INFINITELY_SHARP,
+    };
     // Two corners of the sheet, a point of its boundary, and one inside.
     let corners = [0, 2, 14, 35].map(corner).to_vec();
-    mesh.with_tags(Tags { creases: Vec::new(), corners }).unwrap()
+    mesh.with_tags(Tags {
+        creases: Vec::new(),
+        corners,
+    })
+    .unwrap()
 }
 
 #[test]
@@ -136,17 +167,42 @@ fn normals_do_not_depend_on_size() {
         let table = LimitTable::new(scheme);
         let expected = table.normals(&mesh).unwrap();
         for scale in [1e-200, 1e-30, 1e30, 1e200] {
-            let scaled = mesh.positions().iter().map(|p| p.map(|x| x * scale)).collect();
+            let scaled = mesh
+                .positions()
+                .iter()
+                .map(|p| p.map(|x| x * scale))
+                .collect();
             let scaled = mesh.clone().with_positions(scaled).unwrap();
             for (met, expected) in table.normals(&scaled).unwrap().into_iter().zip(&expected) {
-                assert!(distance(met, *expected) < 1e-12, "{} {scale:e}", scheme.name());
+                assert!(
+                    distance(met, *expected) < 1e-12,
+                    "{} {scale:e}",
+                    scheme.name()
+                );
             }
         }
-        let point = mesh.clone().with_positions(vec![[3.0, 1.0, 2.0]; mesh.vertex_count()]).unwrap();
-        assert!(table.normals(&point).unwrap().iter().all(|normal| *normal == [0.0; 3]));
-        let line = (0..mesh.vertex_count()).map(|v| [v as f64, 0.0, 0.0]).collect();
+        let point = mesh
+            .clone()
+            .with_positions(vec![[3.0, 1.0, 2.0]; mesh.vertex_count()])
+            .unwrap();
+        assert!(
+            table
+                .normals(&point)
+                .unwrap()
+                .iter()
+                .all(|normal| *normal == [0.0; 3])
+        );
+        let line = (0..mesh.vertex_count())
+            .map(|v| [v as f64, 0.0, 0.0])
+            .collect();
         let line = mesh.with_positions(line).unwrap();
-        assert!(table.normals(&line).unwrap().iter().all(|normal| *normal == [0.0; 3]));
+        assert!(
+            table
+                .normals(&line)
+                .unwrap()
+                .iter()
+                .all(|normal| *normal == [0.0; 3])
+        );
     }
 }
 
@@ -157,8 +213,21 @@ fn pillows_are_survived() {
     let mesh = Mesh::from_triangles(positions, vec![[0, 1, 2], [0, 2, 1]]).unwrap();
     for scheme in SCHEMES {
         let table = LimitTable::new(scheme);
-        assert!(table.positions(&mesh).unwrap().iter().flatten().all(|x| x.is_finite()));
-        assert!(table.normals(&mesh).unwrap().iter().all(|normal| *normal == [0.0; 3]));
+        assert!(
+            table
+                .positions(&mesh)
+                .unwrap()
+                .iter()
+                .flatten()
+                .all(|x| x.is_finite())
+        );
+        assert!(
+            table
+                .normals(&mesh)
+                .unwrap()
+                .iter()
+                .all(|normal| *normal == [0.0; 3])
+        );
     }
 }
 
@@ -169,7 +238,11 @@ fn single_triangle() {
     let mesh = Mesh::from_triangles(positions, vec![[0, 1, 2]]).unwrap();
     for scheme in SCHEMES {
         for normal in LimitTable::new(scheme).normals(&mesh).unwrap() {
-            assert!(distance(normal, [0.0, 0.0, 1.0]) < 1e-14, "{}: {normal:?}", scheme.name());
+            assert!(
+                distance(normal, [0.0, 0.0, 1.0]) < 1e-14,
+                "{}: {normal:?}",
+                scheme.name()
+            );
         }
     }
 }
@@ -192,7 +265,9 @@ impl Scheme for Broken {
             "sum" => mask.centre += 0.01,
             "size" => mask.ring.push(0.0),
             "turn" => (mask.ring[0], mask.ring[1]) = (mask.ring[0] + 0.1, mask.ring[1] - 0.1),
-            "boundary" if shape.open => (mask.centre, mask.ring[1]) = (mask.centre - 0.1, mask.ring[1] + 0.1),
+            "boundary" if shape.open => {
+                (mask.centre, mask.ring[1]) = (mask.centre - 0.1, mask.ring[1] + 0.1)
+            }
             "grow" if !shape.open => {
                 mask.ring.iter_mut().for_each(|weight| *weight -= 1.0);
                 mask.centre += f64::from(shape.valence);
@@ -215,7 +290,10 @@ impl Scheme for Broken {
 
 #[test]
 fn masks_that_break_the_contract_are_named() {
-    let corner = RingShape { corner: true, ..RingShape::boundary(4) };
+    let corner = RingShape {
+        corner: true,
+        ..RingShape::boundary(4)
+    };
     let cases = [
         ("sum", RingShape::interior(5), "sum to"),
         ("size", RingShape::interior(5), "weights, expected"),
@@ -229,13 +307,26 @@ fn masks_that_break_the_contract_are_named() {
     for (name, shape, expected) in cases {
         let scheme = Broken(name);
         let error = LimitTable::new(&scheme).stencil(shape).unwrap_err();
-        let LimitError::Unsuitable { scheme, shape: met, what } = &error;
-        assert!(scheme == name && *met == shape && what.contains(expected), "{name}: {error}");
+        let LimitError::Unsuitable {
+            scheme,
+            shape: met,
+            what,
+        } = &error;
+        assert!(
+            scheme == name && *met == shape && what.contains(expected),
+            "{name}: {error}"
+        );
     }
     for valence in [0, 1] {
-        for shape in
-            [RingShape::interior(valence), RingShape { valence, open: true, corner: false, dart: false }]
-        {
+        for shape in [
+            RingShape::interior(valence),
+            RingShape {
+                valence,
+                open: true,
+                corner: false,
+                dart: false,
+            },
+        ] {
             assert!(LimitTable::new(&Loop).stencil(shape).is_err());
         }
     }

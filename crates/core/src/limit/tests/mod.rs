@@ -10,15 +10,26 @@ use crate::ring::RingShape;
 use crate::scheme::Scheme;
 
 fn stencil(scheme: &dyn Scheme, shape: RingShape) -> LimitStencil {
-    LimitTable::new(scheme).stencil(shape).unwrap().as_ref().clone()
+    LimitTable::new(scheme)
+        .stencil(shape)
+        .unwrap()
+        .as_ref()
+        .clone()
 }
 
 fn assert_close(met: f64, expected: f64, tolerance: f64, place: &str) {
-    assert!((met - expected).abs() <= tolerance, "{place}: {met}, expected {expected}");
+    assert!(
+        (met - expected).abs() <= tolerance,
+        "{place}: {met}, expected {expected}"
+    );
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn unit(a: [f64; 3]) -> [f64; 3] {
@@ -27,5 +38,8 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+    (0..3)
+        .map(|axis| (a[axis] - b[axis]).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }

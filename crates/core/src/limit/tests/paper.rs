@@ -17,11 +17,16 @@ type Matrix = Vec<Vec<f64>>;
 /// ΛD: 2×2 minors of D, rows and columns in the order (1,2), (1,3), …, (2,3), … .
 fn second_compound(matrix: &Matrix) -> Matrix {
     let n = matrix.len();
-    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
+    let pairs: Vec<(usize, usize)> = (0..n)
+        .flat_map(|i| (i + 1..n).map(move |j| (i, j)))
+        .collect();
     let minor = |(a, b): (usize, usize), (i, j): (usize, usize)| {
         matrix[a][i] * matrix[b][j] - matrix[a][j] * matrix[b][i]
     };
-    pairs.iter().map(|&rows| pairs.iter().map(|&columns| minor(rows, columns)).collect()).collect()
+    pairs
+        .iter()
+        .map(|&rows| pairs.iter().map(|&columns| minor(rows, columns)).collect())
+        .collect()
 }
 
 /// The dominant right eigenvector by plain iteration, of unit length.
@@ -29,7 +34,10 @@ fn dominant(matrix: &Matrix, steps: usize) -> Vec<f64> {
     let mut random = Random::new(5);
     let mut vector: Vec<f64> = matrix.iter().map(|_| random.signed()).collect();
     for _ in 0..steps {
-        vector = matrix.iter().map(|row| row.iter().zip(&vector).map(|(a, b)| a * b).sum()).collect();
+        vector = matrix
+            .iter()
+            .map(|row| row.iter().zip(&vector).map(|(a, b)| a * b).sum())
+            .collect();
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
         vector.iter_mut().for_each(|x| *x /= length);
     }
@@ -37,19 +45,28 @@ fn dominant(matrix: &Matrix, steps: usize) -> Vec<f64> {
 }
 
 fn transposed(a: &Matrix) -> Matrix {
-    (0..a[0].len()).map(|j| a.iter().map(|row| row[j]).collect()).collect()
+    (0..a[0].len())
+        .map(|j| a.iter().map(|row| row[j]).collect())
+        .collect()
 }
 
 /// Scaled to unit length, and to a positive first pair (v_1, v_2).
 fn normalised(mut weights: Vec<f64>) -> Vec<f64> {
-    let length = weights.iter().map(|x| x * x).sum::<f64>().sqrt().copysign(weights[0]);
+    let length = weights
+        .iter()
+        .map(|x| x * x)
+        .sum::<f64>()
+        .sqrt()
+        .copysign(weights[0]);
     weights.iter_mut().for_each(|x| *x /= length);
     weights
 }
 
 fn greatest_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter().zip(b).fold(0.0, |greatest, (a, b)| greatest.max((a - b).abs()))
+    a.iter()
+        .zip(b)
+        .fold(0.0, |greatest, (a, b)| greatest.max((a - b).abs()))
 }
 
 fn compound_of(shape: RingShape) -> Matrix {
@@ -73,7 +90,10 @@ fn ring_matrix_is_equation_3() {
                     _ if apart == 1 || apart == k - 1 => 0.125,
                     _ => 0.0,
                 };
-                assert!((met - expected).abs() < 1e-15, "k={k} ({i},{j}): {met}, {expected}");
+                assert!(
+                    (met - expected).abs() < 1e-15,
+                    "k={k} ({i},{j}): {met}, {expected}"
+                );
             }
         }
     }
@@ -120,7 +140,13 @@ fn equation_10_as_printed_is_wrong_on_boundary_rings() {
             .map(|(i, j)| cross(start[i], start[j]))
             .collect();
         let normal = |weights: &[f64]| {
-            let sum = |axis: usize| pairs.iter().zip(weights).map(|(n, w)| w * n[axis]).sum::<f64>();
+            let sum = |axis: usize| {
+                pairs
+                    .iter()
+                    .zip(weights)
+                    .map(|(n, w)| w * n[axis])
+                    .sum::<f64>()
+            };
             unit([sum(0), sum(1), sum(2)])
         };
         // Twelve plain steps bring the first face's normal closer than any confusion of the two.
@@ -132,7 +158,10 @@ fn equation_10_as_printed_is_wrong_on_boundary_rings() {
             differences = matrix.iter().map(row).collect();
         }
         let truth = unit(cross(differences[0], differences[1]));
-        let (right_error, left_error) = (distance(normal(&right), truth), distance(normal(&left), truth));
+        let (right_error, left_error) = (
+            distance(normal(&right), truth),
+            distance(normal(&left), truth),
+        );
         let right_error = right_error.min(2.0 - right_error);
         assert!(left_error < 1e-3, "k={k}: {left_error}");
         assert!(right_error > 0.05, "k={k}: {right_error}");
@@ -150,10 +179,15 @@ fn seven_boundary_edges_have_a_double_eigenvalue() {
         let next = stencil.next_eigenvalue();
         match k {
             2..=6 => {
-                assert!(next < along.min(across) - 1e-3 && stencil.tangent_plane() == TangentPlane::Surface)
+                assert!(
+                    next < along.min(across) - 1e-3
+                        && stencil.tangent_plane() == TangentPlane::Surface
+                )
             }
             7 => assert!((next - along).abs() < 1e-13),
-            _ => assert!(next > along + 1e-3 && stencil.tangent_plane() == TangentPlane::BoundaryRibbon),
+            _ => assert!(
+                next > along + 1e-3 && stencil.tangent_plane() == TangentPlane::BoundaryRibbon
+            ),
         }
     }
 }
@@ -162,7 +196,10 @@ fn seven_boundary_edges_have_a_double_eigenvalue() {
 #[test]
 fn normals_do_not_depend_on_beta() {
     for k in 3..=30 {
-        let [a, b] = [stencil(&Loop, RingShape::interior(k)), stencil(&LoopWarren, RingShape::interior(k))];
+        let [a, b] = [
+            stencil(&Loop, RingShape::interior(k)),
+            stencil(&LoopWarren, RingShape::interior(k)),
+        ];
         let error = greatest_difference(&a.normal_weights().unwrap(), &b.normal_weights().unwrap());
         assert!(error < 1e-13, "k={k}: {error:e}");
     }

@@ -24,14 +24,18 @@ pub(super) const MARGIN: f32 = 1.0 / 4_194_304.0;
 const CUT_AT_ONCE: usize = 8192;
 
 /// Builds the tree of a checked surface.
-pub(super) fn build<'a>(surface: Triangles<'a>, watch: &mut Watch<'_>) -> Result<Bvh<'a>, Cancelled> {
+pub(super) fn build<'a>(
+    surface: Triangles<'a>,
+    watch: &mut Watch<'_>,
+) -> Result<Bvh<'a>, Cancelled> {
     watch.triangles(surface.triangles.len());
     watch.stage(Stage::Indexing, Some(surface.triangles.len()))?;
     let bounds = bounds(surface);
     let frame = Frame::new(bounds[0], bounds[1]);
     let poll = &mut |_| watch.poll();
-    let mut centres =
-        parallel::map_polled(surface.triangles.len(), poll, |face| Centre::new(surface, &frame, face))?;
+    let mut centres = parallel::map_polled(surface.triangles.len(), poll, |face| {
+        Centre::new(surface, &frame, face)
+    })?;
     let mut capacity = WIDTH;
     while capacity < centres.len() {
         capacity *= WIDTH;
@@ -40,12 +44,22 @@ pub(super) fn build<'a>(surface: Triangles<'a>, watch: &mut Watch<'_>) -> Result
     let poll = &mut |_| watch.poll();
     let slots = parallel::map_polled(centres.len(), poll, |place| {
         let face = centres[place].face;
-        Slot { corners: surface.triangles[face as usize], face }
+        Slot {
+            corners: surface.triangles[face as usize],
+            face,
+        }
     })?;
     drop(centres);
     let (nodes, starts) = boxes(surface, &frame, &slots, watch)?;
     watch.done(surface.triangles.len())?;
-    Ok(Bvh { surface, frame, bounds, slots, nodes, starts })
+    Ok(Bvh {
+        surface,
+        frame,
+        bounds,
+        slots,
+        nodes,
+        starts,
+    })
 }
 
 /// The box of the triangles.
@@ -53,10 +67,13 @@ fn bounds(surface: Triangles<'_>) -> [DVec3; 2] {
     let join = |a: [DVec3; 2], b: [DVec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
     let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let boxes = parallel::pieces(surface.triangles.len(), |faces| {
-        surface.triangles[faces].as_flattened().iter().fold(nothing, |bounds, &v| {
-            let p = vector(surface.positions[v as usize]);
-            join(bounds, [p, p])
-        })
+        surface.triangles[faces]
+            .as_flattened()
+            .iter()
+            .fold(nothing, |bounds, &v| {
+                let p = vector(surface.positions[v as usize]);
+                join(bounds, [p, p])
+            })
     });
     boxes.into_iter().fold(nothing, join)
 }
@@ -72,7 +89,10 @@ impl Centre {
     fn new(surface: Triangles<'_>, frame: &Frame, face: usize) -> Self {
         let [a, b, c] = surface.corners(face).map(|p| frame.centre_point(vector(p)));
         let centre = (a.min(b).min(c) + a.max(b).max(c)) * 0.5;
-        Self { at: centre.to_array().map(|x| x as f32), face: face as u32 }
+        Self {
+            at: centre.to_array().map(|x| x as f32),
+            face: face as u32,
+        }
     }
 
     /// A number that orders centres along `axis`, distinct for distinct triangles.
@@ -88,13 +108,22 @@ impl Centre {
 /// Orders `centres` so that every aligned run of 4^k is compact; `capacity` is a power of four times one or two.
 ///
 /// Cut by cut, all ranges of one size together, until they are small enough to be cut to the end in one go.
-fn order(centres: &mut [Centre], mut capacity: usize, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
+fn order(
+    centres: &mut [Centre],
+    mut capacity: usize,
+    watch: &mut Watch<'_>,
+) -> Result<(), Cancelled> {
     let count = centres.len();
     let mut ranges = vec![centres];
     while capacity > CUT_AT_ONCE {
         capacity /= 2;
-        let halves = parallel::each_polled(ranges, &mut |_| watch.poll(), |range| cut(range, capacity))?;
-        ranges = halves.into_iter().flatten().filter(|half| !half.is_empty()).collect();
+        let halves =
+            parallel::each_polled(ranges, &mut |_| watch.poll(), |range| cut(range, capacity))?;
+        ranges = halves
+            .into_iter()
+            .flatten()
+            .filter(|half| !half.is_empty())
+            .collect();
     }
     let poll = &mut |ranges: usize| watch.done((ranges * capacity).min(count));
     parallel::each_polled(ranges, poll, |range| order_at_once(range, capacity))?;
@@ -117,7 +146,9 @@ fn order_at_once(centres: &mut [Centre], capacity: usize) {
         centres.sort_unstable_by_key(|centre| centre.face);
         return;
     }
-    cut(centres, capacity / 2).into_iter().for_each(|half| order_at_once(half, capacity / 2));
+    cut(centres, capacity / 2)
+        .into_iter()
+        .for_each(|half| order_at_once(half, capacity / 2));
 }
 
 /// The axis along which the centres spread most; the first of equals.
@@ -154,7 +185,11 @@ fn boxes(
             for (i, node) in chunk.iter_mut().enumerate() {
                 let first = (piece * 256 + i) * WIDTH;
                 if level + 1 == sizes.len() {
-                    *node = box_triangles(surface, frame, &slots[first..slots.len().min(first + WIDTH)]);
+                    *node = box_triangles(
+                        surface,
+                        frame,
+                        &slots[first..slots.len().min(first + WIDTH)],
+                    );
                 } else {
                     *node = box_nodes(&below[first..sizes[level + 1].min(first + WIDTH)]);
                 }
@@ -168,7 +203,9 @@ fn boxes(
 fn box_triangles(surface: Triangles<'_>, frame: &Frame, slots: &[Slot]) -> Node {
     let mut node = Node::EMPTY;
     for (lane, slot) in slots.iter().enumerate() {
-        let [a, b, c] = slot.corners.map(|v| frame.centre_point(vector(surface.positions[v as usize])));
+        let [a, b, c] = slot
+            .corners
+            .map(|v| frame.centre_point(vector(surface.positions[v as usize])));
         let (low, high) = (a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
         for axis in 0..3 {
             node.low[axis][lane] = low[axis] as f32 - MARGIN;

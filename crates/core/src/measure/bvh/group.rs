@@ -36,7 +36,8 @@ impl Bvh<'_> {
         let mut frontier = Frontier::EMPTY;
         let mut guess = None;
         for (group, points) in points.chunks(GROUP).enumerate() {
-            let found = |i: usize, distance: f64, face: u32| found(group * GROUP + i, distance, face);
+            let found =
+                |i: usize, distance: f64, face: u32| found(group * GROUP + i, distance, face);
             guess = self.group_nearest(points, guess, &mut frontier, found);
         }
     }
@@ -51,9 +52,14 @@ impl Bvh<'_> {
     ) -> Option<u32> {
         let (low, high) = points
             .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+                (low.min(*p), high.max(*p))
+            });
         let centre = self.frame.locate(low * 0.5 + high * 0.5);
-        if [low, high].iter().any(|&corner| self.frame.locate(corner).pulled_in) {
+        if [low, high]
+            .iter()
+            .any(|&corner| self.frame.locate(corner).pulled_in)
+        {
             for (i, point) in points.iter().enumerate() {
                 let closest = self.closest_with_guess(point.to_array(), guess);
                 found(i, closest.distance, closest.face);
@@ -61,11 +67,22 @@ impl Bvh<'_> {
             }
             return guess;
         }
-        let radius = points.iter().map(|&p| self.frame.locate(p).local.distance_squared(centre.local));
+        let radius = points
+            .iter()
+            .map(|&p| self.frame.locate(p).local.distance_squared(centre.local));
         let radius = radius.fold(0.0, f64::max).sqrt();
         let nearest = self.search(&centre, guess);
         let reach = nearest.squared.sqrt() + 2.0 * radius;
-        self.collect(frontier, &centre, Nearest { squared: reach * reach, ..nearest }.bound(), radius);
+        self.collect(
+            frontier,
+            &centre,
+            Nearest {
+                squared: reach * reach,
+                ..nearest
+            }
+            .bound(),
+            radius,
+        );
         let mut face = nearest.face;
         for (i, &point) in points.iter().enumerate() {
             let nearest = self.search_frontier(frontier, &self.frame.locate(point), face);
@@ -85,13 +102,17 @@ impl Bvh<'_> {
             waiting -= 1;
             let at = stack[waiting];
             let node = self.node(at);
-            let mut within = node.squared_distances(point).cmple(glam::Vec4::splat(bound)).bitmask();
+            let mut within = node
+                .squared_distances(point)
+                .cmple(glam::Vec4::splat(bound))
+                .bitmask();
             while within != 0 {
                 let lane = within.trailing_zeros() as usize & (WIDTH - 1);
                 within &= within - 1;
                 let child = at.child(lane);
                 // A waiting node may turn into as many boxes as it has children.
-                let room = frontier.count + WIDTH * (waiting + 1) + within.count_ones() as usize <= CAPACITY;
+                let room = frontier.count + WIDTH * (waiting + 1) + within.count_ones() as usize
+                    <= CAPACITY;
                 if room && child.level < self.levels() && node.size(lane) > diameter {
                     stack[waiting] = child;
                     waiting += 1;
@@ -106,7 +127,11 @@ impl Bvh<'_> {
     /// The triangle nearest to a point of the group, starting from a guess.
     #[inline]
     fn search_frontier(&self, frontier: &Frontier, at: &Located, guess: u32) -> Nearest {
-        let mut nearest = Nearest { squared: self.foot(guess, at).squared, face: guess, visited: 0 };
+        let mut nearest = Nearest {
+            squared: self.foot(guess, at).squared,
+            face: guess,
+            visited: 0,
+        };
         let mut bound = nearest.bound();
         let point = splat(at.local);
         let mut stack = [0; STACK];
@@ -126,7 +151,13 @@ impl Bvh<'_> {
         for (squared, pack) in squared.iter_mut().zip(&frontier.packs[..packs]) {
             *squared = pack.squared_distances(point);
         }
-        let boxes = || squared.iter().flat_map(|lanes| lanes.to_array()).take(frontier.count).enumerate();
+        let boxes = || {
+            squared
+                .iter()
+                .flat_map(|lanes| lanes.to_array())
+                .take(frontier.count)
+                .enumerate()
+        };
         let first = boxes().fold((0, f32::INFINITY), |a, b| if b.1 < a.1 { b } else { a });
         if first.1 <= bound {
             visit(first.0, first.1, &mut bound);
@@ -147,8 +178,11 @@ impl Bvh<'_> {
 }
 
 impl Frontier {
-    const EMPTY: Self =
-        Self { packs: [Node::EMPTY; CAPACITY / WIDTH], entries: [Entry::ROOT; CAPACITY], count: 0 };
+    const EMPTY: Self = Self {
+        packs: [Node::EMPTY; CAPACITY / WIDTH],
+        entries: [Entry::ROOT; CAPACITY],
+        count: 0,
+    };
 
     /// Adds the box of a lane of `node`, which leads to `entry`.
     #[inline]

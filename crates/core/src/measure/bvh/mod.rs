@@ -76,14 +76,22 @@ pub(super) struct Nearest {
 
 impl Nearest {
     /// Nothing found yet.
-    const NONE: Self = Self { squared: f64::INFINITY, face: u32::MAX, visited: 0 };
+    const NONE: Self = Self {
+        squared: f64::INFINITY,
+        face: u32::MAX,
+        visited: 0,
+    };
 
     /// Takes the candidate if it is nearer, or as near with a lesser index.
     #[inline]
     fn offer(&mut self, squared: f64, face: u32) -> bool {
         let better = squared < self.squared || (squared == self.squared && face < self.face);
         if better {
-            *self = Self { squared, face, ..*self };
+            *self = Self {
+                squared,
+                face,
+                ..*self
+            };
         }
         better
     }
@@ -121,7 +129,10 @@ impl<'a> Bvh<'a> {
     ///
     /// # Errors
     /// No triangles, an index out of range, a coordinate that is not finite, or the observer asked to stop.
-    pub fn new_observed(surface: Triangles<'a>, observer: &mut Observer<'_>) -> Result<Self, MeasureError> {
+    pub fn new_observed(
+        surface: Triangles<'a>,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, MeasureError> {
         Self::named(surface, "reference", observer)
     }
 
@@ -132,7 +143,10 @@ impl<'a> Bvh<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Self, MeasureError> {
         super::check(surface, which)?;
-        Ok(build::build(surface, &mut Watch::new(observer, Stage::Indexing))?)
+        Ok(build::build(
+            surface,
+            &mut Watch::new(observer, Stage::Indexing),
+        )?)
     }
 
     /// The surface.
@@ -173,9 +187,20 @@ impl<'a> Bvh<'a> {
     }
 
     /// The same, and how many nodes were visited for it.
-    pub(super) fn closest_counted(&self, point: [f64; 3], guess: Option<u32>) -> (ClosestPoint, u32) {
+    pub(super) fn closest_counted(
+        &self,
+        point: [f64; 3],
+        guess: Option<u32>,
+    ) -> (ClosestPoint, u32) {
         if !point.iter().all(|x| x.is_finite()) {
-            return (ClosestPoint { point: [f64::NAN; 3], distance: f64::NAN, face: 0 }, 0);
+            return (
+                ClosestPoint {
+                    point: [f64::NAN; 3],
+                    distance: f64::NAN,
+                    face: 0,
+                },
+                0,
+            );
         }
         let from = vector(point);
         let at = self.frame.locate(from);
@@ -183,9 +208,19 @@ impl<'a> Bvh<'a> {
         let foot = self.foot(nearest.face, &at);
         let [a, b, c] = self.surface.corners(nearest.face as usize).map(vector);
         let on_surface = a * foot.weights[0] + b * foot.weights[1] + c * foot.weights[2];
-        let distance =
-            if at.pulled_in { distance(from, on_surface) } else { self.frame.length(nearest.squared.sqrt()) };
-        (ClosestPoint { point: on_surface.to_array(), distance, face: nearest.face }, nearest.visited)
+        let distance = if at.pulled_in {
+            distance(from, on_surface)
+        } else {
+            self.frame.length(nearest.squared.sqrt())
+        };
+        (
+            ClosestPoint {
+                point: on_surface.to_array(),
+                distance,
+                face: nearest.face,
+            },
+            nearest.visited,
+        )
     }
 
     /// Vertices of the triangle at place `slot` of the tree's order, in which neighbours are near in space.
@@ -210,7 +245,11 @@ impl<'a> Bvh<'a> {
     #[inline]
     pub(super) fn scaled_corners(&self, slot: usize) -> [DVec3; 3] {
         let [a, b, c] = self.corners(slot);
-        [self.frame.scale_point(a), self.frame.scale_point(b), self.frame.scale_point(c)]
+        [
+            self.frame.scale_point(a),
+            self.frame.scale_point(b),
+            self.frame.scale_point(c),
+        ]
     }
 
     /// The point of triangle `face` closest to a point.
@@ -281,7 +320,8 @@ impl<'a> Bvh<'a> {
                 for place in 0..WIDTH {
                     let lane = lanes[(count + WIDTH - 1 - place) % WIDTH];
                     let squared = f32::from_bits((lane >> 32) as u32);
-                    stack[(waiting + place) % STACK] = entry.child(lane as usize % WIDTH).waiting(squared);
+                    stack[(waiting + place) % STACK] =
+                        entry.child(lane as usize % WIDTH).waiting(squared);
                 }
                 waiting += count;
             }
@@ -292,7 +332,9 @@ impl<'a> Bvh<'a> {
     #[inline]
     fn offer_slot(&self, slot: usize, at: &Located, nearest: &mut Nearest, bound: &mut f32) {
         let slot = &self.slots[slot];
-        if slot.face != nearest.face && nearest.offer(self.foot_on(slot.corners, at).squared, slot.face) {
+        if slot.face != nearest.face
+            && nearest.offer(self.foot_on(slot.corners, at).squared, slot.face)
+        {
             *bound = nearest.bound();
         }
     }
@@ -316,7 +358,10 @@ impl Entry {
 
     #[inline]
     fn child(self, lane: usize) -> Self {
-        Self { level: self.level + 1, index: self.index * WIDTH as u32 + lane as u32 }
+        Self {
+            level: self.level + 1,
+            index: self.index * WIDTH as u32 + lane as u32,
+        }
     }
 
     /// The entry on a stack together with the squared distance of its box, which is rounded down to make room.
@@ -330,19 +375,27 @@ impl Entry {
     #[inline]
     fn waited(waiting: u64) -> (Self, f32) {
         let key = (waiting >> 32) as u32;
-        let entry = Self { level: key & LEVEL_MASK, index: waiting as u32 };
+        let entry = Self {
+            level: key & LEVEL_MASK,
+            index: waiting as u32,
+        };
         (entry, f32::from_bits(key & !LEVEL_MASK))
     }
 }
 
 impl Node {
     /// An empty box in every lane.
-    const EMPTY: Self = Self { low: [Vec4::INFINITY; 3], high: [Vec4::NEG_INFINITY; 3] };
+    const EMPTY: Self = Self {
+        low: [Vec4::INFINITY; 3],
+        high: [Vec4::NEG_INFINITY; 3],
+    };
 
     /// Longest side of the box of a lane.
     #[inline]
     fn size(&self, lane: usize) -> f32 {
-        (0..3).fold(0.0, |size: f32, axis| size.max(self.high[axis][lane] - self.low[axis][lane]))
+        (0..3).fold(0.0, |size: f32, axis| {
+            size.max(self.high[axis][lane] - self.low[axis][lane])
+        })
     }
 
     /// Copies the box of a lane of another node.
@@ -357,8 +410,11 @@ impl Node {
     /// Squared distances of a point to the four boxes: zero inside, infinite for an empty box.
     #[inline]
     fn squared_distances(&self, point: [Vec4; 3]) -> Vec4 {
-        let gap =
-            |axis: usize| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(Vec4::ZERO);
+        let gap = |axis: usize| {
+            (self.low[axis] - point[axis])
+                .max(point[axis] - self.high[axis])
+                .max(Vec4::ZERO)
+        };
         let (x, y, z) = (gap(0), gap(1), gap(2));
         x * x + y * y + z * z
     }

@@ -65,7 +65,8 @@ impl Worker<'_, '_, '_> {
         if at_corners > goal {
             return f64::INFINITY;
         }
-        let [one, two] = [1, 2].map(|step| self.even([corners[alone], corners[(alone + step) % 3]], faces));
+        let [one, two] =
+            [1, 2].map(|step| self.even([corners[alone], corners[(alone + step) % 3]], faces));
         let bound = at_corners.max(one.farther()).max(two.farther());
         if bound > goal {
             self.sample(one.at, faces[0]);
@@ -76,20 +77,31 @@ impl Worker<'_, '_, '_> {
 
     fn near_both(&mut self, at: DVec3, faces: [u32; 2]) -> Point {
         self.steps += 2;
-        Point { at, distances: faces.map(|face| self.target.distance_to(at, face)) }
+        Point {
+            at,
+            distances: faces.map(|face| self.target.distance_to(at, face)),
+        }
     }
 
     /// The point between two, of which one is nearer to each triangle, that is as far from both.
     fn even(&mut self, [from, to]: [Point; 2], faces: [u32; 2]) -> Point {
         let (mut low, mut high) = (0.0, 1.0);
         let (mut at_low, mut at_high) = (from.difference(), to.difference());
-        let mut best = if from.farther() <= to.farther() { from } else { to };
+        let mut best = if from.farther() <= to.farther() {
+            from
+        } else {
+            to
+        };
         for _ in 0..STEPS {
             if best.difference().abs() <= self.target.scale.slack {
                 break;
             }
             let guess = low - at_low * (high - low) / (at_high - at_low);
-            let share = if guess > low && guess < high { guess } else { 0.5 * (low + high) };
+            let share = if guess > low && guess < high {
+                guess
+            } else {
+                0.5 * (low + high)
+            };
             let point = self.near_both(from.at.lerp(to.at, share), faces);
             if point.farther() < best.farther() {
                 best = point;

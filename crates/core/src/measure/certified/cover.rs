@@ -44,7 +44,12 @@ const LEAST_LEFT: f64 = 0.1;
 
 /// Where shadows are counted, in weights of the corners of s; irregular, so that sides that pass through the middle or
 /// parallel to a side of t do not pass through all of them.
-const COUNTED_AT: [[f64; 2]; 4] = [[0.3281, 0.3397], [0.2113, 0.5347], [0.5189, 0.2371], [0.1693, 0.1987]];
+const COUNTED_AT: [[f64; 2]; 4] = [
+    [0.3281, 0.3397],
+    [0.2113, 0.5347],
+    [0.5189, 0.2371],
+    [0.1693, 0.1987],
+];
 
 /// Coordinates of space by a triangle and a direction.
 struct View {
@@ -89,24 +94,42 @@ impl View {
         let condition = (e1.length() * e2.length() / determinant.abs()).max(1.0);
         let slack = 512.0 * condition * condition * ROUNDOFF * magnitude;
         let cosine = determinant / normal.length();
-        let rows =
-            [e2.cross(direction) / determinant, direction.cross(e1) / determinant, normal / determinant];
-        let usable = slack.is_finite() && cosine.is_finite() && rows.iter().all(|row| row.is_finite());
+        let rows = [
+            e2.cross(direction) / determinant,
+            direction.cross(e1) / determinant,
+            normal / determinant,
+        ];
+        let usable =
+            slack.is_finite() && cosine.is_finite() && rows.iter().all(|row| row.is_finite());
         // The cosine is known to some roundings times the condition, of which the root makes far more near 1.
         let squared = (1.0 - cosine * cosine).max(0.0) + 64.0 * condition * ROUNDOFF;
-        usable.then(|| Self { base: a, rows, slack, tilt: squared.sqrt() })
+        usable.then(|| Self {
+            base: a,
+            rows,
+            slack,
+            tilt: squared.sqrt(),
+        })
     }
 
     #[inline]
     fn of(&self, p: DVec3) -> DVec3 {
         let p = p - self.base;
-        DVec3::new(self.rows[0].dot(p), self.rows[1].dot(p), self.rows[2].dot(p))
+        DVec3::new(
+            self.rows[0].dot(p),
+            self.rows[1].dot(p),
+            self.rows[2].dot(p),
+        )
     }
 }
 
 impl Cover {
     pub(super) fn new() -> Self {
-        Self { sheet: Vec::new(), ends: Vec::new(), seen: Seen::new(), visited: 0 }
+        Self {
+            sheet: Vec::new(),
+            ends: Vec::new(),
+            seen: Seen::new(),
+            visited: 0,
+        }
     }
 
     /// An upper bound of the distance of triangle `t` to the surface, from the sheet around triangle `start` seen along
@@ -121,11 +144,15 @@ impl Cover {
         goal: f64,
         limit: usize,
     ) -> f64 {
-        let Some(view) = View::new(t, direction, target.scale.magnitude) else { return f64::INFINITY };
+        let Some(view) = View::new(t, direction, target.scale.magnitude) else {
+            return f64::INFINITY;
+        };
         if !self.gather(target, &view, start, goal, limit) {
             return f64::INFINITY;
         }
-        let Some(inset) = self.inset(t) else { return f64::INFINITY };
+        let Some(inset) = self.inset(t) else {
+            return f64::INFINITY;
+        };
         if !self.covers(inset) {
             return f64::INFINITY;
         }
@@ -142,13 +169,24 @@ impl Cover {
     }
 
     /// Gathers the sheet and the ends that it has within t. Whether it is of at most `limit` triangles.
-    fn gather(&mut self, target: &Target<'_, '_>, view: &View, start: u32, goal: f64, limit: usize) -> bool {
+    fn gather(
+        &mut self,
+        target: &Target<'_, '_>,
+        view: &View,
+        start: u32,
+        goal: f64,
+        limit: usize,
+    ) -> bool {
         self.sheet.clear();
         self.ends.clear();
         self.seen.clear();
         self.seen.insert(start);
         let corners = target.triangle(start).map(|p| view.of(p));
-        self.sheet.push(Patch { face: start, entered: NONE, corners });
+        self.sheet.push(Patch {
+            face: start,
+            entered: NONE,
+            corners,
+        });
         let mut next = 0;
         while let Some(&patch) = self.sheet.get(next) {
             next += 1;
@@ -168,7 +206,14 @@ impl Cover {
 
     /// Adds the triangle across a side whose shadow meets t, or notes that the sheet ends there.
     #[inline]
-    fn look_across(&mut self, target: &Target<'_, '_>, view: &View, patch: &Patch, corner: usize, goal: f64) {
+    fn look_across(
+        &mut self,
+        target: &Target<'_, '_>,
+        view: &View,
+        patch: &Patch,
+        corner: usize,
+        goal: f64,
+    ) {
         let (from, to) = (patch.corners[corner], patch.corners[(corner + 1) % 3]);
         if passes_by(from, to) {
             return;
@@ -190,9 +235,14 @@ impl Cover {
         }
         let mut corners = [opposite; 3];
         let runs_back = vertices[first] != target.vertices(patch.face)[corner];
-        (corners[first], corners[(first + 1) % 3]) = if runs_back { (to, from) } else { (from, to) };
+        (corners[first], corners[(first + 1) % 3]) =
+            if runs_back { (to, from) } else { (from, to) };
         self.seen.insert(face);
-        self.sheet.push(Patch { face, entered: across, corners });
+        self.sheet.push(Patch {
+            face,
+            entered: across,
+            corners,
+        });
     }
 
     /// By how much of the weights of its corners t has to be inset so that no end of the sheet reaches it. Each end
@@ -272,7 +322,10 @@ fn turn(a: DVec3, b: DVec3, x: f64, y: f64) -> i32 {
 fn passes_by(a: DVec3, b: DVec3) -> bool {
     // λ₃ < 0, also after the rounding of the sum.
     const BEYOND: f64 = 1.0 + 4.0 * ROUNDOFF;
-    if (a.x < 0.0 && b.x < 0.0) || (a.y < 0.0 && b.y < 0.0) || (a.x + a.y > BEYOND && b.x + b.y > BEYOND) {
+    if (a.x < 0.0 && b.x < 0.0)
+        || (a.y < 0.0 && b.y < 0.0)
+        || (a.x + a.y > BEYOND && b.x + b.y > BEYOND)
+    {
         return true;
     }
     let first = turn(a, b, 0.0, 0.0);
@@ -331,7 +384,9 @@ fn depths(from: DVec3, to: DVec3) -> Option<[f64; 3]> {
         return None;
     }
     let at = |i: usize, t: f64| a[i] * (1.0 - t) + b[i] * t;
-    Some(core::array::from_fn(|i| at(i, first).max(at(i, last)).max(0.0) + 2.0 * margin))
+    Some(core::array::from_fn(|i| {
+        at(i, first).max(at(i, last)).max(0.0) + 2.0 * margin
+    }))
 }
 
 /// The greatest distance of a point of t from its counterpart in the inset copy of t.
@@ -376,5 +431,7 @@ fn clipped_height(corners: &[DVec3; 3], inset: [f64; 3]) -> f64 {
             return 0.0;
         }
     }
-    polygon[..count].iter().fold(0.0, |greatest, p| greatest.max(p.z.abs()))
+    polygon[..count]
+        .iter()
+        .fold(0.0, |greatest, p| greatest.max(p.z.abs()))
 }

@@ -81,7 +81,11 @@ impl Bounds {
     /// The distances of two surfaces to a third differ by at most their own symmetric distance. Rounded outwards.
     pub fn widened(self, error: f64) -> Self {
         let lower = (self.lower - error).next_down().max(0.0);
-        Self { lower, upper: (self.upper + error).next_up(), ..self }
+        Self {
+            lower,
+            upper: (self.upper + error).next_up(),
+            ..self
+        }
     }
 }
 
@@ -112,7 +116,11 @@ impl CertifiedHausdorff {
 
     /// [`Bounds::widened`] in both directions.
     pub fn widened(self, error: f64) -> Self {
-        Self { forward: self.forward.widened(error), backward: self.backward.widened(error), ..self }
+        Self {
+            forward: self.forward.widened(error),
+            backward: self.backward.widened(error),
+            ..self
+        }
     }
 
     /// Whether both intervals are as narrow as was asked for.
@@ -202,10 +210,25 @@ pub(crate) fn certified_known(
     gap: f64,
     observer: &mut Observer<'_>,
 ) -> Result<Bounds, MeasureError> {
-    let measured = between(trees, Some(known.max(0.0)), &where_known(trees, gap), observer)?;
-    let CertifiedHausdorff { forward, backward, .. } = measured;
-    let greater = if backward.lower > forward.lower { backward } else { forward };
-    Ok(Bounds { upper: measured.upper(), converged: measured.converged(), ..greater })
+    let measured = between(
+        trees,
+        Some(known.max(0.0)),
+        &where_known(trees, gap),
+        observer,
+    )?;
+    let CertifiedHausdorff {
+        forward, backward, ..
+    } = measured;
+    let greater = if backward.lower > forward.lower {
+        backward
+    } else {
+        forward
+    };
+    Ok(Bounds {
+        upper: measured.upper(),
+        converged: measured.converged(),
+        ..greater
+    })
 }
 
 /// Bounds the greatest distance from one surface to another in the same way.
@@ -216,15 +239,29 @@ pub(crate) fn certified_from_known(
     observer: &mut Observer<'_>,
 ) -> Result<Bounds, MeasureError> {
     let watch = &mut Watch::new(observer, Stage::Bounding);
-    Ok(one_way(trees, "reference", (gap, Some(known.max(0.0))), &where_known(trees, gap), watch)?.0)
+    Ok(one_way(
+        trees,
+        "reference",
+        (gap, Some(known.max(0.0))),
+        &where_known(trees, gap),
+        watch,
+    )?
+    .0)
 }
 
 /// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
 const KNOWN_WORK: u64 = 20;
 
 fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
-    let count: usize = trees.iter().map(|tree| tree.surface().triangles.len()).sum();
-    CertifiedOptions { gap: Some(gap), relative_gap: 0.0, max_work: KNOWN_WORK * count as u64 }
+    let count: usize = trees
+        .iter()
+        .map(|tree| tree.surface().triangles.len())
+        .sum();
+    CertifiedOptions {
+        gap: Some(gap),
+        relative_gap: 0.0,
+        max_work: KNOWN_WORK * count as u64,
+    }
 }
 
 /// Both directions; what is known of the greater one counts for each.
@@ -237,10 +274,27 @@ fn between(
     let reference_diagonal = reference.diagonal();
     let gap = options.gap.unwrap_or(DEFAULT_GAP * reference_diagonal);
     let watch = &mut Watch::new(observer, Stage::Bounding);
-    let (forward, forward_work) = one_way([surface, reference], "reference", (gap, known), options, watch)?;
+    let (forward, forward_work) = one_way(
+        [surface, reference],
+        "reference",
+        (gap, known),
+        options,
+        watch,
+    )?;
     let known = known.map(|known| known.max(forward.lower));
-    let (backward, backward_work) = one_way([reference, surface], "measured", (gap, known), options, watch)?;
-    Ok(CertifiedHausdorff { forward, backward, reference_diagonal, work: forward_work + backward_work })
+    let (backward, backward_work) = one_way(
+        [reference, surface],
+        "measured",
+        (gap, known),
+        options,
+        watch,
+    )?;
+    Ok(CertifiedHausdorff {
+        forward,
+        backward,
+        reference_diagonal,
+        work: forward_work + backward_work,
+    })
 }
 
 /// One direction, to the surface that is called `which` in errors, and the work that it took.
@@ -251,7 +305,13 @@ fn one_way(
     options: &CertifiedOptions,
     watch: &mut Watch<'_>,
 ) -> Result<(Bounds, u64), MeasureError> {
-    Ok(Search::run(from, &target(from, to, which, watch)?, (gap, known), options, watch)?)
+    Ok(Search::run(
+        from,
+        &target(from, to, which, watch)?,
+        (gap, known),
+        options,
+        watch,
+    )?)
 }
 
 /// Share of the diagonal that a gap is by default.
@@ -268,26 +328,45 @@ fn target<'s, 'a>(
     watch: &mut Watch<'_>,
 ) -> Result<Target<'s, 'a>, MeasureError> {
     let magnitude = |bvh: &Bvh<'_>| {
-        bvh.bounding_box().as_flattened().iter().fold(0.0f64, |greatest, x| greatest.max(x.abs()))
+        bvh.bounding_box()
+            .as_flattened()
+            .iter()
+            .fold(0.0f64, |greatest, x| greatest.max(x.abs()))
     };
     let value = magnitude(to);
     if value > GREATEST {
-        return Err(MeasureError::TooLarge { which, value, greatest: GREATEST });
+        return Err(MeasureError::TooLarge {
+            which,
+            value,
+            greatest: GREATEST,
+        });
     }
     let [low, high] = to.bounding_box().map(vector);
     let scale = Scale::new(value.max(magnitude(from)), (high - low).max_element());
     let surface = to.surface();
     watch.stage(Stage::Matching, Some(surface.triangles.len()))?;
     if surface.triangles.len() > NONE as usize / 3 {
-        return Err(MeasureError::TooMany { which, count: surface.triangles.len() });
+        return Err(MeasureError::TooMany {
+            which,
+            count: surface.triangles.len(),
+        });
     }
     let mut twins = limitmesh_pages::filled(NONE, 3 * surface.triangles.len());
-    for_each_edge(surface.triangles, surface.positions.len(), &mut |done| watch.done(done), |_, edge| {
-        if let [a, b] = edge {
-            (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
-        }
-    })?;
-    Ok(Target { bvh: to, twins, scale })
+    for_each_edge(
+        surface.triangles,
+        surface.positions.len(),
+        &mut |done| watch.done(done),
+        |_, edge| {
+            if let [a, b] = edge {
+                (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
+            }
+        },
+    )?;
+    Ok(Target {
+        bvh: to,
+        twins,
+        scale,
+    })
 }
 
 #[cfg(test)]

@@ -18,13 +18,24 @@ impl<'s, 'a> Target<'s, 'a> {
     /// A coordinate that is too large.
     pub(crate) fn of_mesh(bvh: &'s Bvh<'a>, topology: &Topology) -> Result<Self, MeasureError> {
         let bounds = bvh.bounding_box();
-        let value = bounds.as_flattened().iter().fold(0.0f64, |greatest, x| greatest.max(x.abs()));
+        let value = bounds
+            .as_flattened()
+            .iter()
+            .fold(0.0f64, |greatest, x| greatest.max(x.abs()));
         if value > GREATEST {
-            return Err(MeasureError::TooLarge { which: "reference", value, greatest: GREATEST });
+            return Err(MeasureError::TooLarge {
+                which: "reference",
+                value,
+                greatest: GREATEST,
+            });
         }
         let [low, high] = bounds.map(vector);
         let scale = Scale::new(value, (high - low).max_element());
-        Ok(Self { bvh, twins: topology.raw_twins().to_vec(), scale })
+        Ok(Self {
+            bvh,
+            twins: topology.raw_twins().to_vec(),
+            scale,
+        })
     }
 
     /// How far rounding may have led astray whoever measures distances of points of triangles no larger than the surface,
@@ -49,16 +60,28 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         if normal == DVec3::ZERO {
             return f64::INFINITY;
         }
-        let covered = self.cover.bound(self.target, corners, start, normal, goal, self.limit);
+        let covered = self
+            .cover
+            .bound(self.target, corners, start, normal, goal, self.limit);
         // Where the whole of it is covered there is hardly a better bound.
         if covered <= goal || (covered.is_finite() && !self.cover.is_inset()) {
             return scale.length_back(covered);
         }
-        self.farthest = Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY };
-        let whole = Piece { upper: f64::INFINITY, corners, faces: near, depth: 0 };
+        self.farthest = Sample {
+            point: DVec3::ZERO,
+            distance: f64::NEG_INFINITY,
+        };
+        let whole = Piece {
+            upper: f64::INFINITY,
+            corners,
+            faces: near,
+            depth: 0,
+        };
         let (mut waiting, mut greatest) = (vec![whole], 0.0f64);
         for _ in 0..MOST_PIECES {
-            let Some(piece) = waiting.pop() else { return scale.length_back(greatest) };
+            let Some(piece) = waiting.pop() else {
+                return scale.length_back(greatest);
+            };
             greatest = greatest.max(self.split(&piece, goal, &mut waiting));
             if self.farthest.distance > goal {
                 break;

@@ -45,7 +45,11 @@ impl Piece {
 impl Sample {
     /// The farther of two; the first of equals.
     pub(super) fn farther(self, other: Self) -> Self {
-        if other.distance > self.distance { other } else { self }
+        if other.distance > self.distance {
+            other
+        } else {
+            self
+        }
     }
 }
 
@@ -65,8 +69,18 @@ pub(crate) struct Worker<'t, 's, 'a> {
 
 impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     pub(super) fn new(target: &'t Target<'s, 'a>, limit: usize, middle_first: bool) -> Self {
-        let farthest = Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY };
-        Self { target, cover: Cover::new(), limit, middle_first, farthest, steps: 0 }
+        let farthest = Sample {
+            point: DVec3::ZERO,
+            distance: f64::NEG_INFINITY,
+        };
+        Self {
+            target,
+            cover: Cover::new(),
+            limit,
+            middle_first,
+            farthest,
+            steps: 0,
+        }
     }
 
     /// Pieces bounded, and triangles and boxes looked at for that.
@@ -78,7 +92,10 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     pub(super) fn sample(&mut self, point: DVec3, guess: u32) -> Near {
         let near = self.target.nearest(point, guess);
         self.steps += u64::from(near.visited);
-        self.farthest = self.farthest.farther(Sample { point, distance: near.distance });
+        self.farthest = self.farthest.farther(Sample {
+            point,
+            distance: near.distance,
+        });
         near
     }
 
@@ -99,7 +116,9 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         }
         let middle = (t[0] + t[1] + t[2]) / 3.0;
         let face = self.sample(middle, faces[0]).face;
-        let step = t.iter().fold(0.0f64, |step, corner| step.max(corner.distance(middle)));
+        let step = t
+            .iter()
+            .fold(0.0f64, |step, corner| step.max(corner.distance(middle)));
         best = best.min(self.target.distance_to(middle, face) + step + slack);
         if best > goal && !faces.contains(&face) {
             best = best.min(self.to_one(t, face) + slack);
@@ -116,7 +135,11 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
 
     /// Steps from each corner, and one triangle near a corner for all; the first that is at most `goal`, or the best.
     fn by_corners(&self, t: [DVec3; 3], faces: [u32; 3], goal: f64) -> f64 {
-        let sides = [t[1].distance(t[2]), t[2].distance(t[0]), t[0].distance(t[1])];
+        let sides = [
+            t[1].distance(t[2]),
+            t[2].distance(t[0]),
+            t[0].distance(t[1]),
+        ];
         let own: [f64; 3] = core::array::from_fn(|i| self.target.distance_to(t[i], faces[i]));
         let step = |i: usize| own[i] + sides[(i + 1) % 3].max(sides[(i + 2) % 3]);
         let mut best = step(0).min(step(1)).min(step(2));
@@ -124,7 +147,11 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
             if best > goal && !faces[..i].contains(&face) {
                 let to_one = (0..3).fold(0.0, |greatest: f64, j| {
                     let known = faces[j] == face;
-                    greatest.max(if known { own[j] } else { self.target.distance_to(t[j], face) })
+                    greatest.max(if known {
+                        own[j]
+                    } else {
+                        self.target.distance_to(t[j], face)
+                    })
                 });
                 best = best.min(to_one);
             }
@@ -134,7 +161,9 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
 
     /// The greatest distance of the corners to one triangle.
     fn to_one(&self, t: [DVec3; 3], face: u32) -> f64 {
-        t.iter().fold(0.0, |greatest: f64, &corner| greatest.max(self.target.distance_to(corner, face)))
+        t.iter().fold(0.0, |greatest: f64, &corner| {
+            greatest.max(self.target.distance_to(corner, face))
+        })
     }
 
     /// The bound by a sheet around a triangle, seen along its normal, then along that of the piece.
@@ -143,7 +172,11 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         let mut best = f64::INFINITY;
         for direction in [normal(self.target.triangle(face)), normal(t)] {
             if best > goal && direction != DVec3::ZERO {
-                best = best.min(self.cover.bound(self.target, t, face, direction, goal, self.limit));
+                best =
+                    best.min(
+                        self.cover
+                            .bound(self.target, t, face, direction, goal, self.limit),
+                    );
             }
         }
         best
@@ -153,16 +186,29 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
     /// of the others.
     pub(super) fn split(&mut self, piece: &Piece, goal: f64, parts: &mut Vec<Piece>) -> f64 {
         let mut dropped = f64::NEG_INFINITY;
-        let Piece { corners: c, faces: f, .. } = *piece;
+        let Piece {
+            corners: c,
+            faces: f,
+            ..
+        } = *piece;
         let mut add = |worker: &mut Self, corners, faces| {
             let upper = worker.bound(corners, faces, goal).min(piece.upper);
             if upper <= goal {
                 dropped = dropped.max(upper);
             } else {
-                parts.push(Piece { upper, corners, faces, depth: piece.depth + 1 });
+                parts.push(Piece {
+                    upper,
+                    corners,
+                    faces,
+                    depth: piece.depth + 1,
+                });
             }
         };
-        let sides = [c[0].distance(c[1]), c[1].distance(c[2]), c[2].distance(c[0])];
+        let sides = [
+            c[0].distance(c[1]),
+            c[1].distance(c[2]),
+            c[2].distance(c[0]),
+        ];
         let longest = (1..3).fold(0, |best, i| if sides[i] > sides[best] { i } else { best });
         let [i, j, k] = [longest, (longest + 1) % 3, (longest + 2) % 3];
         let middle = |worker: &mut Self, i: usize, j: usize| {

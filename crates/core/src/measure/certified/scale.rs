@@ -45,7 +45,11 @@ impl Scale {
     /// The scale of surfaces whose coordinates are at most `magnitude`; the surfaces' longest box side is `extent`.
     pub(super) fn new(magnitude: f64, extent: f64) -> Self {
         // Both powers of two must be normal numbers; what remains to the ends of the range does no harm.
-        let exponent = if magnitude > 0.0 { exponent_above(magnitude).clamp(-1000, 1000) } else { 0 };
+        let exponent = if magnitude > 0.0 {
+            exponent_above(magnitude).clamp(-1000, 1000)
+        } else {
+            0
+        };
         let (up, down) = (power_of_two(-exponent), power_of_two(exponent));
         let magnitude = magnitude * up;
         // Two subnormal roundings a coordinate, there and back, in the common unit.
@@ -53,7 +57,13 @@ impl Scale {
         let slack = POINT_ROUNDINGS * ROUNDOFF * magnitude + vanishing;
         // A box of the largest numbers is not longer than four times their magnitude, whatever its length overflowed to.
         let extent = (extent * up).min(4.0 * magnitude);
-        Self { up, down, magnitude, slack, search_slack: slack + SEARCH * extent }
+        Self {
+            up,
+            down,
+            magnitude,
+            slack,
+            search_slack: slack + SEARCH * extent,
+        }
     }
 
     /// A point in the common unit.

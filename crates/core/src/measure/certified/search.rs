@@ -51,7 +51,10 @@ struct Waiting {
 
 impl Ord for Waiting {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.piece.upper.total_cmp(&other.piece.upper).then(other.number.cmp(&self.number))
+        self.piece
+            .upper
+            .total_cmp(&other.piece.upper)
+            .then(other.number.cmp(&self.number))
     }
 }
 
@@ -115,7 +118,10 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             relative_gap: options.relative_gap.max(0.0),
             most_work: options.max_work,
             known: known.map(|known| target.scale.length(known)),
-            farthest: Sample { point: DVec3::ZERO, distance: f64::NEG_INFINITY },
+            farthest: Sample {
+                point: DVec3::ZERO,
+                distance: f64::NEG_INFINITY,
+            },
             waiting: BinaryHeap::new(),
             number: 0,
             dropped: f64::NEG_INFINITY,
@@ -151,13 +157,16 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             false => Samples::of_vertices(self.from),
         };
         watch.stage(Stage::Sampling, Some(samples.len()))?;
-        let runs = parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
-            let mut points = Vec::with_capacity(range.len());
-            samples.visit(range, |point| points.push(point));
-            let mut near = Vec::with_capacity(points.len());
-            self.target.bvh.each_nearest(&points, |_, distance, face| near.push((distance, face)));
-            near
-        })?;
+        let runs =
+            parallel::pieces_polled(samples.len(), RUN, &mut |done| watch.done(done), |range| {
+                let mut points = Vec::with_capacity(range.len());
+                samples.visit(range, |point| points.push(point));
+                let mut near = Vec::with_capacity(points.len());
+                self.target
+                    .bvh
+                    .each_nearest(&points, |_, distance, face| near.push((distance, face)));
+                near
+            })?;
         let near = runs.concat();
         let mut faces = vec![0; self.from.surface().positions.len()];
         for (&vertex, &(_, face)) in samples.vertices().iter().zip(&near) {
@@ -171,10 +180,14 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             }
         }
         let scale = self.target.scale;
-        let sample = |point, distance| Sample { point: scale.point(point), distance: scale.length(distance) };
+        let sample = |point, distance| Sample {
+            point: scale.point(point),
+            distance: scale.length(distance),
+        };
         self.farthest = sample(samples.point(best), most);
         if is_sampled
-            && let Some((point, distance)) = climb(&samples, &distances, self.from, self.target.bvh, watch)?
+            && let Some((point, distance)) =
+                climb(&samples, &distances, self.from, self.target.bvh, watch)?
         {
             self.farthest = self.farthest.farther(sample(point, distance));
         }
@@ -211,10 +224,20 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
                 if upper <= goal {
                     dropped = f64::max(dropped, upper);
                 } else {
-                    kept.push(Piece { upper, corners, faces, depth: 0 });
+                    kept.push(Piece {
+                        upper,
+                        corners,
+                        faces,
+                        depth: 0,
+                    });
                 }
             }
-            Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
+            Found {
+                kept,
+                dropped,
+                farthest: worker.farthest,
+                work: worker.work(),
+            }
         })?;
         self.take(runs);
         Ok(())
@@ -229,8 +252,15 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         while self.work < self.most_work && self.waiting.len() < most_waiting {
             let goal = self.goal();
             batch.clear();
-            while batch.len() < BATCH && self.waiting.peek().is_some_and(|worst| worst.piece.upper > goal) {
-                let Some(Waiting { piece, .. }) = self.waiting.pop() else { break };
+            while batch.len() < BATCH
+                && self
+                    .waiting
+                    .peek()
+                    .is_some_and(|worst| worst.piece.upper > goal)
+            {
+                let Some(Waiting { piece, .. }) = self.waiting.pop() else {
+                    break;
+                };
                 if piece.is_deepest() {
                     self.dropped = self.dropped.max(piece.upper);
                 } else {
@@ -247,7 +277,12 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
                 for piece in &batch[range] {
                     dropped = dropped.max(worker.split(piece, goal, &mut kept));
                 }
-                Found { kept, dropped, farthest: worker.farthest, work: worker.work() }
+                Found {
+                    kept,
+                    dropped,
+                    farthest: worker.farthest,
+                    work: worker.work(),
+                }
             })?;
             split += batch.len();
             self.take(runs);
@@ -262,7 +297,10 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
             self.farthest = self.farthest.farther(run.farthest);
             self.work += run.work;
             for piece in run.kept {
-                self.waiting.push(Waiting { piece, number: self.number });
+                self.waiting.push(Waiting {
+                    piece,
+                    number: self.number,
+                });
                 self.number += 1;
             }
         }
@@ -272,7 +310,10 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
     fn bounds(&self) -> Bounds {
         let scale = self.target.scale;
         let lower = self.lower();
-        let left = self.waiting.peek().map_or(f64::NEG_INFINITY, |worst| worst.piece.upper);
+        let left = self
+            .waiting
+            .peek()
+            .map_or(f64::NEG_INFINITY, |worst| worst.piece.upper);
         let upper = self.dropped.max(left).max(lower);
         let at = scale.back(self.farthest.point).to_array();
         Bounds {

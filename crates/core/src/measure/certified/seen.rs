@@ -19,7 +19,11 @@ struct Entry {
 impl Seen {
     /// An empty set.
     pub(super) fn new() -> Self {
-        Self { entries: vec![Entry { face: 0, stamp: 0 }; FIRST], stamp: 1, count: 0 }
+        Self {
+            entries: vec![Entry { face: 0, stamp: 0 }; FIRST],
+            stamp: 1,
+            count: 0,
+        }
     }
 
     /// Empties it.
@@ -43,7 +47,10 @@ impl Seen {
     pub(super) fn insert(&mut self, face: u32) {
         let place = self.place(face);
         if self.entries[place].stamp != self.stamp {
-            self.entries[place] = Entry { face, stamp: self.stamp };
+            self.entries[place] = Entry {
+                face,
+                stamp: self.stamp,
+            };
             self.count += 1;
             if 2 * self.count > self.entries.len() {
                 self.grow();
@@ -66,7 +73,10 @@ impl Seen {
     fn grow(&mut self) {
         let larger = vec![Entry { face: 0, stamp: 0 }; 2 * self.entries.len()];
         let smaller = core::mem::replace(&mut self.entries, larger);
-        for entry in smaller.into_iter().filter(|entry| entry.stamp == self.stamp) {
+        for entry in smaller
+            .into_iter()
+            .filter(|entry| entry.stamp == self.stamp)
+        {
             let place = self.place(entry.face);
             self.entries[place] = entry;
         }

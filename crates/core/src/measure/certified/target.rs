@@ -36,7 +36,8 @@ impl Target<'_, '_> {
 
     #[inline]
     pub(super) fn vertex(&self, vertex: u32) -> DVec3 {
-        self.scale.point(vector(self.bvh.surface().positions[vertex as usize]))
+        self.scale
+            .point(vector(self.bvh.surface().positions[vertex as usize]))
     }
 
     #[inline]
@@ -47,8 +48,14 @@ impl Target<'_, '_> {
     /// The nearest triangle and its distance, within [`Scale::search_slack`] of the truth.
     #[inline]
     pub(super) fn nearest(&self, p: DVec3, guess: u32) -> Near {
-        let (found, visited) = self.bvh.closest_counted(self.scale.back(p).to_array(), Some(guess));
-        Near { distance: self.scale.length(found.distance), face: found.face, visited }
+        let (found, visited) = self
+            .bvh
+            .closest_counted(self.scale.back(p).to_array(), Some(guess));
+        Near {
+            distance: self.scale.length(found.distance),
+            face: found.face,
+            visited,
+        }
     }
 
     /// The distance of a point to some point of a triangle, the nearest but for rounding: within [`Scale::slack`] never

@@ -14,7 +14,10 @@ struct Shape {
 
 impl Shape {
     fn as_triangles(&self) -> Triangles<'_> {
-        Triangles { positions: &self.positions, triangles: &self.triangles }
+        Triangles {
+            positions: &self.positions,
+            triangles: &self.triangles,
+        }
     }
 
     /// Every position through `place`.
@@ -34,13 +37,23 @@ impl Shape {
 fn square(n: u32, height: impl Fn(f64, f64) -> f64) -> Shape {
     let vertex = |i: u32, j: u32| i * (n + 1) + j;
     let place = |i: u32| f64::from(i) / f64::from(n);
-    let mut shape = Shape { positions: vec![], triangles: vec![] };
+    let mut shape = Shape {
+        positions: vec![],
+        triangles: vec![],
+    };
     for i in 0..=n {
-        shape.positions.extend((0..=n).map(|j| [place(i), place(j), height(place(i), place(j))]));
+        shape
+            .positions
+            .extend((0..=n).map(|j| [place(i), place(j), height(place(i), place(j))]));
     }
     for i in 0..n {
         for j in 0..n {
-            let (a, b, c, d) = (vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+            let (a, b, c, d) = (
+                vertex(i, j),
+                vertex(i + 1, j),
+                vertex(i + 1, j + 1),
+                vertex(i, j + 1),
+            );
             shape.triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
@@ -49,10 +62,14 @@ fn square(n: u32, height: impl Fn(f64, f64) -> f64) -> Shape {
 
 /// An octahedron with its corners at a distance of 1, each face split into n².
 fn octahedron(n: u32) -> Shape {
-    let mut shape = Shape { positions: vec![], triangles: vec![] };
+    let mut shape = Shape {
+        positions: vec![],
+        triangles: vec![],
+    };
     let mut known = std::collections::BTreeMap::new();
     for octant in 0..8u32 {
-        let sign: [i64; 3] = core::array::from_fn(|axis| if octant >> axis & 1 == 1 { -1 } else { 1 });
+        let sign: [i64; 3] =
+            core::array::from_fn(|axis| if octant >> axis & 1 == 1 { -1 } else { 1 });
         let mut vertex = |i: u32, j: u32| {
             let weights = [i, j, n - i - j].map(i64::from);
             let key: [i64; 3] = core::array::from_fn(|axis| sign[axis] * weights[axis]);
@@ -63,9 +80,15 @@ fn octahedron(n: u32) -> Shape {
         };
         for i in 0..n {
             for j in 0..n - i {
-                shape.triangles.push([vertex(i, j), vertex(i + 1, j), vertex(i, j + 1)]);
+                shape
+                    .triangles
+                    .push([vertex(i, j), vertex(i + 1, j), vertex(i, j + 1)]);
                 if i + j + 2 <= n {
-                    shape.triangles.push([vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)]);
+                    shape.triangles.push([
+                        vertex(i + 1, j),
+                        vertex(i + 1, j + 1),
+                        vertex(i, j + 1),
+                    ]);
                 }
             }
         }
@@ -87,27 +110,50 @@ fn narrow() -> CertifiedOptions {
 
 /// The interval holds the truth, is as narrow as asked, and its places are where it says.
 fn holds(bounds: &Bounds, truth: f64, gap: f64) {
-    assert!(bounds.lower <= truth && truth <= bounds.upper, "{truth} {bounds:?}");
-    assert!(bounds.converged && bounds.upper - bounds.lower <= gap, "{truth} {bounds:?}");
+    assert!(
+        bounds.lower <= truth && truth <= bounds.upper,
+        "{truth} {bounds:?}"
+    );
+    assert!(
+        bounds.converged && bounds.upper - bounds.lower <= gap,
+        "{truth} {bounds:?}"
+    );
     let reached = vector(bounds.at).distance(vector(bounds.to));
-    assert!((reached - bounds.lower).abs() <= 1e-10 * (1.0 + reached), "{bounds:?}");
+    assert!(
+        (reached - bounds.lower).abs() <= 1e-10 * (1.0 + reached),
+        "{bounds:?}"
+    );
 }
 
 /// The distance of a point to a triangle: inside if its foot on the plane is, else that of a side.
 fn point_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let side = |a: DVec3, b: DVec3| {
         let t = (p - a).dot(b - a) / (b - a).length_squared();
-        (a + (b - a) * if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }).distance(p)
+        (a + (b - a)
+            * if t.is_finite() {
+                t.clamp(0.0, 1.0)
+            } else {
+                0.0
+            })
+        .distance(p)
     };
     let normal = (b - a).cross(c - a);
     let foot = p - normal * ((p - a).dot(normal) / normal.length_squared());
-    let inside = [(a, b), (b, c), (c, a)].iter().all(|&(a, b)| (b - a).cross(foot - a).dot(normal) >= 0.0);
-    if inside { foot.distance(p) } else { side(a, b).min(side(b, c)).min(side(c, a)) }
+    let inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|&(a, b)| (b - a).cross(foot - a).dot(normal) >= 0.0);
+    if inside {
+        foot.distance(p)
+    } else {
+        side(a, b).min(side(b, c)).min(side(c, a))
+    }
 }
 
 fn brute_distance(p: DVec3, shape: &Shape) -> f64 {
     let corners = |face: usize| shape.as_triangles().corners(face).map(vector);
-    (0..shape.triangles.len()).map(|face| point_to_triangle(p, corners(face))).fold(f64::INFINITY, f64::min)
+    (0..shape.triangles.len())
+        .map(|face| point_to_triangle(p, corners(face)))
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// The greatest distance at a lattice of points with `steps` steps along each side of every triangle.
@@ -128,9 +174,17 @@ fn brute_sampled(from: &Shape, to: &Shape, steps: u32) -> f64 {
 /// One direction against brute force: nothing sampled is farther than the upper bound, and the place of the lower one
 /// is on the surface and as far away as it says.
 fn agrees(bounds: &Bounds, from: &Shape, to: &Shape, steps: u32) {
-    let size = from.positions.iter().chain(&to.positions).flatten().fold(0.0f64, |size, x| size.max(x.abs()));
+    let size = from
+        .positions
+        .iter()
+        .chain(&to.positions)
+        .flatten()
+        .fold(0.0f64, |size, x| size.max(x.abs()));
     let sampled = brute_sampled(from, to, steps);
-    assert!(sampled <= bounds.upper + 1e-14 * size, "{sampled} sampled, {bounds:?}");
+    assert!(
+        sampled <= bounds.upper + 1e-14 * size,
+        "{sampled} sampled, {bounds:?}"
+    );
     let at = vector(bounds.at);
     assert!(brute_distance(at, from) <= 1e-13 * size, "{bounds:?}");
     assert!(brute_distance(at, to) >= bounds.lower, "{bounds:?}");
@@ -144,7 +198,10 @@ fn agree(a: &Shape, b: &Shape, options: &CertifiedOptions, steps: u32) -> Certif
         let gap = (options.relative_gap * side.lower)
             .max(options.gap.unwrap_or(1e-6 * found.reference_diagonal))
             .max(1e-9 * found.reference_diagonal);
-        assert!(side.converged && side.upper - side.lower <= gap * 1.000_001, "{gap} {side:?}");
+        assert!(
+            side.converged && side.upper - side.lower <= gap * 1.000_001,
+            "{gap} {side:?}"
+        );
     }
     found
 }
@@ -159,7 +216,10 @@ fn parallel_squares() {
         let found = certify(&square(n, |_, _| 0.0), &wide, &narrow());
         holds(&found.forward, 0.25, 2.5e-5);
         holds(&found.backward, 1.0625f64.sqrt(), 1.1e-4);
-        assert_eq!(found.symmetric_interval(), [found.backward.lower, found.backward.upper]);
+        assert_eq!(
+            found.symmetric_interval(),
+            [found.backward.lower, found.backward.upper]
+        );
     }
 }
 
@@ -183,7 +243,10 @@ fn nested_spheres() {
     // Between the same triangulation at two radii, the farthest points are the outer vertices.
     let found = certify(&sphere(16, 1.0), &sphere(16, 1.001), &narrow());
     holds(&found.backward, 0.001, 1e-6 * 4.0);
-    assert!(found.forward.upper <= 0.001 + 4e-6 && found.forward.lower > 0.00098, "{found:?}");
+    assert!(
+        found.forward.upper <= 0.001 + 4e-6 && found.forward.lower > 0.00098,
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -198,7 +261,10 @@ fn a_mesh_that_stands_for_another_surface_widens_the_interval() {
     let error = middles.fold(0.0, f64::max);
     let found = certify(&sphere(3, 1.1), &reference, &narrow());
     let wider = found.widened(error);
-    assert!(wider.forward.lower <= 0.1 && 0.1 <= wider.forward.upper && wider.lower() > 0.0, "{wider:?}");
+    assert!(
+        wider.forward.lower <= 0.1 && 0.1 <= wider.forward.upper && wider.lower() > 0.0,
+        "{wider:?}"
+    );
     assert!((wider.upper() - found.upper() - error).abs() <= 1e-15 && wider.converged());
     assert_eq!(found.widened(10.0).lower(), 0.0);
 }
@@ -206,7 +272,13 @@ fn a_mesh_that_stands_for_another_surface_widens_the_interval() {
 #[test]
 fn a_tent_over_a_plane() {
     let tent = Shape {
-        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.7]],
+        positions: vec![
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.5, 0.5, 0.7],
+        ],
         triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
     };
     for n in [1, 2, 9] {
@@ -222,19 +294,35 @@ fn a_tent_over_a_plane() {
 fn the_farthest_point_inside_a_triangle_between_several_others() {
     // The point of a triangle farthest from its own corners is the centre of its circumscribed circle.
     let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0]];
-    let triangle = Shape { positions: corners.to_vec(), triangles: vec![[0, 1, 2]] };
-    let points = Shape { positions: corners.to_vec(), triangles: vec![[0, 0, 0], [1, 1, 1], [2, 2, 2]] };
+    let triangle = Shape {
+        positions: corners.to_vec(),
+        triangles: vec![[0, 1, 2]],
+    };
+    let points = Shape {
+        positions: corners.to_vec(),
+        triangles: vec![[0, 0, 0], [1, 1, 1], [2, 2, 2]],
+    };
     let found = certify(&triangle, &points, &narrow());
     let [a, b, c] = corners.map(vector);
     let (ab, bc, ca) = (a.distance(b), b.distance(c), c.distance(a));
-    holds(&found.forward, ab * bc * ca / (2.0 * (b - a).cross(c - a).length()), 5e-4);
+    holds(
+        &found.forward,
+        ab * bc * ca / (2.0 * (b - a).cross(c - a).length()),
+        5e-4,
+    );
     assert!(found.backward.upper < 1e-10 && found.backward.lower == 0.0);
 }
 
 #[test]
 fn identical_surfaces() {
     let open = square(9, |x, y| (3.0 * x).sin() * y);
-    for shape in [&open, &octahedron(5), &sphere(12, 3.0), &open.scaled(1e150), &open.scaled(1e-150)] {
+    for shape in [
+        &open,
+        &octahedron(5),
+        &sphere(12, 3.0),
+        &open.scaled(1e150),
+        &open.scaled(1e-150),
+    ] {
         let found = certify(shape, shape, &CertifiedOptions::default().gap(Some(0.0)));
         assert!(found.converged(), "{found:?}");
         for side in [found.forward, found.backward] {
@@ -246,9 +334,14 @@ fn identical_surfaces() {
 
 #[test]
 fn degenerate_triangles() {
-    let needle =
-        Shape { positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]], triangles: vec![[0, 1, 2]] };
-    let dot = Shape { positions: vec![[0.0, 2.0, 0.0]], triangles: vec![[0, 0, 0]] };
+    let needle = Shape {
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
+        triangles: vec![[0, 1, 2]],
+    };
+    let dot = Shape {
+        positions: vec![[0.0, 2.0, 0.0]],
+        triangles: vec![[0, 0, 0]],
+    };
     let found = certify(&needle, &dot, &narrow());
     holds(&found.forward, 5f64.sqrt(), 1e-3);
     holds(&found.backward, 2.0, 1e-3);
@@ -258,7 +351,13 @@ fn degenerate_triangles() {
     let mut dirty = square(6, |x, _| 0.01 * x);
     let middle = dirty.positions.len() as u32;
     dirty.positions.push([0.5, 0.25, 0.005]);
-    dirty.triangles.extend([[3, 3, 4], [0, 7, middle], [8, 9, 16], [9, 8, 16], [20, 20, 20]]);
+    dirty.triangles.extend([
+        [3, 3, 4],
+        [0, 7, middle],
+        [8, 9, 16],
+        [9, 8, 16],
+        [20, 20, 20],
+    ]);
     dirty.triangles[5].swap(0, 1);
     agree(&dirty, &square(4, |_, _| 0.0), &narrow(), 6);
 }
@@ -271,24 +370,46 @@ fn coordinates_of_any_size() {
         let scale = 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
         let found = certify(&a.scaled(scale), &b.scaled(scale), &narrow());
         let near = |x: f64, y: f64| (x / scale - y).abs() <= 1e-3 * y;
-        assert!(found.converged() && near(found.lower(), plain.lower()), "{exponent} {found:?}");
+        assert!(
+            found.converged() && near(found.lower(), plain.lower()),
+            "{exponent} {found:?}"
+        );
         assert!(near(found.upper(), plain.upper()), "{exponent} {found:?}");
     }
     // A small surface beside a huge one, and far from the origin.
     let found = certify(&a, &b.scaled(1e200), &CertifiedOptions::default());
-    assert!(found.lower() >= 1e199 && found.upper() <= 1.02e200 * 3f64.sqrt(), "{found:?}");
+    assert!(
+        found.lower() >= 1e199 && found.upper() <= 1.02e200 * 3f64.sqrt(),
+        "{found:?}"
+    );
     let far = |shape: &Shape| shape.mapped(|[x, y, z]| [x + 1e6, y, z]);
     let found = certify(&far(&a), &far(&b), &narrow());
-    assert!((found.lower() - plain.lower()).abs() < 1e-4 && found.converged(), "{found:?}");
+    assert!(
+        (found.lower() - plain.lower()).abs() < 1e-4 && found.converged(),
+        "{found:?}"
+    );
     assert!(matches!(
-        certified_hausdorff(a.as_triangles(), b.scaled(1e302).as_triangles(), &CertifiedOptions::default()),
-        Err(MeasureError::TooLarge { which: "reference", .. })
+        certified_hausdorff(
+            a.as_triangles(),
+            b.scaled(1e302).as_triangles(),
+            &CertifiedOptions::default()
+        ),
+        Err(MeasureError::TooLarge {
+            which: "reference",
+            ..
+        })
     ));
 }
 
 #[test]
 fn errors_name_the_surface() {
-    let (good, empty) = (square(1, |_, _| 0.0), Shape { positions: vec![], triangles: vec![] });
+    let (good, empty) = (
+        square(1, |_, _| 0.0),
+        Shape {
+            positions: vec![],
+            triangles: vec![],
+        },
+    );
     let options = CertifiedOptions::default();
     assert_eq!(
         certified_hausdorff(good.as_triangles(), empty.as_triangles(), &options),
@@ -306,29 +427,40 @@ fn an_interval_cut_short_is_wider_and_still_right() {
     let one = square(1, |_, _| 0.0);
     let mut two = square(1, |x, _| 0.2 + x);
     let other = square(1, |x, _| x - 1.2);
-    two.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + 4)));
+    two.triangles
+        .extend(other.triangles.iter().map(|t| t.map(|v| v + 4)));
     two.positions.extend(other.positions);
     let whole = certify(&one, &two, &narrow().relative_gap(1e-5));
     assert!(whole.converged());
     let options = narrow().relative_gap(1e-5).max_work(1);
     let short = certify(&one, &two, &options);
-    assert!(!short.forward.converged && short.forward.upper > whole.forward.upper, "{short:?} {whole:?}");
-    assert!(short.forward.lower <= whole.forward.upper && whole.forward.lower <= short.forward.upper);
+    assert!(
+        !short.forward.converged && short.forward.upper > whole.forward.upper,
+        "{short:?} {whole:?}"
+    );
+    assert!(
+        short.forward.lower <= whole.forward.upper && whole.forward.lower <= short.forward.upper
+    );
 }
 
 /// Flat strips of unit length in `parts`, each drawn from one point of the plane y = 0 to another.
 fn strips(parts: u32, profiles: &[[[f64; 2]; 2]]) -> Shape {
-    let mut shape = Shape { positions: vec![], triangles: vec![] };
+    let mut shape = Shape {
+        positions: vec![],
+        triangles: vec![],
+    };
     for [from, to] in profiles {
         let first = shape.positions.len() as u32;
         for i in 0..=parts {
             let y = f64::from(i) / f64::from(parts);
-            shape.positions.extend([[from[0], y, from[1]], [to[0], y, to[1]]]);
+            shape
+                .positions
+                .extend([[from[0], y, from[1]], [to[0], y, to[1]]]);
         }
         let at = |i: u32| first + 2 * i;
-        shape
-            .triangles
-            .extend((0..parts).flat_map(|i| [[at(i), at(i) + 1, at(i) + 3], [at(i), at(i) + 3, at(i) + 2]]));
+        shape.triangles.extend(
+            (0..parts).flat_map(|i| [[at(i), at(i) + 1, at(i) + 3], [at(i), at(i) + 3, at(i) + 2]]),
+        );
     }
     shape
 }
@@ -343,24 +475,56 @@ fn turned(shape: &Shape) -> Shape {
 #[test]
 fn work_grows_with_the_logarithm_of_the_gap_where_the_maximum_is_not_one_point() {
     let wide = |height: f64| [[-1.0, height], [1.0, height]];
-    let ribs: Vec<[[f64; 2]; 2]> =
-        (-2..=2).map(|i| [[0.5 * f64::from(i), -1.0], [0.5 * f64::from(i), 0.0]]).collect();
-    let shingles: Vec<[[f64; 2]; 2]> =
-        (-4..4).map(|i| [[0.25 * f64::from(i), 0.0], [0.25 * f64::from(i + 1), 0.0]]).collect();
+    let ribs: Vec<[[f64; 2]; 2]> = (-2..=2)
+        .map(|i| [[0.5 * f64::from(i), -1.0], [0.5 * f64::from(i), 0.0]])
+        .collect();
+    let shingles: Vec<[[f64; 2]; 2]> = (-4..4)
+        .map(|i| [[0.25 * f64::from(i), 0.0], [0.25 * f64::from(i + 1), 0.0]])
+        .collect();
     let cases = [
         // Between two sheets beside it, and over the slot between them.
-        ("ridge", vec![wide(0.0)], vec![[[-2.0, 0.0], [-1.0, 0.0]], [[1.0, 0.0], [2.0, 0.0]]], 1.0),
-        ("slot", vec![wide(0.5)], vec![[[-2.0, 0.0], [-0.3, 0.0]], [[0.3, 0.0], [2.0, 0.0]]], 0.34f64.sqrt()),
+        (
+            "ridge",
+            vec![wide(0.0)],
+            vec![[[-2.0, 0.0], [-1.0, 0.0]], [[1.0, 0.0], [2.0, 0.0]]],
+            1.0,
+        ),
+        (
+            "slot",
+            vec![wide(0.5)],
+            vec![[[-2.0, 0.0], [-0.3, 0.0]], [[0.3, 0.0], [2.0, 0.0]]],
+            0.34f64.sqrt(),
+        ),
         // In the middle between two walls, and between two that lean: the distances fall from its middle line.
-        ("walls", vec![wide(0.0)], vec![[[-1.0, -1.0], [-1.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]]], 1.0),
-        ("roof", vec![wide(0.0)], vec![[[-3.0, -1.0], [0.0, 2.0]], [[0.0, 2.0], [3.0, -1.0]]], 2f64.sqrt()),
+        (
+            "walls",
+            vec![wide(0.0)],
+            vec![[[-1.0, -1.0], [-1.0, 1.0]], [[1.0, -1.0], [1.0, 1.0]]],
+            1.0,
+        ),
+        (
+            "roof",
+            vec![wide(0.0)],
+            vec![[[-3.0, -1.0], [0.0, 2.0]], [[0.0, 2.0], [3.0, -1.0]]],
+            2f64.sqrt(),
+        ),
         // Over the edges of ribs that are half as far from each other as it is long, and through their middles.
-        ("ribs below", vec![wide(0.5)], ribs.clone(), 0.3125f64.sqrt()),
+        (
+            "ribs below",
+            vec![wide(0.5)],
+            ribs.clone(),
+            0.3125f64.sqrt(),
+        ),
         ("ribs", vec![wide(-0.5)], ribs, 0.25),
         // Over sheets that touch each other without being connected, so that all of it is as far away.
         ("shingles", vec![wide(0.25)], shingles, 0.25),
         // An edge and a plane: where they are equally far is a parabola.
-        ("edge and plane", vec![wide(0.0)], vec![[[-1.0, 0.0], [-3.0, 0.0]], [[1.0, -3.0], [1.0, 3.0]]], 1.0),
+        (
+            "edge and plane",
+            vec![wide(0.0)],
+            vec![[[-1.0, 0.0], [-3.0, 0.0]], [[1.0, -3.0], [1.0, 3.0]]],
+            1.0,
+        ),
     ];
     for (name, from, to, truth) in &cases {
         for (own, others) in [(1, 1), (1, 5), (5, 1), (3, 4)] {
@@ -373,8 +537,14 @@ fn work_grows_with_the_logarithm_of_the_gap_where_the_maximum_is_not_one_point()
             };
             // Two digits more of the gap add no more work than the two before: it grows with the logarithm, or not at all.
             let work = [1e-4, 1e-6, 1e-8].map(measured);
-            let added = [work[1].saturating_sub(work[0]), work[2].saturating_sub(work[1])];
-            assert!(added[1] <= added[0] + 500, "{name}, {own} and {others} parts: {work:?}");
+            let added = [
+                work[1].saturating_sub(work[0]),
+                work[2].saturating_sub(work[1]),
+            ];
+            assert!(
+                added[1] <= added[0] + 500,
+                "{name}, {own} and {others} parts: {work:?}"
+            );
         }
     }
 }
@@ -387,7 +557,11 @@ fn nearly_coincident_surfaces_take_little_work() {
     for n in [16, 32] {
         let found = certify(&square(n, height), &fine, &CertifiedOptions::default());
         let triangles = (fine.triangles.len() + 2 * (n * n) as usize) as u64;
-        assert!(found.converged() && found.work < 12 * triangles, "{n}: {} {triangles}", found.work);
+        assert!(
+            found.converged() && found.work < 12 * triangles,
+            "{n}: {} {triangles}",
+            found.work
+        );
     }
 }
 
@@ -395,15 +569,32 @@ fn nearly_coincident_surfaces_take_little_work() {
 fn sampled_distances_lie_within() {
     let pairs = [
         (sphere(8, 1.0), sphere(20, 1.02)),
-        (square(12, |x, y| 0.1 * (9.0 * x).sin() * y), square(5, |x, y| 0.1 * (9.0 * x).sin() * y)),
+        (
+            square(12, |x, y| 0.1 * (9.0 * x).sin() * y),
+            square(5, |x, y| 0.1 * (9.0 * x).sin() * y),
+        ),
         (octahedron(6), sphere(6, 0.8)),
     ];
     for (a, b) in &pairs {
         let found = certify(a, b, &narrow());
-        let sampled = hausdorff(a.as_triangles(), b.as_triangles(), &SamplingOptions::default()).unwrap();
-        for (certified, sampled) in [(found.forward, sampled.forward), (found.backward, sampled.backward)] {
-            assert!(certified.upper >= sampled.max && certified.converged, "{certified:?} {sampled:?}");
-            assert!(certified.lower >= sampled.max * (1.0 - 1e-4) - 1e-6, "{certified:?} {sampled:?}");
+        let sampled = hausdorff(
+            a.as_triangles(),
+            b.as_triangles(),
+            &SamplingOptions::default(),
+        )
+        .unwrap();
+        for (certified, sampled) in [
+            (found.forward, sampled.forward),
+            (found.backward, sampled.backward),
+        ] {
+            assert!(
+                certified.upper >= sampled.max && certified.converged,
+                "{certified:?} {sampled:?}"
+            );
+            assert!(
+                certified.lower >= sampled.max * (1.0 - 1e-4) - 1e-6,
+                "{certified:?} {sampled:?}"
+            );
         }
     }
 }
@@ -423,7 +614,9 @@ fn large_surfaces_beside_finer_ones_are_sampled_first() {
     let found = certified_hausdorff_observed(
         sheet.as_triangles(),
         ridge.as_triangles(),
-        &CertifiedOptions::default().gap(Some(1e-9)).relative_gap(0.0),
+        &CertifiedOptions::default()
+            .gap(Some(1e-9))
+            .relative_gap(0.0),
         &mut |progress| {
             if progress.stage == Stage::Sampling && samples.last() != Some(&progress.total) {
                 samples.push(progress.total);
@@ -445,7 +638,10 @@ fn the_same_bytes_on_any_number_of_threads() {
     let (sheet, ridge, _) = sheet_and_ridge();
     for (a, b) in [(sphere(40, 1.0), sphere(23, 1.003)), (sheet, ridge)] {
         let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
             pool.install(|| certify(&a, &b, &narrow()))
         };
         let one = on(1);
@@ -461,17 +657,30 @@ fn point() -> impl Strategy<Value = [f64; 3]> {
 
 /// Triangles without any order, some of them sharing vertices, some without area.
 fn soup() -> impl Strategy<Value = Shape> {
-    (prop::collection::vec(point(), 3..12), prop::collection::vec(prop::array::uniform3(0..1000u32), 1..12))
+    (
+        prop::collection::vec(point(), 3..12),
+        prop::collection::vec(prop::array::uniform3(0..1000u32), 1..12),
+    )
         .prop_map(|(positions, triangles)| {
             let count = positions.len() as u32;
-            Shape { positions, triangles: triangles.into_iter().map(|t| t.map(|v| v % count)).collect() }
+            Shape {
+                positions,
+                triangles: triangles
+                    .into_iter()
+                    .map(|t| t.map(|v| v % count))
+                    .collect(),
+            }
         })
 }
 
 /// A sheet over the square with random heights, some triangles missing, some turned round.
 fn sheet(roughness: f64) -> impl Strategy<Value = Shape> {
-    (1..7u32, prop::collection::vec(-1.0..1.0f64, 200), prop::collection::vec(0..40u32, 100)).prop_map(
-        move |(n, noise, fate)| {
+    (
+        1..7u32,
+        prop::collection::vec(-1.0..1.0f64, 200),
+        prop::collection::vec(0..40u32, 100),
+    )
+        .prop_map(move |(n, noise, fate)| {
             let mut shape = square(n, |x, y| 0.2 * (2.0 * x + y).sin());
             for (p, noise) in shape.positions.iter_mut().flatten().zip(&noise) {
                 *p += roughness * noise / f64::from(n);
@@ -485,9 +694,15 @@ fn sheet(roughness: f64) -> impl Strategy<Value = Shape> {
             let mut fates = fates();
             let all = shape.triangles.clone();
             shape.triangles.retain(|_| fates.next() != Some(&0));
-            if shape.triangles.is_empty() { Shape { triangles: all, ..shape } } else { shape }
-        },
-    )
+            if shape.triangles.is_empty() {
+                Shape {
+                    triangles: all,
+                    ..shape
+                }
+            } else {
+                shape
+            }
+        })
 }
 
 /// A closed surface, its vertices thrown about so far that it may fold and cut itself.

@@ -37,7 +37,11 @@ pub(super) fn count(
     boundary: &[[u32; 2]],
     watch: &mut Watch<'_>,
 ) -> Result<usize, Cancelled> {
-    let place = |v: u32| positions.get(v as usize).filter(|p| p.iter().all(|x| x.is_finite()));
+    let place = |v: u32| {
+        positions
+            .get(v as usize)
+            .filter(|p| p.iter().all(|x| x.is_finite()))
+    };
     // Adding zero makes both zeros the same place.
     let bits = |v: u32| positions[v as usize].map(|x| (x + 0.0).to_bits());
     let mut edges: Vec<[u32; 2]> = boundary
@@ -57,12 +61,17 @@ pub(super) fn count(
     let inside = |v: u32| frame.inside(at(v));
     let places: Vec<Place> = vertices
         .chunk_by(|&a, &b| bits(a) == bits(b))
-        .map(|vertices| Place { at: inside(vertices[0]), vertices: vertices.len() as u32 })
+        .map(|vertices| Place {
+            at: inside(vertices[0]),
+            vertices: vertices.len() as u32,
+        })
         .collect();
     let tree = Places::of(places, watch)?;
     watch.stage(Stage::Sampling, Some(edges.len()))?;
     parallel::pieces_polled(edges.len(), EDGES, &mut |done| watch.done(done), |range| {
-        edges[range].iter().for_each(|&[a, b]| tree.meet(inside(a), inside(b)));
+        edges[range]
+            .iter()
+            .for_each(|&[a, b]| tree.meet(inside(a), inside(b)));
     })?;
     Ok(tree.met())
 }
@@ -98,12 +107,20 @@ impl Places {
         let mut nodes = Vec::new();
         append(&mut nodes, &mut places, 0, watch)?;
         let is_met = places.iter().map(|_| AtomicBool::new(false)).collect();
-        Ok(Self { places, nodes, is_met })
+        Ok(Self {
+            places,
+            nodes,
+            is_met,
+        })
     }
 
     /// How many vertices are at places that an edge has met.
     fn met(&self) -> usize {
-        let met = self.places.iter().zip(&self.is_met).filter(|(_, is_met)| is_met.load(Relaxed));
+        let met = self
+            .places
+            .iter()
+            .zip(&self.is_met)
+            .filter(|(_, is_met)| is_met.load(Relaxed));
         met.map(|(place, _)| place.vertices as usize).sum()
     }
 
@@ -126,10 +143,16 @@ impl Places {
                 continue;
             }
             let [low, high] = node.bounds;
-            let Some(part) = within(part, (a, along), [low - reach, high + reach]) else { continue };
+            let Some(part) = within(part, (a, along), [low - reach, high + reach]) else {
+                continue;
+            };
             match node.second {
                 Some(second) => waiting.extend([(second, part), (number + 1, part)]),
-                None => node.range.clone().filter(is_inside).for_each(|number| self.mark(number)),
+                None => node
+                    .range
+                    .clone()
+                    .filter(is_inside)
+                    .for_each(|number| self.mark(number)),
             }
         }
     }
@@ -142,8 +165,14 @@ impl Places {
         let mut number = 0;
         loop {
             self.nodes[number].left.fetch_sub(1, Relaxed);
-            let Some(second) = self.nodes[number].second else { return };
-            number = if place < self.nodes[second].range.start { number + 1 } else { second };
+            let Some(second) = self.nodes[number].second else {
+                return;
+            };
+            number = if place < self.nodes[second].range.start {
+                number + 1
+            } else {
+                second
+            };
         }
     }
 }
@@ -160,12 +189,23 @@ fn append(
     }
     let bounds = places.iter().map(|place| place.at).fold(NO_BOUNDS, grown);
     let (own, range) = (nodes.len(), first..first + places.len());
-    nodes.push(Node { bounds, range, second: None, left: AtomicUsize::new(places.len()) });
+    nodes.push(Node {
+        bounds,
+        range,
+        second: None,
+        left: AtomicUsize::new(places.len()),
+    });
     if places.len() <= FEW {
         return Ok(());
     }
     let sides = (bounds[1] - bounds[0]).to_array();
-    let axis = (1..3).fold(0, |longest, axis| if sides[axis] > sides[longest] { axis } else { longest });
+    let axis = (1..3).fold(0, |longest, axis| {
+        if sides[axis] > sides[longest] {
+            axis
+        } else {
+            longest
+        }
+    });
     let half = places.len() / 2;
     places.select_nth_unstable_by(half, |a, b| a.at[axis].total_cmp(&b.at[axis]));
     let (before, after) = places.split_at_mut(half);

@@ -3,7 +3,10 @@
 use super::*;
 
 fn examine(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Watertightness {
-    watertightness(Triangles { positions, triangles })
+    watertightness(Triangles {
+        positions,
+        triangles,
+    })
 }
 
 /// Counts in the order boundary, non-manifold, inconsistent, T-junctions, components, Euler characteristic.
@@ -18,7 +21,12 @@ fn counts(w: &Watertightness) -> (usize, usize, usize, usize, usize, i64) {
     )
 }
 
-const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const CORNERS: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+];
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
 #[test]
@@ -45,7 +53,13 @@ fn an_open_sheet() {
 
 #[test]
 fn three_triangles_on_an_edge() {
-    let positions = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [-1.0, -1.0, 0.0],
+    ];
     let w = examine(&positions, &[[0, 1, 2], [0, 1, 3], [0, 1, 4]]);
     assert_eq!(counts(&w), (6, 1, 0, 0, 1, 5 - 7 + 3));
 }
@@ -85,8 +99,15 @@ fn a_square_cut_on_one_side_only() {
 
     // The same at other scales and places: the tolerance goes with the edge.
     for (scale, offset) in [(1e-200, 0.0), (1e-6, 3.0), (1e6, -1e7), (1e150, 0.0)] {
-        let moved: Vec<_> = positions.iter().map(|p| p.map(|x| x * scale + offset)).collect();
-        assert_eq!(examine(&moved, &triangles).t_junctions, 1, "{scale} {offset}");
+        let moved: Vec<_> = positions
+            .iter()
+            .map(|p| p.map(|x| x * scale + offset))
+            .collect();
+        assert_eq!(
+            examine(&moved, &triangles).t_junctions,
+            1,
+            "{scale} {offset}"
+        );
     }
 }
 
@@ -100,7 +121,11 @@ fn a_vertex_beside_the_edge_is_no_t_junction() {
         ([1.0, 1e-7, 0.0], 0),
     ] {
         let (positions, triangles) = cut_square(middle);
-        assert_eq!(examine(&positions, &triangles).t_junctions, expected, "{middle:?}");
+        assert_eq!(
+            examine(&positions, &triangles).t_junctions,
+            expected,
+            "{middle:?}"
+        );
     }
 }
 
@@ -132,7 +157,11 @@ fn many_triangles_in_one_point_and_on_one_edge_stay_fast() {
         };
         for corners in [
             [[0.0; 3], on_circle(i), on_circle(i + 1)],
-            [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [3.0 * on_circle(i)[0], 3.0 * on_circle(i)[1], 1.5]],
+            [
+                [0.0, 0.0, 1.0],
+                [0.0, 0.0, 2.0],
+                [3.0 * on_circle(i)[0], 3.0 * on_circle(i)[1], 1.5],
+            ],
         ] {
             let first = positions.len() as u32;
             positions.extend(corners);
@@ -141,7 +170,17 @@ fn many_triangles_in_one_point_and_on_one_edge_stay_fast() {
     }
     let start = std::time::Instant::now();
     let w = examine(&positions, &triangles);
-    assert_eq!(counts(&w), (6 * count as usize, 0, 0, 0, 2 * count as usize, 2 * i64::from(count)));
+    assert_eq!(
+        counts(&w),
+        (
+            6 * count as usize,
+            0,
+            0,
+            0,
+            2 * count as usize,
+            2 * i64::from(count)
+        )
+    );
     assert!(start.elapsed().as_secs() < 20);
 }
 
@@ -151,20 +190,33 @@ fn a_torus_grid_with_and_without_a_hole() {
     let vertex = |i: u32, j: u32| (i % n) * n + j % n;
     let positions: Vec<_> = (0..n * n)
         .map(|v| {
-            let [a, b] = [v / n, v % n].map(|k| f64::from(k) / f64::from(n) * core::f64::consts::TAU);
-            [(2.0 + b.cos()) * a.cos(), (2.0 + b.cos()) * a.sin(), b.sin()]
+            let [a, b] =
+                [v / n, v % n].map(|k| f64::from(k) / f64::from(n) * core::f64::consts::TAU);
+            [
+                (2.0 + b.cos()) * a.cos(),
+                (2.0 + b.cos()) * a.sin(),
+                b.sin(),
+            ]
         })
         .collect();
     let mut triangles = Vec::new();
     for i in 0..n {
         for j in 0..n {
-            let (a, b, c, d) = (vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1));
+            let (a, b, c, d) = (
+                vertex(i, j),
+                vertex(i + 1, j),
+                vertex(i + 1, j + 1),
+                vertex(i, j + 1),
+            );
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
     assert_eq!(counts(&examine(&positions, &triangles)), (0, 0, 0, 0, 1, 0));
     triangles.remove(100);
-    assert_eq!(counts(&examine(&positions, &triangles)), (3, 0, 0, 0, 1, -1));
+    assert_eq!(
+        counts(&examine(&positions, &triangles)),
+        (3, 0, 0, 0, 1, -1)
+    );
 }
 
 #[test]
@@ -199,16 +251,32 @@ fn t_junctions_are_those_that_looking_at_all_finds() {
             ]);
             triangles.push([first, first + 1, first + 2]);
         }
-        let surface = Triangles { positions: &positions, triangles: &triangles };
-        let sides: Vec<[u32; 2]> = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        let is_boundary = |&&[a, b]: &&[u32; 2]| {
-            sides.iter().filter(|&&[c, d]| [c, d] == [a, b] || [d, c] == [a, b]).count() == 1
+        let surface = Triangles {
+            positions: &positions,
+            triangles: &triangles,
         };
-        let boundary: Vec<[[f64; 3]; 2]> =
-            sides.iter().filter(is_boundary).map(|side| side.map(|v| positions[v as usize])).collect();
+        let sides: Vec<[u32; 2]> = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .collect();
+        let is_boundary = |&&[a, b]: &&[u32; 2]| {
+            sides
+                .iter()
+                .filter(|&&[c, d]| [c, d] == [a, b] || [d, c] == [a, b])
+                .count()
+                == 1
+        };
+        let boundary: Vec<[[f64; 3]; 2]> = sides
+            .iter()
+            .filter(is_boundary)
+            .map(|side| side.map(|v| positions[v as usize]))
+            .collect();
         let lies_inside = |p: &&[f64; 3]| {
             boundary.iter().any(|&[a, b]| {
-                let (along, from) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| p[i] - a[i]));
+                let (along, from) = (
+                    [0, 1, 2].map(|i| b[i] - a[i]),
+                    [0, 1, 2].map(|i| p[i] - a[i]),
+                );
                 let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
                 let t = dot(from, along) / dot(along, along);
                 let apart = [0, 1, 2].map(|i| from[i] - t * along[i]);
@@ -229,7 +297,10 @@ fn very_many_edges_side_by_side_take_little_time() {
     // Directions a hundredth apart, every other one twice as far: no edge comes near to a vertex of another.
     let around = |i: usize| {
         // None leads along the edge that all share.
-        let (turn, z) = (2.399_963_229_728_653 * i as f64, 0.9 - 0.9 * (2 * i + 1) as f64 / COUNT as f64);
+        let (turn, z) = (
+            2.399_963_229_728_653 * i as f64,
+            0.9 - 0.9 * (2 * i + 1) as f64 / COUNT as f64,
+        );
         let (far, (s, c)) = ((1 + i % 2) as f64, turn.sin_cos());
         [c * (1.0 - z * z).sqrt(), s * (1.0 - z * z).sqrt(), z].map(|x| far * x)
     };
@@ -237,7 +308,10 @@ fn very_many_edges_side_by_side_take_little_time() {
     positions.extend((0..COUNT).map(around));
     let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 1, i + 2]).collect();
     let w = examine(&positions, &triangles);
-    assert_eq!((w.non_manifold_edges, w.boundary_edges, w.t_junctions), (1, 2 * COUNT, 0));
+    assert_eq!(
+        (w.non_manifold_edges, w.boundary_edges, w.t_junctions),
+        (1, 2 * COUNT, 0)
+    );
     // Apexes on a circle around the line, farther apart than any edge reaches.
     let apex = |i: usize| {
         let (s, c) = (core::f64::consts::TAU * i as f64 / COUNT as f64).sin_cos();
@@ -245,7 +319,9 @@ fn very_many_edges_side_by_side_take_little_time() {
     };
     let mut positions = vec![[0.0; 3]];
     positions.extend((0..COUNT).flat_map(|i| [[1.0 + i as f64, 0.0, 0.0], apex(i)]));
-    let triangles: Vec<[u32; 3]> = (0..COUNT as u32).map(|i| [0, 2 * i + 1, 2 * i + 2]).collect();
+    let triangles: Vec<[u32; 3]> = (0..COUNT as u32)
+        .map(|i| [0, 2 * i + 1, 2 * i + 2])
+        .collect();
     // All on the line but its ends.
     assert_eq!(examine(&positions, &triangles).t_junctions, COUNT - 1);
     // Apexes on a circle, all edges to which lead through its middle's surroundings.

@@ -45,19 +45,42 @@ pub(super) fn cut(
 ) -> Sheets {
     let Neighbours { twins, cuts } = neighbours;
     let (copied, middles) = (Vec::new(), Vec::new());
-    let mut cutting = Cutting { triangles, inputs, twins, vertex_count, copied, middles };
+    let mut cutting = Cutting {
+        triangles,
+        inputs,
+        twins,
+        vertex_count,
+        copied,
+        middles,
+    };
     cutting.separate_fans();
     if !cutting.copied.is_empty() {
-        diagnosis.bow_tie_vertices.add_all(cutting.bow_ties(&cuts).into_iter().map(name).collect());
+        diagnosis
+            .bow_tie_vertices
+            .add_all(cutting.bow_ties(&cuts).into_iter().map(name).collect());
     }
     let edges = cutting.open_slits(cuts);
     let total = vertex_count + cutting.copied.len();
     let outgoing = outgoing_half_edges(&cutting.triangles, &cutting.twins, total);
-    let Cutting { triangles, inputs, twins, copied, middles, .. } = cutting;
+    let Cutting {
+        triangles,
+        inputs,
+        twins,
+        copied,
+        middles,
+        ..
+    } = cutting;
     let topology = Topology::from_parts(triangles, twins, outgoing);
     let vertices = copy_groups(vertex_count, &copied);
     let corners = fixed_copies(&topology, vertex_count, &copied, &vertices);
-    Sheets { topology, inputs, copied, middles, junctions: Junctions { vertices, edges }, corners }
+    Sheets {
+        topology,
+        inputs,
+        copied,
+        middles,
+        junctions: Junctions { vertices, edges },
+        corners,
+    }
 }
 
 struct Cutting {
@@ -81,7 +104,9 @@ impl Cutting {
 
     /// The vertex before cutting.
     fn original(&self, v: u32) -> u32 {
-        (v as usize).checked_sub(self.vertex_count).map_or(v, |copy| self.copied[copy])
+        (v as usize)
+            .checked_sub(self.vertex_count)
+            .map_or(v, |copy| self.copied[copy])
     }
 
     /// The first fan met keeps the vertex, each further one gets a copy.
@@ -138,7 +163,9 @@ impl Cutting {
         }
         // The root of a set is its lowest member; one set at each vertex holds the vertex itself.
         let mut found: Vec<u32> = (0..self.copied.len())
-            .filter(|&copy| sets.root((self.vertex_count + copy) as u32) as usize >= self.vertex_count)
+            .filter(|&copy| {
+                sets.root((self.vertex_count + copy) as u32) as usize >= self.vertex_count
+            })
             .map(|copy| self.copied[copy])
             .collect();
         found.sort_unstable();
@@ -187,7 +214,10 @@ impl Cutting {
             halves[0].push(near);
             halves[1].push(far);
         }
-        self.middles.push(Middle { ends, vertex: first });
+        self.middles.push(Middle {
+            ends,
+            vertex: first,
+        });
         halves
     }
 
@@ -223,8 +253,11 @@ fn follow(moved: &HashMap<u32, u32>, mut h: u32) -> u32 {
 
 /// The copies of each vertex that has several.
 fn copy_groups(vertex_count: usize, copied: &[u32]) -> Groups {
-    let mut pairs: Vec<(u32, u32)> =
-        copied.iter().enumerate().map(|(i, &original)| (original, (vertex_count + i) as u32)).collect();
+    let mut pairs: Vec<(u32, u32)> = copied
+        .iter()
+        .enumerate()
+        .map(|(i, &original)| (original, (vertex_count + i) as u32))
+        .collect();
     pairs.sort_unstable();
     let mut groups = Groups::default();
     for run in pairs.chunk_by(|a, b| a.0 == b.0) {
@@ -237,8 +270,17 @@ fn copy_groups(vertex_count: usize, copied: &[u32]) -> Groups {
 }
 
 /// Members of the groups that would not move alike, in ascending order.
-fn fixed_copies(topology: &Topology, vertex_count: usize, copied: &[u32], groups: &Groups) -> Vec<u32> {
-    let original = |v: VertexId| v.index().checked_sub(vertex_count).map_or(v.0, |copy| copied[copy]);
+fn fixed_copies(
+    topology: &Topology,
+    vertex_count: usize,
+    copied: &[u32],
+    groups: &Groups,
+) -> Vec<u32> {
+    let original = |v: VertexId| {
+        v.index()
+            .checked_sub(vertex_count)
+            .map_or(v.0, |copy| copied[copy])
+    };
     let boundary_neighbours = |v: u32| {
         let v = VertexId(v);
         let ring = topology.is_boundary(v).then(|| topology.ring(v))?;

@@ -36,10 +36,17 @@ pub(super) fn turn_inside_out(
 ) {
     let corners = |face: u32| faces.triangles[face as usize].map(|v| vector(position(v)));
     let is_closed = |own: &&[u32]| {
-        own.iter().all(|&face| neighbours.twins[3 * face as usize..][..3].iter().all(|&twin| twin != NONE))
+        own.iter().all(|&face| {
+            neighbours.twins[3 * face as usize..][..3]
+                .iter()
+                .all(|&twin| twin != NONE)
+        })
     };
-    let closed: Vec<Closed<'_>> =
-        components.iter().filter(is_closed).map(|own| Closed::of(own, corners)).collect();
+    let closed: Vec<Closed<'_>> = components
+        .iter()
+        .filter(is_closed)
+        .map(|own| Closed::of(own, corners))
+        .collect();
     let inside_out = InsideOut { closed, corners };
     let mut turned = vec![false; faces.triangles.len()];
     let mut named = Vec::new();
@@ -56,7 +63,14 @@ pub(super) fn turn_inside_out(
 impl<'a> Closed<'a> {
     fn of(faces: &'a [u32], corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
         let point = faces.first().map_or(DVec3::ZERO, |&face| corners(face)[0]);
-        let mut closed = Self { faces, size: 0.0, volume: 0.0, low: point, high: point, point };
+        let mut closed = Self {
+            faces,
+            size: 0.0,
+            volume: 0.0,
+            low: point,
+            high: point,
+            point,
+        };
         for [a, b, c] in faces.iter().map(|&face| corners(face)) {
             closed.low = closed.low.min(a).min(b).min(c);
             closed.high = closed.high.max(a).max(b).max(c);
@@ -98,7 +112,9 @@ impl<F: Fn(u32) -> [DVec3; 3]> InsideOut<'_, F> {
             if signs[own] * self.closed[own].volume >= 0.0 {
                 continue;
             }
-            let around = order[..place].iter().map(|&other| signs[other] * self.winding(other, own));
+            let around = order[..place]
+                .iter()
+                .map(|&other| signs[other] * self.winding(other, own));
             if around.sum::<f64>() < 0.5 {
                 signs[own] = -signs[own];
                 for &other in &order[place + 1..] {
@@ -118,7 +134,10 @@ impl<F: Fn(u32) -> [DVec3; 3]> InsideOut<'_, F> {
         if point.cmplt(own.low).any() || point.cmpgt(own.high).any() {
             return 0.0;
         }
-        let angles = own.faces.iter().map(|&face| solid_angle((self.corners)(face), point));
+        let angles = own
+            .faces
+            .iter()
+            .map(|&face| solid_angle((self.corners)(face), point));
         angles.sum::<f64>() / (4.0 * core::f64::consts::PI)
     }
 }

@@ -78,7 +78,9 @@ pub(super) fn build(
     let faces = repair_faces(soup, &kept, &mut diagnosis)?;
     let (mesh, trace) = assemble(soup, faces, kept, options.keep_windings, &mut diagnosis);
     if options.strict && !diagnosis.is_clean() {
-        return Err(MeshError::NeedsRepair { summary: diagnosis.defects() });
+        return Err(MeshError::NeedsRepair {
+            summary: diagnosis.defects(),
+        });
     }
     debug_assert_eq!(mesh.validate(), Ok(()));
     Ok((mesh, diagnosis, trace))
@@ -89,14 +91,24 @@ fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
     check_finite(&soup.positions)?;
     let count = soup.positions.len();
     if count >= NONE as usize {
-        return Err(MeshError::TooMany { what: "vertices", count, limit: NONE as usize - 1 });
+        return Err(MeshError::TooMany {
+            what: "vertices",
+            count,
+            limit: NONE as usize - 1,
+        });
     }
     let mut used = vec![false; count];
     for (face, corners) in soup.faces.iter().enumerate() {
         for &v in corners {
             match used.get_mut(v as usize) {
                 Some(used) => *used = true,
-                None => return Err(MeshError::VertexOutOfRange { face, vertex: u64::from(v), count }),
+                None => {
+                    return Err(MeshError::VertexOutOfRange {
+                        face,
+                        vertex: u64::from(v),
+                        count,
+                    });
+                }
             }
         }
     }
@@ -113,10 +125,17 @@ fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshE
 }
 
 /// Triangles without repetitions and without faces of zero area.
-fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> Result<Faces, MeshError> {
+fn repair_faces(
+    soup: &PolygonSoup,
+    kept: &[u32],
+    diagnosis: &mut Diagnosis,
+) -> Result<Faces, MeshError> {
     let mut faces = triangulate::triangulate(soup, kept, diagnosis)?;
     let vertex_count = kept.len();
-    let flatness = Flatness { positions: &soup.positions, opening: &soup.opening };
+    let flatness = Flatness {
+        positions: &soup.positions,
+        opening: &soup.opening,
+    };
     repeated::drop_repeated(&mut faces, flatness, diagnosis);
     let is_polygon = |input: u32| soup.faces.get(input as usize).len() > 3;
     zero_area::remove_zero_area(&mut faces, flatness, vertex_count, is_polygon, diagnosis);
@@ -126,7 +145,11 @@ fn repair_faces(soup: &PolygonSoup, kept: &[u32], diagnosis: &mut Diagnosis) -> 
     let reason = if soup.faces.is_empty() {
         "the input has none".to_owned()
     } else {
-        format!("of {} in the input none could be used: {}", soup.faces.len(), diagnosis.defects())
+        format!(
+            "of {} in the input none could be used: {}",
+            soup.faces.len(),
+            diagnosis.defects()
+        )
     };
     Err(MeshError::NoFaces { reason })
 }
@@ -144,14 +167,27 @@ fn assemble(
     let name = |v: u32| names[v as usize];
     let vertex_count = names.len();
     let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
-    let components = (!keeps_windings).then(|| orient::orient(&mut faces, &mut neighbours, diagnosis));
+    let components =
+        (!keeps_windings).then(|| orient::orient(&mut faces, &mut neighbours, diagnosis));
     orient::cut_opposed(&faces, &mut neighbours, diagnosis);
     if let Some(components) = components {
         let position = |v: u32| soup.positions[names[v as usize] as usize];
-        inside_out::turn_inside_out(&mut faces, &mut neighbours, &components, position, diagnosis);
+        inside_out::turn_inside_out(
+            &mut faces,
+            &mut neighbours,
+            &components,
+            position,
+            diagnosis,
+        );
     }
-    let Sheets { topology, inputs, copied, middles, junctions, corners } =
-        cut::cut(faces, neighbours, vertex_count, name, diagnosis);
+    let Sheets {
+        topology,
+        inputs,
+        copied,
+        middles,
+        junctions,
+        corners,
+    } = cut::cut(faces, neighbours, vertex_count, name, diagnosis);
     let mut positions = limitmesh_pages::with_capacity(vertex_count + copied.len());
     positions.extend(names.iter().map(|&v| soup.positions[v as usize]));
     let mut middle = middles.iter();
@@ -163,10 +199,22 @@ fn assemble(
         });
         positions.extend(position);
     }
-    let maps = VertexMaps { from_input: &kept, vertex_count, copied: &copied, middles: &middles };
-    let tags = retag::retag(soup, &topology, &maps, &corners, diagnosis).joined(&topology, &junctions);
+    let maps = VertexMaps {
+        from_input: &kept,
+        vertex_count,
+        copied: &copied,
+        middles: &middles,
+    };
+    let tags =
+        retag::retag(soup, &topology, &maps, &corners, diagnosis).joined(&topology, &junctions);
     let corners = trace::corners(soup, topology.triangles(), &inputs, &maps);
-    (Mesh::from_parts(topology, positions, tags, junctions), Trace { faces: inputs, corners })
+    (
+        Mesh::from_parts(topology, positions, tags, junctions),
+        Trace {
+            faces: inputs,
+            corners,
+        },
+    )
 }
 
 /// Numbers the vertices that the triangles use from 0, in ascending order; `kept` then leads from the input's
@@ -177,7 +225,11 @@ fn renumber(triangles: &mut [[u32; 3]], kept: &mut [u32]) -> Vec<u32> {
         numbers[v as usize] = 0;
     }
     let mut names = Vec::with_capacity(triangles.len() / 2 + 2);
-    for (v, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
+    for (v, number) in numbers
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, number)| **number == 0)
+    {
         *number = names.len() as u32;
         names.push(v as u32);
     }

@@ -50,8 +50,16 @@ pub(super) struct Components {
 impl Components {
     /// The faces of each component.
     pub(super) fn iter(&self) -> impl Iterator<Item = &[u32]> {
-        let ends = self.starts.iter().skip(1).copied().chain([self.faces.len()]);
-        self.starts.iter().zip(ends).map(|(&start, end)| &self.faces[start..end])
+        let ends = self
+            .starts
+            .iter()
+            .skip(1)
+            .copied()
+            .chain([self.faces.len()]);
+        self.starts
+            .iter()
+            .zip(ends)
+            .map(|(&start, end)| &self.faces[start..end])
     }
 }
 
@@ -64,7 +72,11 @@ pub(super) fn orient(
 ) -> Components {
     let (components, turned) = faces_to_turn(&faces.triangles, &neighbours.twins);
     if turned.contains(&true) {
-        let named = faces.inputs.iter().zip(&turned).filter(|(_, turned)| **turned);
+        let named = faces
+            .inputs
+            .iter()
+            .zip(&turned)
+            .filter(|(_, turned)| **turned);
         let mut named: Vec<u32> = named.map(|(&input, _)| input).collect();
         named.sort_unstable();
         named.dedup();
@@ -109,17 +121,29 @@ fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool
         }
         let component = &order[start..];
         if turned_here > component.len() - turned_here {
-            component.iter().for_each(|&face| turned[face as usize] ^= true);
+            component
+                .iter()
+                .for_each(|&face| turned[face as usize] ^= true);
         }
     }
-    (Components { faces: order, starts }, turned)
+    (
+        Components {
+            faces: order,
+            starts,
+        },
+        turned,
+    )
 }
 
 /// Swaps the last two corners of the marked faces, and renames their half-edges.
 pub(super) fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turned: &[bool]) {
     // Half-edge 0 ran from corner 0 to corner 1, which is now corner 2.
     let renamed = |h: u32| {
-        if turned[(h / 3) as usize] { h - h % 3 + (2 - h % 3) } else { h }
+        if turned[(h / 3) as usize] {
+            h - h % 3 + (2 - h % 3)
+        } else {
+            h
+        }
     };
     for (face, triangle) in triangles.iter_mut().enumerate() {
         if turned[face] {

@@ -9,14 +9,26 @@ pub(super) fn drop_repeated(faces: &mut Faces, flatness: Flatness<'_>, diagnosis
     let mut marked = Vec::new();
     for_each_repetition(&faces.triangles, flatness.positions.len(), |group| {
         marked.resize(faces.triangles.len(), false);
-        let stay = if flatness.is_flat(faces, group[0]) { group.len() % 2 } else { 1 };
-        group[stay..].iter().for_each(|&face| marked[face as usize] = true);
+        let stay = if flatness.is_flat(faces, group[0]) {
+            group.len() % 2
+        } else {
+            1
+        };
+        group[stay..]
+            .iter()
+            .for_each(|&face| marked[face as usize] = true);
     });
     if marked.is_empty() {
         return;
     }
-    let dropped = faces.inputs.iter().zip(&marked).filter(|(_, marked)| **marked);
-    diagnosis.repeated_faces.add_all(dropped.map(|(&input, _)| input).collect());
+    let dropped = faces
+        .inputs
+        .iter()
+        .zip(&marked)
+        .filter(|(_, marked)| **marked);
+    diagnosis
+        .repeated_faces
+        .add_all(dropped.map(|(&input, _)| input).collect());
     faces.drop_marked(&marked);
 }
 
@@ -58,7 +70,10 @@ pub(super) fn for_each_repetition(
         keyed.clear();
         keyed.extend(list.iter().map(|&face| (key(face), face)));
         keyed.sort_unstable();
-        for run in keyed.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
+        for run in keyed
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|run| run.len() > 1)
+        {
             group.clear();
             group.extend(run.iter().map(|&(_, face)| face));
             visit(&group);

@@ -19,11 +19,16 @@ pub(super) struct VertexMaps<'a> {
 
 impl VertexMaps<'_> {
     pub(super) fn vertex(&self, input: u32) -> Option<u32> {
-        self.from_input.get(input as usize).copied().filter(|&v| v != NONE)
+        self.from_input
+            .get(input as usize)
+            .copied()
+            .filter(|&v| v != NONE)
     }
 
     pub(super) fn original(&self, v: VertexId) -> u32 {
-        v.index().checked_sub(self.vertex_count).map_or(v.0, |copy| self.copied[copy])
+        v.index()
+            .checked_sub(self.vertex_count)
+            .map_or(v.0, |copy| self.copied[copy])
     }
 }
 
@@ -36,8 +41,13 @@ pub(super) fn retag(
     diagnosis: &mut Diagnosis,
 ) -> Tags {
     let creases = retag_creases(&soup.creases, topology, maps, diagnosis);
-    let mut corners: Vec<CornerTag> =
-        fixed.iter().map(|&vertex| CornerTag { vertex, sharpness: f64::INFINITY }).collect();
+    let mut corners: Vec<CornerTag> = fixed
+        .iter()
+        .map(|&vertex| CornerTag {
+            vertex,
+            sharpness: f64::INFINITY,
+        })
+        .collect();
     let mut sharpness: Vec<(u32, f64)> = Vec::new();
     for (i, tag) in soup.corners.iter().enumerate() {
         match maps.vertex(tag.vertex) {
@@ -50,11 +60,17 @@ pub(super) fn retag(
         sharpness.dedup_by_key(|&mut (v, _)| v);
         for v in topology.vertices() {
             if let Ok(i) = sharpness.binary_search_by_key(&maps.original(v), |&(v, _)| v) {
-                corners.push(CornerTag { vertex: v.0, sharpness: sharpness[i].1 });
+                corners.push(CornerTag {
+                    vertex: v.0,
+                    sharpness: sharpness[i].1,
+                });
             }
         }
     }
-    let mut tags = Tags { creases, corners: Vec::new() };
+    let mut tags = Tags {
+        creases,
+        corners: Vec::new(),
+    };
     tags.add_corners(corners);
     tags
 }
@@ -81,21 +97,31 @@ fn retag_creases(
             _ => dropped.push(place),
         }
     }
-    let order = |a: &Wanted, b: &Wanted| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2));
+    let order =
+        |a: &Wanted, b: &Wanted| a.0.cmp(&b.0).then(b.1.total_cmp(&a.1)).then(a.2.cmp(&b.2));
     wanted.sort_unstable_by(order);
     split_creases(&mut wanted, maps.middles);
     wanted.sort_unstable_by(order);
     let mut found: Vec<(u32, CreaseTag)> = Vec::with_capacity(wanted.len());
     let mut is_found = vec![false; wanted.len()];
     if !wanted.is_empty() {
-        for h in topology.half_edges().filter(|&h| topology.twin(h).is_none_or(|twin| h < twin)) {
+        for h in topology
+            .half_edges()
+            .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin))
+        {
             let [a, b] = topology.ends(h);
             let ends = [maps.original(a), maps.original(b)];
             let ends = [ends[0].min(ends[1]), ends[0].max(ends[1])];
             let i = wanted.partition_point(|tag| tag.0 < ends);
             if let Some(&(_, sharpness, place)) = wanted.get(i).filter(|tag| tag.0 == ends) {
                 is_found[i] = true;
-                found.push((place, CreaseTag { vertices: [a.0, b.0], sharpness }));
+                found.push((
+                    place,
+                    CreaseTag {
+                        vertices: [a.0, b.0],
+                        sharpness,
+                    },
+                ));
             }
         }
     }
@@ -121,7 +147,12 @@ fn split_creases(wanted: &mut Vec<Wanted>, middles: &[Middle]) {
         let [a, b] = middle.ends;
         let ends = [a.min(b), a.max(b)];
         let start = wanted.partition_point(|tag| tag.0 < ends);
-        for (i, tag) in wanted.iter().enumerate().skip(start).take_while(|(_, tag)| tag.0 == ends) {
+        for (i, tag) in wanted
+            .iter()
+            .enumerate()
+            .skip(start)
+            .take_while(|(_, tag)| tag.0 == ends)
+        {
             // Any end of the split edge is lower than the vertex in its middle.
             halves.extend([a, b].map(|end| ([end, middle.vertex], tag.1, tag.2)));
             split.push(i);

@@ -30,7 +30,10 @@ pub(super) fn corners(
             let own = places.of(vertex, beside).map(|place| first + place as u32);
             corners.push(own.unwrap_or_else(|| {
                 let all = elsewhere.get_or_insert_with(|| first_corners(soup, maps));
-                all.get(vertex as usize).copied().filter(|&corner| corner != NONE).unwrap_or(first)
+                all.get(vertex as usize)
+                    .copied()
+                    .filter(|&corner| corner != NONE)
+                    .unwrap_or(first)
             }));
         }
     }
@@ -60,17 +63,21 @@ struct Places {
 impl Places {
     fn list(&mut self, polygon: &[u32], maps: &VertexMaps<'_>) {
         self.vertices.clear();
-        self.vertices.extend(polygon.iter().map(|&vertex| maps.vertex(vertex)));
+        self.vertices
+            .extend(polygon.iter().map(|&vertex| maps.vertex(vertex)));
         self.by_vertex.clear();
         let places = self.vertices.iter().enumerate();
-        self.by_vertex.extend(places.filter_map(|(place, vertex)| Some(((*vertex)?, place))));
+        self.by_vertex
+            .extend(places.filter_map(|(place, vertex)| Some(((*vertex)?, place))));
         self.by_vertex.sort_unstable();
     }
 
     /// Where the polygon comes to a vertex; where it does several times, between these two if it can be told.
     fn of(&self, vertex: u32, [next, previous]: [u32; 2]) -> Option<usize> {
         let start = self.by_vertex.partition_point(|&(other, _)| other < vertex);
-        let places = self.by_vertex[start..].iter().take_while(|&&(other, _)| other == vertex);
+        let places = self.by_vertex[start..]
+            .iter()
+            .take_while(|&&(other, _)| other == vertex);
         let mut places = places.map(|&(_, place)| place);
         let first = places.next()?;
         let count = self.vertices.len();
@@ -78,7 +85,11 @@ impl Places {
             let around = [1, count - 1].map(|step| self.vertices[(place + step) % count]);
             around.contains(&Some(next)) || around.contains(&Some(previous))
         };
-        if beside(&first) { Some(first) } else { places.find(beside).or(Some(first)) }
+        if beside(&first) {
+            Some(first)
+        } else {
+            places.find(beside).or(Some(first))
+        }
     }
 }
 

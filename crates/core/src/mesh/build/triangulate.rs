@@ -60,9 +60,17 @@ pub(super) fn triangulate(
     kept: &[u32],
     diagnosis: &mut Diagnosis,
 ) -> Result<Faces, MeshError> {
-    let count = soup.faces.iter().map(|face| face.len().saturating_sub(2)).sum();
+    let count = soup
+        .faces
+        .iter()
+        .map(|face| face.len().saturating_sub(2))
+        .sum();
     if count > MAX_FACES {
-        return Err(MeshError::TooMany { what: "faces", count, limit: MAX_FACES });
+        return Err(MeshError::TooMany {
+            what: "faces",
+            count,
+            limit: MAX_FACES,
+        });
     }
     let mut faces = Faces {
         triangles: limitmesh_pages::with_capacity(count),
@@ -80,7 +88,9 @@ pub(super) fn triangulate(
             diagnosis.collapsed_faces.add(input);
             continue;
         }
-        if !cutter.cut(&soup.positions, &polygon, |triangle| faces.push(triangle, input)) {
+        if !cutter.cut(&soup.positions, &polygon, |triangle| {
+            faces.push(triangle, input)
+        }) {
             diagnosis.twisted_polygons.add(input);
         }
     }
@@ -128,7 +138,12 @@ struct Cutter {
 
 impl Cutter {
     /// Emits the polygon's triangles; false if it crosses itself in its best-fit plane.
-    fn cut(&mut self, positions: &[[f64; 3]], polygon: &[u32], mut emit: impl FnMut([u32; 3])) -> bool {
+    fn cut(
+        &mut self,
+        positions: &[[f64; 3]],
+        polygon: &[u32],
+        mut emit: impl FnMut([u32; 3]),
+    ) -> bool {
         match *polygon {
             [a, b, c] => {
                 emit([a, b, c]);
@@ -164,7 +179,8 @@ impl Cutter {
             }
             return proper;
         }
-        self.earcut.earcut_slice(&self.plane, &[], &mut self.indices);
+        self.earcut
+            .earcut_slice(&self.plane, &[], &mut self.indices);
         self.orient();
         if self.indices.len() / 3 < polygon.len() - 2 {
             self.restore_straight_corners(corners);
@@ -190,16 +206,31 @@ impl Cutter {
         firsts.dedup_by_key(|&mut (vertex, _)| vertex);
         let number = |vertex: &u32| firsts.partition_point(|(own, _)| own < vertex) as u32;
         let numbers: Vec<u32> = polygon.iter().map(number).collect();
-        let points: Vec<[f64; 2]> = firsts.iter().map(|&(_, corner)| self.plane[corner as usize]).collect();
+        let points: Vec<[f64; 2]> = firsts
+            .iter()
+            .map(|&(_, corner)| self.plane[corner as usize])
+            .collect();
         let next = numbers.iter().cycle().skip(1);
-        let rim: Vec<[u32; 2]> = numbers.iter().zip(next).map(|(&from, &to)| [from, to]).collect();
+        let rim: Vec<[u32; 2]> = numbers
+            .iter()
+            .zip(next)
+            .map(|(&from, &to)| [from, to])
+            .collect();
         let triangles = planar::triangulated(&points, &rim, &|| false)?;
         self.indices.clear();
-        self.indices.extend(triangles.as_flattened().iter().map(|&point| firsts[point as usize].1));
+        self.indices.extend(
+            triangles
+                .as_flattened()
+                .iter()
+                .map(|&point| firsts[point as usize].1),
+        );
         let covered: f64 = self.indices.chunks_exact(3).map(|t| self.area(t)).sum();
-        let whole: f64 = (1..polygon.len() as u32 - 1).map(|i| self.area(&[0, i, i + 1])).sum();
+        let whole: f64 = (1..polygon.len() as u32 - 1)
+            .map(|i| self.area(&[0, i, i + 1]))
+            .sum();
         // By Euler's formula, whatever its holes.
-        let is_whole = triangles.len() == polygon.len() - 2 && (covered - whole).abs() <= SAME_AREA * covered;
+        let is_whole =
+            triangles.len() == polygon.len() - 2 && (covered - whole).abs() <= SAME_AREA * covered;
         is_whole.then_some(())
     }
 
@@ -208,8 +239,10 @@ impl Cutter {
     fn cut_least_area(&mut self, positions: &[[f64; 3]], polygon: &[u32]) {
         let n = polygon.len();
         let (origin, scale) = local_frame(positions, polygon);
-        let p: Vec<DVec3> =
-            polygon.iter().map(|&v| (vector(positions[v as usize]) - origin) * scale).collect();
+        let p: Vec<DVec3> = polygon
+            .iter()
+            .map(|&v| (vector(positions[v as usize]) - origin) * scale)
+            .collect();
         // Row i, column k: least area of the corners from i to k, and the apex on the side from i to k.
         let mut least = vec![(0.0, 0); n * n];
         for length in 2..n {
@@ -239,7 +272,8 @@ impl Cutter {
 
     fn cut_fan(&mut self, corners: u32) {
         self.indices.clear();
-        self.indices.extend((1..corners - 1).flat_map(|i| [0, i, i + 1]));
+        self.indices
+            .extend((1..corners - 1).flat_map(|i| [0, i, i + 1]));
     }
 
     /// Projects the polygon along its Newell normal, scaled to unit size; `None` where it has no normal.
@@ -286,7 +320,11 @@ impl Cutter {
                 next = i;
             }
         }
-        let mut left: Vec<[u32; 3]> = self.indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+        let mut left: Vec<[u32; 3]> = self
+            .indices
+            .chunks_exact(3)
+            .map(|t| [t[0], t[1], t[2]])
+            .collect();
         self.indices.clear();
         while let Some(triangle) = left.pop() {
             let lacking = (0..3).find_map(|i| {
@@ -295,7 +333,9 @@ impl Cutter {
                 (skipped != b && next_used[a as usize] == b).then_some([a, skipped, b, apex])
             });
             match lacking {
-                Some([a, skipped, b, apex]) => left.extend([[a, skipped, apex], [skipped, b, apex]]),
+                Some([a, skipped, b, apex]) => {
+                    left.extend([[a, skipped, apex], [skipped, b, apex]])
+                }
                 None => self.indices.extend(triangle),
             }
         }
@@ -318,7 +358,9 @@ impl Cutter {
         }
         self.edges.sort_unstable();
         let has = |edges: &[u64], from: u32, to: u32| {
-            edges.binary_search(&(u64::from(from) << 32 | u64::from(to))).is_ok()
+            edges
+                .binary_search(&(u64::from(from) << 32 | u64::from(to)))
+                .is_ok()
         };
         let unique = self.edges.windows(2).all(|pair| pair[0] != pair[1]);
         let mut sides = 0;
@@ -336,14 +378,24 @@ impl Cutter {
 /// A corner to measure from and a factor that brings the polygon to about unit size.
 fn local_frame(positions: &[[f64; 3]], polygon: &[u32]) -> (DVec3, f64) {
     let origin = vector(positions[polygon[0] as usize]);
-    let farthest = |far: f64, &v: &u32| far.max((vector(positions[v as usize]) - origin).abs().max_element());
+    let farthest =
+        |far: f64, &v: &u32| far.max((vector(positions[v as usize]) - origin).abs().max_element());
     let size = polygon.iter().fold(0.0, farthest);
-    (origin, if size > 0.0 && (1.0 / size).is_finite() { 1.0 / size } else { 1.0 })
+    (
+        origin,
+        if size > 0.0 && (1.0 / size).is_finite() {
+            1.0 / size
+        } else {
+            1.0
+        },
+    )
 }
 
 /// Twice the vector area of a closed polygon: Newell's normal.
 fn newell(mut corners: impl Iterator<Item = DVec3>) -> DVec3 {
-    let Some(first) = corners.next() else { return DVec3::ZERO };
+    let Some(first) = corners.next() else {
+        return DVec3::ZERO;
+    };
     let (mut before, mut sum) = (DVec3::ZERO, DVec3::ZERO);
     for corner in corners {
         let spoke = corner - first;
@@ -359,7 +411,10 @@ fn cut_quad(positions: &[[f64; 3]], quad: [u32; 4]) -> ([[u32; 3]; 2], bool) {
     let p = quad.map(|v| (vector(positions[v as usize]) - origin) * scale);
     let normal = newell(p.into_iter());
     let upright = |i: usize, j: usize, k: usize| (p[j] - p[i]).cross(p[k] - p[i]).dot(normal) > 0.0;
-    let valid = [upright(0, 1, 2) && upright(0, 2, 3), upright(0, 1, 3) && upright(1, 2, 3)];
+    let valid = [
+        upright(0, 1, 2) && upright(0, 2, 3),
+        upright(0, 1, 3) && upright(1, 2, 3),
+    ];
     let [a, b, c, d] = quad;
     let lengths = [p[0].distance_squared(p[2]), p[1].distance_squared(p[3])];
     let area = |i: usize, j: usize, k: usize| (p[j] - p[i]).cross(p[k] - p[i]).length();
@@ -371,7 +426,11 @@ fn cut_quad(positions: &[[f64; 3]], quad: [u32; 4]) -> ([[u32; 3]; 2], bool) {
         _ if lengths[0] == lengths[1] => a.min(c) < b.min(d),
         _ => lengths[0] < lengths[1],
     };
-    let triangles = if first { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
+    let triangles = if first {
+        [[a, b, c], [a, c, d]]
+    } else {
+        [[a, b, d], [b, c, d]]
+    };
     let proper = valid != [false, false] || triangles.iter().all(|&t| is_flat(positions, t));
     (triangles, proper)
 }
@@ -393,6 +452,9 @@ impl Flatness<'_> {
     /// Whether one of the faces has none.
     pub(super) fn is_flat(&self, faces: &Faces, face: u32) -> bool {
         is_flat(self.positions, faces.triangles[face as usize])
-            && self.opening.binary_search(&faces.inputs[face as usize]).is_err()
+            && self
+                .opening
+                .binary_search(&faces.inputs[face as usize])
+                .is_err()
     }
 }

@@ -18,10 +18,15 @@ pub(super) fn exact(positions: &[[f64; 3]], used: &[bool]) -> Vec<u32> {
     let key = |v: u32| positions[v as usize].map(|x| x + 0.0);
     let compare = |a: &u32, b: &u32| {
         let (p, q) = (key(*a), key(*b));
-        let by_place = p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2]));
+        let by_place = p[0]
+            .total_cmp(&q[0])
+            .then(p[1].total_cmp(&q[1]))
+            .then(p[2].total_cmp(&q[2]));
         by_place.then(a.cmp(b))
     };
-    let mut order: Vec<u32> = (0..positions.len() as u32).filter(|&v| used[v as usize]).collect();
+    let mut order: Vec<u32> = (0..positions.len() as u32)
+        .filter(|&v| used[v as usize])
+        .collect();
     order.sort_unstable_by(compare);
     let mut kept: Vec<u32> = (0..positions.len() as u32).collect();
     for run in order.chunk_by(|&a, &b| positions[a as usize] == positions[b as usize]) {
@@ -46,7 +51,11 @@ pub fn weld_within(points: &[[f64; 3]], distance: f64) -> Result<Vec<u32>, MeshE
 ///
 /// # Errors
 /// The distance is not a finite number of at least 0.
-pub(super) fn within(positions: &[[f64; 3]], used: &[bool], distance: f64) -> Result<Vec<u32>, MeshError> {
+pub(super) fn within(
+    positions: &[[f64; 3]],
+    used: &[bool],
+    distance: f64,
+) -> Result<Vec<u32>, MeshError> {
     if !distance.is_finite() || distance < 0.0 {
         return Err(MeshError::BadOption {
             name: "weld distance",
@@ -63,7 +72,14 @@ pub(super) fn within(positions: &[[f64; 3]], used: &[bool], distance: f64) -> Re
     let mut sets = DisjointSets::from_parents(kept);
     if !order.is_empty() {
         let nodes = Tree::build(positions, &mut order);
-        SelfJoin { positions, order: &order, tree: &nodes, distance, sets: &mut sets }.join_all();
+        SelfJoin {
+            positions,
+            order: &order,
+            tree: &nodes,
+            distance,
+            sets: &mut sets,
+        }
+        .join_all();
     }
     Ok(sets.into_roots())
 }
@@ -84,7 +100,9 @@ struct Tree {
 impl Tree {
     /// Reorders the vertices so that each node is a run. Halving keeps the depth at log₂ of their number.
     fn build(positions: &[[f64; 3]], order: &mut [u32]) -> Self {
-        let mut tree = Self { nodes: Vec::with_capacity(order.len() / (LEAF / 4) + 1) };
+        let mut tree = Self {
+            nodes: Vec::with_capacity(order.len() / (LEAF / 4) + 1),
+        };
         tree.add(positions, order, 0);
         tree
     }
@@ -92,16 +110,26 @@ impl Tree {
     fn add(&mut self, positions: &[[f64; 3]], run: &mut [u32], start: usize) -> usize {
         let point = |v: u32| vector(positions[v as usize]);
         let first = point(run[0]);
-        let (low, high) = run.iter().fold((first, first), |(l, h), &v| (l.min(point(v)), h.max(point(v))));
+        let (low, high) = run.iter().fold((first, first), |(l, h), &v| {
+            (l.min(point(v)), h.max(point(v)))
+        });
         let node = self.nodes.len();
-        self.nodes.push(Node { start, end: start + run.len(), low, high, children: None });
+        self.nodes.push(Node {
+            start,
+            end: start + run.len(),
+            low,
+            high,
+            children: None,
+        });
         if run.len() > LEAF {
             // Halved extents, because the full ones may overflow.
             let extent = high * 0.5 - low * 0.5;
             let axis = (0..3).fold(0, |best, i| if extent[i] > extent[best] { i } else { best });
             let middle = run.len() / 2;
             let along = |v: u32| positions[v as usize][axis];
-            run.select_nth_unstable_by(middle, |&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+            run.select_nth_unstable_by(middle, |&a, &b| {
+                along(a).total_cmp(&along(b)).then(a.cmp(&b))
+            });
             let (left, right) = run.split_at_mut(middle);
             let left = self.add(positions, left, start);
             let right = self.add(positions, right, start + middle);
@@ -125,7 +153,13 @@ impl SelfJoin<'_> {
     fn join_all(&mut self) {
         // Children stand after their parents, so that backwards each node's parts are joined before itself.
         for node in (0..self.tree.nodes.len()).rev() {
-            let Node { start, end, low, high, children } = self.tree.nodes[node];
+            let Node {
+                start,
+                end,
+                low,
+                high,
+                children,
+            } = self.tree.nodes[node];
             if self.is_within(high - low) {
                 let run = &self.order[start..end];
                 for &v in run {
@@ -142,16 +176,24 @@ impl SelfJoin<'_> {
     /// Joins what lies near each other in two nodes.
     fn join(&mut self, a: usize, b: usize) {
         let (first, second) = (&self.tree.nodes[a], &self.tree.nodes[b]);
-        let gap = (second.low - first.high).max(first.low - second.high).max(DVec3::ZERO);
+        let gap = (second.low - first.high)
+            .max(first.low - second.high)
+            .max(DVec3::ZERO);
         if !self.is_within(gap) {
             return;
         }
         let together = |node: &Node| self.is_within(node.high - node.low);
         let (from_first, from_second) = (self.order[first.start], self.order[second.start]);
-        if together(first) && together(second) && self.sets.root(from_first) == self.sets.root(from_second) {
+        if together(first)
+            && together(second)
+            && self.sets.root(from_first) == self.sets.root(from_second)
+        {
             return;
         }
-        let (runs, one) = ([first.start..first.end, second.start..second.end], self.order[first.start]);
+        let (runs, one) = (
+            [first.start..first.end, second.start..second.end],
+            self.order[first.start],
+        );
         if self.is_within(first.high.max(second.high) - first.low.min(second.low)) {
             self.sets.unite(one, self.order[second.start]);
             return;

@@ -24,8 +24,9 @@ pub(super) fn remove_zero_area(
     is_polygon: impl Fn(u32) -> bool,
     diagnosis: &mut Diagnosis,
 ) {
-    let flat: Vec<u32> =
-        (0..faces.triangles.len() as u32).filter(|&face| flatness.is_flat(faces, face)).collect();
+    let flat: Vec<u32> = (0..faces.triangles.len() as u32)
+        .filter(|&face| flatness.is_flat(faces, face))
+        .collect();
     if flat.is_empty() {
         return;
     }
@@ -39,7 +40,12 @@ pub(super) fn remove_zero_area(
 }
 
 /// Counts the input faces that have no area at all: a triangle, or a polygon with all its triangles.
-fn count_inputs(faces: &Faces, flat: &[u32], is_polygon: impl Fn(u32) -> bool, diagnosis: &mut Diagnosis) {
+fn count_inputs(
+    faces: &Faces,
+    flat: &[u32],
+    is_polygon: impl Fn(u32) -> bool,
+    diagnosis: &mut Diagnosis,
+) {
     let mut flat = flat.iter().copied().peekable();
     let mut found = Vec::new();
     // The triangles of one input face stand next to each other.
@@ -82,7 +88,9 @@ impl PartialOrd for Candidate {
 
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> core::cmp::Ordering {
-        self.length.total_cmp(&other.length).then(other.face.cmp(&self.face))
+        self.length
+            .total_cmp(&other.length)
+            .then(other.face.cmp(&self.face))
     }
 }
 
@@ -99,8 +107,14 @@ impl<'a> Removal<'a> {
     fn new(faces: &'a mut Faces, flatness: Flatness<'a>, flat: &[u32]) -> Self {
         let dropped = vec![false; faces.triangles.len()];
         let edges = HashMap::with_capacity(faces.triangles.len() * 3 / 2);
-        let mut removal =
-            Self { faces, flatness, edges, queue: BinaryHeap::new(), dropped, split: Vec::new() };
+        let mut removal = Self {
+            faces,
+            flatness,
+            edges,
+            queue: BinaryHeap::new(),
+            dropped,
+            split: Vec::new(),
+        };
         for face in 0..removal.dropped.len() as u32 {
             removal.connect(face);
         }
@@ -134,13 +148,24 @@ impl<'a> Removal<'a> {
 
     /// The corner at which the longest side starts, and that side's length.
     fn longest_side(&self, face: u32) -> (usize, f64) {
-        let p =
-            self.faces.triangles[face as usize].map(|v| vector(self.flatness.positions[v as usize]) * 0.5);
+        let p = self.faces.triangles[face as usize]
+            .map(|v| vector(self.flatness.positions[v as usize]) * 0.5);
         // Divided by the largest coordinate, so that squares neither overflow nor vanish.
         let sides = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
-        let size = sides.iter().fold(0.0, |size: f64, side| size.max(side.abs().max_element()));
-        let length = |i: usize| if size > 0.0 { (sides[i] / size).length() * size } else { 0.0 };
-        (0..3).map(|i| (i, length(i))).fold((0, -1.0), |best, side| if side.1 > best.1 { side } else { best })
+        let size = sides
+            .iter()
+            .fold(0.0, |size: f64, side| size.max(side.abs().max_element()));
+        let length = |i: usize| {
+            if size > 0.0 {
+                (sides[i] / size).length() * size
+            } else {
+                0.0
+            }
+        };
+        (0..3).map(|i| (i, length(i))).fold(
+            (0, -1.0),
+            |best, side| if side.1 > best.1 { side } else { best },
+        )
     }
 
     fn enqueue(&mut self, face: u32) {
@@ -179,8 +204,14 @@ impl<'a> Removal<'a> {
         let neighbour = at.ids ^ face;
         let other = self.faces.triangles[neighbour as usize];
         let corner = (0..3).find(|&i| !side.contains(&other[i]));
-        let Some(corner) = corner.filter(|&i| other[i] != middle) else { return false };
-        let (apex, from, to) = (other[corner], other[(corner + 1) % 3], other[(corner + 2) % 3]);
+        let Some(corner) = corner.filter(|&i| other[i] != middle) else {
+            return false;
+        };
+        let (apex, from, to) = (
+            other[corner],
+            other[(corner + 1) % 3],
+            other[(corner + 2) % 3],
+        );
         self.disconnect(face);
         self.disconnect(neighbour);
         self.faces.triangles[face as usize] = [apex, from, middle];
@@ -211,10 +242,16 @@ fn cancel_folds(
         return;
     }
     let mut is_split = vec![false; faces.triangles.len()];
-    split.iter().for_each(|&face| is_split[face as usize] = true);
+    split
+        .iter()
+        .for_each(|&face| is_split[face as usize] = true);
     let mut cancelled = Vec::new();
     for_each_repetition(&faces.triangles, vertex_count, |group| {
-        let mut left: Vec<u32> = group.iter().copied().filter(|&face| !marked[face as usize]).collect();
+        let mut left: Vec<u32> = group
+            .iter()
+            .copied()
+            .filter(|&face| !marked[face as usize])
+            .collect();
         if left.iter().any(|&face| is_split[face as usize]) {
             // An odd one out stays.
             left.truncate(left.len() / 2 * 2);
@@ -222,6 +259,9 @@ fn cancel_folds(
             cancelled.extend(left);
         }
     });
-    let inputs = cancelled.iter().map(|&face| faces.inputs[face as usize]).collect();
+    let inputs = cancelled
+        .iter()
+        .map(|&face| faces.inputs[face as usize])
+        .collect();
     diagnosis.repeated_faces.add_all(inputs);
 }

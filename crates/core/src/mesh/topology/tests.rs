@@ -6,7 +6,15 @@ use super::*;
 
 /// A hexagonal fan round vertex 0, counter-clockwise, and a further triangle.
 fn fan() -> Vec<[u32; 3]> {
-    vec![[3, 0, 2], [0, 1, 2], [0, 3, 4], [5, 0, 4], [6, 0, 5], [1, 0, 6], [2, 1, 7]]
+    vec![
+        [3, 0, 2],
+        [0, 1, 2],
+        [0, 3, 4],
+        [5, 0, 4],
+        [6, 0, 5],
+        [1, 0, 6],
+        [2, 1, 7],
+    ]
 }
 
 fn tetrahedron() -> Vec<[u32; 3]> {
@@ -17,9 +25,14 @@ fn tetrahedron() -> Vec<[u32; 3]> {
 fn torus(n: u32, m: u32) -> Vec<[u32; 3]> {
     let at = |i: u32, j: u32| (i % n) * m + j % m;
     let square = |i: u32, j: u32| {
-        [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        [
+            [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+            [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+        ]
     };
-    (0..n).flat_map(|i| (0..m).flat_map(move |j| square(i, j))).collect()
+    (0..n)
+        .flat_map(|i| (0..m).flat_map(move |j| square(i, j)))
+        .collect()
 }
 
 fn ring(topology: &Topology, v: u32) -> Vec<u32> {
@@ -54,7 +67,11 @@ fn characteristics_of_known_surfaces() {
     let numbers = |triangles: Vec<[u32; 3]>, vertices| {
         let t = Topology::from_triangles(triangles, vertices).unwrap();
         t.validate().unwrap();
-        (t.euler_characteristic(), t.edge_count(), t.boundary_edge_count())
+        (
+            t.euler_characteristic(),
+            t.edge_count(),
+            t.boundary_edge_count(),
+        )
     };
     assert_eq!(numbers(tetrahedron(), 4), (2, 6, 0));
     assert_eq!(numbers(fan(), 8), (1, 14, 7));
@@ -87,12 +104,33 @@ fn what_is_no_manifold_is_named() {
     let error = |triangles: &[[u32; 3]], vertices| {
         Topology::from_triangles(triangles.to_vec(), vertices).unwrap_err()
     };
-    assert_eq!(error(&[[0, 1, 3]], 3), MeshError::VertexOutOfRange { face: 0, vertex: 3, count: 3 });
-    assert_eq!(error(&[[0, 1, 2], [1, 0, 1]], 3), MeshError::RepeatedCorner { face: 1, vertex: 1 });
+    assert_eq!(
+        error(&[[0, 1, 3]], 3),
+        MeshError::VertexOutOfRange {
+            face: 0,
+            vertex: 3,
+            count: 3
+        }
+    );
+    assert_eq!(
+        error(&[[0, 1, 2], [1, 0, 1]], 3),
+        MeshError::RepeatedCorner { face: 1, vertex: 1 }
+    );
     assert_eq!(error(&[[0, 1, 2]], 4), MeshError::Isolated { vertex: 3 });
-    assert_eq!(error(&[[0, 1, 2], [3, 0, 1]], 4), MeshError::EdgeUsedTwice { from: 0, to: 1, face: 1 });
+    assert_eq!(
+        error(&[[0, 1, 2], [3, 0, 1]], 4),
+        MeshError::EdgeUsedTwice {
+            from: 0,
+            to: 1,
+            face: 1
+        }
+    );
     let mut two = tetrahedron();
-    two.extend(tetrahedron().iter().map(|t| t.map(|v| if v == 0 { 0 } else { v + 3 })));
+    two.extend(
+        tetrahedron()
+            .iter()
+            .map(|t| t.map(|v| if v == 0 { 0 } else { v + 3 })),
+    );
     two.push([0, 7, 8]);
     assert_eq!(error(&two, 9), MeshError::BowTie { vertex: 0, fans: 3 });
 }
@@ -105,20 +143,30 @@ fn validate_notices_broken_arrays() {
         whole.validate().unwrap();
         let half_edges = whole.twins.len() as u32;
         for h in 0..whole.twins.len() {
-            for twin in (0..half_edges + 2).chain([NONE]).filter(|&twin| twin != whole.twins[h]) {
+            for twin in (0..half_edges + 2)
+                .chain([NONE])
+                .filter(|&twin| twin != whole.twins[h])
+            {
                 let mut broken = whole.clone();
                 broken.twins[h] = twin;
                 assert!(broken.validate().is_err(), "twin of {h} set to {twin}");
             }
         }
         for v in 0..vertices {
-            for h in (0..half_edges + 2).chain([NONE]).filter(|&h| h != whole.outgoing[v]) {
+            for h in (0..half_edges + 2)
+                .chain([NONE])
+                .filter(|&h| h != whole.outgoing[v])
+            {
                 let mut broken = whole.clone();
                 broken.outgoing[v] = h;
                 let leaves = h < half_edges && broken.origin(HalfEdgeId(h)).index() == v;
                 // Round an interior vertex any of its half-edges may come first.
                 let allowed = leaves && !whole.is_boundary(VertexId(v as u32));
-                assert_eq!(broken.validate().is_ok(), allowed, "outgoing of {v} set to {h}");
+                assert_eq!(
+                    broken.validate().is_ok(),
+                    allowed,
+                    "outgoing of {v} set to {h}"
+                );
             }
         }
         let mut broken = whole.clone();

@@ -15,8 +15,10 @@ fn arbitrary(seed: f64) -> Points {
 fn gentle(seed: f64) -> Points {
     let bump = arbitrary(seed);
     from_fn(|i| {
-        let (row, before) =
-            [(0, 0), (1, 3), (2, 7), (3, 10)].into_iter().rfind(|&(_, first)| first <= i).unwrap();
+        let (row, before) = [(0, 0), (1, 3), (2, 7), (3, 10)]
+            .into_iter()
+            .rfind(|&(_, first)| first <= i)
+            .unwrap();
         let column = (i - before) as f64 - if row == 0 { 0.0 } else { 1.0 };
         DVec3::new(column, f64::from(row) - 1.0, 0.0) + 0.15 * bump[i]
     })
@@ -35,8 +37,9 @@ fn bernstein(net: &BezierTriangle, weights: [f64; 3]) -> DVec3 {
     for k in 0..5 {
         for j in 0..5 - k {
             let powers = [4 - j - k, j, k];
-            let term =
-                |corner: usize| weights[corner].powi(powers[corner] as i32) / factorial(powers[corner]);
+            let term = |corner: usize| {
+                weights[corner].powi(powers[corner] as i32) / factorial(powers[corner])
+            };
             sum += 24.0 * term(0) * term(1) * term(2) * *points.next().unwrap();
         }
     }
@@ -58,7 +61,10 @@ fn points_are_those_of_the_net() {
             let quartic = Quartic::of(&net, first);
             for (u, v) in places() {
                 let expected = bernstein(&net, weights(first, u, v));
-                assert!(quartic.point(u, v).distance(expected) < 3e-15, "first {first} at {u}, {v}");
+                assert!(
+                    quartic.point(u, v).distance(expected) < 3e-15,
+                    "first {first} at {u}, {v}"
+                );
             }
         }
     }
@@ -70,7 +76,10 @@ fn points_and_normals_are_limits_of_vertices() {
     let rules = Rules::of(&Loop);
     let points = gentle(0.0);
     let quartics = [0, 1, 2].map(|first| Quartic::of(&BezierTriangle::of(&points), first));
-    let mut parts = vec![(Patch::Regular(points), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])];
+    let mut parts = vec![(
+        Patch::Regular(points),
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    )];
     let half = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { from_fn(|i| 0.5 * (a[i] + b[i])) };
     for _ in 0..4 {
         let mut next = Vec::new();
@@ -102,7 +111,9 @@ fn points_and_normals_are_limits_of_vertices() {
 #[test]
 fn derivatives_are_differences() {
     const H: f64 = 0.25;
-    let slope = |f: &dyn Fn(f64) -> DVec3| (f(-2.0 * H) - 8.0 * f(-H) + 8.0 * f(H) - f(2.0 * H)) / (12.0 * H);
+    let slope = |f: &dyn Fn(f64) -> DVec3| {
+        (f(-2.0 * H) - 8.0 * f(-H) + 8.0 * f(H) - f(2.0 * H)) / (12.0 * H)
+    };
     let bend = |f: &dyn Fn(f64) -> DVec3| {
         (16.0 * (f(-H) + f(H)) - (f(-2.0 * H) + f(2.0 * H)) - 30.0 * f(0.0)) / (12.0 * H * H)
     };
@@ -137,7 +148,10 @@ fn rows_are_points_bit_for_bit() {
             quartic.points_and_normals_along(v, start, step, &mut points, &mut normals);
             for i in 0..count {
                 let u = start + i as f64 * step;
-                let (point, normal) = (quartic.point(u, v).to_array(), quartic.normal(u, v).to_array());
+                let (point, normal) = (
+                    quartic.point(u, v).to_array(),
+                    quartic.normal(u, v).to_array(),
+                );
                 assert_eq!(
                     [bare[i], points[i], normals[i]].map(bits),
                     [point, point, normal].map(bits),
@@ -171,9 +185,12 @@ fn points_here_and_there_are_points_of_rows_bit_for_bit() {
 fn nets_of_parts_give_the_same_points() {
     for first in 0..3 {
         let piece = Quartic::of(&BezierTriangle::of(&arbitrary(2.0)), first);
-        for (at, size) in
-            [([0.0, 0.0], 1.0), ([0.25, 0.5], 0.25), ([0.75, 0.5], -0.5), ([0.5, 0.125], 0.0625)]
-        {
+        for (at, size) in [
+            ([0.0, 0.0], 1.0),
+            ([0.25, 0.5], 0.25),
+            ([0.75, 0.5], -0.5),
+            ([0.5, 0.125], 0.0625),
+        ] {
             let net = piece.net(at, size);
             for (s, t) in places() {
                 let expected = piece.point(at[0] + s * size, at[1] + t * size);
@@ -186,14 +203,28 @@ fn nets_of_parts_give_the_same_points() {
 #[test]
 fn without_a_plane_there_is_no_normal() {
     let direction = DVec3::new(0.3, 1.7, -0.9);
-    let on_a_line =
-        |from: DVec3| Quartic::of(&BezierTriangle::of(&arbitrary(5.0).map(|p| from + p.x * direction)), 0);
+    let on_a_line = |from: DVec3| {
+        Quartic::of(
+            &BezierTriangle::of(&arbitrary(5.0).map(|p| from + p.x * direction)),
+            0,
+        )
+    };
     let to_a_point = Quartic::of(&BezierTriangle::of(&[DVec3::new(0.1, 0.2, 0.3); 12]), 0);
     // Curved, but standing on edge over a line.
-    let folded =
-        Quartic::of(&BezierTriangle::of(&gentle(2.0).map(|p| DVec3::new(p.x, 0.7 * p.x, 0.1 * p.x))), 1);
-    let all = [on_a_line(DVec3::ZERO), on_a_line(DVec3::new(1e6, -3e5, 2e6)), to_a_point, folded];
-    for (quartic, (u, v)) in all.iter().flat_map(|q| places().map(move |place| (q, place))) {
+    let folded = Quartic::of(
+        &BezierTriangle::of(&gentle(2.0).map(|p| DVec3::new(p.x, 0.7 * p.x, 0.1 * p.x))),
+        1,
+    );
+    let all = [
+        on_a_line(DVec3::ZERO),
+        on_a_line(DVec3::new(1e6, -3e5, 2e6)),
+        to_a_point,
+        folded,
+    ];
+    for (quartic, (u, v)) in all
+        .iter()
+        .flat_map(|q| places().map(move |place| (q, place)))
+    {
         assert_eq!(quartic.normal(u, v), DVec3::ZERO);
     }
 }
@@ -203,7 +234,12 @@ fn without_a_plane_there_is_no_normal() {
 fn normals_do_not_depend_on_size() {
     let points = gentle(4.0);
     let expected = Quartic::of(&BezierTriangle::of(&points), 0);
-    for size in [2f64.powi(-900), 2f64.powi(-300), 2f64.powi(300), 2f64.powi(900)] {
+    for size in [
+        2f64.powi(-900),
+        2f64.powi(-300),
+        2f64.powi(300),
+        2f64.powi(900),
+    ] {
         let quartic = Quartic::of(&BezierTriangle::of(&points.map(|p| size * p)), 0);
         for (u, v) in places() {
             assert_eq!(quartic.normal(u, v), expected.normal(u, v), "size {size}");

@@ -56,7 +56,13 @@ impl Gaps {
     pub(super) fn new(fades: f64) -> Self {
         let first = (fades as usize).min(MOST - LEVELS);
         let share = 1.0 - (fades - first as f64);
-        Self { first, share, kinks: [0.0; MOST], moves: [0.0; MOST], rest: 0.0 }
+        Self {
+            first,
+            share,
+            kinks: [0.0; MOST],
+            moves: [0.0; MOST],
+            rest: 0.0,
+        }
     }
 
     /// Meets the ring of a corner where something fades; `None` if nothing is known of such.
@@ -122,7 +128,11 @@ impl RingGaps {
     /// Those of a vertex at which something fades; `None` if nothing is known of such.
     pub(super) fn of(vertex: &SemiSharpVertex, rules: &Rules<'_>) -> Option<Self> {
         let mut ring = Ring::of(vertex, rules)?;
-        let mut gaps = Self { kinks: [0.0; MOST], moves: [0.0; MOST], sizes: [0.0; MOST + 1] };
+        let mut gaps = Self {
+            kinks: [0.0; MOST],
+            moves: [0.0; MOST],
+            sizes: [0.0; MOST + 1],
+        };
         for level in 0..MOST {
             (gaps.kinks[level], gaps.moves[level], gaps.sizes[level]) =
                 (ring.kink(), ring.moves(), ring.size());
@@ -152,12 +162,18 @@ impl Ring {
             VertexRule::Crease => false,
             VertexRule::Smooth | VertexRule::Dart => return None,
         };
-        let neighbours: Vec<DVec3> = corner.neighbours.iter().map(|&point| point - corner.at).collect();
+        let neighbours: Vec<DVec3> = corner
+            .neighbours
+            .iter()
+            .map(|&point| point - corner.at)
+            .collect();
         let count = neighbours.len();
         Some(Self {
             before: neighbours.clone(),
             neighbours,
-            sharp: (0..count).filter(|&slot| corner.sharp.is_sharp(slot)).collect(),
+            sharp: (0..count)
+                .filter(|&slot| corner.sharp.is_sharp(slot))
+                .collect(),
             is_open: corner.sharp.open,
             is_corner,
             beta: rules.beta(count),
@@ -167,13 +183,19 @@ impl Ring {
     /// The neighbours on either side of one; at an open ring's ends there is but one.
     fn beside(&self, slot: usize) -> [usize; 2] {
         let count = self.neighbours.len();
-        [if slot == 0 { count - 1 } else { slot - 1 }, if slot + 1 == count { 0 } else { slot + 1 }]
+        [
+            if slot == 0 { count - 1 } else { slot - 1 },
+            if slot + 1 == count { 0 } else { slot + 1 },
+        ]
     }
 
     /// The greatest kink at a sharp edge inside the surface.
     fn kink(&self) -> f64 {
         let count = self.neighbours.len();
-        let inner = self.sharp.iter().filter(|&&slot| !self.is_open || (slot > 0 && slot + 1 < count));
+        let inner = self
+            .sharp
+            .iter()
+            .filter(|&&slot| !self.is_open || (slot > 0 && slot + 1 < count));
         let kink = |&slot: &usize| {
             let [a, b] = self.beside(slot);
             (self.neighbours[slot] - self.neighbours[a] - self.neighbours[b]).length_squared()
@@ -204,7 +226,10 @@ impl Ring {
         };
         if self.sharp.len() > FEW {
             // What is along two of them lies in the middle between what either would be twice.
-            let twice = self.sharp.iter().map(|&a| self.along(a, a).distance_squared(own));
+            let twice = self
+                .sharp
+                .iter()
+                .map(|&a| self.along(a, a).distance_squared(own));
             return twice.fold(greatest, f64::max).sqrt();
         }
         for (i, &a) in self.sharp.iter().enumerate() {
@@ -233,7 +258,12 @@ impl Ring {
 
     /// The size N of the ring.
     fn size(&self) -> f64 {
-        let greatest = self.neighbours.iter().map(|point| point.length_squared()).fold(0.0, f64::max).sqrt();
+        let greatest = self
+            .neighbours
+            .iter()
+            .map(|point| point.length_squared())
+            .fold(0.0, f64::max)
+            .sqrt();
         greatest + 8.0 / 3.0 * self.moved().length()
     }
 }

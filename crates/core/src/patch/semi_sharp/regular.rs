@@ -108,7 +108,8 @@ impl RegularSemiSharp {
                 edges[edge as usize] = corner.sharp.spokes[(corner.slot + slot) % 6];
             }
         }
-        let ring = |corner: &SemiSharpVertex| from_fn(|slot| corner.neighbours[(corner.slot + slot) % 6]);
+        let ring =
+            |corner: &SemiSharpVertex| from_fn(|slot| corner.neighbours[(corner.slot + slot) % 6]);
         let points = assemble(
             corners.each_ref().map(|corner| corner.at),
             corners.each_ref().map(ring).each_ref(),
@@ -125,8 +126,15 @@ impl RegularSemiSharp {
     fn corners(&self) -> [SemiSharpVertex; 3] {
         [0, 1, 2].map(|corner| SemiSharpVertex {
             at: self.points[CORNERS[corner]],
-            neighbours: RINGS[corner].iter().map(|&at| self.points[at as usize]).collect(),
-            sharp: SharpRing { open: false, vertex: 0.0, spokes: self.spokes(corner).to_vec() },
+            neighbours: RINGS[corner]
+                .iter()
+                .map(|&at| self.points[at as usize])
+                .collect(),
+            sharp: SharpRing {
+                open: false,
+                vertex: 0.0,
+                spokes: self.spokes(corner).to_vec(),
+            },
             slot: 0,
             whole: None,
         })
@@ -135,23 +143,38 @@ impl RegularSemiSharp {
     /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter.
     pub(super) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         let mut rings = RINGS.map(|ring| ring.map(|at| self.points[at as usize]));
-        let is_regular =
-            |corner: usize| mirror(self.points[CORNERS[corner]], &mut rings[corner], &self.spokes(corner));
+        let is_regular = |corner: usize| {
+            mirror(
+                self.points[CORNERS[corner]],
+                &mut rings[corner],
+                &self.spokes(corner),
+            )
+        };
         if !(0..3).all(is_regular) {
             return rings_twin(&self.corners(), rules);
         }
-        let fading = self.edges.iter().copied().filter(|&sharpness| faded(sharpness) != sharpness);
+        let fading = self
+            .edges
+            .iter()
+            .copied()
+            .filter(|&sharpness| faded(sharpness) != sharpness);
         let mut gaps = Gaps::new(fading.fold(INFINITELY_SHARP, f64::min));
         let mut kink = 0.0f64;
-        for (&(_, [v, w], [a, b]), _) in
-            EDGE_POINTS.iter().zip(&self.edges).filter(|(_, sharpness)| **sharpness > 0.0)
+        for (&(_, [v, w], [a, b]), _) in EDGE_POINTS
+            .iter()
+            .zip(&self.edges)
+            .filter(|(_, sharpness)| **sharpness > 0.0)
         {
             let [v, w, a, b] = [v, w, a, b].map(|at| self.points[at as usize]);
             kink = kink.max(((v - a) + (w - b)).length_squared());
         }
         gaps.add_kink(kink.sqrt());
         Some((
-            Patch::Regular(assemble(CORNERS.map(|at| self.points[at]), rings.each_ref(), [0; 3])),
+            Patch::Regular(assemble(
+                CORNERS.map(|at| self.points[at]),
+                rings.each_ref(),
+                [0; 3],
+            )),
             gaps.apart(),
         ))
     }
@@ -161,7 +184,11 @@ impl RegularSemiSharp {
         if self.edges == [0.0; 15] {
             return Patch::Regular(self.points);
         }
-        if self.edges.iter().all(|&sharpness| faded(sharpness) == sharpness) {
+        if self
+            .edges
+            .iter()
+            .all(|&sharpness| faded(sharpness) == sharpness)
+        {
             return SemiSharpPatch::of(self.corners());
         }
         Patch::SemiSharp(Box::new(SemiSharpPatch::Regular(self)))
@@ -175,10 +202,15 @@ impl RegularSemiSharp {
         let as_sharp_as = |spokes: &[f64; 6]| match rule(false, 0.0, spokes) {
             VertexRule::Corner => at,
             VertexRule::Crease => {
-                let ends = ring.iter().zip(spokes).filter(|&(_, &sharpness)| sharpness > 0.0);
+                let ends = ring
+                    .iter()
+                    .zip(spokes)
+                    .filter(|&(_, &sharpness)| sharpness > 0.0);
                 0.75 * at + 0.125 * ends.map(|(end, _)| end).sum::<DVec3>()
             }
-            VertexRule::Smooth | VertexRule::Dart => 0.625 * at + 0.0625 * ring.iter().sum::<DVec3>(),
+            VertexRule::Smooth | VertexRule::Dart => {
+                0.625 * at + 0.0625 * ring.iter().sum::<DVec3>()
+            }
         };
         let (now, after) = (present_weight(0.0, &spokes), spokes.map(faded));
         if now == 1.0 || rule(false, 0.0, &spokes) == rule(false, 0.0, &after) {
@@ -194,13 +226,19 @@ impl RegularSemiSharp {
             let [a, b, c, d] = [a, b, c, d].map(|place| self.points[place as usize]);
             let sharp = sharpness.clamp(0.0, 1.0);
             let smooth = 0.375 * (a + b) + 0.125 * (c + d);
-            points[at as usize] =
-                if sharp == 0.0 { smooth } else { sharp * 0.5 * (a + b) + (1.0 - sharp) * smooth };
+            points[at as usize] = if sharp == 0.0 {
+                smooth
+            } else {
+                sharp * 0.5 * (a + b) + (1.0 - sharp) * smooth
+            };
         }
         for corner in 0..3 {
             points[REFINED_CORNERS[corner] as usize] = self.moved(corner);
         }
-        RefinedRegular { points: Refined(points), edges: self.edges.map(faded) }
+        RefinedRegular {
+            points: Refined(points),
+            edges: self.edges.map(faded),
+        }
     }
 }
 
@@ -231,7 +269,11 @@ impl RefinedRegular {
     /// A part; numbered as [`Refined::part`] does.
     pub(super) fn part(&self, part: usize) -> Patch {
         let sharpness = |edge: u8| self.edges.get(edge as usize).copied().unwrap_or(0.0);
-        RegularSemiSharp { points: self.points.part(part), edges: PART_EDGES[part].map(sharpness) }.settled()
+        RegularSemiSharp {
+            points: self.points.part(part),
+            edges: PART_EDGES[part].map(sharpness),
+        }
+        .settled()
     }
 
     /// The limit of the new vertex on the edge from corner `edge`, on the face's side.
@@ -243,9 +285,24 @@ impl RefinedRegular {
         }
         // From the edge's end on, with the face between that and the next.
         let end = REFINED_CORNERS[(edge + 1) % 3];
-        let start = MIDDLES[edge].1.iter().position(|&place| place == end).unwrap_or(0);
+        let start = MIDDLES[edge]
+            .1
+            .iter()
+            .position(|&place| place == end)
+            .unwrap_or(0);
         ring.rotate_left(start);
-        let sharp = SharpRing { open: false, vertex: 0.0, spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0] };
-        SemiSharpVertex { at, neighbours: ring.to_vec(), sharp, slot: 0, whole: None }.limit(rules)
+        let sharp = SharpRing {
+            open: false,
+            vertex: 0.0,
+            spokes: vec![along, 0.0, 0.0, along, 0.0, 0.0],
+        };
+        SemiSharpVertex {
+            at,
+            neighbours: ring.to_vec(),
+            sharp,
+            slot: 0,
+            whole: None,
+        }
+        .limit(rules)
     }
 }

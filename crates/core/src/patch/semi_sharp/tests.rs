@@ -13,7 +13,9 @@ use crate::scheme::{Loop, LoopWarren, Scheme};
 
 /// Tags on many edges and some vertices, nearly all of them semi-sharp.
 fn tagged(name: &str, seed: u64) -> Mesh {
-    let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+    let mesh = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+        .unwrap()
+        .0;
     let mut random = Random::new(seed);
     let mut sharpness = |share: f64| {
         let (is_tagged, lasts) = (random.unit() < share, random.unit() < 0.15);
@@ -22,12 +24,20 @@ fn tagged(name: &str, seed: u64) -> Mesh {
     };
     let mut tags = Tags::default();
     let topology = mesh.topology();
-    for h in topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h < twin)) {
+    for h in topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin))
+    {
         let vertices = topology.ends(h).map(|v| v.0);
-        tags.creases.extend(sharpness(0.3).map(|sharpness| CreaseTag { vertices, sharpness }));
+        tags.creases
+            .extend(sharpness(0.3).map(|sharpness| CreaseTag {
+                vertices,
+                sharpness,
+            }));
     }
     for vertex in 0..mesh.vertex_count() as u32 {
-        tags.corners.extend(sharpness(0.1).map(|sharpness| CornerTag { vertex, sharpness }));
+        tags.corners
+            .extend(sharpness(0.1).map(|sharpness| CornerTag { vertex, sharpness }));
     }
     mesh.with_tags(tags).unwrap()
 }
@@ -53,7 +63,9 @@ struct Check<'a> {
 
 impl Check<'_> {
     fn visit(&self, patch: &Patch, first: HalfEdgeId, level: usize) {
-        let Some(fine) = self.levels.get(level + 1) else { return };
+        let Some(fine) = self.levels.get(level + 1) else {
+            return;
+        };
         let refined = patch.refined(self.rules);
         let size = fine.diagonal();
         for edge in 0..3 {
@@ -63,9 +75,15 @@ impl Check<'_> {
             let position = vector(self.table.position(fine, vertex).unwrap());
             let found = refined.middle(edge);
             let what = format!("{}, level {level}, {first}, edge {edge}", self.name);
-            assert!(found.position.distance(position) < 1e-12 * size, "{what}: {found:?}, {position}");
+            assert!(
+                found.position.distance(position) < 1e-12 * size,
+                "{what}: {found:?}, {position}"
+            );
             let normal = vector(self.table.normal_at(fine, corner).unwrap());
-            assert!(found.normal.distance(normal) < 1e-7, "{what}: {found:?}, {normal}");
+            assert!(
+                found.normal.distance(normal) < 1e-7,
+                "{what}: {found:?}, {normal}"
+            );
         }
         for part in 0..4 {
             self.visit(&refined.part(part), first_of_part(first, part), level + 1);
@@ -75,20 +93,35 @@ impl Check<'_> {
 
 #[test]
 fn pieces_follow_uniform_refinement() {
-    for (seed, name) in ["tetrahedron", "cube", "spike", "sheet", "head"].into_iter().enumerate() {
+    for (seed, name) in ["tetrahedron", "cube", "spike", "sheet", "head"]
+        .into_iter()
+        .enumerate()
+    {
         for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
             let mut levels = vec![tagged(name, seed as u64 + 5)];
             for level in 0..3 {
                 levels.push(
-                    uniform(&levels[level], scheme, &UniformOptions::default().levels(1)).unwrap().mesh,
+                    uniform(&levels[level], scheme, &UniformOptions::default().levels(1))
+                        .unwrap()
+                        .mesh,
                 );
             }
             let rules = Rules::of(scheme);
-            let check = Check { rules: &rules, levels: &levels, table: LimitTable::new(scheme), name };
+            let check = Check {
+                rules: &rules,
+                levels: &levels,
+                table: LimitTable::new(scheme),
+                name,
+            };
             let sharpness = Sharpness::of(&levels[0]);
             let mut semi_sharp = 0;
-            for face in levels[0].topology().faces().step_by(levels[0].face_count().div_ceil(40)) {
-                let patch = root_patch(&levels[0], &sharpness, &LargeRings::default(), face, &rules);
+            for face in levels[0]
+                .topology()
+                .faces()
+                .step_by(levels[0].face_count().div_ceil(40))
+            {
+                let patch =
+                    root_patch(&levels[0], &sharpness, &LargeRings::default(), face, &rules);
                 semi_sharp += usize::from(matches!(patch, Patch::SemiSharp(_)));
                 check.visit(&patch, HalfEdgeId::of(face, 0), 0);
             }
@@ -103,10 +136,19 @@ fn parts_of_large_rings_follow_uniform_refinement() {
     for (kind, mesh) in super::whole_ring::tests::tagged_fans(180) {
         let mut levels = vec![mesh];
         for level in 0..2 {
-            levels.push(uniform(&levels[level], &Loop, &UniformOptions::default().levels(1)).unwrap().mesh);
+            levels.push(
+                uniform(&levels[level], &Loop, &UniformOptions::default().levels(1))
+                    .unwrap()
+                    .mesh,
+            );
         }
         let rules = Rules::of(&Loop);
-        let check = Check { rules: &rules, levels: &levels, table: LimitTable::new(&Loop), name: kind };
+        let check = Check {
+            rules: &rules,
+            levels: &levels,
+            table: LimitTable::new(&Loop),
+            name: kind,
+        };
         let sharpness = Sharpness::of(&levels[0]);
         let large = LargeRings::with_tags(&levels[0], &sharpness, &rules);
         for face in [0, 3, 4, 54, 90, 178, 179] {
@@ -119,41 +161,76 @@ fn parts_of_large_rings_follow_uniform_refinement() {
 
 /// Limit positions of the vertices over each control face, some levels down.
 fn limits(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Vec<Vec<DVec3>> {
-    let fine = uniform(mesh, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh;
+    let fine = uniform(mesh, scheme, &UniformOptions::default().levels(levels))
+        .unwrap()
+        .mesh;
     let table = LimitTable::new(scheme);
     let positions = table.positions(&fine).unwrap();
     let of_face = |triangles: &[[u32; 3]]| -> Vec<DVec3> {
-        triangles.as_flattened().iter().map(|&v| vector(positions[v as usize])).collect()
+        triangles
+            .as_flattened()
+            .iter()
+            .map(|&v| vector(positions[v as usize]))
+            .collect()
     };
-    fine.triangles().chunks_exact(1 << (2 * levels)).map(of_face).collect()
+    fine.triangles()
+        .chunks_exact(1 << (2 * levels))
+        .map(of_face)
+        .collect()
 }
 
 /// The surface with sharp edges that fade, and the one where they last, are no farther apart than is said, at any of their
 /// points; and not much nearer either.
 #[test]
 fn lasting_twins_are_near() {
-    let step = |mesh: &Mesh| uniform(mesh, &Loop, &UniformOptions::default().levels(1)).unwrap().mesh;
+    let step = |mesh: &Mesh| {
+        uniform(mesh, &Loop, &UniformOptions::default().levels(1))
+            .unwrap()
+            .mesh
+    };
     let (mut seen, mut tightest) = (0, 0.0f64);
-    for (seed, name) in ["cube", "tetrahedron", "spike", "sheet", "head"].into_iter().enumerate() {
+    for (seed, name) in ["cube", "tetrahedron", "spike", "sheet", "head"]
+        .into_iter()
+        .enumerate()
+    {
         for fades in [0.4, 1.0, 1.7, 3.0] {
             // Whole creases, corners where they meet and boundaries; with tags here and there, and everywhere.
-            let plain = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
+            let plain = Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+                .unwrap()
+                .0;
             let mut folded = plain.with_creases_above(0.6).unwrap();
             let mut tags = folded.tags().clone();
-            tags.creases.iter_mut().for_each(|tag| tag.sharpness = fades + 1.0);
+            tags.creases
+                .iter_mut()
+                .for_each(|tag| tag.sharpness = fades + 1.0);
             folded = step(&folded.with_tags(tags).unwrap());
             for mesh in [folded, tagged(name, 17 + seed as u64)] {
                 let mut lasting = mesh.tags().clone();
-                lasting.creases.iter_mut().for_each(|tag| tag.sharpness = f64::INFINITY);
-                lasting.corners.iter_mut().for_each(|tag| tag.sharpness = f64::INFINITY);
+                lasting
+                    .creases
+                    .iter_mut()
+                    .for_each(|tag| tag.sharpness = f64::INFINITY);
+                lasting
+                    .corners
+                    .iter_mut()
+                    .for_each(|tag| tag.sharpness = f64::INFINITY);
                 let other = mesh.clone().with_tags(lasting).unwrap();
                 for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
                     let (own, twins) = (limits(&mesh, scheme, 4), limits(&other, scheme, 4));
                     let (rules, sharpness) = (Rules::of(scheme), Sharpness::of(&mesh));
-                    for face in mesh.topology().faces().step_by(mesh.face_count().div_ceil(300)) {
-                        let patch = root_patch(&mesh, &sharpness, &LargeRings::default(), face, &rules);
-                        let Patch::SemiSharp(piece) = patch else { continue };
-                        let Some((_, apart)) = piece.lasting_twin(&rules) else { continue };
+                    for face in mesh
+                        .topology()
+                        .faces()
+                        .step_by(mesh.face_count().div_ceil(300))
+                    {
+                        let patch =
+                            root_patch(&mesh, &sharpness, &LargeRings::default(), face, &rules);
+                        let Patch::SemiSharp(piece) = patch else {
+                            continue;
+                        };
+                        let Some((_, apart)) = piece.lasting_twin(&rules) else {
+                            continue;
+                        };
                         let distances = own[face.index()].iter().zip(&twins[face.index()]);
                         let farthest = distances.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
                         assert!(
@@ -167,5 +244,8 @@ fn lasting_twins_are_near() {
             }
         }
     }
-    assert!(seen > 1000 && tightest > 0.5, "{seen} pieces, at most {tightest} of the bound");
+    assert!(
+        seen > 1000 && tightest > 0.5,
+        "{seen} pieces, at most {tightest} of the bound"
+    );
 }

@@ -49,7 +49,11 @@ impl Level {
     fn of(whole: &SemiSharpVertex, rules: &Rules<'_>) -> Self {
         let neighbours = &whole.neighbours;
         let sharp = (0..neighbours.len()).filter(|&slot| whole.sharp.is_sharp(slot));
-        let gaps = if whole.fades() { RingGaps::of(whole, rules) } else { None };
+        let gaps = if whole.fades() {
+            RingGaps::of(whole, rules)
+        } else {
+            None
+        };
         Self {
             at: whole.at,
             mean: neighbours.iter().sum::<DVec3>() / neighbours.len() as f64,
@@ -63,9 +67,13 @@ impl Level {
 
     /// The sharp edges on either side of the face after a slot, first that which is at the slot or before it; `None` if no two edges are sharp.
     fn around(&self, slot: usize) -> Option<[(usize, DVec3); 2]> {
-        let ([_, _, ..], [first, .., last]) = (&self.sharp[..], &self.sharp[..]) else { return None };
+        let ([_, _, ..], [first, .., last]) = (&self.sharp[..], &self.sharp[..]) else {
+            return None;
+        };
         let next = self.sharp.partition_point(|&(sharp, _)| sharp <= slot);
-        let before = next.checked_sub(1).map_or(last, |before| &self.sharp[before]);
+        let before = next
+            .checked_sub(1)
+            .map_or(last, |before| &self.sharp[before]);
         Some([*before, *self.sharp.get(next).unwrap_or(first)])
     }
 }
@@ -92,7 +100,12 @@ impl WholeRing {
             found.push(Level::of(&whole, rules));
         }
         let is_dart = whole.sharp.rule() == VertexRule::Dart;
-        Ok((!is_dart).then_some(Self { slots, neighbours, sharp, levels: found }))
+        Ok((!is_dart).then_some(Self {
+            slots,
+            neighbours,
+            sharp,
+            levels: found,
+        }))
     }
 
     /// Whether something fades.
@@ -102,7 +115,10 @@ impl WholeRing {
 
     /// The vertex as a corner of the face of `h`, which leaves it, with the neighbours near that face.
     pub(crate) fn near(self: &Arc<Self>, h: HalfEdgeId) -> SemiSharpVertex {
-        let place = self.slots.binary_search_by_key(&h, |&(h, _)| h).unwrap_or(0);
+        let place = self
+            .slots
+            .binary_search_by_key(&h, |&(h, _)| h)
+            .unwrap_or(0);
         let (own, count) = (self.slots[place].1 as usize, self.neighbours.len());
         let (first, kept) = if self.sharp.open {
             let first = own.saturating_sub(1 + BEYOND);
@@ -115,9 +131,16 @@ impl WholeRing {
         SemiSharpVertex {
             at: self.levels[0].at,
             neighbours: around.map(|slot| self.neighbours[slot]).collect(),
-            sharp: SharpRing { spokes, ..self.sharp },
+            sharp: SharpRing {
+                spokes,
+                ..self.sharp
+            },
             slot: (own + count - first) % count,
-            whole: Some(PartOfRing { ring: Arc::clone(self), level: 0, first }),
+            whole: Some(PartOfRing {
+                ring: Arc::clone(self),
+                level: 0,
+                first,
+            }),
         }
     }
 }
@@ -139,7 +162,11 @@ impl PartOfRing {
 
     /// After a refinement.
     pub(super) fn refined(&self) -> Self {
-        Self { ring: Arc::clone(&self.ring), level: self.level + 1, first: self.first }
+        Self {
+            ring: Arc::clone(&self.ring),
+            level: self.level + 1,
+            first: self.first,
+        }
     }
 
     /// Where the vertex is.
@@ -189,12 +216,24 @@ impl PartOfRing {
     fn open_sector(&self, near: &[DVec3], slot: usize, ends: [(usize, DVec3); 2]) -> VertexSector {
         let (level, own, count) = (self.level(), self.slot(slot), self.ring.neighbours.len());
         let [(before, first), (after, last)] = ends;
-        let [before, after] = [(own + count - before) % count, (after + count - own) % count];
+        let [before, after] = [
+            (own + count - before) % count,
+            (after + count - own) % count,
+        ];
         let (after_first, before_last) = (before > slot, after > near.len() - 1 - slot);
-        let (from, to) = (slot - before.min(slot), slot + after.min(near.len() - 1 - slot));
+        let (from, to) = (
+            slot - before.min(slot),
+            slot + after.min(near.len() - 1 - slot),
+        );
         let around = near[from..=to].iter().copied();
-        let centre =
-            if level.is_corner { Centre::Corner { open: true, sharp: None } } else { Centre::Crease };
+        let centre = if level.is_corner {
+            Centre::Corner {
+                open: true,
+                sharp: None,
+            }
+        } else {
+            Centre::Crease
+        };
         VertexSector {
             at: level.at,
             neighbours: after_first
@@ -206,7 +245,10 @@ impl PartOfRing {
             centre,
             slot: slot - from + usize::from(after_first),
             far: match after_first || before_last {
-                true => Far::Ends { after_first, before_last },
+                true => Far::Ends {
+                    after_first,
+                    before_last,
+                },
                 false => Far::Kept,
             },
         }
@@ -219,7 +261,10 @@ impl PartOfRing {
         neighbours.extend_from_slice(&near[..slot]);
         let centre = if level.is_corner {
             // One that is far away does not matter: the vertex stays.
-            let sharp = level.sharp.first().map(|&(sharp, _)| (sharp + count - self.first) % count);
+            let sharp = level
+                .sharp
+                .first()
+                .map(|&(sharp, _)| (sharp + count - self.first) % count);
             let sharp = sharp.filter(|&place| place < near.len());
             let sharp = sharp.map(|place| (place + near.len() - slot) % near.len());
             Centre::Corner { open: false, sharp }
@@ -231,7 +276,10 @@ impl PartOfRing {
             neighbours,
             centre,
             slot: 0,
-            far: Far::Mean { valence: count, mean: level.mean },
+            far: Far::Mean {
+                valence: count,
+                mean: level.mean,
+            },
         }
     }
 }

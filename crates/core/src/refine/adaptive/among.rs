@@ -51,7 +51,10 @@ fn towards_corner(place: Place) -> Option<(Place, usize, bool)> {
 
 /// Whether there is a node at a place that has no children.
 fn is_leaf(plan: &Plan, place: Place) -> bool {
-    plan.decision.trees.word_at(place).is_some_and(|word| !quadtree::is_split(word))
+    plan.decision
+        .trees
+        .word_at(place)
+        .is_some_and(|word| !quadtree::is_split(word))
 }
 
 impl Engine<'_> {
@@ -67,14 +70,23 @@ impl Engine<'_> {
         let faces = 0..plan.closed.len() as u32;
         let mut measured: Vec<Measured> = faces.map(Measured::nothing).collect();
         // Heights that are good enough, where it is known.
-        let allowed = if self.control.criteria.is_none() { goal.allowed(0) } else { 0.0 };
+        let allowed = if self.control.criteria.is_none() {
+            goal.allowed(0)
+        } else {
+            0.0
+        };
         let is_alone = self.is_balanced && allowed > 0.0;
         loop {
             let touched = plan.is_touched.clone();
             let mut emission = self.emit_all(&mut plan)?;
             if self.is_balanced {
                 let sources = self.sources(&plan, &emission);
-                bulges.look(&sources, self.watch, &marked(&touched), (allowed, self.max_levels))?;
+                bulges.look(
+                    &sources,
+                    self.watch,
+                    &marked(&touched),
+                    (allowed, self.max_levels),
+                )?;
                 let moves = bulges.offsets(self.control, &mut emission, allowed, self.watch)?;
                 emission.shift(moves, self.watch)?;
             }
@@ -84,30 +96,46 @@ impl Engine<'_> {
             let changes = Changes::since((known, is_alone), &touched, &emission, self.watch)?;
             let sources = self.sources(&plan, &emission);
             let faces = changes.faces(&emission, &self.edges, self.watch)?;
-            let found =
-                measure(&sources, self.watch, (goal, f64::INFINITY), (&faces, Some(&changes), known))?;
-            self.watch.each(faces.iter().zip(found), |(&face, mut found)| {
-                let is_other = touched[face as usize] && !is_alone;
-                let is_all = bulges.keep(face, &mut found, &emission) || is_other;
-                measured[face as usize].replace(found, is_all);
-            })?;
-            let failing: Vec<(Place, f64)> =
-                measured.iter_mut().flat_map(|face| core::mem::take(&mut face.failing)).collect();
+            let found = measure(
+                &sources,
+                self.watch,
+                (goal, f64::INFINITY),
+                (&faces, Some(&changes), known),
+            )?;
+            self.watch
+                .each(faces.iter().zip(found), |(&face, mut found)| {
+                    let is_other = touched[face as usize] && !is_alone;
+                    let is_all = bulges.keep(face, &mut found, &emission) || is_other;
+                    measured[face as usize].replace(found, is_all);
+                })?;
+            let failing: Vec<(Place, f64)> = measured
+                .iter_mut()
+                .flat_map(|face| core::mem::take(&mut face.failing))
+                .collect();
             let is_full = is_budget && plan.triangles + ADDED * failing.len() > most;
             let mut dirty = Dirty::none(plan.closed.len());
             let mut is_split = false;
             if !is_full {
                 // What cannot be balanced was not measured.
-                let hopeless = if is_alone { bulges.failing() } else { Vec::new() };
+                let hopeless = if is_alone {
+                    bulges.failing()
+                } else {
+                    Vec::new()
+                };
                 for (failing, allowed) in [(&hopeless, Some(allowed)), (&failing, None)] {
                     is_split |= self.divide(&mut plan, failing, allowed, &mut dirty)?;
                 }
                 if is_alone {
-                    is_split |= self.divide_towards_corners(&mut plan, &failing, goal, &mut dirty)?;
+                    is_split |=
+                        self.divide_towards_corners(&mut plan, &failing, goal, &mut dirty)?;
                 }
             }
             if !is_split {
-                return Ok(Some(Outcome { plan, emission, measured: Some(measured) }));
+                return Ok(Some(Outcome {
+                    plan,
+                    emission,
+                    measured: Some(measured),
+                }));
             }
             plan.emission = Some(emission);
             if !self.carry_out(&mut plan, dirty, most)? {
@@ -167,9 +195,15 @@ impl Engine<'_> {
     ) -> Result<bool, RefineError> {
         let mut is_split = false;
         for &(place, value) in failing {
-            let Some((mut corner, child, is_beside)) = towards_corner(place) else { continue };
+            let Some((mut corner, child, is_beside)) = towards_corner(place) else {
+                continue;
+            };
             let times = value / goal.allowed(place.face);
-            let mut left = if times <= MOST_TIMES { HALVED * times } else { 0.0 };
+            let mut left = if times <= MOST_TIMES {
+                HALVED * times
+            } else {
+                0.0
+            };
             while left > 1.0 && corner.level + u32::from(is_beside) < self.max_levels {
                 self.watch.poll()?;
                 is_split |= self.split_leaf(plan, corner, dirty)?;
@@ -184,7 +218,12 @@ impl Engine<'_> {
     }
 
     /// Splits a node if it has no children.
-    fn split_leaf(&self, plan: &mut Plan, place: Place, dirty: &mut Dirty) -> Result<bool, RefineError> {
+    fn split_leaf(
+        &self,
+        plan: &mut Plan,
+        place: Place,
+        dirty: &mut Dirty,
+    ) -> Result<bool, RefineError> {
         let may_be = is_leaf(plan, place);
         if may_be {
             self.split(&mut plan.decision.trees, place, dirty)?;
@@ -194,7 +233,9 @@ impl Engine<'_> {
 
     /// The finest mesh with balanced triangles within a value; `None` if that takes more triangles than there may be.
     pub(super) fn balanced(&self, limit: f64, most: usize) -> Result<Option<Outcome>, RefineError> {
-        let Some(plan) = self.plan(Goal::Balanced(limit), most)? else { return Ok(None) };
+        let Some(plan) = self.plan(Goal::Balanced(limit), most)? else {
+            return Ok(None);
+        };
         self.emit_among(plan, &Goal::Within(limit), (most, false))
     }
 
@@ -207,7 +248,11 @@ impl Engine<'_> {
         (most, stop): (usize, ExactStop),
         options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
-        let mut high = if self.control.criteria.is_some() { plain.worst } else { plain.error.upper };
+        let mut high = if self.control.criteria.is_some() {
+            plain.worst
+        } else {
+            plain.error.upper
+        };
         let mut low = floor;
         let mut best = None;
         for _ in 0..MOST_TRIES {
@@ -220,13 +265,24 @@ impl Engine<'_> {
                 None => low = next,
             }
         }
-        let Some(outcome) = best else { return Ok(plain) };
+        let Some(outcome) = best else {
+            return Ok(plain);
+        };
         let balanced = outcome.finish(self, stop, options)?;
-        Ok(if balanced.error.upper < plain.error.upper { balanced } else { plain })
+        Ok(if balanced.error.upper < plain.error.upper {
+            balanced
+        } else {
+            plain
+        })
     }
 
     pub(super) fn sources<'a>(&'a self, plan: &'a Plan, emission: &'a Emission) -> Sources<'a> {
-        let Plan { decision, chains, closed, .. } = plan;
+        let Plan {
+            decision,
+            chains,
+            closed,
+            ..
+        } = plan;
         Sources {
             control: self.control,
             edges: &self.edges,
@@ -253,14 +309,25 @@ mod tests {
         let mesh = stirred(name, 0);
         let limit = share * mesh.diagonal();
         let options = ExactOptions::default().tolerance(limit).balance(true);
-        with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-            let mut plan = engine.plan(goal(limit), usize::MAX)?.unwrap();
-            let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
-            let emission = engine.emit_all(&mut plan)?;
-            let mut bulges = Bulges::default();
-            bulges.look(&engine.sources(&plan, &emission), engine.watch, &faces, (limit, 30))?;
-            Ok([bulges.failing().len(), emission.triangles.len()])
-        })
+        with_engine(
+            &mesh,
+            &Loop,
+            (&options, &Demands::default()),
+            &mut unobserved,
+            |engine| {
+                let mut plan = engine.plan(goal(limit), usize::MAX)?.unwrap();
+                let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
+                let emission = engine.emit_all(&mut plan)?;
+                let mut bulges = Bulges::default();
+                bulges.look(
+                    &engine.sources(&plan, &emission),
+                    engine.watch,
+                    &faces,
+                    (limit, 30),
+                )?;
+                Ok([bulges.failing().len(), emission.triangles.len()])
+            },
+        )
         .unwrap()
     }
 
@@ -268,23 +335,42 @@ mod tests {
     fn what_cannot_be_balanced_is_divided_before_it_is_looked_at() {
         for (name, share) in [("cup", 1e-4), ("bunny", 1e-3), ("head", 1e-3)] {
             let [few, triangles] = hopeless(name, share, Goal::Balanced);
-            let [many, fewer_triangles] = hopeless(name, share, |limit| Goal::Within(UNBALANCED * limit));
+            let [many, fewer_triangles] =
+                hopeless(name, share, |limit| Goal::Within(UNBALANCED * limit));
             assert!(6 * few < many && many > 10, "{name}: {few}, {many}");
-            assert!(triangles > fewer_triangles, "{name}: {triangles}, {fewer_triangles}");
+            assert!(
+                triangles > fewer_triangles,
+                "{name}: {triangles}, {fewer_triangles}"
+            );
         }
     }
 
     /// A leaf by its path below its control face.
     fn leaf(path: &[usize]) -> Place {
-        path.iter().fold(Place::root(0), |place, &child| place.child(child))
+        path.iter()
+            .fold(Place::root(0), |place, &child| place.child(child))
     }
 
     #[test]
     fn corners_are_told_from_what_lies_elsewhere() {
         // At a corner, the next one there is a child; beside it, a sibling.
-        assert_eq!(towards_corner(leaf(&[2, 2])), Some((leaf(&[2, 2, 2]), 2, false)));
-        assert_eq!(towards_corner(leaf(&[1, 1, 3])), Some((leaf(&[1, 1, 1]), 1, true)));
-        for elsewhere in [&[] as &[usize], &[3], &[3, 3], &[0, 1], &[0, 1, 1], &[0, 3, 0], &[2, 3, 3]] {
+        assert_eq!(
+            towards_corner(leaf(&[2, 2])),
+            Some((leaf(&[2, 2, 2]), 2, false))
+        );
+        assert_eq!(
+            towards_corner(leaf(&[1, 1, 3])),
+            Some((leaf(&[1, 1, 1]), 1, true))
+        );
+        for elsewhere in [
+            &[] as &[usize],
+            &[3],
+            &[3, 3],
+            &[0, 1],
+            &[0, 1, 1],
+            &[0, 3, 0],
+            &[2, 3, 3],
+        ] {
             assert_eq!(towards_corner(leaf(elsewhere)), None, "{elsewhere:?}");
         }
     }

@@ -24,15 +24,23 @@ pub(super) struct Area {
 pub(super) struct Areas(pub(super) BTreeMap<u32, Area>);
 
 /// The cells that hold what is no farther from some points, along u and along v, than given: the rows, and the bits in each.
-fn cells<const N: usize>(points: [[f64; 2]; N], around: f64) -> (core::ops::RangeInclusive<usize>, u32) {
+fn cells<const N: usize>(
+    points: [[f64; 2]; N],
+    around: f64,
+) -> (core::ops::RangeInclusive<usize>, u32) {
     let cell = |at: f64| ((at * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
     let [u, v] = [0, 1].map(|axis| {
         let along = points.map(|point| point[axis]);
-        let (least, most) =
-            (along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(0.0, f64::max));
+        let (least, most) = (
+            along.into_iter().fold(f64::INFINITY, f64::min),
+            along.into_iter().fold(0.0, f64::max),
+        );
         [cell(least - around), cell(most + around)]
     });
-    (v[0] as usize..=v[1] as usize, (u32::MAX << u[0]) & (u32::MAX >> (CELLS - 1 - u[1])))
+    (
+        v[0] as usize..=v[1] as usize,
+        (u32::MAX << u[0]) & (u32::MAX >> (CELLS - 1 - u[1])),
+    )
 }
 
 impl Area {
@@ -62,7 +70,9 @@ impl Areas {
         let (corners, around) = (spot.corners(), 2.0 * spot.size.abs());
         self.0.entry(place.face).or_default().add(corners, around);
         for edge in (0..3).filter(|&edge| !open[edge] && place.lies_along(edge)) {
-            let Some(beyond) = edges.twin(3 * place.face + edge as u32) else { continue };
+            let Some(beyond) = edges.twin(3 * place.face + edge as u32) else {
+                continue;
+            };
             // The edge runs the other way there.
             let [from, to] = [edge, (edge + 1) % 3].map(|corner| {
                 let [u, v] = corners[corner];
@@ -86,9 +96,12 @@ mod tests {
         let mut left_out = 0;
         for _ in 0..300 {
             let mut area = Area::default();
-            let added: Vec<([f64; 2], f64)> =
-                (0..3).map(|_| ([random.unit(), random.unit()], 0.1 * random.unit())).collect();
-            added.iter().for_each(|&(at, around)| area.add([at], around));
+            let added: Vec<([f64; 2], f64)> = (0..3)
+                .map(|_| ([random.unit(), random.unit()], 0.1 * random.unit()))
+                .collect();
+            added
+                .iter()
+                .for_each(|&(at, around)| area.add([at], around));
             for _ in 0..50 {
                 let at = [random.unit(), random.unit()];
                 let is_in = |&([u, v], around): &([f64; 2], f64)| {

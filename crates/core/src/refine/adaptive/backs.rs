@@ -47,7 +47,9 @@ impl BackFaces {
         is_balanced: bool,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
-        let Some(criteria) = &control.criteria else { return Ok(Self::default()) };
+        let Some(criteria) = &control.criteria else {
+            return Ok(Self::default());
+        };
         let viewers = criteria.viewers();
         let faces = control.mesh.face_count();
         if viewers == 0 || faces > MOST_KEPT / viewers || !control.rules.is_certified() {
@@ -65,9 +67,15 @@ impl BackFaces {
                 let mut look = |(viewer, viewpoint): (usize, &Viewpoint), rest| {
                     let patch = patch.get_or_insert_with(|| control.patch(face as u32));
                     let leaf = Leaf::General(patch, control.rules);
-                    let behind = Behind { faces: &nobody, face: face as u32, leaf };
+                    let behind = Behind {
+                        faces: &nobody,
+                        face: face as u32,
+                        leaf,
+                    };
                     let found = behind.is_back(&corners, (viewer, viewpoint), rest);
-                    rests[viewer] = found.filter(|&rest| !is_balanced || rest == 0.0).unwrap_or(f64::NAN);
+                    rests[viewer] = found
+                        .filter(|&rest| !is_balanced || rest == 0.0)
+                        .unwrap_or(f64::NAN);
                     found
                 };
                 let region = Region::around(triangle, DVec3::ZERO);
@@ -75,7 +83,10 @@ impl BackFaces {
             }
             rests
         })?;
-        Ok(Self { viewers, rests: blocks.concat() })
+        Ok(Self {
+            viewers,
+            rests: blocks.concat(),
+        })
     }
 
     fn rest(&self, face: u32, viewer: usize) -> Option<f64> {
@@ -112,7 +123,11 @@ impl<'a> Behind<'a> {
             Over::Regular(ground, _, spot) => Leaf::Regular(ground, *spot),
             Over::General(pieces, ..) => Leaf::General(pieces.patch(), rules),
         };
-        Self { faces, face: emitted.place.face, leaf }
+        Self {
+            faces,
+            face: emitted.place.face,
+            leaf,
+        }
     }
 
     /// How far from a vertex of the mesh what is not known to show a viewer its back is; `None` if that is more than
@@ -152,7 +167,10 @@ pub(super) fn looks_away(
     mut piece: impl FnMut((usize, &Viewpoint), f64) -> Option<f64>,
 ) -> Backs {
     criteria.backs(region, |viewer, viewpoint, rest| {
-        if !triangles.iter().all(|triangle| shows_back(triangle, viewpoint)) {
+        if !triangles
+            .iter()
+            .all(|triangle| shows_back(triangle, viewpoint))
+        {
             return None;
         }
         let rest = piece((viewer, viewpoint), rest)?;
@@ -162,7 +180,9 @@ pub(super) fn looks_away(
 
 /// Whether a viewer sees the front at some point.
 fn shows_front(points: &[LimitPoint], viewpoint: &Viewpoint) -> bool {
-    points.iter().any(|point| towards(viewpoint, point.position).dot(point.normal) > 0.0)
+    points
+        .iter()
+        .any(|point| towards(viewpoint, point.position).dot(point.normal) > 0.0)
 }
 
 /// Whether a viewer is behind the plane of a triangle.

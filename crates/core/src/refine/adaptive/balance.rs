@@ -62,7 +62,10 @@ impl Pending {
         if self.0.len() < other.0.len() {
             self.0.resize_with(other.0.len(), Vec::new);
         }
-        self.0.iter_mut().zip(other.0).for_each(|(own, mut list)| own.append(&mut list));
+        self.0
+            .iter_mut()
+            .zip(other.0)
+            .for_each(|(own, mut list)| own.append(&mut list));
     }
 }
 
@@ -70,9 +73,13 @@ impl Pending {
 fn is_as_deep(trees: &Trees, edges: &Edges<'_>, (place, depth): (Place, u32), edge: usize) -> bool {
     let other = match beyond(place, edge) {
         Beyond::Same(other) => Some(other),
-        Beyond::Control(along) => edges.twin(along.half_edge).map(|twin| along.node_at(twin, true).0),
+        Beyond::Control(along) => edges
+            .twin(along.half_edge)
+            .map(|twin| along.node_at(twin, true).0),
     };
-    let below = other.and_then(|other| trees.word_at(other)).and_then(even_depth);
+    let below = other
+        .and_then(|other| trees.word_at(other))
+        .and_then(even_depth);
     below.is_some_and(|below| below + 1 >= depth)
 }
 
@@ -139,16 +146,26 @@ fn ensure_along(
     if let Some(twin) = edges.twin(h) {
         return ensure(along.node_at(twin, true).0);
     }
-    let Some(group) = edges.group(h) else { return true };
+    let Some(group) = edges.group(h) else {
+        return true;
+    };
     let members = edges.members(group);
-    let own = members.iter().any(|&(member, turned)| member == h && turned);
+    let own = members
+        .iter()
+        .any(|&(member, turned)| member == h && turned);
     // As the group's first half-edge counts.
-    let index = if own { (1 << along.level) - 1 - along.index } else { along.index };
+    let index = if own {
+        (1 << along.level) - 1 - along.index
+    } else {
+        along.index
+    };
     if !asked.insert((group, along.level, index)) {
         return true;
     }
     let first = Along { index, ..along };
-    members.iter().all(|&(member, turned)| ensure(first.node_at(member, turned).0))
+    members
+        .iter()
+        .all(|&(member, turned)| ensure(first.node_at(member, turned).0))
 }
 
 #[cfg(test)]
@@ -159,7 +176,12 @@ mod tests {
     use crate::refine::adaptive::quadtree::{LEAF, Piece, is_split};
 
     fn model(name: &str) -> Mesh {
-        Mesh::from_soup(&crate::models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+        Mesh::from_soup(
+            &crate::models::find(name).unwrap().soup(),
+            &Default::default(),
+        )
+        .unwrap()
+        .0
     }
 
     /// The places of all leaves.
@@ -167,7 +189,9 @@ mod tests {
         if !is_split(word) {
             found.push(place);
         } else {
-            (0..4).for_each(|child| leaves(trees, trees.child(word, child), place.child(child), found));
+            (0..4).for_each(|child| {
+                leaves(trees, trees.child(word, child), place.child(child), found)
+            });
         }
     }
 
@@ -195,11 +219,17 @@ mod tests {
                         let other = match beyond(leaf, edge) {
                             Beyond::Same(place) => place,
                             Beyond::Control(along) => {
-                                let Some(twin) = edges.twin(along.half_edge) else { continue };
+                                let Some(twin) = edges.twin(along.half_edge) else {
+                                    continue;
+                                };
                                 along.node_at(twin, true).0
                             }
                         };
-                        let above = Place { level: other.level - 1, path: other.path >> 2, ..other };
+                        let above = Place {
+                            level: other.level - 1,
+                            path: other.path >> 2,
+                            ..other
+                        };
                         if level_at(trees, other) < other.level - 1 {
                             missing.push(above);
                         }
@@ -209,7 +239,9 @@ mod tests {
             if missing.is_empty() {
                 return;
             }
-            missing.into_iter().for_each(|place| assert!(trees.ensure(place, |_| ())));
+            missing
+                .into_iter()
+                .for_each(|place| assert!(trees.ensure(place, |_| ())));
         }
     }
 
@@ -220,18 +252,32 @@ mod tests {
             let mesh = model(name);
             let edges = Edges::of(&mesh);
             for _ in 0..20 {
-                let roots: Vec<u32> = (0..mesh.face_count()).map(|_| LEAF + random.below(3) as u32).collect();
-                let mut trees = Trees::of(&[Piece { roots, words: vec![] }], &mut || Ok(())).unwrap();
+                let roots: Vec<u32> = (0..mesh.face_count())
+                    .map(|_| LEAF + random.below(3) as u32)
+                    .collect();
+                let mut trees = Trees::of(
+                    &[Piece {
+                        roots,
+                        words: vec![],
+                    }],
+                    &mut || Ok(()),
+                )
+                .unwrap();
                 for _ in 0..3 {
                     let face = random.below(mesh.face_count()) as u32;
                     let level = 3 + random.below(3) as u32;
-                    let place = Place { face, level, path: random.below(1 << (2 * level)) as u64 };
+                    let place = Place {
+                        face,
+                        level,
+                        path: random.below(1 << (2 * level)) as u64,
+                    };
                     assert!(trees.ensure(place, |_| ()));
                 }
                 let mut expected = trees.clone();
                 brute_force(&mut expected, &edges, mesh.face_count() as u32);
                 let mut pending = Pending::default();
-                (0..mesh.face_count() as u32).for_each(|face| pending.push_tree(&trees, &edges, face));
+                (0..mesh.face_count() as u32)
+                    .for_each(|face| pending.push_tree(&trees, &edges, face));
                 assert!(balance(&mut trees, &edges, pending, &mut || Ok(()), |_| ()).unwrap());
                 for face in 0..mesh.face_count() as u32 {
                     let (mut a, mut b) = (Vec::new(), Vec::new());

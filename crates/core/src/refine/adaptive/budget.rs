@@ -118,7 +118,11 @@ impl Growth {
 /// The geometric mean, also where the product is too great for a number.
 fn middle(low: f64, high: f64) -> f64 {
     let squared = low * high;
-    if squared.is_finite() { squared.sqrt() } else { low.sqrt() * high.sqrt() }
+    if squared.is_finite() {
+        squared.sqrt()
+    } else {
+        low.sqrt() * high.sqrt()
+    }
 }
 
 /// The finest plan within distances down to `floor` that has at most `most` triangles, and why it is not finer.
@@ -129,18 +133,29 @@ pub(super) fn search(
     cap: ExactStop,
 ) -> Result<(Plan, ExactStop), RefineError> {
     if floor > 0.0
-        && let Some(plan) = engine.without_counting_strips().plan(Goal::Within(floor), most)?
+        && let Some(plan) = engine
+            .without_counting_strips()
+            .plan(Goal::Within(floor), most)?
     {
         return Ok((plan, ExactStop::Met));
     }
     let mut search = Search::new(engine, floor, most)?;
     search.narrow()?;
-    let Search { mut high, mut low, best, least, .. } = search;
+    let Search {
+        mut high,
+        mut low,
+        best,
+        least,
+        ..
+    } = search;
     let mut best = match best {
         Some(best) => best,
         None => coarsest(engine)?,
     };
-    let over_strips = engine.control.flat.over_strips(|face| best.closed[face as usize].triangles as usize);
+    let over_strips = engine
+        .control
+        .flat
+        .over_strips(|face| best.closed[face as usize].triangles as usize);
     if WORTH_MERGING * over_strips >= most {
         // A finer division that is more even may leave fewer triangles once strips are put together.
         let mut next = high;
@@ -149,13 +164,23 @@ pub(super) fn search(
             if next < floor.max(least) {
                 break;
             }
-            if let Some(plan) = finer(engine, &best, Goal::Within(next), &wanting(&best, next), most)? {
+            if let Some(plan) = finer(
+                engine,
+                &best,
+                Goal::Within(next),
+                &wanting(&best, next),
+                most,
+            )? {
                 (best, high, low) = (plan, next, floor);
             }
         }
     }
     if most < EXACT && high > least && best.worst() > 0.0 {
-        let less = if low > 0.0 { low.min(high / FILLED_APART) } else { high / PROMISED };
+        let less = if low > 0.0 {
+            low.min(high / FILLED_APART)
+        } else {
+            high / PROMISED
+        };
         best = fill(engine, best, (high, less.max(floor)), most)?;
     }
     Ok((best, cap))
@@ -164,7 +189,9 @@ pub(super) fn search(
 /// The faces of a plan that come to more than a distance.
 fn wanting(plan: &Plan, distance: f64) -> Vec<u32> {
     let faces = 0..plan.closed.len() as u32;
-    faces.filter(|&face| exceeds(plan.expected(face), distance)).collect()
+    faces
+        .filter(|&face| exceeds(plan.expected(face), distance))
+        .collect()
 }
 
 /// Undivided faces, which fit any budget.
@@ -218,13 +245,23 @@ impl<'e, 'a> Search<'e, 'a> {
     fn new(engine: &'e Engine<'a>, floor: f64, most: usize) -> Result<Self, RefineError> {
         let has_criteria = engine.control.criteria.is_some();
         // Of distances below what is added to all of them nobody is any nearer.
-        let least = if has_criteria { f64::MIN_POSITIVE } else { engine.rounding.max(f64::MIN_POSITIVE) };
+        let least = if has_criteria {
+            f64::MIN_POSITIVE
+        } else {
+            engine.rounding.max(f64::MIN_POSITIVE)
+        };
         Ok(Self {
             engine,
             most,
             enough: most - (most / LEFT).max(LEFT_AT_LEAST).min(most),
-            growth: Growth { undivided: engine.control.mesh.face_count() as f64 },
-            profile: if engine.is_settled_later() { None } else { Some(Profile::of(engine)?) },
+            growth: Growth {
+                undivided: engine.control.mesh.face_count() as f64,
+            },
+            profile: if engine.is_settled_later() {
+                None
+            } else {
+                Some(Profile::of(engine)?)
+            },
             high: f64::INFINITY,
             is_settled: true,
             settles_all: most < FEW * engine.control.mesh.face_count(),
@@ -259,7 +296,9 @@ impl<'e, 'a> Search<'e, 'a> {
     fn give_up_best(&mut self) {
         (self.low, self.beyond) = (self.high, Some(self.fitting));
         // It has more than the budget once it is looked at among its neighbours.
-        self.settling = self.settling.max(1.01 * self.most as f64 / self.fitting as f64);
+        self.settling = self
+            .settling
+            .max(1.01 * self.most as f64 / self.fitting as f64);
         (self.high, self.best, self.is_settled) = (f64::INFINITY, None, true);
         (self.span, self.stalled, self.moved, self.fitted) = (f64::INFINITY, 0, 1, false);
         self.settles_all = true;
@@ -280,7 +319,9 @@ impl<'e, 'a> Search<'e, 'a> {
         if first.is_none() || is_merged {
             self.begin_undivided()?;
         }
-        if let Some(expected) = first.filter(|&expected| self.low < expected && expected < self.high) {
+        if let Some(expected) =
+            first.filter(|&expected| self.low < expected && expected < self.high)
+        {
             self.try_within(expected)?;
         }
         loop {
@@ -295,7 +336,9 @@ impl<'e, 'a> Search<'e, 'a> {
                 }
                 self.try_within(next)?;
             }
-            let Some(best) = self.best.as_mut().filter(|_| !self.is_settled) else { return Ok(()) };
+            let Some(best) = self.best.as_mut().filter(|_| !self.is_settled) else {
+                return Ok(());
+            };
             if engine.settle(best, self.most)? {
                 return Ok(());
             }
@@ -331,7 +374,11 @@ impl<'e, 'a> Search<'e, 'a> {
         let (high, low) = (self.high, self.low);
         let has_enough = self.triangles() >= self.enough;
         if self.idle > MOST_IDLE && (low == 0.0 || has_enough) {
-            return if low > 0.0 { middle(low, high) } else { high / MOST_APART.powi(1 << self.idle) };
+            return if low > 0.0 {
+                middle(low, high)
+            } else {
+                high / MOST_APART.powi(1 << self.idle)
+            };
         }
         if has_enough {
             // Where many triangles pass at once much less may take hardly more.
@@ -347,14 +394,18 @@ impl<'e, 'a> Search<'e, 'a> {
         // Where faces are not divided yet nothing tells how triangles grow.
         let is_divided = |before: &&(f64, usize)| before.1 as f64 > self.growth.undivided;
         let before = self.before.last().filter(is_divided);
-        let power = before.map(|&before| self.growth.power(before, known)).filter(|&power| power > 0.0);
+        let power = before
+            .map(|&before| self.growth.power(before, known))
+            .filter(|&power| power > 0.0);
         let power = power.map(|power| power.clamp(POWERS.0, POWERS.1));
         if low == 0.0 {
             let wanted = aim.min(STEP * self.triangles() as f64);
             return self.guess(known, wanted, power).min(high / (1.0 + NEAR));
         }
         let span = (high / low).ln();
-        let Some(beyond) = self.beyond.filter(|_| span > CLOSE) else { return middle(low, high) };
+        let Some(beyond) = self.beyond.filter(|_| span > CLOSE) else {
+            return middle(low, high);
+        };
         // Between two counts a power; but counts come in steps, so the middle where the same end was moved twice, or, where the ends are far
         // apart, further from what was moved each time.
         let is_apart = span > 2.0 * TELLING.1.ln();
@@ -362,11 +413,24 @@ impl<'e, 'a> Search<'e, 'a> {
             return middle(low, high);
         }
         let divided = |triangles: f64| self.growth.divided(triangles);
-        let is_beyond_nearer = divided(beyond as f64) * divided(self.fitting as f64) < divided(aim).powi(2);
-        let near = if is_beyond_nearer { (low, beyond) } else { known };
-        let between = || self.growth.power(known, (low, beyond)).clamp(POWERS.0, POWERS.1);
+        let is_beyond_nearer =
+            divided(beyond as f64) * divided(self.fitting as f64) < divided(aim).powi(2);
+        let near = if is_beyond_nearer {
+            (low, beyond)
+        } else {
+            known
+        };
+        let between = || {
+            self.growth
+                .power(known, (low, beyond))
+                .clamp(POWERS.0, POWERS.1)
+        };
         let guess = self.guess(near, aim, if is_apart { power } else { Some(between()) });
-        let farther = if is_apart { (self.moved - 1).clamp(0, 3) } else { 0 };
+        let farther = if is_apart {
+            (self.moved - 1).clamp(0, 3)
+        } else {
+            0
+        };
         let guess = near.0 * (guess / near.0).powi(1 << farther);
         let edge = (0.05 * span).min(LEAST_MOVED).exp();
         guess.clamp(low * edge, high / edge)
@@ -403,13 +467,22 @@ impl<'e, 'a> Search<'e, 'a> {
             is_settled = true;
             self.settling = (plan.triangles as f64 / count.unwrap_or(most) as f64).max(1.0);
         }
-        self.moved = if fits == self.fitted { self.moved + 1 } else { 1 };
+        self.moved = if fits == self.fitted {
+            self.moved + 1
+        } else {
+            1
+        };
         self.fitted = fits;
         match (found, count) {
             (Some(plan), Some(count)) if fits => {
-                self.idle = if plan.triangles > self.triangles() { 0 } else { self.idle + 1 };
+                self.idle = if plan.triangles > self.triangles() {
+                    0
+                } else {
+                    self.idle + 1
+                };
                 self.before.push((self.high, self.fitting));
-                (self.high, self.fitting, self.best, self.is_settled) = (next, count, Some(plan), is_settled);
+                (self.high, self.fitting, self.best, self.is_settled) =
+                    (next, count, Some(plan), is_settled);
             }
             _ => {
                 let count = count.unwrap_or(most.saturating_mul(UNCOUNTED));
@@ -420,9 +493,16 @@ impl<'e, 'a> Search<'e, 'a> {
         }
         let span = (self.high / self.low).ln();
         let is_halved = span <= 0.5 * self.span || self.span.is_infinite();
-        (self.span, self.stalled) = if is_halved { (span, 0) } else { (self.span, self.stalled + 1) };
+        (self.span, self.stalled) = if is_halved {
+            (span, 0)
+        } else {
+            (self.span, self.stalled + 1)
+        };
         // What was found counts on adding less among its neighbours than this plan did.
-        if let Some(best) = self.best.as_mut().filter(|_| !fits && is_settled && !self.is_settled)
+        if let Some(best) = self
+            .best
+            .as_mut()
+            .filter(|_| !fits && is_settled && !self.is_settled)
             && self.settling * best.triangles as f64 > most as f64
         {
             self.is_settled = engine.settle(best, most)?;

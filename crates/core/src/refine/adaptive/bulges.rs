@@ -62,7 +62,8 @@ impl Bulges {
     ) -> Result<(), Cancelled> {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
-        self.0.resize_with(emission.starts.len() - 1, Bulge::default);
+        self.0
+            .resize_with(emission.starts.len() - 1, Bulge::default);
         let found = watch.long_shares(faces.len(), |block, is_stopped| {
             let found = faces[block].iter().map(|&face| {
                 let triangles = emission.triangles_of(face);
@@ -70,21 +71,33 @@ impl Bulges {
                 let (control, first) = (sources.control, triangles.start as u32);
                 let known = Known::of(self.0.get(face as usize), allowed);
                 let waiting = Waiting::default();
-                let mut looking = Looking { control, emission, first, waiting, known, found };
+                let mut looking = Looking {
+                    control,
+                    emission,
+                    first,
+                    waiting,
+                    known,
+                    found,
+                };
                 sources.show(face, is_stopped, &mut looking);
                 looking.end(face, (hopeless, max_levels))
             });
             found.collect::<Vec<_>>()
         })?;
-        watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, found)| {
-            self.0[face as usize] = found;
-        })
+        watch.each(
+            faces.iter().zip(found.into_iter().flatten()),
+            |(&face, found)| {
+                self.0[face as usize] = found;
+            },
+        )
     }
 
     /// Keeps what was found of the triangles of a control face, at least how far their corners are moved; says whether that is known of each of
     /// them now.
     pub(super) fn keep(&mut self, face: u32, found: &mut Measured, emission: &Emission) -> bool {
-        let Some(bulge) = self.0.get_mut(face as usize) else { return false };
+        let Some(bulge) = self.0.get_mut(face as usize) else {
+            return false;
+        };
         let triangles = emission.triangles_of(face);
         if found.each.is_empty() {
             bulge.found.resize(triangles.len(), FoundLast::NOTHING);
@@ -101,7 +114,10 @@ impl Bulges {
     /// Whether nothing of a control face that was not touched may have changed: triangles were measured as they are, and vertices on its
     /// edges stay where they were.
     pub(super) fn are_same(&self, face: u32, emission: &Emission) -> bool {
-        let (bulge, first) = (&self.0[face as usize], 3 * emission.triangles_of(face).start as u32);
+        let (bulge, first) = (
+            &self.0[face as usize],
+            3 * emission.triangles_of(face).start as u32,
+        );
         let mut half_edges = (3 * face..3 * face + 3).flat_map(|h| emission.borders.along(h));
         !bulge.waits
             && half_edges.all(|&h| {
@@ -112,12 +128,18 @@ impl Bulges {
 
     /// Whether no triangle has been measured, and all will be.
     pub(super) fn are_new(&self) -> bool {
-        self.0.iter().all(|face| face.found.is_empty() && face.failing.is_empty())
+        self.0
+            .iter()
+            .all(|face| face.found.is_empty() && face.failing.is_empty())
     }
 
     /// The leaves that fail wherever their corners are moved, and what they come to at best.
     pub(super) fn failing(&self) -> Vec<(Place, f64)> {
-        self.0.iter().flat_map(|face| &face.failing).copied().collect()
+        self.0
+            .iter()
+            .flat_map(|face| &face.failing)
+            .copied()
+            .collect()
     }
 }
 
@@ -144,20 +166,28 @@ impl Bulge {
     /// How far the corners of each were moved then; not numbers where it was not measured.
     pub(super) fn offsets_last(&self) -> impl Iterator<Item = [f64; 3]> {
         let nothing = self.keys.len() - self.found.len();
-        self.found.iter().map(|found| found.offsets).chain(core::iter::repeat_n([f64::NAN; 3], nothing))
+        self.found
+            .iter()
+            .map(|found| found.offsets)
+            .chain(core::iter::repeat_n([f64::NAN; 3], nothing))
     }
 
     /// The leaf whose triangle has this number in the control face.
     pub(super) fn place(&self, face: u32, number: usize) -> Place {
         let code = self.keys[number].leaf;
         let level = (u64::BITS - 1 - code.leading_zeros().min(u64::BITS - 1)) / 2;
-        Place { face, level, path: code & !(1 << (2 * level)) }
+        Place {
+            face,
+            level,
+            path: code & !(1 << (2 * level)),
+        }
     }
 }
 
 /// What makes the edges of a control face about 1.
 fn scale(control: &Control<'_>, face: u32) -> f64 {
-    let [a, b, c] = control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
+    let [a, b, c] =
+        control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
     reciprocal_power((b - a).abs().max((c - a).abs()).max_element())
 }
 
@@ -187,7 +217,8 @@ impl Beholder for Looking<'_> {
         match over {
             Over::Regular(ground, cell, spot) => {
                 if self.waiting.is_full(ground) {
-                    self.waiting.look(self.emission, self.first, &mut self.found);
+                    self.waiting
+                        .look(self.emission, self.first, &mut self.found);
                 }
                 let turn = self.found.keys[number].turn() as u32;
                 self.waiting.push(ground, (emitted, turn), (cell, spot));
@@ -195,11 +226,12 @@ impl Beholder for Looking<'_> {
             Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
-                let inside =
-                    points.filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
+                let inside = points
+                    .filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
                 let heights = inside.map(|point| frame.height(point));
-                let range =
-                    heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.min(height), high.max(height)));
+                let range = heights.fold((0.0f64, 0.0f64), |(low, high), height| {
+                    (low.min(height), high.max(height))
+                });
                 self.found.ranges[number] = range.into();
             }
         }
@@ -208,13 +240,16 @@ impl Beholder for Looking<'_> {
 
 impl Looking<'_> {
     fn corners(&self, emitted: &Emitted) -> [DVec3; 3] {
-        emitted.vertices.map(|vertex| vector(self.emission.positions[vertex as usize]))
+        emitted
+            .vertices
+            .map(|vertex| vector(self.emission.positions[vertex as usize]))
     }
 
     /// What was found, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
     /// long as they may be divided.
     fn end(mut self, face: u32, (hopeless, max_levels): (f64, u32)) -> Bulge {
-        self.waiting.look(self.emission, self.first, &mut self.found);
+        self.waiting
+            .look(self.emission, self.first, &mut self.found);
         let found = &mut self.found;
         for number in 0..found.ranges.len() {
             let [low, high] = found.ranges[number];
@@ -231,7 +266,14 @@ impl Looking<'_> {
 
     /// Whether no camera sees more of a triangle than its back, as far as the triangle and its piece tell.
     fn is_unseen(&self, emitted: &Emitted, over: &Over<'_, '_>, rules: &Rules<'_>) -> bool {
-        let Control { criteria: Some(criteria), back_faces, .. } = self.control else { return false };
+        let Control {
+            criteria: Some(criteria),
+            back_faces,
+            ..
+        } = self.control
+        else {
+            return false;
+        };
         let corners = self.corners(emitted);
         let region = Region::around(corners, DVec3::ZERO);
         let backs = looks_away(criteria, &region, (&[corners], 0.0), |viewer, rest| {

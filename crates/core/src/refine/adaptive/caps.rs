@@ -53,7 +53,10 @@ pub(super) fn once(
                 None => plain,
             });
         }
-        return Ok(better(plain, within_caps(mesh, scheme, settings, observer)?));
+        return Ok(better(
+            plain,
+            within_caps(mesh, scheme, settings, observer)?,
+        ));
     }
     let found = within_caps(mesh, scheme, settings, observer)?;
     let count = found.mesh.face_count();
@@ -65,7 +68,10 @@ pub(super) fn once(
     if is_told && needs_more(mesh, scheme, plain_settings, count, observer)? {
         return Ok(found);
     }
-    Ok(better(within_caps(mesh, scheme, plain_settings, observer)?, found))
+    Ok(better(
+        within_caps(mesh, scheme, plain_settings, observer)?,
+        found,
+    ))
 }
 
 /// The one of two meshes that meets the goals with fewer triangles, or comes nearer.
@@ -90,7 +96,9 @@ fn balanced_within(
 ) -> Result<Option<Exact>, RefineError> {
     with_engine(mesh, scheme, (options, demands), observer, |engine| {
         let outcome = engine.balanced(engine.floor(options.tolerance), most)?;
-        outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()
+        outcome
+            .map(|outcome| outcome.finish(engine, ExactStop::Met, options))
+            .transpose()
     })
 }
 
@@ -102,14 +110,23 @@ pub(in crate::refine) fn within(
     (options, most): (&ExactOptions, usize),
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
-    with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
-        let Some(plan) = engine.plan(Goal::Within(engine.floor(options.tolerance)), most)? else {
-            return Ok(None);
-        };
-        let outcome = engine.emit(plan, most, false)?;
-        let found = outcome.map(|outcome| outcome.finish(engine, ExactStop::Met, options)).transpose()?;
-        Ok(found.filter(|_| !engine.control.flat.has_gaps()))
-    })
+    with_engine(
+        mesh,
+        scheme,
+        (options, &Demands::default()),
+        observer,
+        |engine| {
+            let Some(plan) = engine.plan(Goal::Within(engine.floor(options.tolerance)), most)?
+            else {
+                return Ok(None);
+            };
+            let outcome = engine.emit(plan, most, false)?;
+            let found = outcome
+                .map(|outcome| outcome.finish(engine, ExactStop::Met, options))
+                .transpose()?;
+            Ok(found.filter(|_| !engine.control.flat.has_gaps()))
+        },
+    )
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
@@ -172,7 +189,13 @@ fn within_caps(
         let share = room as f64 / count as f64;
         guess = Some(found.error.upper / share.powf(FALLING)).filter(|_| found.error.certified);
     }
-    within_room(mesh, scheme, (&options.clone().flat_regions(false), demands), (most, None), observer)
+    within_room(
+        mesh,
+        scheme,
+        (&options.clone().flat_regions(false), demands),
+        (most, None),
+        observer,
+    )
 }
 
 /// The same with so many triangles, or more where flat regions keep some that nobody counted; with a guess for the distance, if there is one.
@@ -184,20 +207,33 @@ fn within_room(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let (_, cap) = options.budget();
-    without_gaps(mesh, scheme, ((options, demands), most), observer, |engine| {
-        let engine = &Engine { guess, ..engine.clone() };
-        let floor = engine.floor(options.tolerance);
-        if !options.balance {
-            return engine.finest(floor, (most, cap), options);
-        }
-        if floor > 0.0
-            && let Some(outcome) = engine.balanced(floor, most)?
-        {
-            return outcome.finish(engine, ExactStop::Met, options);
-        }
-        let plain = Engine { is_balanced: false, ..engine.clone() }.finest(floor, (most, cap), options)?;
-        engine.least_balanced(plain, floor, (most, cap), options)
-    })
+    without_gaps(
+        mesh,
+        scheme,
+        ((options, demands), most),
+        observer,
+        |engine| {
+            let engine = &Engine {
+                guess,
+                ..engine.clone()
+            };
+            let floor = engine.floor(options.tolerance);
+            if !options.balance {
+                return engine.finest(floor, (most, cap), options);
+            }
+            if floor > 0.0
+                && let Some(outcome) = engine.balanced(floor, most)?
+            {
+                return outcome.finish(engine, ExactStop::Met, options);
+            }
+            let plain = Engine {
+                is_balanced: false,
+                ..engine.clone()
+            }
+            .finest(floor, (most, cap), options)?;
+            engine.least_balanced(plain, floor, (most, cap), options)
+        },
+    )
 }
 
 /// What an engine finds where all flat regions that are judged by their rims could be triangulated from these: where they could not it is run again,
@@ -213,12 +249,21 @@ pub(super) fn without_gaps<T>(
     loop {
         let (found, gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
             let found = run(engine)?;
-            Ok((found, engine.control.flat.gaps((engine.control, &engine.edges), attempt, engine.watch)?))
+            Ok((
+                found,
+                engine
+                    .control
+                    .flat
+                    .gaps((engine.control, &engine.edges), attempt, engine.watch)?,
+            ))
         })?;
         if gaps.are_none() {
             return Ok(found);
         }
-        gaps.close(demands.to_mut(), (attempt, most.saturating_sub(mesh.face_count())));
+        gaps.close(
+            demands.to_mut(),
+            (attempt, most.saturating_sub(mesh.face_count())),
+        );
         attempt += 1;
     }
 }

@@ -38,15 +38,21 @@ impl Engine<'_> {
             let closing = |face: u32| closed[face as usize].extent();
             let limits = (self.max_levels, most);
             let control = (self.control, self.watch);
-            let again = plan.decision.settle(control, &plan.goal, &self.edges, limits, closing)?;
+            let again = plan
+                .decision
+                .settle(control, &plan.goal, &self.edges, limits, closing)?;
             let Some(again) = again else { return Ok(false) };
             if again.is_empty() {
                 plan.has_failed |= plan.decision.has_failed();
                 return Ok(true);
             }
             dirty = Dirty::none(plan.closed.len());
-            again.iter().for_each(|&face| plan.closed[face as usize].forget());
-            again.iter().for_each(|&face| dirty.replace(&self.edges, face));
+            again
+                .iter()
+                .for_each(|&face| plan.closed[face as usize].forget());
+            again
+                .iter()
+                .for_each(|&face| dirty.replace(&self.edges, face));
         }
     }
 
@@ -64,15 +70,21 @@ impl Engine<'_> {
     /// Neighbouring leaves are at most one level apart; adds what is split for that. Only what is dirty may have more leaves than before.
     fn restrict(&self, trees: &mut Trees, dirty: &mut Dirty) -> Result<(), RefineError> {
         let (faces, edges) = (dirty.replaced(), &self.edges);
-        let lists = self.watch.pieces(faces.len(), parallel::share(faces.len()), |block| {
-            let mut pending = Pending::default();
-            faces[block].iter().for_each(|&face| pending.push_tree(trees, edges, face));
-            pending
-        })?;
+        let lists = self
+            .watch
+            .pieces(faces.len(), parallel::share(faces.len()), |block| {
+                let mut pending = Pending::default();
+                faces[block]
+                    .iter()
+                    .for_each(|&face| pending.push_tree(trees, edges, face));
+                pending
+            })?;
         let mut all = Pending::default();
         self.watch.each(lists, |list| all.append(list))?;
         self.watch.each(dirty.split(), |&place| all.push(place))?;
-        let fits = balance(trees, edges, all, &mut || self.watch.poll(), |place| dirty.add(edges, place))?;
+        let fits = balance(trees, edges, all, &mut || self.watch.poll(), |place| {
+            dirty.add(edges, place)
+        })?;
         fits.then_some(()).ok_or_else(|| trees.too_many(4).into())
     }
 
@@ -122,24 +134,53 @@ impl Engine<'_> {
         dirty: &Dirty,
         again: &mut Again,
     ) -> Result<Vec<Place>, RefineError> {
-        let Self { control, ref edges, max_levels, .. } = *self;
+        let Self {
+            control,
+            ref edges,
+            max_levels,
+            ..
+        } = *self;
         let faces = dirty.faces();
-        let Plan { goal, decision, closed, .. } = &*plan;
+        let Plan {
+            goal,
+            decision,
+            closed,
+            ..
+        } = &*plan;
         let inserted = dirty.inserted(edges);
         let known = (&plan.chains, &inserted);
         let chains = match inserted.is_empty() {
             true => None,
-            false => Some(Chains::of(control.mesh, edges, &decision.trees, known, self.watch)?),
+            false => Some(Chains::of(
+                control.mesh,
+                edges,
+                &decision.trees,
+                known,
+                self.watch,
+            )?),
         };
         let new_chains = chains.as_ref().unwrap_or(&plan.chains);
-        let closing =
-            Closing { control, goal, max_levels, edges, trees: &decision.trees, chains: new_chains };
+        let closing = Closing {
+            control,
+            goal,
+            max_levels,
+            edges,
+            trees: &decision.trees,
+            chains: new_chains,
+        };
         let seen = dirty.leaves(&decision.trees, edges, self.watch)?;
         let mut split = dirty.split().to_vec();
         split.sort_unstable_by(Place::in_order);
-        let of_block =
-            |block: &[u32]| block.iter().map(|&face| (face, again.remove(&face))).collect::<Vec<_>>();
-        let blocks: Vec<_> = faces.chunks(parallel::share(faces.len())).map(of_block).collect();
+        let of_block = |block: &[u32]| {
+            block
+                .iter()
+                .map(|&face| (face, again.remove(&face)))
+                .collect::<Vec<_>>()
+        };
+        let blocks: Vec<_> = faces
+            .chunks(parallel::share(faces.len()))
+            .map(of_block)
+            .collect();
         let poll = &mut |_| self.watch.poll();
         let found = parallel::each_long_polled(blocks, poll, |block, is_stopped| {
             let mut knots = Vec::new();
@@ -152,36 +193,42 @@ impl Engine<'_> {
                 }
                 let mut unfinished = unfinished.unwrap_or_else(|| Box::new(Unfinished::of(closed)));
                 let places = (of_face(&split, face), of_face(&seen, face));
-                let (counts, failing) = closing.close_again(face, known, places, &mut unfinished, is_stopped);
+                let (counts, failing) =
+                    closing.close_again(face, known, places, &mut unfinished, is_stopped);
                 (Found::Again(counts, unfinished), failing)
             });
             closed.collect::<Vec<_>>()
         })?;
         let mut all_failing = Vec::new();
-        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, failing))| {
-            all_failing.extend(failing);
-            let own = &mut plan.closed[face as usize];
-            let is_same = match found {
-                Found::Whole(found) => {
-                    let is_same = own.is_as(&found);
-                    *own = found;
-                    is_same
+        self.watch.each(
+            faces.iter().zip(found.into_iter().flatten()),
+            |(&face, (found, failing))| {
+                all_failing.extend(failing);
+                let own = &mut plan.closed[face as usize];
+                let is_same = match found {
+                    Found::Whole(found) => {
+                        let is_same = own.is_as(&found);
+                        *own = found;
+                        is_same
+                    }
+                    // Whether what is judged is the same is looked at in the end.
+                    Found::Again(counts, unfinished) => {
+                        own.count(counts);
+                        again.insert(face, unfinished);
+                        of_face(&split, face).is_empty()
+                    }
+                };
+                let has_other_chain = |h: u32| {
+                    let owner = first_of(edges, h);
+                    chains
+                        .as_ref()
+                        .is_some_and(|chains| chains.own(owner).1 != plan.chains.own(owner).1)
+                };
+                if !is_same || (3 * face..3 * face + 3).any(has_other_chain) {
+                    self.touch(plan, face);
                 }
-                // Whether what is judged is the same is looked at in the end.
-                Found::Again(counts, unfinished) => {
-                    own.count(counts);
-                    again.insert(face, unfinished);
-                    of_face(&split, face).is_empty()
-                }
-            };
-            let has_other_chain = |h: u32| {
-                let owner = first_of(edges, h);
-                chains.as_ref().is_some_and(|chains| chains.own(owner).1 != plan.chains.own(owner).1)
-            };
-            if !is_same || (3 * face..3 * face + 3).any(has_other_chain) {
-                self.touch(plan, face);
-            }
-        })?;
+            },
+        )?;
         plan.chains = chains.unwrap_or_else(|| core::mem::take(&mut plan.chains));
         Ok(all_failing)
     }
@@ -193,22 +240,34 @@ impl Engine<'_> {
             (core::mem::take(&mut plan.closed[face as usize]), unfinished)
         };
         let mut all = again.into_iter().map(take);
-        let next_block = || Some(all.by_ref().take(parallel::share(faces.len())).collect::<Vec<_>>());
-        let blocks = core::iter::from_fn(next_block).take_while(|block| !block.is_empty()).collect();
+        let next_block = || {
+            Some(
+                all.by_ref()
+                    .take(parallel::share(faces.len()))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        let blocks = core::iter::from_fn(next_block)
+            .take_while(|block| !block.is_empty())
+            .collect();
         let max_levels = self.max_levels;
         let trees = &plan.decision.trees;
         let poll = &mut |_| self.watch.poll();
         let found = parallel::each_long_polled(blocks, poll, |block, _| {
-            let finish =
-                |(known, unfinished): (Closed, Box<Unfinished>)| unfinished.finish(known, trees, max_levels);
+            let finish = |(known, unfinished): (Closed, Box<Unfinished>)| {
+                unfinished.finish(known, trees, max_levels)
+            };
             block.into_iter().map(finish).collect::<Vec<_>>()
         })?;
-        self.watch.each(faces.iter().zip(found.into_iter().flatten()), |(&face, (found, is_same))| {
-            plan.closed[face as usize] = found;
-            if !is_same {
-                self.touch(plan, face);
-            }
-        })?;
+        self.watch.each(
+            faces.iter().zip(found.into_iter().flatten()),
+            |(&face, (found, is_same))| {
+                plan.closed[face as usize] = found;
+                if !is_same {
+                    self.touch(plan, face);
+                }
+            },
+        )?;
         Ok(())
     }
 
@@ -231,5 +290,9 @@ fn of_face(places: &[Place], face: u32) -> &[Place] {
 }
 
 pub(super) fn marked(is_marked: &[bool]) -> Vec<u32> {
-    (0..).zip(is_marked).filter(|&(_, &is_marked)| is_marked).map(|(face, _)| face).collect()
+    (0..)
+        .zip(is_marked)
+        .filter(|&(_, &is_marked)| is_marked)
+        .map(|(face, _)| face)
+        .collect()
 }

@@ -45,8 +45,14 @@ impl Inserted {
             self.at.push((h.min(twin), turned(twin < h)));
         } else if let Some(group) = edges.group(h) {
             let members = edges.members(group);
-            let own = members.iter().any(|&(member, is_turned)| member == h && is_turned);
-            self.at.extend(members.iter().map(|&(member, other)| (member, turned(own != other))));
+            let own = members
+                .iter()
+                .any(|&(member, is_turned)| member == h && is_turned);
+            self.at.extend(
+                members
+                    .iter()
+                    .map(|&(member, other)| (member, turned(own != other))),
+            );
         } else {
             self.at.push((h, at));
         }
@@ -61,7 +67,12 @@ impl Inserted {
         if self.at.is_empty() {
             return Cow::Borrowed(&self.anew);
         }
-        let mut all: Vec<u32> = self.at.iter().map(|&(h, _)| h).chain(self.anew.iter().copied()).collect();
+        let mut all: Vec<u32> = self
+            .at
+            .iter()
+            .map(|&(h, _)| h)
+            .chain(self.anew.iter().copied())
+            .collect();
         all.sort_unstable();
         all.dedup();
         Cow::Owned(all)
@@ -90,16 +101,23 @@ impl Chains {
     ) -> Result<Self, Cancelled> {
         let mut groups = Vec::with_capacity(edges.group_count());
         watch.each(0..edges.group_count(), |group| {
-            let is_kept = edges.members(group).iter().all(|&(h, _)| !inserted.is_anew(h));
-            groups.push(if is_kept { Vec::new() } else { group_places(edges, trees, group) });
+            let is_kept = edges
+                .members(group)
+                .iter()
+                .all(|&(h, _)| !inserted.is_anew(h));
+            groups.push(if is_kept {
+                Vec::new()
+            } else {
+                group_places(edges, trees, group)
+            });
         })?;
         let half_edges = inserted.half_edges();
         let blocks = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let (mut counts, mut at) = (Vec::with_capacity(3 * block.len()), Vec::new());
             let [first, end] = [block.start, block.end].map(|face| 3 * face as u32);
             let mut kept = first;
-            let in_block =
-                half_edges.partition_point(|&h| h < first)..half_edges.partition_point(|&h| h < end);
+            let in_block = half_edges.partition_point(|&h| h < first)
+                ..half_edges.partition_point(|&h| h < end);
             for &h in &half_edges[in_block] {
                 before.copy(kept..h, &mut counts, &mut at);
                 let start = at.len();
@@ -186,13 +204,25 @@ impl Chains {
             let (number, at) = self.own(owner);
             knots.push(Knot::new(0, corners[edge]));
             if owner == h {
-                knots.extend((number..).zip(at).map(|(vertex, &at)| Knot::new(at, vertex)));
+                knots.extend(
+                    (number..)
+                        .zip(at)
+                        .map(|(vertex, &at)| Knot::new(at, vertex)),
+                );
             } else {
                 let numbers = (number..number + at.len() as u32).rev();
-                knots.extend(numbers.zip(at.iter().rev()).map(|(vertex, &at)| Knot::new(FULL - at, vertex)));
+                knots.extend(
+                    numbers
+                        .zip(at.iter().rev())
+                        .map(|(vertex, &at)| Knot::new(FULL - at, vertex)),
+                );
             }
             knots.push(Knot::new(FULL, corners[(edge + 1) % 3]));
-            Side { first, last: knots.len() - 1, reversed: false }
+            Side {
+                first,
+                last: knots.len() - 1,
+                reversed: false,
+            }
         })
     }
 }
@@ -222,7 +252,10 @@ fn places(edges: &Edges<'_>, trees: &Trees, groups: &[Vec<u32>], h: u32, at: &mu
             merged(trees, &[own, other], 0, FULL, &mut |place| at.push(place));
         }
     } else if let Some(group) = edges.group(h) {
-        let turned = edges.members(group).iter().any(|&(member, turned)| member == h && turned);
+        let turned = edges
+            .members(group)
+            .iter()
+            .any(|&(member, turned)| member == h && turned);
         if turned {
             at.extend(groups[group].iter().rev().map(|&place| FULL - place));
         } else {
@@ -236,7 +269,9 @@ fn places(edges: &Edges<'_>, trees: &Trees, groups: &[Vec<u32>], h: u32, at: &mu
 /// The places along all copies of an edge, as its first copy counts.
 fn group_places(edges: &Edges<'_>, trees: &Trees, group: usize) -> Vec<u32> {
     let members = edges.members(group).iter();
-    let members: Vec<_> = members.map(|&(h, turned)| (trees.root(h / 3), (h % 3) as usize, turned)).collect();
+    let members: Vec<_> = members
+        .map(|&(h, turned)| (trees.root(h / 3), (h % 3) as usize, turned))
+        .collect();
     let mut at = Vec::new();
     merged_all(trees, &members, 0, FULL, &mut |place| at.push(place));
     at

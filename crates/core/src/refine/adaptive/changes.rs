@@ -38,38 +38,49 @@ impl Changes {
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
         if bulges.is_some_and(Bulges::are_new) {
-            return Ok(Self { changes: Vec::new(), have_changed: vec![true; is_touched.len()] });
+            return Ok(Self {
+                changes: Vec::new(),
+                have_changed: vec![true; is_touched.len()],
+            });
         }
-        let found = watch.pieces(is_touched.len(), parallel::share(is_touched.len()), |faces| {
-            let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
-            for face in faces {
-                let triangles = emission.triangles_of(face as u32);
-                let is_other = is_touched[face] && !is_alone;
-                let is_same = |known: &Bulges| !is_touched[face] && known.are_same(face as u32, emission);
-                let Some(known) = bulges.filter(|known| !is_other && !is_same(known)) else {
-                    let change = if is_other { Change::Some } else { Change::None };
-                    changes.resize(changes.len() + triangles.len(), change);
-                    have_changed.push(is_other);
-                    continue;
-                };
-                let mut has_changed = false;
-                let bulge = &known.0[face];
-                let last = bulge.offsets_last().zip(&bulge.ranges);
-                changes.extend(triangles.zip(last).map(|(at, (last, range))| {
-                    let is_same = last == emission.offsets_of(at);
-                    has_changed |= !is_same;
-                    match (is_alone && *range == ENDS, is_same) {
-                        (true, _) => Change::Ends,
-                        (false, true) => Change::None,
-                        (false, false) => Change::Some,
-                    }
-                }));
-                have_changed.push(has_changed);
-            }
-            (changes, have_changed)
-        })?;
+        let found = watch.pieces(
+            is_touched.len(),
+            parallel::share(is_touched.len()),
+            |faces| {
+                let (mut changes, mut have_changed) = (Vec::new(), Vec::new());
+                for face in faces {
+                    let triangles = emission.triangles_of(face as u32);
+                    let is_other = is_touched[face] && !is_alone;
+                    let is_same =
+                        |known: &Bulges| !is_touched[face] && known.are_same(face as u32, emission);
+                    let Some(known) = bulges.filter(|known| !is_other && !is_same(known)) else {
+                        let change = if is_other { Change::Some } else { Change::None };
+                        changes.resize(changes.len() + triangles.len(), change);
+                        have_changed.push(is_other);
+                        continue;
+                    };
+                    let mut has_changed = false;
+                    let bulge = &known.0[face];
+                    let last = bulge.offsets_last().zip(&bulge.ranges);
+                    changes.extend(triangles.zip(last).map(|(at, (last, range))| {
+                        let is_same = last == emission.offsets_of(at);
+                        has_changed |= !is_same;
+                        match (is_alone && *range == ENDS, is_same) {
+                            (true, _) => Change::Ends,
+                            (false, true) => Change::None,
+                            (false, false) => Change::Some,
+                        }
+                    }));
+                    have_changed.push(has_changed);
+                }
+                (changes, have_changed)
+            },
+        )?;
         let (changes, have_changed): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-        Ok(Self { changes: changes.concat(), have_changed: have_changed.concat() })
+        Ok(Self {
+            changes: changes.concat(),
+            have_changed: have_changed.concat(),
+        })
     }
 
     /// Whether a triangle may come to something else.
@@ -80,7 +91,10 @@ impl Changes {
 
     fn concern_one(&self, emission: &Emission, triangle: u32) -> bool {
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
-        let beside = twins.iter().filter(|&&twin| twin != NONE).map(|twin| self.changes[*twin as usize / 3]);
+        let beside = twins
+            .iter()
+            .filter(|&&twin| twin != NONE)
+            .map(|twin| self.changes[*twin as usize / 3]);
         let mut change = self.changes[triangle as usize];
         for other in beside {
             change = match (change, other) {
@@ -100,17 +114,21 @@ impl Changes {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<u32>, Cancelled> {
         let has_changed = |face: u32| self.have_changed[face as usize];
-        let found =
-            watch.pieces(self.have_changed.len(), parallel::share(self.have_changed.len()), |faces| {
+        let found = watch.pieces(
+            self.have_changed.len(),
+            parallel::share(self.have_changed.len()),
+            |faces| {
                 let concerned = faces.map(|face| face as u32).filter(|&face| {
-                    let mut beyond =
-                        (3 * face..3 * face + 3).filter_map(|h| edges.twin(h)).map(|twin| twin / 3);
+                    let mut beyond = (3 * face..3 * face + 3)
+                        .filter_map(|h| edges.twin(h))
+                        .map(|twin| twin / 3);
                     let mut triangles = emission.triangles_of(face);
                     (has_changed(face) || beyond.any(has_changed))
                         && triangles.any(|triangle| self.concern(emission, triangle as u32))
                 });
                 concerned.collect::<Vec<u32>>()
-            })?;
+            },
+        )?;
         Ok(found.concat())
     }
 }

@@ -64,9 +64,11 @@ impl Lister {
         let n = 1 << node.depth;
         let place = node.place.leaf(node.depth, (i, j), false);
         let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
+        let open =
+            [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
         let split = split.map(|middle| middle.is_some());
-        self.leaves.push(Judged::new(place, split, open, node.is_strict));
+        self.leaves
+            .push(Judged::new(place, split, open, node.is_strict));
     }
 }
 
@@ -90,25 +92,53 @@ impl Closing<'_> {
         is_stopped: &IsStopped<'_>,
         knots: &mut Vec<Knot>,
     ) -> (Closed, Vec<Place>) {
-        let Self { control, edges, trees, chains, .. } = *self;
+        let Self {
+            control,
+            edges,
+            trees,
+            chains,
+            ..
+        } = *self;
         let word = trees.root(face);
         if !is_split(word) && word & UNJUDGED == 0 && chains.are_none(edges, face) {
-            return (Closed { triangles: 1, leaves: 1, ..Closed::default() }, Vec::new());
+            return (
+                Closed {
+                    triangles: 1,
+                    leaves: 1,
+                    ..Closed::default()
+                },
+                Vec::new(),
+            );
         }
         let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
         walk.knots.clear();
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         let at = (Place::root(face), Spot::WHOLE);
         let (open, rim) = (control.open(face), Rim::default());
-        let mut lister = Lister { triangles: 0, count: 0, open, rim, leaves: Vec::new() };
+        let mut lister = Lister {
+            triangles: 0,
+            count: 0,
+            open,
+            rim,
+            leaves: Vec::new(),
+        };
         walk.node(word, at, sides, Surface::Unknown, &mut lister);
         *knots = walk.knots;
-        let Lister { triangles, count, mut leaves, .. } = lister;
+        let Lister {
+            triangles,
+            count,
+            mut leaves,
+            ..
+        } = lister;
         leaves.sort_unstable_by(|a, b| a.place.in_order(&b.place));
         recall(known.known(), &mut leaves);
         self.judge(face, (&mut leaves, allowance), &mut None, is_stopped);
         let failing = self.failing(&leaves);
-        let counts = Counts { vertices: walk.next, triangles: triangles as u32, leaves: count };
+        let counts = Counts {
+            vertices: walk.next,
+            triangles: triangles as u32,
+            leaves: count,
+        };
         (Closed::of(counts, leaves, trees, self.max_levels), failing)
     }
 
@@ -122,7 +152,9 @@ impl Closing<'_> {
         unfinished: &mut Unfinished,
         is_stopped: &IsStopped<'_>,
     ) -> (Counts, Vec<Place>) {
-        split.iter().for_each(|&place| unfinished.replace(known.known(), place, None));
+        split
+            .iter()
+            .for_each(|&place| unfinished.replace(known.known(), place, None));
         let open = self.control.open(face);
         let mut leaves = Vec::with_capacity(seen.len());
         for &place in seen {
@@ -134,10 +166,18 @@ impl Closing<'_> {
             }
             let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
             let mut leaf = Judged::new(place, mask, open, word & STRICT != 0);
-            unfinished.leaf(known.known(), place).into_iter().for_each(|before| leaf.recall(before));
+            unfinished
+                .leaf(known.known(), place)
+                .into_iter()
+                .for_each(|before| leaf.recall(before));
             leaves.push(leaf);
         }
-        self.judge(face, (&mut leaves, allowance), &mut unfinished.piece, is_stopped);
+        self.judge(
+            face,
+            (&mut leaves, allowance),
+            &mut unfinished.piece,
+            is_stopped,
+        );
         let failing = self.failing(&leaves);
         for leaf in leaves {
             unfinished.replace(known.known(), leaf.place, Some(leaf));
@@ -145,14 +185,27 @@ impl Closing<'_> {
         let count = known.leaves + 3 * split.len();
         let triangles = count + unfinished.split_edges;
         // A disc of so many triangles and vertices on its rim has (triangles − rim) / 2 + 1 vertices inside (Euler).
-        let on_rim: usize = (3 * face..3 * face + 3).map(|h| self.chains.along(self.edges, h) + 1).sum();
+        let on_rim: usize = (3 * face..3 * face + 3)
+            .map(|h| self.chains.along(self.edges, h) + 1)
+            .sum();
         let vertices = (triangles + 2).saturating_sub(on_rim) / 2;
-        (Counts { vertices: vertices as u32, triangles: triangles as u32, leaves: count }, failing)
+        (
+            Counts {
+                vertices: vertices as u32,
+                triangles: triangles as u32,
+                leaves: count,
+            },
+            failing,
+        )
     }
 
     /// Leaves whose triangles fail.
     fn failing(&self, leaves: &[Judged]) -> Vec<Place> {
-        leaves.iter().filter(|leaf| leaf.fails(self.max_levels)).map(|leaf| leaf.place).collect()
+        leaves
+            .iter()
+            .filter(|leaf| leaf.fails(self.max_levels))
+            .map(|leaf| leaf.place)
+            .collect()
     }
 
     /// Judges those leaves of a face that nobody has judged.
@@ -163,12 +216,23 @@ impl Closing<'_> {
         piece: &mut Option<Box<SurfacePiece>>,
         is_stopped: &IsStopped<'_>,
     ) {
-        let Self { control, goal, max_levels, .. } = *self;
-        let mut wanting: Vec<&mut Judged> = leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
+        let Self {
+            control,
+            goal,
+            max_levels,
+            ..
+        } = *self;
+        let mut wanting: Vec<&mut Judged> =
+            leaves.iter_mut().filter(|leaf| !leaf.is_said()).collect();
         if matches!(goal, Goal::Nothing) {
-            wanting.into_iter().for_each(|leaf| leaf.say((Verdict::NONE, false)));
+            wanting
+                .into_iter()
+                .for_each(|leaf| leaf.say((Verdict::NONE, false)));
         } else if !wanting.is_empty() {
-            let closer = Closer { judge: goal.judge(control, max_levels, face), allowance };
+            let closer = Closer {
+                judge: goal.judge(control, max_levels, face),
+                allowance,
+            };
             let piece = piece.get_or_insert_with(|| Box::new(control.piece(face)));
             closer.judge(piece.surface(control.rules), 0, &mut wanting, is_stopped);
         }
@@ -209,7 +273,9 @@ impl Closer<'_> {
                     leaf.say(self.general(piece, *piece.middles(rules), leaf));
                 }
                 _ => {
-                    for of_child in leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level)) {
+                    for of_child in
+                        leaves.chunk_by_mut(|a, b| a.place.digit(level) == b.place.digit(level))
+                    {
                         let child = of_child[0].place.digit(level);
                         self.judge(surface.child(child), level + 1, of_child, is_stopped);
                     }
@@ -221,25 +287,39 @@ impl Closer<'_> {
     /// The triangles of a leaf over a regular piece.
     fn regular(&self, ground: &Ground, spot: Spot, leaf: &Judged) -> (Verdict, bool) {
         let [a, b, c] = spot.corners();
-        let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
+        let domain = [
+            a,
+            b,
+            c,
+            spot.along(0, 0.5),
+            spot.along(1, 0.5),
+            spot.along(2, 0.5),
+        ];
         let points = ground.at(domain);
         best(leaf, |part, labels, open| {
             let cell = Cell(labels.map(|label| domain[label]));
             let at = (spot, leaf.place.level, part);
             let corners = labels.map(|label| points[label]);
-            self.judge.regular(ground, at, &cell, &corners, open, self.allowance)
+            self.judge
+                .regular(ground, at, &cell, &corners, open, self.allowance)
         })
     }
 
     /// The triangles of a leaf over any piece.
-    fn general(&self, piece: &GeneralPiece, middles: [LimitPoint; 3], leaf: &Judged) -> (Verdict, bool) {
+    fn general(
+        &self,
+        piece: &GeneralPiece,
+        middles: [LimitPoint; 3],
+        leaf: &Judged,
+    ) -> (Verdict, bool) {
         let mut pieces = Pieces::of(&piece.patch);
         let ([a, b, c], [d, e, f]) = (piece.corners, middles);
         let points = [a, b, c, d, e, f];
         best(leaf, |part, labels, open| {
             let corners = labels.map(|label| points[label]);
             let at = (leaf.place.level, part);
-            self.judge.general(&mut pieces, at, &corners, open, self.allowance)
+            self.judge
+                .general(&mut pieces, at, &corners, open, self.allowance)
         })
     }
 }
@@ -257,11 +337,17 @@ fn best(
     for from_end in [false, true] {
         let mut all = Verdict::NONE;
         for triangle in leaf_triangles([0, 1, 2], middles, from_end) {
-            let open = triangle.borders.map(|border| border.is_some_and(|edge| open[edge]));
+            let open = triangle
+                .borders
+                .map(|border| border.is_some_and(|edge| open[edge]));
             all = all.and(&judge(triangle.part, triangle.corners, open));
         }
         // A leaf with split edges has several triangles, each with edges of its own.
-        let all = if leaf.split == [false; 3] { all } else { all.spread() };
+        let all = if leaf.split == [false; 3] {
+            all
+        } else {
+            all.spread()
+        };
         let is_better = best.is_none_or(|(known, _)| {
             (known.fails() && !all.fails())
                 || all.fails() == known.fails() && all.extent.bound < known.extent.bound

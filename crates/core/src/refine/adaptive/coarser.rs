@@ -45,7 +45,11 @@ pub(super) fn on_coarser(
 ) -> Result<Geomorph, RefineError> {
     let (below, own) = (Leaves::of(control, coarser), Leaves::of(control, level));
     let blocks = watch.long_shares(control.face_count(), |block, is_stopped| {
-        let mut finding = Finding { coarser, found: Vec::new(), is_stopped };
+        let mut finding = Finding {
+            coarser,
+            found: Vec::new(),
+            is_stopped,
+        };
         for face in block {
             below.descend(face as u32, asked(level, &own, face as u32), &mut finding);
         }
@@ -62,7 +66,8 @@ pub(super) fn on_coarser(
     watch.each(blocks.into_iter().flatten(), |stand| match stand.by {
         Asker::Vertex(v) if core::mem::replace(&mut is_known[v as usize], true) => {}
         Asker::Vertex(v) => {
-            (morph.positions[v as usize], morph.normals[v as usize]) = (stand.position, stand.normal)
+            (morph.positions[v as usize], morph.normals[v as usize]) =
+                (stand.position, stand.normal)
         }
         Asker::Side(at) => morph.sides[at].1 = stand.normal,
     })?;
@@ -76,17 +81,25 @@ fn asked(level: &Exact, leaves: &Leaves<'_>, face: u32) -> Vec<Asked> {
     for triangle in triangles.clone() {
         let corners = level.mesh.triangles()[triangle];
         let places = (0..3).filter_map(|corner| Some((corner, leaves.place(triangle, corner)?)));
-        asked.extend(places.map(|(corner, at)| Asked { by: Asker::Vertex(corners[corner]), at }));
+        asked.extend(places.map(|(corner, at)| Asked {
+            by: Asker::Vertex(corners[corner]),
+            at,
+        }));
     }
     asked.sort_unstable_by_key(|asked| asked.by);
     asked.dedup_by_key(|asked| asked.by);
-    let first = level.sides.partition_point(|&(h, _)| (h as usize) < 3 * triangles.start);
+    let first = level
+        .sides
+        .partition_point(|&(h, _)| (h as usize) < 3 * triangles.start);
     for (at, &(h, _)) in level.sides.iter().enumerate().skip(first) {
         if h as usize >= 3 * triangles.end {
             break;
         }
         let place = leaves.place(h as usize / 3, h as usize % 3);
-        asked.extend(place.map(|place| Asked { by: Asker::Side(at), at: place }));
+        asked.extend(place.map(|place| Asked {
+            by: Asker::Side(at),
+            at: place,
+        }));
     }
     asked
 }
@@ -105,7 +118,10 @@ impl Descent for Finding<'_> {
         let mut below: [Vec<Asked>; 4] = Default::default();
         for Asked { by, at } in node {
             let child = child_with(&[at]).unwrap_or(3);
-            below[child].push(Asked { by, at: in_child(at, child) });
+            below[child].push(Asked {
+                by,
+                at: in_child(at, child),
+            });
         }
         below
     }
@@ -116,9 +132,16 @@ impl Descent for Finding<'_> {
             if let Some((triangle, weights)) = covering.iter().find_map(holds) {
                 let corners = self.coarser.mesh.triangles()[triangle as usize];
                 let positions = corners.map(|v| self.coarser.mesh.positions()[v as usize]);
-                let corner = |i| self.coarser.corner_normal(HalfEdgeId::of(FaceId(triangle), i));
+                let corner = |i| {
+                    self.coarser
+                        .corner_normal(HalfEdgeId::of(FaceId(triangle), i))
+                };
                 let normal = combined([0, 1, 2].map(corner), weights);
-                self.found.push(Stand { by, position: combined(positions, weights), normal });
+                self.found.push(Stand {
+                    by,
+                    position: combined(positions, weights),
+                    normal,
+                });
             }
         }
     }

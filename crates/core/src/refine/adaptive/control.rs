@@ -39,7 +39,13 @@ pub(super) struct Control<'a> {
 
 impl Control<'_> {
     pub(super) fn patch(&self, face: u32) -> Patch {
-        root_patch(self.mesh, self.sharpness, &self.large, FaceId(face), self.rules)
+        root_patch(
+            self.mesh,
+            self.sharpness,
+            &self.large,
+            FaceId(face),
+            self.rules,
+        )
     }
 
     /// The surface over a face.
@@ -53,7 +59,10 @@ impl Control<'_> {
             let h = HalfEdgeId::of(FaceId(face), corner);
             let topology = self.mesh.topology();
             let position = vector(self.positions[topology.origin(h).index()]);
-            LimitPoint { position, normal: vector(self.sided.at(topology, h)) }
+            LimitPoint {
+                position,
+                normal: vector(self.sided.at(topology, h)),
+            }
         })
     }
 
@@ -69,9 +78,15 @@ impl Control<'_> {
     }
 
     /// The faces beyond the edges of a face that are not sharp.
-    pub(super) fn beside<'c>(&'c self, edges: &'c Edges<'_>, face: u32) -> impl Iterator<Item = u32> + 'c {
+    pub(super) fn beside<'c>(
+        &'c self,
+        edges: &'c Edges<'_>,
+        face: u32,
+    ) -> impl Iterator<Item = u32> + 'c {
         let open = self.open(face);
         let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
-        inner.filter_map(move |edge| edges.twin(3 * face + edge)).map(|h| h / 3)
+        inner
+            .filter_map(move |edge| edges.twin(3 * face + edge))
+            .map(|h| h / 3)
     }
 }

@@ -15,7 +15,9 @@ use super::guess::Expected;
 use super::judge::{Allowance, Condition, Extent, Goal, Judge, Outcome, Seen, Verdict};
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use super::quadtree::{CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED, bounded};
+use super::quadtree::{
+    CONDITIONAL, Edges, LEAF, MOST_LEVELS, Piece, Place, Trees, UNJUDGED, bounded,
+};
 use super::surface::Ground;
 use crate::certificate::{Cell, CellRows, Marks, Pieces, SubTriangle};
 use crate::parallel::{self, IsStopped};
@@ -60,25 +62,36 @@ pub(super) fn decide(
     most: usize,
 ) -> Result<Option<Decision>, RefineError> {
     let faces = control.mesh.face_count();
-    let count = Count { leaves: AtomicUsize::new(0), most };
+    let count = Count {
+        leaves: AtomicUsize::new(0),
+        most,
+    };
     let expected = Expected::of_all((control, watch), goal)?;
     let mut found = limitmesh_pages::filled(Found::NOTHING, faces);
     let size = parallel::share(faces);
     let blocks: Vec<_> = found.chunks_mut(size).enumerate().collect();
-    let pieces = parallel::each_long_polled(blocks, &mut |_| watch.poll(), |(block, found), is_stopped| {
-        let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
-        decider.expected = &expected;
-        for (face, found) in (size * block..).zip(found) {
-            *found = decider.face(face as u32, None);
-        }
-        decider.tell();
-        decider.piece
-    })?;
+    let pieces = parallel::each_long_polled(
+        blocks,
+        &mut |_| watch.poll(),
+        |(block, found), is_stopped| {
+            let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
+            decider.expected = &expected;
+            for (face, found) in (size * block..).zip(found) {
+                *found = decider.face(face as u32, None);
+            }
+            decider.tell();
+            decider.piece
+        },
+    )?;
     if count.is_passed() {
         return Ok(None);
     }
     let trees = Trees::of(&pieces, &mut || watch.poll())?;
-    let mut decision = Decision { trees, found, rounds: 0 };
+    let mut decision = Decision {
+        trees,
+        found,
+        rounds: 0,
+    };
     drop((pieces, expected));
     loop {
         match decision.settle((control, watch), goal, edges, (max_levels, most), |_| None)? {
@@ -95,10 +108,19 @@ pub(super) fn leaves_of(
     goal: &Goal,
     faces: &[(u32, usize)],
 ) -> Result<Vec<usize>, Cancelled> {
-    let Engine { control, watch, ref edges, max_levels, .. } = *engine;
+    let Engine {
+        control,
+        watch,
+        ref edges,
+        max_levels,
+        ..
+    } = *engine;
     let blocks = watch.long_shares(faces.len(), |block, is_stopped| {
         let leaves = faces[block].iter().map(|&(face, most)| {
-            let count = Count { leaves: AtomicUsize::new(0), most };
+            let count = Count {
+                leaves: AtomicUsize::new(0),
+                most,
+            };
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             decider.face(face, None);
             decider.tell();
@@ -129,7 +151,10 @@ impl Decision {
     /// The greatest bound of a leaf of a face, conditions expected to hold.
     pub(super) fn bound(&self, face: u32) -> f64 {
         let found = &self.found[face as usize];
-        let conditional = found.conditions().iter().map(|condition| condition.deviation.height);
+        let conditional = found
+            .conditions()
+            .iter()
+            .map(|condition| condition.deviation.height);
         conditional.fold(found.bound(), f64::max)
     }
 
@@ -229,14 +254,18 @@ impl<'a> Decider<'a> {
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
             let middles = net.middles();
-            let points = middles.map(|position| LimitPoint { position, normal: DVec3::ZERO });
+            let points = middles.map(|position| LimitPoint {
+                position,
+                normal: DVec3::ZERO,
+            });
             let seen = Seen::of(&corners, 0);
             self.allowance = allowance.unwrap_or_else(|| self.guess(face, &seen, &points));
             self.regular(&net, &middles, (corners, &seen), open, place)
         } else {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-            self.allowance = allowance.unwrap_or_else(|| self.guess(face, &Seen::of(&corners, 0), &middles));
+            self.allowance =
+                allowance.unwrap_or_else(|| self.guess(face, &Seen::of(&corners, 0), &middles));
             self.general(&patch, (&refined, middles), corners, open, place)
         };
         self.piece.roots.push(word);
@@ -257,7 +286,12 @@ impl<'a> Decider<'a> {
     /// What the face came to.
     fn end(&mut self, face: u32) -> Found {
         let conditions = core::mem::take(&mut self.conditions);
-        Found::of(face, &self.extent, self.allowance, (self.has_failed, conditions))
+        Found::of(
+            face,
+            &self.extent,
+            self.allowance,
+            (self.has_failed, conditions),
+        )
     }
 
     /// A node with leaves so many levels below it that were not judged.
@@ -278,14 +312,23 @@ impl<'a> Decider<'a> {
 
     /// What triangles of a face count on at first.
     fn guess(&self, face: u32, seen: &Seen, middles: &[LimitPoint; 3]) -> Allowance {
-        let beside = self.control.beside(self.edges, face).map(|face| match self.expected {
-            [] => Expected::of(self.control, self.goal, face),
-            known => known[face as usize],
-        });
+        let beside = self
+            .control
+            .beside(self.edges, face)
+            .map(|face| match self.expected {
+                [] => Expected::of(self.control, self.goal, face),
+                known => known[face as usize],
+            });
         self.judge.guess(seen, middles, beside)
     }
 
-    fn node(&mut self, patch: &Patch, corners: [LimitPoint; 3], open: [bool; 3], place: Place) -> u32 {
+    fn node(
+        &mut self,
+        patch: &Patch,
+        corners: [LimitPoint; 3],
+        open: [bool; 3],
+        place: Place,
+    ) -> u32 {
         if let Patch::Regular(points) = patch {
             let (net, seen) = (BezierTriangle::of(points), Seen::of(&corners, place.level));
             return self.regular(&net, &net.middles(), (corners, &seen), open, place);
@@ -325,7 +368,12 @@ impl<'a> Decider<'a> {
         }
         let children = [0, 1, 2, 3].map(|child| {
             let own = child_corners(corners, middles, child);
-            self.node(&refined.part(child), own, child_open(open, child), place.child(child))
+            self.node(
+                &refined.part(child),
+                own,
+                child_open(open, child),
+                place.child(child),
+            )
         });
         self.piece.irregular_node(children)
     }
@@ -339,10 +387,13 @@ impl<'a> Decider<'a> {
         open: [bool; 3],
         place: Place,
     ) -> u32 {
-        let may_stay = !self.control.demands.divides(place) && !self.judge.surely_fails(seen, middles);
+        let may_stay =
+            !self.control.demands.divides(place) && !self.judge.surely_fails(seen, middles);
         if may_stay || place.level >= self.max_levels {
             let verdict = self.judge.at_a_glance(net, seen, open, &self.allowance);
-            if let Some(verdict) = verdict.filter(|known| !known.fails() || place.level >= self.max_levels) {
+            if let Some(verdict) =
+                verdict.filter(|known| !known.fails() || place.level >= self.max_levels)
+            {
                 return self.leaf(place, &verdict);
             }
         }
@@ -378,15 +429,22 @@ impl<'a> Decider<'a> {
         if has_rows && !is_demanded && open == [false; 3] {
             match self.rows(ground, spot, place) {
                 AtOnce::Decided(word) => return word,
-                AtOnce::NotHere { fails, may_be_below } => {
-                    (surely_fails, has_rows) = (surely_fails | fails, may_be_below)
-                }
+                AtOnce::NotHere {
+                    fails,
+                    may_be_below,
+                } => (surely_fails, has_rows) = (surely_fails | fails, may_be_below),
             }
         }
         if !surely_fails || place.level >= self.max_levels {
             let at = (spot, place.level, SubTriangle::Whole);
-            let verdict =
-                self.judge.regular(ground, at, &Cell(spot.corners()), &corners, open, &self.allowance);
+            let verdict = self.judge.regular(
+                ground,
+                at,
+                &Cell(spot.corners()),
+                &corners,
+                open,
+                &self.allowance,
+            );
             if !verdict.fails() || place.level >= self.max_levels {
                 return self.leaf(place, &verdict);
             }
@@ -395,7 +453,14 @@ impl<'a> Decider<'a> {
         let children = [0, 1, 2, 3].map(|child| {
             let own = child_corners(corners, middles, child);
             let at = (place.child(child), has_rows);
-            self.part(ground, spot.child(child), own, child_open(open, child), at, false)
+            self.part(
+                ground,
+                spot.child(child),
+                own,
+                child_open(open, child),
+                at,
+                false,
+            )
         });
         self.piece.node(children)
     }
@@ -416,7 +481,10 @@ impl<'a> Decider<'a> {
     }
 
     fn leaf(&mut self, place: Place, verdict: &Verdict) -> u32 {
-        self.extent.add(&Extent { worst: Some(place), ..verdict.extent });
+        self.extent.add(&Extent {
+            worst: Some(place),
+            ..verdict.extent
+        });
         self.count_leaves(1);
         match verdict.outcome {
             Outcome::Passes => bounded(LEAF, verdict.extent.bound),
@@ -424,8 +492,17 @@ impl<'a> Decider<'a> {
                 self.has_failed = true;
                 LEAF
             }
-            Outcome::Depends { deviation, tilt, slopes } => {
-                self.conditions.push(Condition { place, deviation, tilt, slopes });
+            Outcome::Depends {
+                deviation,
+                tilt,
+                slopes,
+            } => {
+                self.conditions.push(Condition {
+                    place,
+                    deviation,
+                    tilt,
+                    slopes,
+                });
                 LEAF | CONDITIONAL
             }
         }

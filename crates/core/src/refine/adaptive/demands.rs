@@ -108,7 +108,8 @@ pub(super) fn surfaces_of<'a>(
     scheme: &'a dyn Scheme,
 ) -> Result<Vec<Vec<LimitSurface<'a>>>, RefineError> {
     let of_mesh = |mesh| LimitSurface::without_normals(mesh, scheme);
-    let of_goal = |goal: &'a AttributeGoal| goal.meshes.iter().map(of_mesh).collect::<Result<_, _>>();
+    let of_goal =
+        |goal: &'a AttributeGoal| goal.meshes.iter().map(of_mesh).collect::<Result<_, _>>();
     Ok(goals.iter().map(of_goal).collect::<Result<_, _>>()?)
 }
 
@@ -120,19 +121,32 @@ impl<'a> Functions<'a> {
             kind: goal.kind,
             surfaces,
         };
-        Self { goals: goals.iter().zip(surfaces).map(of_goal).collect() }
+        Self {
+            goals: goals.iter().zip(surfaces).map(of_goal).collect(),
+        }
     }
 
     /// The positions of a surface as values, within a tolerance.
     pub(super) fn positions(surface: &'a LimitSurface<'a>, tolerance: f64) -> Self {
         let surfaces = core::slice::from_ref(surface);
-        Self { goals: vec![Goal { tolerance, kind: GoalKind::Values, surfaces }] }
+        Self {
+            goals: vec![Goal {
+                tolerance,
+                kind: GoalKind::Values,
+                surfaces,
+            }],
+        }
     }
 
     /// The same functions with tolerances so many times as large.
     pub(super) fn coarser(&self, times: f64) -> Self {
-        let coarser = |goal: &Goal<'a>| Goal { tolerance: times * goal.tolerance, ..*goal };
-        Self { goals: self.goals.iter().map(coarser).collect() }
+        let coarser = |goal: &Goal<'a>| Goal {
+            tolerance: times * goal.tolerance,
+            ..*goal
+        };
+        Self {
+            goals: self.goals.iter().map(coarser).collect(),
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -148,7 +162,13 @@ impl<'a> Functions<'a> {
         let count = AtomicUsize::new(0);
         let blocks = watch.long_shares(faces, |block, is_stopped| {
             let mut found = Vec::new();
-            let search = Dividing { functions: self, max_levels, most, count: &count, is_stopped };
+            let search = Dividing {
+                functions: self,
+                max_levels,
+                most,
+                count: &count,
+                is_stopped,
+            };
             for face in block {
                 search.node(Place::root(face as u32), &self.sheets(face), &mut found);
             }
@@ -162,7 +182,10 @@ impl<'a> Functions<'a> {
         watch.each(blocks.into_iter().flatten(), |place| {
             divided.insert(place);
         })?;
-        Ok(Some(Demands { divided, ..Demands::default() }))
+        Ok(Some(Demands {
+            divided,
+            ..Demands::default()
+        }))
     }
 
     /// What the triangles hold of the functions.
@@ -174,8 +197,15 @@ impl<'a> Functions<'a> {
     ) -> Result<Held, RefineError> {
         let leaves = Leaves::of(control, found);
         let blocks = watch.long_shares(control.face_count(), |block, is_stopped| {
-            let held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
-            let mut looking = Looking { functions: self, held, is_stopped };
+            let held = Held {
+                bounds: vec![0.0; self.goals.len()],
+                failing: Vec::new(),
+            };
+            let mut looking = Looking {
+                functions: self,
+                held,
+                is_stopped,
+            };
             for face in block {
                 if !leaves.descend(face as u32, self.sheets(face), &mut looking) {
                     looking.held.bounds.fill(f64::INFINITY);
@@ -184,9 +214,15 @@ impl<'a> Functions<'a> {
             looking.held
         })?;
         self.check()?;
-        let mut held = Held { bounds: vec![0.0; self.goals.len()], failing: Vec::new() };
+        let mut held = Held {
+            bounds: vec![0.0; self.goals.len()],
+            failing: Vec::new(),
+        };
         for block in blocks {
-            held.bounds.iter_mut().zip(block.bounds).for_each(|(all, own)| *all = all.max(own));
+            held.bounds
+                .iter_mut()
+                .zip(block.bounds)
+                .for_each(|(all, own)| *all = all.max(own));
             held.failing.extend(block.failing);
         }
         Ok(held)
@@ -194,20 +230,34 @@ impl<'a> Functions<'a> {
 
     /// Whether all goals are met.
     pub(super) fn are_met(&self, bounds: &[f64]) -> bool {
-        self.goals.iter().zip(bounds).all(|(goal, &bound)| !exceeds(bound, goal.tolerance))
+        self.goals
+            .iter()
+            .zip(bounds)
+            .all(|(goal, &bound)| !exceeds(bound, goal.tolerance))
     }
 
     fn sheets(&self, face: usize) -> Sheets<'_, 'a> {
         let face = FaceId(face as u32);
         debug_assert!(self.goals.iter().all(|goal| !goal.surfaces.is_empty()));
-        let of_goal = |goal: &Goal<'a>| goal.surfaces.iter().map(|surface| surface.sheet(face)).collect();
+        let of_goal = |goal: &Goal<'a>| {
+            goal.surfaces
+                .iter()
+                .map(|surface| surface.sheet(face))
+                .collect()
+        };
         self.goals.iter().map(of_goal).collect()
     }
 
     /// A stencil that failed on the way.
     fn check(&self) -> Result<(), RefineError> {
-        let mut failures = self.goals.iter().flat_map(|goal| goal.surfaces).filter_map(LimitSurface::failure);
-        failures.next().map_or(Ok(()), |failure| Err(failure.clone().into()))
+        let mut failures = self
+            .goals
+            .iter()
+            .flat_map(|goal| goal.surfaces)
+            .filter_map(LimitSurface::failure);
+        failures
+            .next()
+            .map_or(Ok(()), |failure| Err(failure.clone().into()))
     }
 }
 
@@ -253,10 +303,14 @@ impl<'s, 'a> Descent for Looking<'s, 'a> {
 fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Sheets<'r, 'a>; 4] {
     let mut parts: [Sheets<'r, 'a>; 4] = Default::default();
     for of_goal in sheets {
-        parts.iter_mut().for_each(|part| part.push(Vec::with_capacity(of_goal.len())));
+        parts
+            .iter_mut()
+            .for_each(|part| part.push(Vec::with_capacity(of_goal.len())));
         for (sheet, rules) in of_goal {
             for (part, own) in parts.iter_mut().zip(sheet.children(rules)) {
-                part.last_mut().into_iter().for_each(|list| list.push((own.clone(), *rules)));
+                part.last_mut()
+                    .into_iter()
+                    .for_each(|list| list.push((own.clone(), *rules)));
             }
         }
     }
@@ -268,7 +322,9 @@ fn bound(goal: &Goal<'_>, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> 
     match goal.kind {
         GoalKind::Values => {
             let target = goal.tolerance / (sheets.len() as f64).sqrt();
-            let squares = sheets.iter().map(|(sheet, rules)| sheet.off_linear(part, target, rules).powi(2));
+            let squares = sheets
+                .iter()
+                .map(|(sheet, rules)| sheet.off_linear(part, target, rules).powi(2));
             squares.sum::<f64>().sqrt()
         }
         GoalKind::Surface => {
@@ -284,7 +340,9 @@ fn bound(goal: &Goal<'_>, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> 
                     gives_up: false,
                     least_chord: None,
                 };
-                Pieces::of(&sheet.patch).deviation(part, &frame, rules, effort).own
+                Pieces::of(&sheet.patch)
+                    .deviation(part, &frame, rules, effort)
+                    .own
             });
             apart.fold(0.0, |most, own| if exceeds(own, most) { own } else { most })
         }

@@ -24,12 +24,18 @@ enum Mark {
 impl Dirty {
     /// Nothing.
     pub(super) fn none(faces: usize) -> Self {
-        Self { marks: vec![Mark::Clean; faces], split: Vec::new() }
+        Self {
+            marks: vec![Mark::Clean; faces],
+            split: Vec::new(),
+        }
     }
 
     /// Everything.
     pub(super) fn all(faces: usize) -> Self {
-        Self { marks: vec![Mark::Replaced; faces], split: Vec::new() }
+        Self {
+            marks: vec![Mark::Replaced; faces],
+            split: Vec::new(),
+        }
     }
 
     /// The marked control faces.
@@ -43,14 +49,21 @@ impl Dirty {
     }
 
     fn marked(&self, is_marked: impl Fn(Mark) -> bool) -> Vec<u32> {
-        (0..).zip(&self.marks).filter(|&(_, &mark)| is_marked(mark)).map(|(face, _)| face).collect()
+        (0..)
+            .zip(&self.marks)
+            .filter(|&(_, &mark)| is_marked(mark))
+            .map(|(face, _)| face)
+            .collect()
     }
 
     /// The vertices that this has put on edges of control faces.
     pub(super) fn inserted(&self, edges: &Edges<'_>) -> Inserted {
         let replaced = self.replaced().into_iter();
         let anew = replaced.flat_map(|face| 3 * face..3 * face + 3).collect();
-        let mut inserted = Inserted { anew, at: Vec::new() };
+        let mut inserted = Inserted {
+            anew,
+            at: Vec::new(),
+        };
         for &place in &self.split {
             let along = (0..3).filter(|&edge| place.lies_along(edge));
             along.for_each(|edge| inserted.add(edges, place, edge));
@@ -94,7 +107,10 @@ impl Dirty {
         if let Some(twin) = edges.twin(h) {
             self.mark(twin / 3, mark);
         } else if let Some(group) = edges.group(h) {
-            edges.members(group).iter().for_each(|&(h, _)| self.mark(h / 3, mark));
+            edges
+                .members(group)
+                .iter()
+                .for_each(|&(h, _)| self.mark(h / 3, mark));
         }
     }
 
@@ -134,8 +150,13 @@ fn each_beyond(edges: &Edges<'_>, place: Place, edge: usize, show: &mut impl FnM
                 show(along.node_at(twin, true).0);
             } else if let Some(group) = edges.group(along.half_edge) {
                 let members = edges.members(group);
-                let own = members.iter().any(|&(member, turned)| member == along.half_edge && turned);
-                for &(member, turned) in members.iter().filter(|&&(member, _)| member != along.half_edge) {
+                let own = members
+                    .iter()
+                    .any(|&(member, turned)| member == along.half_edge && turned);
+                for &(member, turned) in members
+                    .iter()
+                    .filter(|&&(member, _)| member != along.half_edge)
+                {
                     show(along.node_at(member, turned != own).0);
                 }
             }

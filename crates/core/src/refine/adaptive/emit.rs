@@ -100,7 +100,10 @@ impl Emission {
 
     /// Whether everything is here, and no control face has changed since.
     pub(super) fn is_complete(&self, is_changed: &[bool]) -> bool {
-        self.extend.iter().zip(is_changed).all(|(extend, &is_changed)| extend.is_whole() && !is_changed)
+        self.extend
+            .iter()
+            .zip(is_changed)
+            .all(|(extend, &is_changed)| extend.is_whole() && !is_changed)
     }
 
     /// Whether a control face was written anew, not taken over.
@@ -112,7 +115,9 @@ impl Emission {
     pub(super) fn vertices_of(&self, face: u32) -> impl Iterator<Item = u32> {
         let half_edges = (3 * face..3 * face + 3).flat_map(|h| self.borders.along(h));
         let starts = half_edges.map(|&h| self.triangles[h as usize / 3][h as usize % 3]);
-        self.vertices_inside(face).map(|vertex| vertex as u32).chain(starts)
+        self.vertices_inside(face)
+            .map(|vertex| vertex as u32)
+            .chain(starts)
     }
 
     /// How far the vertices of control faces that were taken over were moved before; of others that is not known. `None` where all are
@@ -130,13 +135,17 @@ impl Emission {
     ) -> Result<(), Cancelled> {
         self.offsets = offsets;
         let mut moved = core::mem::take(&mut self.before.positions);
-        let at = |vertex: u32| (vector(self.positions[vertex as usize]) + self.step(vertex)).to_array();
+        let at =
+            |vertex: u32| (vector(self.positions[vertex as usize]) + self.step(vertex)).to_array();
         if moved.is_empty() {
             moved = limitmesh_pages::with_capacity(self.positions.len());
-            watch.each(0..self.positions.len() as u32, |vertex| moved.push(at(vertex)))?;
+            watch.each(0..self.positions.len() as u32, |vertex| {
+                moved.push(at(vertex))
+            })?;
         } else {
             watch.each(faces, |face| {
-                self.vertices_of(face).for_each(|vertex| moved[vertex as usize] = at(vertex));
+                self.vertices_of(face)
+                    .for_each(|vertex| moved[vertex as usize] = at(vertex));
             })?;
             let copies = self.junctions.vertices.iter().flatten();
             copies.for_each(|&vertex| moved[vertex as usize] = at(vertex));
@@ -147,7 +156,8 @@ impl Emission {
 
     /// How far the corners of a triangle were moved.
     pub(super) fn offsets_of(&self, triangle: usize) -> [f64; 3] {
-        self.triangles[triangle].map(|vertex| self.offsets.get(vertex as usize).copied().unwrap_or(0.0))
+        self.triangles[triangle]
+            .map(|vertex| self.offsets.get(vertex as usize).copied().unwrap_or(0.0))
     }
 
     /// How far a vertex was moved, and in which direction.
@@ -170,7 +180,10 @@ impl Borders {
     }
 }
 
-const NOWHERE: Origin = Origin { face: NONE, barycentric: [0.0; 3] };
+const NOWHERE: Origin = Origin {
+    face: NONE,
+    barycentric: [0.0; 3],
+};
 
 /// How much of a control face is emitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -233,7 +246,11 @@ pub(super) fn emit(
     before: Option<(Last<'_>, &[bool])>,
 ) -> Result<Emission, RefineError> {
     let faces = control.mesh.face_count();
-    let too_many = |what, count| MeshError::TooMany { what, count, limit: MAX_FACES };
+    let too_many = |what, count| MeshError::TooMany {
+        what,
+        count,
+        limit: MAX_FACES,
+    };
     let is_kept = |face: u32| {
         // Normals on sharp edges are averages by now.
         let is_here = |(before, is_changed): &(Last<'_>, &[bool])| {
@@ -255,7 +272,10 @@ pub(super) fn emit(
         Scope::Areas(areas) => Some(areas),
         Scope::All | Scope::Faces(_) => None,
     };
-    let counts = Counts { closed, extend: &extend };
+    let counts = Counts {
+        closed,
+        extend: &extend,
+    };
     let total: usize = counts.triangles().map(|count| count as usize).sum();
     let inside: usize = counts.vertices().map(|count| count as usize).sum();
     let on_edges = control.mesh.vertex_count() + chains.count();
@@ -263,7 +283,9 @@ pub(super) fn emit(
         return Err(too_many("triangles", total).into());
     }
     let mut starts = defaults::<u32>(3 * faces + 1);
-    watch.each(0..3 * faces, |h| starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1)?;
+    watch.each(0..3 * faces, |h| {
+        starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1
+    })?;
     let mut next = 0;
     let first_triangles = counts.triangles().map(|count| {
         next += count;
@@ -271,12 +293,20 @@ pub(super) fn emit(
     });
     let first_triangles: Vec<u32> = first_triangles.chain([total as u32]).collect();
     let numbers = Numbers::of(control, chains, &counts);
-    let length = Lengths { vertices: on_edges + inside, triangles: total };
+    let length = Lengths {
+        vertices: on_edges + inside,
+        triangles: total,
+    };
     let mut before = before.map(|(last, _)| last);
     let arrays = match &mut before {
         Some(Last::Taken(before)) => {
             let mut arrays = Arrays::taken(before);
-            let shifts = shifts(control, (before, &extend), (&numbers, &first_triangles), watch)?;
+            let shifts = shifts(
+                control,
+                (before, &extend),
+                (&numbers, &first_triangles),
+                watch,
+            )?;
             arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
             arrays
         }
@@ -285,7 +315,15 @@ pub(super) fn emit(
             Arrays::fresh(length, room, has_origins, watch)?
         }
     };
-    let Arrays { positions, normals, origins, triangles, twins, parents, moves } = arrays;
+    let Arrays {
+        positions,
+        normals,
+        origins,
+        triangles,
+        twins,
+        parents,
+        moves,
+    } = arrays;
     let mut emission = Emission {
         positions,
         normals,
@@ -295,7 +333,10 @@ pub(super) fn emit(
         parents,
         starts: first_triangles,
         offsets: Vec::new(),
-        borders: Borders { half_edges: defaults(starts[3 * faces] as usize), starts },
+        borders: Borders {
+            half_edges: defaults(starts[3 * faces] as usize),
+            starts,
+        },
         sharp: Vec::new(),
         junctions: Junctions::default(),
         conditions: Vec::new(),
@@ -314,7 +355,14 @@ pub(super) fn emit(
         is_in_place: matches!(last, Last::Taken(_)),
     });
     let conditions = parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
-        write(control, edges, (decision, chains), (closed, kept.as_ref(), only), job, is_stopped)
+        write(
+            control,
+            edges,
+            (decision, chains),
+            (closed, kept.as_ref(), only),
+            job,
+            is_stopped,
+        )
     });
     emission.conditions = conditions?.concat();
     emission.extend = extend;
@@ -336,7 +384,10 @@ fn room(
     let count = |of: fn(&Closed) -> u32| closed.iter().map(|face| of(face) as usize).sum::<usize>();
     let vertices = control.mesh.vertex_count() + chains.count() + count(|face| face.vertices);
     let with_spare = |count: usize| count + count / spare;
-    Lengths { vertices: with_spare(vertices), triangles: with_spare(count(|face| face.triangles)) }
+    Lengths {
+        vertices: with_spare(vertices),
+        triangles: with_spare(count(|face| face.triangles)),
+    }
 }
 
 /// Where the vertices and triangles of control faces that are kept stood before, and where they stand now.
@@ -352,12 +403,18 @@ fn shifts(
     let was = &before.numbers;
     watch.each(0..3 * extend.len(), |h| {
         if is_kept(h / 3) {
-            vertices.push(was.on_edges[h] as usize..was.on_edges[h + 1] as usize, now.on_edges[h] as usize);
+            vertices.push(
+                was.on_edges[h] as usize..was.on_edges[h + 1] as usize,
+                now.on_edges[h] as usize,
+            );
         }
     })?;
     watch.each(0..extend.len(), |face| {
         if is_kept(face) {
-            vertices.push(before.vertices_inside(face as u32), now.inside[face] as usize);
+            vertices.push(
+                before.vertices_inside(face as u32),
+                now.inside[face] as usize,
+            );
             triangles.push(before.triangles_of(face as u32), starts[face] as usize);
         }
     })?;
@@ -371,7 +428,10 @@ fn extends(edges: &Edges<'_>, areas: &Areas, faces: usize) -> Vec<Extend> {
         let owner = first_of(edges, h) as usize / 3;
         extend[owner] = extend[owner].max(Extend::Edges);
     }
-    areas.0.keys().for_each(|&face| extend[face as usize] = Extend::All);
+    areas
+        .0
+        .keys()
+        .for_each(|&face| extend[face as usize] = Extend::All);
     extend
 }
 
@@ -405,13 +465,22 @@ impl Numbers {
             Some(*next)
         });
         let inside = core::iter::once(first).chain(inside);
-        let on_edges = (0..3 * counts.closed.len() as u32).map(|h| chains.own(h).0).chain([first]);
-        Self { on_edges: on_edges.collect(), inside: inside.collect() }
+        let on_edges = (0..3 * counts.closed.len() as u32)
+            .map(|h| chains.own(h).0)
+            .chain([first]);
+        Self {
+            on_edges: on_edges.collect(),
+            inside: inside.collect(),
+        }
     }
 }
 
 /// The control vertices.
-fn corners(control: &Control<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+fn corners(
+    control: &Control<'_>,
+    emission: &mut Emission,
+    watch: &SharedWatch<'_>,
+) -> Result<(), Cancelled> {
     let count = control.mesh.vertex_count();
     emission.positions[..count].copy_from_slice(&control.positions);
     emission.normals[..count].copy_from_slice(control.sided.by_vertex());
@@ -435,8 +504,17 @@ fn fraction(at: u32) -> f64 {
 }
 
 /// Makes the half-edges on both sides of control edges twins; what is beyond those that are here alone is not known.
-fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
-    let Emission { borders, twins, extend, .. } = emission;
+fn join(
+    edges: &Edges<'_>,
+    emission: &mut Emission,
+    watch: &SharedWatch<'_>,
+) -> Result<(), Cancelled> {
+    let Emission {
+        borders,
+        twins,
+        extend,
+        ..
+    } = emission;
     let is_whole = |h: u32| extend[h as usize / 3].is_whole();
     // Half-edges of areas that were passed over have no number.
     let mut meet = |[a, b]: [u32; 2], beyond: u32| {
@@ -444,18 +522,27 @@ fn join(edges: &Edges<'_>, emission: &mut Emission, watch: &SharedWatch<'_>) -> 
             twins[a as usize] = if b == NONE { beyond } else { b };
         }
     };
-    watch.each(0..borders.starts.len() as u32 - 1, |h| match edges.twin(h) {
-        Some(twin) if h < twin && is_whole(h) && is_whole(twin) => {
-            for (&a, &b) in borders.along(h).iter().zip(borders.along(twin).iter().rev()) {
-                meet([a, b], UNKNOWN);
-                meet([b, a], UNKNOWN);
+    watch.each(0..borders.starts.len() as u32 - 1, |h| {
+        match edges.twin(h) {
+            Some(twin) if h < twin && is_whole(h) && is_whole(twin) => {
+                for (&a, &b) in borders
+                    .along(h)
+                    .iter()
+                    .zip(borders.along(twin).iter().rev())
+                {
+                    meet([a, b], UNKNOWN);
+                    meet([b, a], UNKNOWN);
+                }
             }
+            Some(twin) if is_whole(h) && !is_whole(twin) => {
+                borders
+                    .along(h)
+                    .iter()
+                    .for_each(|&a| meet([a, NONE], UNKNOWN));
+            }
+            None if is_whole(h) => borders.along(h).iter().for_each(|&a| meet([a, NONE], NONE)),
+            _ => {}
         }
-        Some(twin) if is_whole(h) && !is_whole(twin) => {
-            borders.along(h).iter().for_each(|&a| meet([a, NONE], UNKNOWN));
-        }
-        None if is_whole(h) => borders.along(h).iter().for_each(|&a| meet([a, NONE], NONE)),
-        _ => {}
     })
 }
 
@@ -470,7 +557,11 @@ fn sharp_edges(
         return Ok(());
     }
     for face in 0..control.mesh.face_count() as u32 {
-        let open = if emission.extend[face as usize].is_whole() { control.open(face) } else { [false; 3] };
+        let open = if emission.extend[face as usize].is_whole() {
+            control.open(face)
+        } else {
+            [false; 3]
+        };
         if open != [false; 3] || face.is_multiple_of(POLLED) {
             watch.poll()?;
         }
@@ -480,13 +571,21 @@ fn sharp_edges(
             let (number, places) = chains.own(first_of(edges, h));
             let mut normals = vec![[0.0; 3]; places.len()];
             if h < twin {
-                normals.copy_from_slice(&emission.normals[number as usize..number as usize + places.len()]);
+                normals.copy_from_slice(
+                    &emission.normals[number as usize..number as usize + places.len()],
+                );
             } else {
                 let turned: Vec<u32> = places.iter().rev().map(|&at| FULL - at).collect();
                 let piece = control.piece(face);
-                on_edge(face, edge, &turned, piece.surface(control.rules), |i, point, _| {
-                    normals[i] = point.normal.to_array();
-                });
+                on_edge(
+                    face,
+                    edge,
+                    &turned,
+                    piece.surface(control.rules),
+                    |i, point, _| {
+                        normals[i] = point.normal.to_array();
+                    },
+                );
             }
             emission.sharp.push((h, normals));
         }

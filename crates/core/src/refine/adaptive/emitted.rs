@@ -81,7 +81,14 @@ pub(super) struct Sources<'a> {
 impl Sources<'_> {
     /// Shows the triangles of a control face, in the order in which they stand.
     pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
-        let Self { control, edges, trees, chains, closed, emission } = *self;
+        let Self {
+            control,
+            edges,
+            trees,
+            chains,
+            closed,
+            emission,
+        } = *self;
         let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         let mut leaves = Leaves {
@@ -95,7 +102,13 @@ impl Sources<'_> {
             beholder,
         };
         let at = (Place::root(face), Spot::WHOLE);
-        walk.node(trees.root(face), at, sides, control.piece(face).surface(control.rules), &mut leaves);
+        walk.node(
+            trees.root(face),
+            at,
+            sides,
+            control.piece(face).surface(control.rules),
+            &mut leaves,
+        );
     }
 }
 
@@ -120,7 +133,10 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
         let n = 1usize << node.depth;
         let end = self.next + node.triangles() as u32;
         if !self.beholder.wants(node.place, self.next..end) {
-            self.diagonals = self.diagonals.get(self.rim.diagonals(node, knots)..).unwrap_or_default();
+            self.diagonals = self
+                .diagonals
+                .get(self.rim.diagonals(node, knots)..)
+                .unwrap_or_default();
             self.next = end;
             return;
         }
@@ -150,8 +166,13 @@ impl<B: Beholder> Leaves<'_, B> {
         let n = 1usize << node.depth;
         let place = node.place.leaf(node.depth, (i, j), false);
         let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let open = [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
-        let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
+        let open =
+            [0, 1, 2].map(|edge| self.open[edge] && on_side[edge] && node.place.lies_along(edge));
+        let split = if on_side == [false; 3] {
+            [None; 3]
+        } else {
+            self.rim.split(n, i, j)
+        };
         let bits = bits(&split);
         if bits == 0 {
             return self.whole(node, (i, j), (place, open));
@@ -162,16 +183,30 @@ impl<B: Beholder> Leaves<'_, B> {
         {
             (from_end, self.diagonals) = (*first, rest);
         }
-        let pattern =
-            closure(bits, if from_end { Diagonal::FromEnd } else { Diagonal::FromStart }).triangles();
+        let pattern = closure(
+            bits,
+            if from_end {
+                Diagonal::FromEnd
+            } else {
+                Diagonal::FromStart
+            },
+        )
+        .triangles();
         let first = self.next;
         self.next += pattern.len() as u32;
         let mut vertices = [0; 6];
         for (labels, triangle) in pattern.iter().zip(&self.triangles[first as usize..]) {
-            labels.iter().zip(triangle).for_each(|(&label, &vertex)| vertices[label as usize] = vertex);
+            labels
+                .iter()
+                .zip(triangle)
+                .for_each(|(&label, &vertex)| vertices[label as usize] = vertex);
         }
         let emitted = |part, labels: [usize; 3], borders: [Option<usize>; 3]| {
-            let has = |triangle: &[u8; 3]| labels.iter().all(|&label| triangle.contains(&(label as u8)));
+            let has = |triangle: &[u8; 3]| {
+                labels
+                    .iter()
+                    .all(|&label| triangle.contains(&(label as u8)))
+            };
             Emitted {
                 number: first + pattern.iter().position(has).unwrap_or(0) as u32,
                 vertices: labels.map(|label| vertices[label]),
@@ -187,14 +222,25 @@ impl<B: Beholder> Leaves<'_, B> {
             Surface::Regular(piece, spot) => {
                 let spot = spot.leaf(node.depth, i, j);
                 let [a, b, c] = spot.corners();
-                let domain = [a, b, c, spot.along(0, 0.5), spot.along(1, 0.5), spot.along(2, 0.5)];
+                let domain = [
+                    a,
+                    b,
+                    c,
+                    spot.along(0, 0.5),
+                    spot.along(1, 0.5),
+                    spot.along(2, 0.5),
+                ];
                 for triangle in triangles {
                     let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
                     if !self.beholder.wants_triangle(&emitted) {
                         continue;
                     }
                     let cell = Cell(triangle.corners.map(|label| domain[label]));
-                    self.beholder.triangle(&emitted, Over::Regular(piece.ground(), cell, spot), self.rules);
+                    self.beholder.triangle(
+                        &emitted,
+                        Over::Regular(piece.ground(), cell, spot),
+                        self.rules,
+                    );
                 }
             }
             Surface::General(piece, rules) => {
@@ -216,11 +262,22 @@ impl<B: Beholder> Leaves<'_, B> {
     }
 
     /// An upright leaf none of whose edges is split.
-    fn whole(&mut self, node: &Node<'_>, (i, j): (usize, usize), (place, open): (Place, [bool; 3])) {
+    fn whole(
+        &mut self,
+        node: &Node<'_>,
+        (i, j): (usize, usize),
+        (place, open): (Place, [bool; 3]),
+    ) {
         let number = self.next;
         self.next += 1;
         let vertices = self.triangles[number as usize];
-        let emitted = Emitted { number, vertices, place, part: SubTriangle::Whole, open };
+        let emitted = Emitted {
+            number,
+            vertices,
+            place,
+            part: SubTriangle::Whole,
+            open,
+        };
         if !self.beholder.wants_triangle(&emitted) {
             return;
         }
@@ -242,16 +299,27 @@ impl<B: Beholder> Leaves<'_, B> {
     fn headlong(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let number = self.next;
         self.next += 1;
-        let Surface::Regular(piece, spot) = node.surface else { return };
+        let Surface::Regular(piece, spot) = node.surface else {
+            return;
+        };
         let [a, b, c] = self.triangles[number as usize];
         let place = node.place.leaf(node.depth, (i, j), true);
-        let emitted =
-            Emitted { number, vertices: [b, c, a], place, part: SubTriangle::Whole, open: [false; 3] };
+        let emitted = Emitted {
+            number,
+            vertices: [b, c, a],
+            place,
+            part: SubTriangle::Whole,
+            open: [false; 3],
+        };
         if !self.beholder.wants_triangle(&emitted) {
             return;
         }
         let spot = spot.row(node.depth, i, j, true);
         let cell = Cell(spot.corners());
-        self.beholder.triangle(&emitted, Over::Regular(piece.ground(), cell, spot), self.rules);
+        self.beholder.triangle(
+            &emitted,
+            Over::Regular(piece.ground(), cell, spot),
+            self.rules,
+        );
     }
 }

@@ -121,23 +121,33 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
         let mesh = control.mesh;
-        let size = mesh.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        let share = options.tolerance.map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
+        let size = mesh
+            .positions()
+            .as_flattened()
+            .iter()
+            .fold(0.0f64, |size, x| size.max(x.abs()));
+        let share = options
+            .tolerance
+            .map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
         let most = share.min(IN_PLANE * size);
-        let normals: Vec<DVec3> = watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
+        let normals: Vec<DVec3> =
+            watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32);
-            let flat = flat.filter(|&face| may_be_flat((control, edges), &normals, face, options.unfold));
+            let flat =
+                flat.filter(|&face| may_be_flat((control, edges), &normals, face, options.unfold));
             // The largest faces know their planes best.
             let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
-            flat.map(|face| (area(face), face)).collect::<Vec<(f64, u32)>>()
+            flat.map(|face| (area(face), face))
+                .collect::<Vec<(f64, u32)>>()
         })?;
         let mut flat = found.concat();
         let by_area = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
         parallel::sort_polled(&mut flat, &mut |_| watch.poll(), by_area)?;
         let mut of_face = limitmesh_pages::filled(NONE, mesh.face_count());
         let mut is_left = vec![false; mesh.face_count()];
-        flat.iter().for_each(|&(_, face)| is_left[face as usize] = true);
+        flat.iter()
+            .for_each(|&(_, face)| is_left[face as usize] = true);
         let (mut regions, mut off_planes) = (Vec::new(), 0.0f64);
         for (_, seed) in flat {
             watch.poll()?;
@@ -145,13 +155,20 @@ impl FlatRegions {
                 continue;
             }
             let point = vector(mesh.positions()[mesh.triangles()[seed as usize][0] as usize]);
-            let plane = Plane { point, normal: normals[seed as usize] };
+            let plane = Plane {
+                point,
+                normal: normals[seed as usize],
+            };
             is_left[seed as usize] = false;
             let height = |face: u32| {
                 let is_up = options.unfold || normals[face as usize].dot(plane.normal) > 0.0;
-                is_up.then(|| height_over((control, edges), face, &plane, most)).flatten()
+                is_up
+                    .then(|| height_over((control, edges), face, &plane, most))
+                    .flatten()
             };
-            let Some(mut off_plane) = height(seed) else { continue };
+            let Some(mut off_plane) = height(seed) else {
+                continue;
+            };
             let mut faces = vec![seed];
             let mut next = 0;
             while let Some(&face) = faces.get(next) {
@@ -161,7 +178,9 @@ impl FlatRegions {
                 }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
-                    let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else { continue };
+                    let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else {
+                        continue;
+                    };
                     if !is_left[beside as usize] || control.kept.part(face, beside) {
                         continue;
                     }
@@ -173,17 +192,29 @@ impl FlatRegions {
                 }
             }
             faces.sort_unstable();
-            let outwards: DVec3 = faces.iter().map(|&face| mesh.face_normal_vector(face as usize)).sum();
+            let outwards: DVec3 = faces
+                .iter()
+                .map(|&face| mesh.face_normal_vector(face as usize))
+                .sum();
             let plane = if outwards.dot(plane.normal) < 0.0 {
-                Plane { normal: -plane.normal, ..plane }
+                Plane {
+                    normal: -plane.normal,
+                    ..plane
+                }
             } else {
                 plane
             };
-            faces.iter().for_each(|&face| of_face[face as usize] = regions.len() as u32);
+            faces
+                .iter()
+                .for_each(|&face| of_face[face as usize] = regions.len() as u32);
             regions.push((faces, plane));
             off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
         }
-        let weight = if options.max_memory.is_some() { 1 } else { WEIGHT };
+        let weight = if options.max_memory.is_some() {
+            1
+        } else {
+            WEIGHT
+        };
         let straight = match options.strips && !options.balance {
             true => strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?,
             false => Vec::new(),
@@ -195,7 +226,9 @@ impl FlatRegions {
             off_planes = off_planes.max(HEIGHT_ROUNDING * size);
         }
         let mut is_merged: Vec<bool> = of_face.iter().map(|&region| region != NONE).collect();
-        straight.iter().for_each(|&face| is_merged[face as usize] = true);
+        straight
+            .iter()
+            .for_each(|&face| is_merged[face as usize] = true);
         let unfolds = options.unfold;
         let mut found = Self {
             of_face,
@@ -234,12 +267,16 @@ impl FlatRegions {
             if is_kept { kept - 1 } else { NONE }
         };
         let numbers: Vec<u32> = self.is_enclosed.iter().map(number).collect();
-        watch.each(self.of_face.iter_mut().zip(&mut self.is_merged), |(region, is_merged)| {
-            *region = numbers.get(*region as usize).copied().unwrap_or(NONE);
-            *is_merged = *region != NONE;
-        })?;
+        watch.each(
+            self.of_face.iter_mut().zip(&mut self.is_merged),
+            |(region, is_merged)| {
+                *region = numbers.get(*region as usize).copied().unwrap_or(NONE);
+                *is_merged = *region != NONE;
+            },
+        )?;
         let mut numbers = numbers.into_iter();
-        self.regions.retain(|_| numbers.next().is_some_and(|number| number != NONE));
+        self.regions
+            .retain(|_| numbers.next().is_some_and(|number| number != NONE));
         self.is_enclosed = vec![true; self.regions.len()];
         Ok(())
     }
@@ -265,8 +302,13 @@ impl FlatRegions {
                     false => !self.has_smooth_rim((control, edges), region),
                 };
         })?;
-        let is_by_rim = |face: u32| self.region(face).is_some_and(|region| by_rim[region as usize]);
-        let faces: Vec<u32> = (0..self.of_face.len() as u32).filter(|&face| is_by_rim(face)).collect();
+        let is_by_rim = |face: u32| {
+            self.region(face)
+                .is_some_and(|region| by_rim[region as usize])
+        };
+        let faces: Vec<u32> = (0..self.of_face.len() as u32)
+            .filter(|&face| is_by_rim(face))
+            .collect();
         if self.unfolds || faces.is_empty() {
             return Ok(by_rim);
         }
@@ -276,11 +318,14 @@ impl FlatRegions {
         }
         let folded = watch.pieces(faces.len(), UNFOLDED, |block| {
             let region = |face: u32| self.region(face).unwrap_or(NONE) as usize;
-            let is_folded = |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);
+            let is_folded =
+                |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);
             let folded = faces[block].iter().copied().filter(is_folded);
             folded.map(region).collect::<Vec<_>>()
         })?;
-        watch.each(folded.into_iter().flatten(), |region| by_rim[region] = false)?;
+        watch.each(folded.into_iter().flatten(), |region| {
+            by_rim[region] = false
+        })?;
         if by_rim.contains(&true) {
             self.beyond_rims = most;
         }
@@ -289,21 +334,28 @@ impl FlatRegions {
 
     /// Whether a face is part of a region that is judged by its rim alone.
     pub(super) fn is_its_rim(&self, face: u32) -> bool {
-        self.region(face).is_some_and(|region| self.by_rim[region as usize])
+        self.region(face)
+            .is_some_and(|region| self.by_rim[region as usize])
     }
 
     /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or what the rim encloses
     /// stands for it wherever that can be triangulated.
     pub(super) fn is_within_rim(&self, face: u32) -> bool {
-        self.is_its_rim(face) || self.region(face).is_some_and(|region| self.is_enclosed[region as usize])
+        self.is_its_rim(face)
+            || self
+                .region(face)
+                .is_some_and(|region| self.is_enclosed[region as usize])
     }
 
     /// The first control faces of regions for whose surface what their rims enclose is taken, ascending.
     pub(super) fn within_rims(&self, demands: &Demands) -> Vec<u32> {
-        let is_taken =
-            |&region: &u32| self.is_enclosed[region as usize] && !demands.judges_by_triangles(region);
+        let is_taken = |&region: &u32| {
+            self.is_enclosed[region as usize] && !demands.judges_by_triangles(region)
+        };
         let taken = (0..self.regions.len() as u32).filter(is_taken);
-        let mut first: Vec<u32> = taken.map(|region| self.regions[region as usize].0[0]).collect();
+        let mut first: Vec<u32> = taken
+            .map(|region| self.regions[region as usize].0[0])
+            .collect();
         first.sort_unstable();
         first
     }
@@ -336,7 +388,10 @@ impl FlatRegions {
 
     /// Control faces that are part of regions, or over which there may be strips.
     pub(super) fn merged_faces(&self) -> usize {
-        self.is_merged.iter().filter(|&&is_merged| is_merged).count()
+        self.is_merged
+            .iter()
+            .filter(|&&is_merged| is_merged)
+            .count()
     }
 
     /// Triangles of which strips may be made, `own` being those of a face.
@@ -347,12 +402,19 @@ impl FlatRegions {
     /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
     /// to stay.
     pub(super) fn weight(&self, face: u32) -> usize {
-        if self.is_merged.get(face as usize).copied().unwrap_or(false) { self.weight } else { 1 }
+        if self.is_merged.get(face as usize).copied().unwrap_or(false) {
+            self.weight
+        } else {
+            1
+        }
     }
 
     /// The region of a face.
     pub(super) fn region(&self, face: u32) -> Option<u32> {
-        self.of_face.get(face as usize).copied().filter(|&region| region != NONE)
+        self.of_face
+            .get(face as usize)
+            .copied()
+            .filter(|&region| region != NONE)
     }
 
     /// Triangles of a plan: `own` gives those of a face that is not flat.
@@ -363,7 +425,9 @@ impl FlatRegions {
         own: impl Fn(u32) -> usize,
     ) -> usize {
         let faces = 0..control.mesh.face_count() as u32;
-        faces.map(|face| self.count_over((control, edges), chains, face, own(face))).sum()
+        faces
+            .map(|face| self.count_over((control, edges), chains, face, own(face)))
+            .sum()
     }
 
     /// Those that one face comes to, of which `own` are its own if it is not flat.
@@ -388,19 +452,23 @@ impl FlatRegions {
         region: u32,
     ) -> impl Iterator<Item = u32> + 'a {
         let faces = self.regions[region as usize].0.iter();
-        faces.flat_map(|&face| 3 * face..3 * face + 3).filter(move |&h| self.is_rim(mesh, h))
+        faces
+            .flat_map(|&face| 3 * face..3 * face + 3)
+            .filter(move |&h| self.is_rim(mesh, h))
     }
 
     /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
     fn has_smooth_rim(&self, mesh: (&Control<'_>, &Edges<'_>), region: u32) -> bool {
-        self.rim(mesh, region).any(|h| mesh.0.lasting.edge(HalfEdgeId(h)) <= 0.0)
+        self.rim(mesh, region)
+            .any(|h| mesh.0.lasting.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.
     fn is_rim(&self, (control, edges): (&Control<'_>, &Edges<'_>), h: u32) -> bool {
         let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
-        let ends_at =
-            |twin: u32| self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3);
+        let ends_at = |twin: u32| {
+            self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3)
+        };
         is_sharp || edges.twin(h).is_none_or(ends_at)
     }
 }
@@ -416,11 +484,16 @@ fn may_be_flat(
 ) -> bool {
     let normal = normals[face as usize];
     let open = control.open(face);
-    let beside =
-        (0..3u32).filter(|&edge| !open[edge as usize]).filter_map(|edge| edges.twin(3 * face + edge));
+    let beside = (0..3u32)
+        .filter(|&edge| !open[edge as usize])
+        .filter_map(|edge| edges.twin(3 * face + edge));
     let mut beside = beside.map(|twin| normals[twin as usize / 3]);
     let is_alike = |other: DVec3| {
-        let other = if may_be_turned_over && other.dot(normal) < 0.0 { -other } else { other };
+        let other = if may_be_turned_over && other.dot(normal) < 0.0 {
+            -other
+        } else {
+            other
+        };
         other.distance_squared(normal) <= ALIKE * ALIKE
     };
     normal != DVec3::ZERO && beside.all(is_alike)
@@ -443,6 +516,8 @@ fn height_over(
         return None;
     }
     let mut height = 0.0f64;
-    control.patch(face).for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
+    control
+        .patch(face)
+        .for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
     (height <= most).then_some(height)
 }

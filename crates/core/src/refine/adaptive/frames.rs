@@ -47,7 +47,9 @@ pub(in crate::refine) fn frames(
     let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
     let demands = Demands::default();
     let settings = (options, &demands);
-    let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| first(engine, options))?;
+    let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| {
+        first(engine, options)
+    })?;
     let mut plan = united(&meshes, scheme, (settings, plan), observer)?;
     let refined = with_engine(&meshes[0], scheme, settings, observer, |engine| {
         let emission = engine.emit_all(&mut plan)?;
@@ -64,7 +66,10 @@ pub(in crate::refine) fn frames(
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
     let greatest = |of: fn(&Proven) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let (worst, open_cones) = (greatest(|own| own.worst), all.iter().map(|own| own.open_cones).max());
+    let (worst, open_cones) = (
+        greatest(|own| own.worst),
+        all.iter().map(|own| own.open_cones).max(),
+    );
     let open_cones = open_cones.unwrap_or(0);
     let stop = match () {
         () if plan.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
@@ -73,17 +78,34 @@ pub(in crate::refine) fn frames(
     };
     let pixels = options.pixels.map(|_| greatest(|own| own.pixels));
     let error = all[0].error;
-    let refined = Exact { error, pixels, open_cones, worst, stop, ..refined.moved_to(&frame)? };
-    Ok(Found { refined, replay, errors: all.into_iter().map(|own| own.error).collect() })
+    let refined = Exact {
+        error,
+        pixels,
+        open_cones,
+        worst,
+        stop,
+        ..refined.moved_to(&frame)?
+    };
+    Ok(Found {
+        refined,
+        replay,
+        errors: all.into_iter().map(|own| own.error).collect(),
+    })
 }
 
 /// The plan of the first frame, of which nothing is taken for granted.
 fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<Plan, RefineError> {
     let (most, _) = options.budget();
     let floor = engine.floor(options.tolerance);
-    let plan = engine.plan(Goal::Within(floor), most)?.ok_or(ReplayError::TooMany { frame: 0, most })?;
+    let plan = engine
+        .plan(Goal::Within(floor), most)?
+        .ok_or(ReplayError::TooMany { frame: 0, most })?;
     let faces = plan.closed.len();
-    let Plan { decision, has_failed, .. } = plan;
+    let Plan {
+        decision,
+        has_failed,
+        ..
+    } = plan;
     let mut plan = Plan::of(Goal::Within(f64::INFINITY), decision.unjudged(), faces);
     plan.has_failed = has_failed;
     match engine.carry_out(&mut plan, Dirty::all(faces), most)? {
@@ -115,7 +137,11 @@ fn united(
             let outcome = engine.emit_among(plan, &goal, (most, false))?;
             Ok(outcome.ok_or(ReplayError::TooMany { frame, most })?.plan)
         })?;
-        settled = if plan.triangles == triangles { settled + 1 } else { 1 };
+        settled = if plan.triangles == triangles {
+            settled + 1
+        } else {
+            1
+        };
     }
     Ok(plan)
 }
@@ -144,19 +170,39 @@ fn proven(
     let floor = engine.floor(options.tolerance);
     let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
     let sources = engine.sources(plan, &emission);
-    let measured =
-        measure(&sources, engine.watch, (&Goal::Within(floor), f64::INFINITY), (&all, None, None))?;
+    let measured = measure(
+        &sources,
+        engine.watch,
+        (&Goal::Within(floor), f64::INFINITY),
+        (&all, None, None),
+    )?;
     let greatest = |of: fn(&Measured) -> f64| measured.iter().map(of).fold(0.0, f64::max);
     let value = greatest(|face| face.value);
     let is_met = options.tolerance.is_some() && value <= floor;
-    let error = probe::probe(engine, plan, &emission, (Some(&measured), is_met, options.tightens))?;
+    let error = probe::probe(
+        engine,
+        plan,
+        &emission,
+        (Some(&measured), is_met, options.tightens),
+    )?;
     engine.check(&emission)?;
-    let beyond = options.tolerance.map_or(0.0, |tolerance| error.upper / tolerance);
+    let beyond = options
+        .tolerance
+        .map_or(0.0, |tolerance| error.upper / tolerance);
     let criteria = engine.control.criteria.as_ref();
     let open_cones = match criteria.filter(|_| options.angle.is_some()) {
         Some(criteria) => open_cones(&refined.clone().moved_to(frame)?, criteria, engine.watch)?,
         None => 0,
     };
-    let worst = if criteria.is_some() { value.max(beyond) } else { beyond };
-    Ok(Proven { error, worst, pixels: greatest(|face| face.pixels), open_cones })
+    let worst = if criteria.is_some() {
+        value.max(beyond)
+    } else {
+        beyond
+    };
+    Ok(Proven {
+        error,
+        worst,
+        pixels: greatest(|face| face.pixels),
+        open_cones,
+    })
 }

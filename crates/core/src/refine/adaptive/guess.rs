@@ -46,7 +46,10 @@ impl Expected {
     pub(super) fn of(control: &Control<'_>, goal: &Goal, face: u32) -> Self {
         let corners = control.corners(face);
         let slope = least_slope(corners.map(|at| at.position));
-        Self { tilt: tilt_by_normals(&corners, goal.allowed(face)), slope }
+        Self {
+            tilt: tilt_by_normals(&corners, goal.allowed(face)),
+            slope,
+        }
     }
 }
 
@@ -66,9 +69,13 @@ impl Judge<'_> {
         }
         let tilt = seen.tilt * shrunk(seen.highest(points), self.limit);
         let slope = seen.frame.least_slope();
-        let (tilt, slope) = beside
-            .fold((tilt, slope), |(tilt, slope), other| (tilt.larger(other.tilt), slope.min(other.slope)));
-        Allowance { tilt: (GENEROUS * tilt).max(LEAST_TILT), slope: SLOPE_LEFT * slope }
+        let (tilt, slope) = beside.fold((tilt, slope), |(tilt, slope), other| {
+            (tilt.larger(other.tilt), slope.min(other.slope))
+        });
+        Allowance {
+            tilt: (GENEROUS * tilt).max(LEAST_TILT),
+            slope: SLOPE_LEFT * slope,
+        }
     }
 }
 
@@ -81,7 +88,10 @@ fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
     // A curve over an edge that bends evenly stands as high as this.
     let height = |from: usize| {
         let [from, to] = [&corners[from], &corners[(from + 1) % 3]];
-        0.125 * (to.normal - from.normal).dot(to.position - from.position).abs()
+        0.125
+            * (to.normal - from.normal)
+                .dot(to.position - from.position)
+                .abs()
     };
     let chord = |corner: usize| corners[corner].normal.distance_squared(normal);
     let height = height(0).larger(height(1)).larger(height(2));
@@ -90,5 +100,9 @@ fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
 
 /// What is left of angles where heights like this one are divided down to the limit.
 fn shrunk(height: f64, limit: f64) -> f64 {
-    if height > limit { (limit / height).sqrt() } else { 1.0 }
+    if height > limit {
+        (limit / height).sqrt()
+    } else {
+        1.0
+    }
 }

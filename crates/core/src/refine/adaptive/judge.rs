@@ -13,8 +13,8 @@ use super::control::Control;
 use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
-    Cell, Deviation, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame, at_a_glance,
-    exceeds,
+    Cell, Deviation, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle, TriangleFrame,
+    at_a_glance, exceeds,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -77,7 +77,10 @@ pub(super) struct Allowance {
 
 impl Allowance {
     /// Nothing is expected of those beside.
-    pub(super) const NOTHING: Self = Self { tilt: 2.0 * ANY_TILT, slope: 0.0 };
+    pub(super) const NOTHING: Self = Self {
+        tilt: 2.0 * ANY_TILT,
+        slope: 0.0,
+    };
 }
 
 /// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
@@ -98,7 +101,12 @@ pub(super) enum Goal {
 
 impl Goal {
     /// The judge of a face's triangles.
-    pub(super) fn judge<'a>(&self, control: &'a Control<'_>, max_levels: u32, face: u32) -> Judge<'a> {
+    pub(super) fn judge<'a>(
+        &self,
+        control: &'a Control<'_>,
+        max_levels: u32,
+        face: u32,
+    ) -> Judge<'a> {
         let (distance, is_lenient) = match self {
             Self::Within(distance) => (*distance, false),
             Self::Balanced(distance) => (UNBALANCED * distance, false),
@@ -111,7 +119,11 @@ impl Goal {
         let (rules, criteria) = (control.rules, control.criteria.as_ref());
         let (back_faces, rim_alone) = (&control.back_faces, control.flat.is_its_rim(face));
         let is_balanced = matches!(self, Self::Balanced(_)) && criteria.is_none();
-        let range_share = if is_balanced { UNBALANCED / HOPELESS } else { 0.0 };
+        let range_share = if is_balanced {
+            UNBALANCED / HOPELESS
+        } else {
+            0.0
+        };
         Judge {
             rules,
             criteria,
@@ -192,15 +204,29 @@ impl Judge<'_> {
         if self.is_lenient {
             let beside = ground.jet().beside(cell, &seen.frame, open);
             let by_derivatives = beside.deviation(heights.refined(DIVISIONS, 0.0).min(high));
-            let by_net = net().deviation(&seen.frame, self.rules, self.effort(&seen, open, allowance));
+            let by_net =
+                net().deviation(&seen.frame, self.rules, self.effort(&seen, open, allowance));
             let (chord, slopes) = seen.expected();
             let is_less = by_derivatives.bound(chord, slopes) <= by_net.bound(chord, slopes);
-            return self.decided(&seen, if is_less { by_derivatives } else { by_net }, allowance);
+            return self.decided(
+                &seen,
+                if is_less { by_derivatives } else { by_net },
+                allowance,
+            );
         }
-        let low =
-            if self.range_share > 0.0 { low.larger(self.range_share * heights.least_range()) } else { low };
+        let low = if self.range_share > 0.0 {
+            low.larger(self.range_share * heights.least_range())
+        } else {
+            low
+        };
         if exceeds(low, self.limit) && !self.is_kept(&seen) {
-            return Verdict { outcome: Outcome::Fails, extent: Extent { bound: low, ..seen.extent() } };
+            return Verdict {
+                outcome: Outcome::Fails,
+                extent: Extent {
+                    bound: low,
+                    ..seen.extent()
+                },
+            };
         }
         let by_piece = ground.jet().beside(cell, &seen.frame, open);
         if !by_piece.is_loose() {
@@ -211,8 +237,16 @@ impl Judge<'_> {
         }
         // By what the part itself comes to, not all of its piece. Drifts along edges that nobody is beyond, and those that the piece does not
         // tell, are better seen by points.
-        let closely = || ground.jet().beside_closely(&by_piece, cell, &seen.frame, open);
-        let beside = if open == [false; 3] { closely() } else { by_piece };
+        let closely = || {
+            ground
+                .jet()
+                .beside_closely(&by_piece, cell, &seen.frame, open)
+        };
+        let beside = if open == [false; 3] {
+            closely()
+        } else {
+            by_piece
+        };
         let verdict = self.decided(&seen, beside.deviation(high), allowance);
         if beside.is_loose() || by_piece.is_loose() && !verdict.passes() {
             return self.by_net_and_heights(&seen, &net(), (&heights, high), open, allowance);
@@ -223,7 +257,9 @@ impl Judge<'_> {
         // Higher than that it is not; or what fails is not the height.
         let least = self.decided(&seen, beside.deviation(low), allowance);
         if !least.fails() {
-            let enough = beside.deviation(low).height_within(self.limit, seen.allowed(allowance).0);
+            let enough = beside
+                .deviation(low)
+                .height_within(self.limit, seen.allowed(allowance).0);
             let high = heights.refined(DIVISIONS, enough).min(high);
             return self.decided(&seen, beside.deviation(high), allowance);
         }
@@ -273,9 +309,11 @@ impl Judge<'_> {
     /// What the heights of some points come to.
     fn counted(&self, seen: &Seen, points: impl Iterator<Item = DVec3>) -> f64 {
         let heights = points.map(|point| seen.frame.height(point));
-        let (low, high) =
-            heights.fold((0.0f64, 0.0f64), |(low, high), height| (low.smaller(height), high.larger(height)));
-        high.larger(-low).larger(self.range_share / SEEN * (high - low))
+        let (low, high) = heights.fold((0.0f64, 0.0f64), |(low, high), height| {
+            (low.smaller(height), high.larger(height))
+        });
+        high.larger(-low)
+            .larger(self.range_share / SEEN * (high - low))
     }
 
     /// A triangle over a regular piece, as far as its net decides at a glance.
@@ -291,12 +329,19 @@ impl Judge<'_> {
         }
         let (deviation, attained) = at_a_glance(net, &seen.frame, open);
         if exceeds(attained, self.limit) && !self.is_kept(seen) {
-            let extent = Extent { bound: attained, ..seen.extent() };
-            return Some(Verdict { outcome: Outcome::Fails, extent });
+            let extent = Extent {
+                bound: attained,
+                ..seen.extent()
+            };
+            return Some(Verdict {
+                outcome: Outcome::Fails,
+                extent,
+            });
         }
         // Heights of both signs are not told apart.
         let may_be_uneven = 2.0 * self.range_share * deviation.height > self.limit;
-        Some(self.decided(seen, deviation, allowance)).filter(|verdict| verdict.passes() && !may_be_uneven)
+        Some(self.decided(seen, deviation, allowance))
+            .filter(|verdict| verdict.passes() && !may_be_uneven)
     }
 
     /// A triangle over a part of any piece, so many levels below its control face.
@@ -333,8 +378,18 @@ impl Judge<'_> {
     fn along_rim(&self, deviation: Deviation) -> Verdict {
         let bound = deviation.own;
         let stays = self.is_lenient || bound <= self.limit;
-        let outcome = if stays { Outcome::Passes } else { Outcome::Fails };
-        Verdict { outcome, extent: Extent { bound, ..Extent::NONE } }
+        let outcome = if stays {
+            Outcome::Passes
+        } else {
+            Outcome::Fails
+        };
+        Verdict {
+            outcome,
+            extent: Extent {
+                bound,
+                ..Extent::NONE
+            },
+        }
     }
 
     fn rim_effort(&self, open: [bool; 3]) -> Effort {
@@ -342,10 +397,20 @@ impl Judge<'_> {
     }
 
     fn behind<'p>(&'p self, leaf: Leaf<'p>) -> Behind<'p> {
-        Behind { faces: self.back_faces, face: self.face, leaf }
+        Behind {
+            faces: self.back_faces,
+            face: self.face,
+            leaf,
+        }
     }
 
-    fn by_net(&self, seen: &Seen, net: &NetPart, open: [bool; 3], allowance: &Allowance) -> Verdict {
+    fn by_net(
+        &self,
+        seen: &Seen,
+        net: &NetPart,
+        open: [bool; 3],
+        allowance: &Allowance,
+    ) -> Verdict {
         let deviation = net.deviation(&seen.frame, self.rules, self.effort(seen, open, allowance));
         self.decided(seen, deviation, allowance)
     }
@@ -360,10 +425,23 @@ impl Judge<'_> {
         let (chord, slopes) = seen.expected();
         // What will be divided needs no bound.
         let gives_up = !self.is_kept(seen);
-        let halvings = if self.is_lenient { LENIENT_HALVINGS } else { HALVINGS };
+        let halvings = if self.is_lenient {
+            LENIENT_HALVINGS
+        } else {
+            HALVINGS
+        };
         let least_chord = gives_up.then(|| chord.min(seen.allowed(allowance).0));
         let target = self.limit;
-        Effort { target, halvings, open, rim_alone: false, chord, slopes, gives_up, least_chord }
+        Effort {
+            target,
+            halvings,
+            open,
+            rim_alone: false,
+            chord,
+            slopes,
+            gives_up,
+            least_chord,
+        }
     }
 
     fn by_pieces<'p>(
@@ -374,7 +452,12 @@ impl Judge<'_> {
         open: [bool; 3],
         allowance: &Allowance,
     ) -> Verdict {
-        let deviation = pieces.deviation(part, &seen.frame, self.rules, self.effort(seen, open, allowance));
+        let deviation = pieces.deviation(
+            part,
+            &seen.frame,
+            self.rules,
+            self.effort(seen, open, allowance),
+        );
         self.decided(seen, deviation, allowance)
     }
 
@@ -384,21 +467,38 @@ impl Judge<'_> {
         let bound = deviation.bound(chord, slopes);
         let verdict = |outcome, bound: f64, drift_slope| Verdict {
             outcome,
-            extent: Extent { bound, drift_slope, ..seen.extent() },
+            extent: Extent {
+                bound,
+                drift_slope,
+                ..seen.extent()
+            },
         };
         if bound <= self.limit {
             // Drifts that are too steep are not counted on.
-            let counted = if deviation.is_within(slopes) { deviation.steepest() } else { 0.0 };
+            let counted = if deviation.is_within(slopes) {
+                deviation.steepest()
+            } else {
+                0.0
+            };
             return verdict(Outcome::Passes, bound, counted);
         }
         // Few triangles miss by so little: to divide them costs less than to look at their neighbours.
-        let is_near_miss = seen.level >= DEEP && chord < NEARLY_FLAT && bound <= NEAR_MISS * self.limit;
+        let is_near_miss =
+            seen.level >= DEEP && chord < NEARLY_FLAT && bound <= NEAR_MISS * self.limit;
         let (chord, slopes) = seen.expected();
         let bound = deviation.bound(chord, slopes);
         if self.is_kept(seen) || !is_near_miss && bound <= self.limit {
             // What it comes to is known when its neighbours are.
             let (tilt, slopes) = (seen.tilt, seen.own_slopes());
-            return verdict(Outcome::Depends { deviation, tilt, slopes }, 0.0, 0.0);
+            return verdict(
+                Outcome::Depends {
+                    deviation,
+                    tilt,
+                    slopes,
+                },
+                0.0,
+                0.0,
+            );
         }
         verdict(Outcome::Fails, bound, 0.0)
     }
@@ -458,18 +558,33 @@ impl Seen {
             squared = squared.max(corner.normal.distance_squared(frame.normal()));
             count += 1;
         }
-        let tilt = if count < 2 || frame.is_flat() { ANY_TILT } else { squared.sqrt() + ROUNDING };
+        let tilt = if count < 2 || frame.is_flat() {
+            ANY_TILT
+        } else {
+            squared.sqrt() + ROUNDING
+        };
         Self { frame, tilt, level }
     }
 
     /// How high the highest of some points stands over the triangle.
     pub(super) fn highest(&self, points: &[LimitPoint]) -> f64 {
-        points.iter().map(|point| self.frame.height(point.position).abs()).fold(0.0, f64::max)
+        points
+            .iter()
+            .map(|point| self.frame.height(point.position).abs())
+            .fold(0.0, f64::max)
     }
 
     pub(super) fn extent(&self) -> Extent {
-        let slope = if self.frame.is_flat() { 0.0 } else { self.frame.least_slope() };
-        Extent { tilt: self.tilt, slope, ..Extent::NONE }
+        let slope = if self.frame.is_flat() {
+            0.0
+        } else {
+            self.frame.least_slope()
+        };
+        Extent {
+            tilt: self.tilt,
+            slope,
+            ..Extent::NONE
+        }
     }
 
     /// By edge, the slopes that the triangle's own angles allow.
@@ -481,7 +596,10 @@ impl Seen {
     /// The chord of the angles to the neighbours and the greatest slopes of drifts, by edge, that are certain.
     #[inline]
     fn allowed(&self, allowance: &Allowance) -> (f64, [f64; 3]) {
-        (self.tilt + allowance.tilt, self.own_slopes().map(|slope| slope.min(allowance.slope)))
+        (
+            self.tilt + allowance.tilt,
+            self.own_slopes().map(|slope| slope.min(allowance.slope)),
+        )
     }
 
     /// The same as they are expected: neighbours are alike, on the other side of the limit normals. From some level on that

@@ -21,8 +21,13 @@ pub(super) fn leaf_triangles<P: Copy>(
     middles: [Option<P>; 3],
     diagonal_from_end: bool,
 ) -> impl Iterator<Item = LeafTriangle<P>> {
-    let whole = LeafTriangle { part: SubTriangle::Whole, corners, borders: [Some(0), Some(1), Some(2)] };
-    let trisected = |edge, after, before| trisected(corners, edge, [after, before], diagonal_from_end);
+    let whole = LeafTriangle {
+        part: SubTriangle::Whole,
+        corners,
+        borders: [Some(0), Some(1), Some(2)],
+    };
+    let trisected =
+        |edge, after, before| trisected(corners, edge, [after, before], diagonal_from_end);
     let list = match middles {
         [None, None, None] => [Some(whole), None, None, None],
         [Some(middle), None, None] => bisected(corners, 0, middle),
@@ -39,11 +44,20 @@ pub(super) fn leaf_triangles<P: Copy>(
 type Triangles<P> = [Option<LeafTriangle<P>>; 4];
 
 /// One side of the cut from `middle`, on `edge`, to the corner opposite.
-fn half<P: Copy>(mut corners: [P; 3], edge: usize, second: bool, middle: P) -> Option<LeafTriangle<P>> {
+fn half<P: Copy>(
+    mut corners: [P; 3],
+    edge: usize,
+    second: bool,
+    middle: P,
+) -> Option<LeafTriangle<P>> {
     corners[(edge + usize::from(!second)) % 3] = middle;
     let mut borders = [Some(0), Some(1), Some(2)];
     borders[(edge + 1 + usize::from(second)) % 3] = None;
-    Some(LeafTriangle { part: SubTriangle::Half { edge, second }, corners, borders })
+    Some(LeafTriangle {
+        part: SubTriangle::Half { edge, second },
+        corners,
+        borders,
+    })
 }
 
 /// One of the four parts of a refinement.
@@ -52,11 +66,20 @@ fn child<P: Copy>(corners: [P; 3], part: usize, on_next: P, on_last: P) -> Optio
     own[(part + 1) % 3] = on_next;
     own[(part + 2) % 3] = on_last;
     borders[(part + 1) % 3] = None;
-    Some(LeafTriangle { part: SubTriangle::Child(part), corners: own, borders })
+    Some(LeafTriangle {
+        part: SubTriangle::Child(part),
+        corners: own,
+        borders,
+    })
 }
 
 fn bisected<P: Copy>(corners: [P; 3], edge: usize, middle: P) -> Triangles<P> {
-    [half(corners, edge, false, middle), half(corners, edge, true, middle), None, None]
+    [
+        half(corners, edge, false, middle),
+        half(corners, edge, true, middle),
+        None,
+        None,
+    ]
 }
 
 /// All edges but `edge` are split: the next one at `after`, the one before at `before`.
@@ -71,19 +94,45 @@ fn trisected<P: Copy>(
         // Leaving the edge's end, the quarter starts on the next edge; at its start it ends on the edge before.
         let mut borders = [None; 3];
         borders[if from == end { 0 } else { 2 }] = on_border;
-        let part = SubTriangle::Quarter { edge, at_end: from == end };
-        Some(LeafTriangle { part, corners: [corners[from], after, before], borders })
+        let part = SubTriangle::Quarter {
+            edge,
+            at_end: from == end,
+        };
+        Some(LeafTriangle {
+            part,
+            corners: [corners[from], after, before],
+            borders,
+        })
     };
     let cut_off = child(corners, tip, before, after);
     if diagonal_from_end {
-        [cut_off, half(corners, tip, true, before), quarter(end, Some(end)), None]
+        [
+            cut_off,
+            half(corners, tip, true, before),
+            quarter(end, Some(end)),
+            None,
+        ]
     } else {
-        [cut_off, half(corners, end, false, after), quarter(edge, Some(tip)), None]
+        [
+            cut_off,
+            half(corners, end, false, after),
+            quarter(edge, Some(tip)),
+            None,
+        ]
     }
 }
 
 fn quartered<P: Copy>(corners: [P; 3], middles: [P; 3]) -> Triangles<P> {
     let [a, b, c] = middles;
-    let inner = LeafTriangle { part: SubTriangle::Child(3), corners: [b, c, a], borders: [None; 3] };
-    [child(corners, 0, a, c), child(corners, 1, b, a), child(corners, 2, c, b), Some(inner)]
+    let inner = LeafTriangle {
+        part: SubTriangle::Child(3),
+        corners: [b, c, a],
+        borders: [None; 3],
+    };
+    [
+        child(corners, 0, a, c),
+        child(corners, 1, b, a),
+        child(corners, 2, c, b),
+        Some(inner),
+    ]
 }

@@ -78,7 +78,11 @@ impl<'a> Leaves<'a> {
             triangles[own[0] as usize] = next..next + own.len();
             next += own.len();
         }
-        Self { control, found, triangles }
+        Self {
+            control,
+            found,
+            triangles,
+        }
     }
 
     /// The triangles of a control face.
@@ -93,7 +97,10 @@ impl<'a> Leaves<'a> {
             for (corner, at) in corners.iter_mut().enumerate() {
                 *at = self.place(triangle, corner)?;
             }
-            Some(Standing { triangle: triangle as u32, corners })
+            Some(Standing {
+                triangle: triangle as u32,
+                corners,
+            })
         };
         let standing: Option<Vec<Standing>> = self.triangles(face).map(corners).collect();
         standing.is_some_and(|standing| down(Place::root(face), standing, node, descent))
@@ -103,7 +110,13 @@ impl<'a> Leaves<'a> {
     pub(super) fn place(&self, triangle: usize, corner: usize) -> Option<[f64; 3]> {
         let face = *self.found.parents.get(triangle)?;
         let vertex = self.found.mesh.triangles()[triangle][corner];
-        Some(self.found.origins.get(vertex as usize)?.in_face(self.control.triangles(), face)?.barycentric)
+        Some(
+            self.found
+                .origins
+                .get(vertex as usize)?
+                .in_face(self.control.triangles(), face)?
+                .barycentric,
+        )
     }
 }
 
@@ -122,12 +135,18 @@ fn down<D: Descent>(place: Place, standing: Vec<Standing>, node: D::Node, descen
     }
     let mut below: [Vec<Standing>; 4] = Default::default();
     for own in standing {
-        let Some(child) = child_with(&own.corners) else { return false };
-        below[child].push(Standing { corners: own.corners.map(|at| in_child(at, child)), ..own });
+        let Some(child) = child_with(&own.corners) else {
+            return false;
+        };
+        below[child].push(Standing {
+            corners: own.corners.map(|at| in_child(at, child)),
+            ..own
+        });
     }
     let children = descent.children(node).into_iter().zip(below).enumerate();
-    children
-        .fold(true, |all, (child, (node, standing))| down(place.child(child), standing, node, descent) && all)
+    children.fold(true, |all, (child, (node, standing))| {
+        down(place.child(child), standing, node, descent) && all
+    })
 }
 
 /// The child of a node that holds all of these places.
@@ -162,13 +181,19 @@ impl Standing {
     /// Whether it is the node itself, or closes it. The part of a leaf that is a child might as well be a leaf of its own.
     fn is_of_leaf(&self) -> bool {
         let is_own = |part: &SubTriangle| !matches!(part, SubTriangle::Child(_));
-        SubTriangle::all().filter(is_own).any(|part| self.turn(part).is_some())
+        SubTriangle::all()
+            .filter(is_own)
+            .any(|part| self.turn(part).is_some())
     }
 
     fn covering(&self) -> Option<Covering> {
         let as_part = |part| {
             let turn = self.turn(part)?;
-            Some(Covering { triangle: self.triangle, part, turn })
+            Some(Covering {
+                triangle: self.triangle,
+                part,
+                turn,
+            })
         };
         SubTriangle::all().find_map(as_part)
     }

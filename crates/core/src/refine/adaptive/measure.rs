@@ -92,13 +92,17 @@ struct Measuring<'a> {
 impl Beholder for Measuring<'_> {
     fn wants(&self, _: Place, triangles: Range<u32>) -> bool {
         let own = (triangles.start - self.first) as usize..(triangles.end - self.first) as usize;
-        self.is_left.as_ref().is_none_or(|is_left| is_left[own].contains(&true))
+        self.is_left
+            .as_ref()
+            .is_none_or(|is_left| is_left[own].contains(&true))
     }
 
     fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
         match &self.is_left {
             Some(is_left) => is_left[(emitted.number - self.first) as usize],
-            None => self.changes.is_none_or(|changes| changes.concern(self.emission, emitted.number)),
+            None => self
+                .changes
+                .is_none_or(|changes| changes.concern(self.emission, emitted.number)),
         }
     }
 
@@ -109,7 +113,11 @@ impl Beholder for Measuring<'_> {
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
         if let Some(criteria) = self.criteria {
             among.backs = among.looks_away(criteria, |viewer, rest| {
-                Behind::of(self.back_faces, emitted, &over, rules).is_back(&over.corners(), viewer, rest)
+                Behind::of(self.back_faces, emitted, &over, rules).is_back(
+                    &over.corners(),
+                    viewer,
+                    rest,
+                )
             });
         }
         let cone = match self.criteria.filter(|criteria| criteria.has_cones()) {
@@ -122,10 +130,16 @@ impl Beholder for Measuring<'_> {
                 let heights = ground.jet().heights(cell, among.frame.normal());
                 Height::Regular(heights.lifted_range(among.lifts), heights)
             }
-            Over::General(_, _, piece) => Height::General(self.attained(&among, emitted, piece, rules)),
+            Over::General(_, _, piece) => {
+                Height::General(self.attained(&among, emitted, piece, rules))
+            }
         };
         if self.fails_for_sure(height.least()) {
-            let value = Value { bound: f64::INFINITY, value: height.least(), pixels: 0.0 };
+            let value = Value {
+                bound: f64::INFINITY,
+                value: height.least(),
+                pixels: 0.0,
+            };
             return self.take((emitted.number, emitted.place), value, 0.0);
         }
         let mut best: Option<Value> = None;
@@ -138,14 +152,20 @@ impl Beholder for Measuring<'_> {
         let highest = match (over, height) {
             (Over::Regular(ground, cell, spot), Height::Regular((height, rest), heights)) => {
                 let by_piece = ground.jet().beside(&cell, &among.frame, emitted.open);
-                let beside = ground.jet().beside_closely(&by_piece, &cell, &among.frame, emitted.open);
+                let beside =
+                    ground
+                        .jet()
+                        .beside_closely(&by_piece, &cell, &among.frame, emitted.open);
                 let off = |height| beside.deviation_off(height, among.moved, among.aside);
-                let refined = || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
+                let refined =
+                    || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
                 // Nothing that is loose depends on heights.
-                let is_met = is_enough(off(height + rest)) || !beside.is_loose() && is_enough(off(refined()));
+                let is_met = is_enough(off(height + rest))
+                    || !beside.is_loose() && is_enough(off(refined()));
                 if !is_met && !self.fails_by_height(&among, &beside, &off(height - rest)) {
                     let net = ground.net(spot, emitted.part);
-                    let deviation = net.deviation(&among.frame, rules, self.effort(&among, emitted));
+                    let deviation =
+                        net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
                 }
                 height
@@ -159,7 +179,14 @@ impl Beholder for Measuring<'_> {
             (Over::Regular(..), Height::General(height)) => height,
         };
         let Some(value) = best else { return };
-        let value = Value { value: if exceeds(value.value, cone) { value.value } else { cone }, ..value };
+        let value = Value {
+            value: if exceeds(value.value, cone) {
+                value.value
+            } else {
+                cone
+            },
+            ..value
+        };
         self.take((emitted.number, emitted.place), value, highest);
     }
 }
@@ -191,15 +218,28 @@ impl<'a> Measuring<'a> {
     /// What all come to.
     fn found(mut self, bulge: Option<&Bulge>) -> Measured {
         let each = core::mem::take(&mut self.found.each);
-        for (number, known) in each.iter().enumerate().filter(|(_, known)| !known.offsets[0].is_nan()) {
+        for (number, known) in each
+            .iter()
+            .enumerate()
+            .filter(|(_, known)| !known.offsets[0].is_nan())
+        {
             let found = &mut self.found;
             found.value = found.value.max(known.value);
             let fails = exceeds(known.value, self.limit);
-            if fails || exceeds(known.bound, found.worst.0) || exceeds(known.height, found.highest.0) {
-                let place = bulge.map_or(found.worst.1, |bulge| bulge.place(found.worst.1.face, number));
+            if fails
+                || exceeds(known.bound, found.worst.0)
+                || exceeds(known.height, found.highest.0)
+            {
+                let place = bulge.map_or(found.worst.1, |bulge| {
+                    bulge.place(found.worst.1.face, number)
+                });
                 found.add(
                     place,
-                    &Value { bound: known.bound, value: known.value, pixels: 0.0 },
+                    &Value {
+                        bound: known.bound,
+                        value: known.value,
+                        pixels: 0.0,
+                    },
                     known.height,
                 );
                 if fails {
@@ -220,7 +260,12 @@ impl<'a> Measuring<'a> {
     fn take(&mut self, (number, place): (u32, Place), value: Value, height: f64) {
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
-            *known = FoundLast { offsets, bound: value.bound, value: value.value, height };
+            *known = FoundLast {
+                offsets,
+                bound: value.bound,
+                value: value.value,
+                height,
+            };
             return;
         }
         self.found.add(place, &value, height);
@@ -238,11 +283,21 @@ impl<'a> Measuring<'a> {
         let frame = TriangleFrame::new(emitted.vertices.map(at));
         let effort = Effort::along_rim(self.limit.min(self.length), emitted.open);
         let deviation = match over {
-            Over::Regular(ground, _, spot) => ground.net(spot, emitted.part).deviation(&frame, rules, effort),
+            Over::Regular(ground, _, spot) => ground
+                .net(spot, emitted.part)
+                .deviation(&frame, rules, effort),
             Over::General(pieces, ..) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
         let bound = deviation.own;
-        self.take((emitted.number, emitted.place), Value { bound, value: bound, pixels: 0.0 }, bound);
+        self.take(
+            (emitted.number, emitted.place),
+            Value {
+                bound,
+                value: bound,
+                pixels: 0.0,
+            },
+            bound,
+        );
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
@@ -259,11 +314,22 @@ impl<'a> Measuring<'a> {
     }
 
     /// The greatest height of a few points of a piece that is not regular.
-    fn attained(&self, among: &Among, emitted: &Emitted, piece: &GeneralPiece, rules: &Rules<'_>) -> f64 {
-        if self.length.is_finite() || self.criteria.is_some() || emitted.part != SubTriangle::Whole {
+    fn attained(
+        &self,
+        among: &Among,
+        emitted: &Emitted,
+        piece: &GeneralPiece,
+        rules: &Rules<'_>,
+    ) -> f64 {
+        if self.length.is_finite() || self.criteria.is_some() || emitted.part != SubTriangle::Whole
+        {
             return 0.0;
         }
-        piece.middles(rules).iter().map(|point| among.frame.height(point.position).abs()).fold(0.0, f64::max)
+        piece
+            .middles(rules)
+            .iter()
+            .map(|point| among.frame.height(point.position).abs())
+            .fold(0.0, f64::max)
     }
 
     /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. 0 where
@@ -273,7 +339,11 @@ impl<'a> Measuring<'a> {
         let can_be = self.criteria.is_none() && target.is_finite() && flat.is_within(among.slopes);
         let (within, aside) = (flat.height_within(target, among.chord), 2.0 * among.aside);
         // As far as `Deviation::off` lets it be.
-        if can_be && within > aside { ROUNDED * (within * within - aside * aside).sqrt() } else { 0.0 }
+        if can_be && within > aside {
+            ROUNDED * (within * within - aside * aside).sqrt()
+        } else {
+            0.0
+        }
     }
 
     fn by_pieces<'p>(
@@ -283,7 +353,12 @@ impl<'a> Measuring<'a> {
         pieces: &mut Pieces<'p>,
         rules: &'p Rules<'p>,
     ) -> Deviation {
-        let deviation = pieces.deviation(emitted.part, &among.frame, rules, self.effort(among, emitted));
+        let deviation = pieces.deviation(
+            emitted.part,
+            &among.frame,
+            rules,
+            self.effort(among, emitted),
+        );
         deviation.off(among.moved, among.aside)
     }
 
@@ -308,11 +383,23 @@ impl<'a> Measuring<'a> {
     /// What the triangle comes to with this deviation.
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
         let bound = deviation.bound(among.chord, among.slopes);
-        let Some(criteria) = self.criteria else { return Value { bound, value: bound, pixels: 0.0 } };
+        let Some(criteria) = self.criteria else {
+            return Value {
+                bound,
+                value: bound,
+                pixels: 0.0,
+            };
+        };
         let apart: Apart = deviation.apart(among.chord, among.slopes);
         let region = among.region().grown(apart.own);
         let value = criteria.distance_ratio(&apart, &region, &among.backs);
-        Value { bound, value, pixels: criteria.pixels(&apart, &region, &among.backs).unwrap_or(0.0) }
+        Value {
+            bound,
+            value,
+            pixels: criteria
+                .pixels(&apart, &region, &among.backs)
+                .unwrap_or(0.0),
+        }
     }
 }
 
@@ -355,16 +442,27 @@ struct Among {
 }
 
 impl Among {
-    fn of(emission: &Emission, sharp: &HashSet<u32>, emitted: &Emitted, criteria: Option<&Criteria>) -> Self {
-        let corners = emitted.vertices.map(|vertex| vector(emission.positions[vertex as usize]));
+    fn of(
+        emission: &Emission,
+        sharp: &HashSet<u32>,
+        emitted: &Emitted,
+        criteria: Option<&Criteria>,
+    ) -> Self {
+        let corners = emitted
+            .vertices
+            .map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
-        let ((squared, slopes), neighbours) = match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
-            true => neighbours(emission, sharp, emitted.number),
-            false => (beside(emission, sharp, emitted.number), [None; 3]),
-        };
+        let ((squared, slopes), neighbours) =
+            match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
+                true => neighbours(emission, sharp, emitted.number),
+                false => (beside(emission, sharp, emitted.number), [None; 3]),
+            };
         // The emitted triangle may begin at another corner.
         let emitted_at = emission.triangles[emitted.number as usize];
-        let first = emitted_at.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0);
+        let first = emitted_at
+            .iter()
+            .position(|&vertex| vertex == emitted.vertices[0])
+            .unwrap_or(0);
         let slopes = [0, 1, 2].map(|edge| slopes[(first + edge) % 3]);
         let steps = emitted.vertices.map(|vertex| emission.step(vertex));
         let (mut moved, mut aside) = (0.0f64, 0.0f64);
@@ -375,7 +473,17 @@ impl Among {
             -lift
         });
         let (chord, backs) = (squared.sqrt(), Backs::nobodys());
-        Self { corners, frame, chord, slopes, lifts, moved, aside, neighbours, backs }
+        Self {
+            corners,
+            frame,
+            chord,
+            slopes,
+            lifts,
+            moved,
+            aside,
+            neighbours,
+            backs,
+        }
     }
 
     /// Who sees nothing but the back of the triangle, of those beside it, and of its piece.
@@ -385,7 +493,8 @@ impl Among {
         piece: impl Fn((usize, &Viewpoint), f64) -> Option<f64>,
     ) -> Backs {
         let own = core::iter::once(self.corners);
-        let triangles: SmallVec<[_; 4]> = own.chain(self.neighbours.into_iter().flatten()).collect();
+        let triangles: SmallVec<[_; 4]> =
+            own.chain(self.neighbours.into_iter().flatten()).collect();
         looks_away(criteria, &self.region(), (&triangles, self.moved), piece)
     }
 
@@ -396,9 +505,16 @@ impl Among {
     /// How many times over the triangle of a leaf leaves its cones; not at all where these are given up.
     fn cone(&self, criteria: &Criteria, place: Place, corners: &[LimitPoint; 3]) -> f64 {
         let (normal, normals) = (self.frame.normal(), corners.map(|corner| corner.normal));
-        let tilt = normals.iter().map(|corner| corner.distance(normal)).fold(0.0, f64::max);
+        let tilt = normals
+            .iter()
+            .map(|corner| corner.distance(normal))
+            .fold(0.0, f64::max);
         let region = Region::around(self.corners, normal).turned(2.0 * tilt);
         let ratio = criteria.cone_ratio(normal, normals, &region, &self.backs);
-        if place.level as usize >= criteria.deepest_cone() { ratio.min(1.0) } else { ratio }
+        if place.level as usize >= criteria.deepest_cone() {
+            ratio.min(1.0)
+        } else {
+            ratio
+        }
     }
 }

@@ -38,8 +38,12 @@ pub(super) struct FoundLast {
 }
 
 impl FoundLast {
-    pub(super) const NOTHING: Self =
-        Self { offsets: [f64::NAN; 3], bound: f64::INFINITY, value: f64::INFINITY, height: 0.0 };
+    pub(super) const NOTHING: Self = Self {
+        offsets: [f64::NAN; 3],
+        bound: f64::INFINITY,
+        value: f64::INFINITY,
+        height: 0.0,
+    };
 }
 
 /// What the triangles of a control face come to.

@@ -135,7 +135,11 @@ pub(super) fn adaptive(
         }
         // Without room for them, or where nothing may be divided any further, that is how far it comes.
         if !fits || !is_new || demands.len() > room {
-            found.stop = if fits && !is_new { ExactStop::LevelCap } else { cap };
+            found.stop = if fits && !is_new {
+                ExactStop::LevelCap
+            } else {
+                cap
+            };
             return Ok(found);
         }
     }
@@ -179,22 +183,41 @@ pub(super) fn count(
         false => None,
     };
     let most = options.budget().0;
-    let found = without_gaps(mesh, scheme, ((options, &demands), most), observer, |engine| {
-        let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
-        let limit = if engine.control.criteria.is_some() { times } else { limit };
-        let plan = if engine.is_balanced {
-            engine.balanced(limit, fewest.unwrap_or(usize::MAX))?.map(|outcome| outcome.plan)
-        } else {
-            engine.without_counting_strips().plan(Goal::Within(limit), usize::MAX)?
-        };
-        let Some(mut plan) = plan else { return Ok(fewest.unwrap_or(0)) };
-        if engine.control.flat.are_none() {
-            return Ok(plan.triangles);
-        }
-        // Which regions cannot be triangulated from their rims nobody knows before.
-        let emission = engine.emit_all(&mut plan)?;
-        Ok(engine.assemble(emission, plan.levels(engine.watch)?)?.mesh.face_count())
-    })?;
+    let found = without_gaps(
+        mesh,
+        scheme,
+        ((options, &demands), most),
+        observer,
+        |engine| {
+            let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
+            let limit = if engine.control.criteria.is_some() {
+                times
+            } else {
+                limit
+            };
+            let plan = if engine.is_balanced {
+                engine
+                    .balanced(limit, fewest.unwrap_or(usize::MAX))?
+                    .map(|outcome| outcome.plan)
+            } else {
+                engine
+                    .without_counting_strips()
+                    .plan(Goal::Within(limit), usize::MAX)?
+            };
+            let Some(mut plan) = plan else {
+                return Ok(fewest.unwrap_or(0));
+            };
+            if engine.control.flat.are_none() {
+                return Ok(plan.triangles);
+            }
+            // Which regions cannot be triangulated from their rims nobody knows before.
+            let emission = engine.emit_all(&mut plan)?;
+            Ok(engine
+                .assemble(emission, plan.levels(engine.watch)?)?
+                .mesh
+                .face_count())
+        },
+    )?;
     let may_be_fewer = fewest.is_none() && options.balance;
     if may_be_fewer && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? {
         return Ok(found.min(count(mesh, scheme, &plain, times, observer)?));
@@ -211,20 +234,37 @@ pub(super) fn count_over_first(
     faces: usize,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    with_engine(mesh, scheme, (options, &Demands::default()), observer, |engine| {
-        let mut is_divided = vec![false; mesh.face_count()];
-        for h in 0..3 * faces as u32 {
-            is_divided[h as usize / 3] = true;
-            engine.edges.twin(h).into_iter().for_each(|twin| is_divided[twin as usize / 3] = true);
-        }
-        let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
-        let Some(plan) = engine.without_strips().plan(goal, usize::MAX)? else { return Ok(0) };
-        let over = |face: u32| {
-            let own = plan.closed[face as usize].triangles as usize;
-            engine.control.flat.count_over((engine.control, &engine.edges), &plan.chains, face, own)
-        };
-        Ok((0..faces as u32).map(over).sum())
-    })
+    with_engine(
+        mesh,
+        scheme,
+        (options, &Demands::default()),
+        observer,
+        |engine| {
+            let mut is_divided = vec![false; mesh.face_count()];
+            for h in 0..3 * faces as u32 {
+                is_divided[h as usize / 3] = true;
+                engine
+                    .edges
+                    .twin(h)
+                    .into_iter()
+                    .for_each(|twin| is_divided[twin as usize / 3] = true);
+            }
+            let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
+            let Some(plan) = engine.without_strips().plan(goal, usize::MAX)? else {
+                return Ok(0);
+            };
+            let over = |face: u32| {
+                let own = plan.closed[face as usize].triangles as usize;
+                engine.control.flat.count_over(
+                    (engine.control, &engine.edges),
+                    &plan.chains,
+                    face,
+                    own,
+                )
+            };
+            Ok((0..faces as u32).map(over).sum())
+        },
+    )
 }
 
 fn with_engine<T>(
@@ -264,7 +304,8 @@ fn with_engine<T>(
         kept: &kept,
         demands,
     };
-    if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty() {
+    if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty()
+    {
         control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
@@ -286,14 +327,26 @@ fn with_engine<T>(
 }
 
 /// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
-fn criteria(mesh: &Mesh, options: &ExactOptions, rounding: f64) -> Result<Option<Criteria>, RefineError> {
+fn criteria(
+    mesh: &Mesh,
+    options: &ExactOptions,
+    rounding: f64,
+) -> Result<Option<Criteria>, RefineError> {
     if options.angle.is_none() && options.pixels.is_none() {
         return Ok(None);
     }
-    let distance = options.tolerance.map(|tolerance| Distance::new(tolerance, rounding));
-    let cone = options.angle.map(|angle| LimitNormal { view: options.view, ..LimitNormal::new(angle) });
+    let distance = options
+        .tolerance
+        .map(|tolerance| Distance::new(tolerance, rounding));
+    let cone = options.angle.map(|angle| LimitNormal {
+        view: options.view,
+        ..LimitNormal::new(angle)
+    });
     let is_closed = mesh.topology().boundary_edge_count() == 0;
-    let pixels = options.pixels.map(|limit| Pixels::new(limit, &options.cameras, is_closed)).transpose()?;
+    let pixels = options
+        .pixels
+        .map(|limit| Pixels::new(limit, &options.cameras, is_closed))
+        .transpose()?;
     Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
 }
 
@@ -352,8 +405,14 @@ impl Engine<'_> {
                 continue;
             };
             let is_best = stop == ExactStop::Met || floor > 0.0;
-            let even = if is_best { None } else { self.even(outcome.plan.worst(), most)? };
-            let Some(even) = even else { return outcome.finish(self, stop, options) };
+            let even = if is_best {
+                None
+            } else {
+                self.even(outcome.plan.worst(), most)?
+            };
+            let Some(even) = even else {
+                return outcome.finish(self, stop, options);
+            };
             // Evenly curved models are best divided evenly, as long as drifts allow to prove about as much of that. Lower
             // bounds are found distances, within some per cent of the truth where all triangles are looked at.
             let worst_first = outcome.looked_at(self)?.finish(self, stop, options)?;
@@ -366,12 +425,18 @@ impl Engine<'_> {
 
     /// The same for plans of whose numbers of triangles nobody asks more than that they fit.
     fn without_counting_strips(&self) -> Self {
-        Self { counts_strips: CountsStrips::WhereTooMany, ..self.clone() }
+        Self {
+            counts_strips: CountsStrips::WhereTooMany,
+            ..self.clone()
+        }
     }
 
     /// The same for plans whose strips are not put together.
     fn without_strips(&self) -> Self {
-        Self { counts_strips: CountsStrips::Never, ..self.clone() }
+        Self {
+            counts_strips: CountsStrips::Never,
+            ..self.clone()
+        }
     }
 
     /// Whether triangles are looked at among their neighbours once all are emitted, not before.
@@ -380,14 +445,23 @@ impl Engine<'_> {
     }
 
     /// Emits a plan, dividing what fails among its neighbours; `None` if there are too many triangles.
-    fn emit(&self, plan: Plan, most: usize, is_budget: bool) -> Result<Option<Outcome>, RefineError> {
+    fn emit(
+        &self,
+        plan: Plan,
+        most: usize,
+        is_budget: bool,
+    ) -> Result<Option<Outcome>, RefineError> {
         if self.control.criteria.is_some() {
             let goal = plan.goal.clone();
             return self.emit_among(plan, &goal, (most, is_budget));
         }
         let mut plan = plan;
         let emission = self.emit_all(&mut plan)?;
-        Ok(Some(Outcome { plan, emission, measured: None }))
+        Ok(Some(Outcome {
+            plan,
+            emission,
+            measured: None,
+        }))
     }
 
     /// The even division that fits, if it may come within a distance, what is left spent on its worst faces.
@@ -400,13 +474,19 @@ impl Engine<'_> {
 
     /// Emits so much of a plan, beside what was emitted before, of which is copied what is the same.
     fn emit_some(&self, plan: &Plan, scope: Scope<'_>) -> Result<Emission, RefineError> {
-        let before = plan.emission.as_ref().map(|emission| (Last::Kept(emission), &plan.is_touched[..]));
+        let before = plan
+            .emission
+            .as_ref()
+            .map(|emission| (Last::Kept(emission), &plan.is_touched[..]));
         self.emit_after(plan, scope, before)
     }
 
     /// The same in place of what was emitted before.
     fn emit_instead(&self, plan: &mut Plan, scope: Scope<'_>) -> Result<Emission, RefineError> {
-        let before = plan.emission.take().map(|emission| Last::Taken(Box::new(emission)));
+        let before = plan
+            .emission
+            .take()
+            .map(|emission| Last::Taken(Box::new(emission)));
         let before = before.map(|last| (last, &plan.is_touched[..]));
         self.emit_after(plan, scope, before)
     }
@@ -419,20 +499,39 @@ impl Engine<'_> {
     ) -> Result<Emission, RefineError> {
         let chains = (&plan.decision, &plan.chains);
         let has_origins = self.has_origins && !matches!(scope, Scope::Areas(_));
-        let spare = if self.is_balanced { emit::SPARE_BALANCED } else { emit::SPARE };
+        let spare = if self.is_balanced {
+            emit::SPARE_BALANCED
+        } else {
+            emit::SPARE
+        };
         let extend = (scope, has_origins, spare);
-        emit::emit((self.control, self.watch), &self.edges, chains, &plan.closed, extend, before)
+        emit::emit(
+            (self.control, self.watch),
+            &self.edges,
+            chains,
+            &plan.closed,
+            extend,
+            before,
+        )
     }
 
     /// Emits all of a plan.
     fn emit_all(&self, plan: &mut Plan) -> Result<Emission, RefineError> {
         self.watch.stage(Stage::Assembling, None)?;
-        let mut emission = match plan.emission.take_if(|emission| emission.is_complete(&plan.is_touched)) {
+        let mut emission = match plan
+            .emission
+            .take_if(|emission| emission.is_complete(&plan.is_touched))
+        {
             Some(emission) => emission,
             None => self.emit_instead(plan, Scope::All)?,
         };
         plan.is_touched.fill(false);
-        let junctions = sides::junctions((self.control, self.watch), &self.edges, &plan.chains, &emission)?;
+        let junctions = sides::junctions(
+            (self.control, self.watch),
+            &self.edges,
+            &plan.chains,
+            &emission,
+        )?;
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;
         Ok(emission)
@@ -441,7 +540,9 @@ impl Engine<'_> {
     /// Triangles that a plan comes to at most: strips may be put together.
     fn triangles_at_most(&self, plan: &Plan) -> usize {
         let own = |face: u32| plan.closed[face as usize].triangles as usize;
-        self.control.flat.count((self.control, &self.edges), &plan.chains, own)
+        self.control
+            .flat
+            .count((self.control, &self.edges), &plan.chains, own)
     }
 
     /// Triangles that a plan comes to.
@@ -455,10 +556,26 @@ impl Engine<'_> {
             false => self.emit_instead(plan, Scope::All)?,
         };
         let sharp = settle::sharp_edges(&emission, self.watch)?;
-        let Emission { positions, triangles, twins, parents, starts, .. } = &emission;
+        let Emission {
+            positions,
+            triangles,
+            twins,
+            parents,
+            starts,
+            ..
+        } = &emission;
         let corners = self.control.mesh.vertex_count();
         let kept = self.control.kept;
-        let net = Net { positions, triangles, twins, parents, starts, sharp: &sharp, kept, corners };
+        let net = Net {
+            positions,
+            triangles,
+            twins,
+            parents,
+            starts,
+            sharp: &sharp,
+            kept,
+            corners,
+        };
         let saved = flat.saved(&net, self.watch)?;
         // Whoever emits it next need not write it again, but for those who look at what was changed since the last time.
         if !self.is_settled_later() {

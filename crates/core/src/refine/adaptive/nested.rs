@@ -46,7 +46,12 @@ pub(in crate::refine) fn nested(
         demands = found.unwrap_or_default();
     }
     if let Some(coarser) = coarser {
-        divide_as(mesh, &coarser.exact, &mut demands, &SharedWatch::new(observer, Stage::Refining))?;
+        divide_as(
+            mesh,
+            &coarser.exact,
+            &mut demands,
+            &SharedWatch::new(observer, Stage::Refining),
+        )?;
     }
     loop {
         let mut exact = once(mesh, scheme, (options, &demands), observer)?;
@@ -57,9 +62,14 @@ pub(in crate::refine) fn nested(
             on_coarser(mesh, &coarser.exact, &exact, &watch).map(|morph| (morph, coarser.tolerance))
         });
         let mut morph = morph.transpose()?;
-        let start = morph.as_ref().map(|(morph, tolerance)| (&morph.positions[..], tolerance - rounding));
+        let start = morph
+            .as_ref()
+            .map(|(morph, tolerance)| (&morph.positions[..], tolerance - rounding));
         let end = (exact.mesh.positions(), tolerance - rounding);
-        let apart = Apart { surface, ends: [Some(end), start] };
+        let apart = Apart {
+            surface,
+            ends: [Some(end), start],
+        };
         let off = apart.off(mesh, &exact, &watch)?;
         if let Some(failure) = surface.failure() {
             return Err(failure.clone().into());
@@ -72,7 +82,12 @@ pub(in crate::refine) fn nested(
             // Points are no farther from each other than those of the same place.
             exact.error.upper = exact.error.upper.min(parametric);
         }
-        let mut level = Level { exact, tolerance, parametric, geomorph: morph.map(|(morph, _)| morph) };
+        let mut level = Level {
+            exact,
+            tolerance,
+            parametric,
+            geomorph: morph.map(|(morph, _)| morph),
+        };
         if !with_geomorph || off.failing.is_empty() || level.exact.stop != ExactStop::Met {
             return Ok(level);
         }
@@ -83,7 +98,11 @@ pub(in crate::refine) fn nested(
         }
         // Without room for them, or where nothing may be divided any further, that is how far it comes.
         if !fits || !is_new || demands.len() > room {
-            level.exact.stop = if fits && !is_new { ExactStop::LevelCap } else { cap };
+            level.exact.stop = if fits && !is_new {
+                ExactStop::LevelCap
+            } else {
+                cap
+            };
             return Ok(level);
         }
     }
@@ -98,7 +117,10 @@ fn divide_as(
 ) -> Result<(), RefineError> {
     let leaves = Leaves::of(mesh, level);
     let blocks = watch.long_shares(mesh.face_count(), |block, is_stopped| {
-        let mut parents = Parents { found: Vec::new(), is_stopped };
+        let mut parents = Parents {
+            found: Vec::new(),
+            is_stopped,
+        };
         block.for_each(|face| {
             leaves.descend(face as u32, (), &mut parents);
         });
@@ -160,17 +182,29 @@ impl Apart<'_> {
         let leaves = Leaves::of(mesh, exact);
         let triangles = exact.mesh.triangles();
         let blocks = watch.long_shares(mesh.face_count(), |block, is_stopped| {
-            let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
+            let mut off = Off {
+                greatest: [0.0; 2],
+                failing: Vec::new(),
+            };
             for face in block {
                 let (sheet, rules) = self.surface.sheet(FaceId(face as u32));
-                let mut looking = Looking { rules, triangles, ends: &self.ends, off: &mut off, is_stopped };
+                let mut looking = Looking {
+                    rules,
+                    triangles,
+                    ends: &self.ends,
+                    off: &mut off,
+                    is_stopped,
+                };
                 if !leaves.descend(face as u32, sheet, &mut looking) {
                     off.greatest = [f64::INFINITY; 2];
                 }
             }
             off
         })?;
-        let mut off = Off { greatest: [0.0; 2], failing: Vec::new() };
+        let mut off = Off {
+            greatest: [0.0; 2],
+            failing: Vec::new(),
+        };
         for block in blocks {
             off.greatest = [0, 1].map(|end| off.greatest[end].max(block.greatest[end]));
             off.failing.extend(block.failing);
@@ -193,7 +227,12 @@ impl Looking<'_> {
     fn vertices(&self, covering: &[Covering]) -> [u32; 6] {
         let mut vertices = [0; 6];
         for own in covering {
-            for (of_part, at) in own.part.corners([0, 1, 2], [3, 4, 5]).into_iter().enumerate() {
+            for (of_part, at) in own
+                .part
+                .corners([0, 1, 2], [3, 4, 5])
+                .into_iter()
+                .enumerate()
+            {
                 vertices[at] = self.triangles[own.triangle as usize][own.corner(of_part)];
             }
         }
@@ -211,16 +250,28 @@ impl Descent for Looking<'_> {
     fn leaf(&mut self, place: Place, sheet: Sheet, covering: &[Covering]) {
         let [a, b, c, d, e, f] = self.vertices(covering);
         let mut fails = false;
-        for (end, &(positions, enough)) in
-            self.ends.iter().enumerate().filter_map(|(i, end)| Some((i, end.as_ref()?)))
+        for (end, &(positions, enough)) in self
+            .ends
+            .iter()
+            .enumerate()
+            .filter_map(|(i, end)| Some((i, end.as_ref()?)))
         {
             let at = |vertices: [u32; 3]| vertices.map(|v| vector(positions[v as usize]));
             let (corners, middles): ([DVec3; 3], [DVec3; 3]) = (at([a, b, c]), at([d, e, f]));
             let greatest = &mut self.off.greatest[end];
             for &Covering { part, .. } in covering {
                 let target = greatest.max(NEGLIGIBLE * enough).min(enough);
-                let bound = sheet.off(part, (part.corners(corners, middles), corners), target, self.rules);
-                *greatest = if exceeds(bound, *greatest) { bound } else { *greatest };
+                let bound = sheet.off(
+                    part,
+                    (part.corners(corners, middles), corners),
+                    target,
+                    self.rules,
+                );
+                *greatest = if exceeds(bound, *greatest) {
+                    bound
+                } else {
+                    *greatest
+                };
                 fails |= exceeds(bound, enough);
             }
         }

@@ -38,7 +38,8 @@ impl Bulges {
         let may_change =
             |face: &u32| last.is_none() || emission.is_new(*face) || self.0[*face as usize].waits;
         let changing: Vec<u32> = (0..faces).filter(may_change).collect();
-        let mut offsets = last.unwrap_or_else(|| limitmesh_pages::defaults(emission.positions.len()));
+        let mut offsets =
+            last.unwrap_or_else(|| limitmesh_pages::defaults(emission.positions.len()));
         let around = self.around(control, emission, &changing, &mut offsets, watch)?;
         watch.each(&changing, |&face| {
             for vertex in emission.vertices_of(face) {
@@ -57,7 +58,10 @@ impl Bulges {
             }
         })?;
         // Corners and darts inside a face's reach; and copies, which would part.
-        control.lasting.tagged_vertices().for_each(|vertex| offsets[vertex.index()] = 0.0);
+        control
+            .lasting
+            .tagged_vertices()
+            .for_each(|vertex| offsets[vertex.index()] = 0.0);
         let copies = emission.junctions.vertices.iter().flatten();
         copies.for_each(|&vertex| offsets[vertex as usize] = 0.0);
         Ok((offsets, changing))
@@ -74,25 +78,42 @@ impl Bulges {
         watch: &SharedWatch<'_>,
     ) -> Result<AllAround, Cancelled> {
         let mut around = AllAround::none(emission.positions.len());
-        let triangles_of =
-            |face: u32| (&emission.triangles[emission.triangles_of(face)], &self.0[face as usize]);
+        let triangles_of = |face: u32| {
+            (
+                &emission.triangles[emission.triangles_of(face)],
+                &self.0[face as usize],
+            )
+        };
         watch.each(faces, |&face| {
             let (triangles, bulge) = triangles_of(face);
             if bulge.waits {
                 let all = triangles.iter().zip(bulge.offsets_last());
                 all.filter(|(_, last)| last[0].is_nan())
-                    .for_each(|(triangle, _)| triangle.iter().for_each(|&vertex| around.add_vertex(vertex)));
+                    .for_each(|(triangle, _)| {
+                        triangle
+                            .iter()
+                            .for_each(|&vertex| around.add_vertex(vertex))
+                    });
             }
         })?;
         let mut is_corner = vec![false; control.mesh.vertex_count()];
-        let corners = |face: u32| control.mesh.triangles()[face as usize].map(|vertex| vertex as usize);
-        watch.each(faces, |&face| corners(face).into_iter().for_each(|corner| is_corner[corner] = true))?;
+        let corners =
+            |face: u32| control.mesh.triangles()[face as usize].map(|vertex| vertex as usize);
+        watch.each(faces, |&face| {
+            corners(face)
+                .into_iter()
+                .for_each(|corner| is_corner[corner] = true)
+        })?;
         watch.each(0..self.0.len() as u32, |face| {
             if !corners(face).into_iter().any(|corner| is_corner[corner]) {
                 return;
             }
             let (triangles, bulge) = triangles_of(face);
-            for ((triangle, last), range) in triangles.iter().zip(bulge.offsets_last()).zip(&bulge.ranges) {
+            for ((triangle, last), range) in triangles
+                .iter()
+                .zip(bulge.offsets_last())
+                .zip(&bulge.ranges)
+            {
                 for (&vertex, offset) in triangle.iter().zip(last) {
                     match around.of_mut(vertex) {
                         Some(around) => around.add(*range, offset),
@@ -115,7 +136,10 @@ struct AllAround {
 impl AllAround {
     /// None of so many.
     fn none(vertices: usize) -> Self {
-        Self { numbers: limitmesh_pages::defaults(vertices), around: Vec::new() }
+        Self {
+            numbers: limitmesh_pages::defaults(vertices),
+            around: Vec::new(),
+        }
     }
 
     fn add_vertex(&mut self, vertex: u32) {
@@ -127,11 +151,13 @@ impl AllAround {
     }
 
     fn of_mut(&mut self, vertex: u32) -> Option<&mut Around> {
-        self.around.get_mut((self.numbers[vertex as usize] as usize).wrapping_sub(1))
+        self.around
+            .get_mut((self.numbers[vertex as usize] as usize).wrapping_sub(1))
     }
 
     fn of(&self, vertex: u32) -> Option<&Around> {
-        self.around.get((self.numbers[vertex as usize] as usize).wrapping_sub(1))
+        self.around
+            .get((self.numbers[vertex as usize] as usize).wrapping_sub(1))
     }
 }
 
@@ -148,7 +174,13 @@ struct Around {
 }
 
 impl Around {
-    const NOTHING: Self = Self { low: 0.0, high: 0.0, sum: 0.0, triangles: 0, before: f64::NAN };
+    const NOTHING: Self = Self {
+        low: 0.0,
+        high: 0.0,
+        sum: 0.0,
+        triangles: 0,
+        before: f64::NAN,
+    };
 
     /// Adds the heights over a triangle, where it has a say, and how far the vertex was moved with it.
     fn add(&mut self, [low, high]: [f64; 2], before: f64) {
@@ -172,7 +204,9 @@ impl Around {
         let easy = EASY * allowed;
         let (least, most) = (self.high - easy, self.low + easy);
         if least <= most {
-            (0.5 * self.sum / f64::from(self.triangles.max(1))).max(least).min(most)
+            (0.5 * self.sum / f64::from(self.triangles.max(1)))
+                .max(least)
+                .min(most)
         } else {
             0.5 * (self.low + self.high)
         }

@@ -65,7 +65,9 @@ impl Plan {
 
     /// The greatest bound of a face's triangles.
     pub(super) fn bound(&self, face: u32) -> f64 {
-        let closing = self.closed[face as usize].extent().map_or(0.0, |extent| extent.bound);
+        let closing = self.closed[face as usize]
+            .extent()
+            .map_or(0.0, |extent| extent.bound);
         let settled = self.settled.bound(face);
         closing.max(settled).max(self.decision.bound(face))
     }
@@ -77,28 +79,40 @@ impl Plan {
         if self.settled.has(face) {
             return bound;
         }
-        let conditions = [self.decision.conditions(face), self.closed[face as usize].conditions()];
-        conditions.into_iter().flatten().map(Condition::expected).fold(bound, f64::max)
+        let conditions = [
+            self.decision.conditions(face),
+            self.closed[face as usize].conditions(),
+        ];
+        conditions
+            .into_iter()
+            .flatten()
+            .map(Condition::expected)
+            .fold(bound, f64::max)
     }
 
     /// The faces whose leaves have the greatest bounds first.
     pub(super) fn faces_by_bound(&self) -> Vec<(f64, u32)> {
-        let mut order: Vec<(f64, u32)> =
-            (0..self.closed.len() as u32).map(|face| (self.bound(face), face)).collect();
+        let mut order: Vec<(f64, u32)> = (0..self.closed.len() as u32)
+            .map(|face| (self.bound(face), face))
+            .collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         order
     }
 
     /// The greatest bound of all triangles.
     pub(super) fn worst(&self) -> f64 {
-        (0..self.closed.len() as u32).map(|face| self.bound(face)).fold(0.0, f64::max)
+        (0..self.closed.len() as u32)
+            .map(|face| self.bound(face))
+            .fold(0.0, f64::max)
     }
 
     /// Levels of the deepest tree.
     pub(super) fn levels(&self, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
         let (trees, faces) = (&self.decision.trees, self.closed.len());
         let levels = watch.pieces(faces, parallel::share(faces), |block| {
-            block.map(|face| trees.depth(trees.root(face as u32)) as usize).max()
+            block
+                .map(|face| trees.depth(trees.root(face as u32)) as usize)
+                .max()
         });
         Ok(levels?.into_iter().flatten().max().unwrap_or(0))
     }
@@ -107,7 +121,9 @@ impl Plan {
 impl Engine<'_> {
     /// Divides as asked, until all conditions hold; `None` if that takes more than `most` triangles.
     pub(super) fn plan(&self, goal: Goal, most: usize) -> Result<Option<Plan>, RefineError> {
-        let Some(mut plan) = self.divided(goal, most)? else { return Ok(None) };
+        let Some(mut plan) = self.divided(goal, most)? else {
+            return Ok(None);
+        };
         let fits = self.is_settled_later() || self.settle(&mut plan, most)?;
         Ok(fits.then_some(plan))
     }
@@ -122,7 +138,9 @@ impl Engine<'_> {
         // What closes gaps is looked at with all the rest once vertices are moved, where nothing counts but distances.
         let is_asked = !self.is_balanced || self.control.criteria.is_some();
         let mut plan = Plan::of(if is_asked { goal } else { Goal::Nothing }, decision, faces);
-        Ok(self.carry_out(&mut plan, Dirty::all(faces), most)?.then_some(plan))
+        Ok(self
+            .carry_out(&mut plan, Dirty::all(faces), most)?
+            .then_some(plan))
     }
 
     /// The same for another goal, of distances alone, which asks more of these faces only: they are divided anew, and what that
@@ -137,7 +155,10 @@ impl Engine<'_> {
         let mut finer = plan.with_goal(goal);
         let (control, limits) = ((self.control, self.watch), (self.max_levels, most));
         let again = (wanting, Some(&plan.goal));
-        if !finer.decision.divide(control, &finer.goal, &self.edges, limits, again)? {
+        if !finer
+            .decision
+            .divide(control, &finer.goal, &self.edges, limits, again)?
+        {
             return Ok(None);
         }
         finer.decision.begin_again();
@@ -149,7 +170,9 @@ impl Engine<'_> {
                 false => closed.forget(),
             }
         }
-        wanting.iter().for_each(|&face| dirty.replace(&self.edges, face));
+        wanting
+            .iter()
+            .for_each(|&face| dirty.replace(&self.edges, face));
         Ok(self.carry_out(&mut finer, dirty, most)?.then_some(finer))
     }
 }

@@ -97,55 +97,106 @@ pub(super) fn probe(
     (measured, is_met, tightens): (Option<&[Measured]>, bool, bool),
 ) -> Result<ErrorBounds, RefineError> {
     let watch = engine.watch;
-    let mut best =
-        ErrorBounds { lower: 0.0, upper: 0.0, at: [0.0; 3], certified: engine.control.rules.is_certified() };
+    let mut best = ErrorBounds {
+        lower: 0.0,
+        upper: 0.0,
+        at: [0.0; 3],
+        certified: engine.control.rules.is_certified(),
+    };
     let mesh = Nearest::of(engine.sources(plan, emission), watch)?;
     // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
-    let heights = measured.iter().flat_map(|all| all.iter().map(|face| face.highest));
+    let heights = measured
+        .iter()
+        .flat_map(|all| all.iter().map(|face| face.highest));
     let highest = greatest(heights, PROBED, watch)?;
-    let (enough, wide) = if is_met { (MET_NARROW, MET_WIDE) } else { (NARROW, WIDE) };
-    let mut probed = Probed { leaves: HashSet::new(), enough };
-    lower(engine, (plan, emission), &mesh, (&highest, |_| true, &mut probed), &mut best)?;
+    let (enough, wide) = if is_met {
+        (MET_NARROW, MET_WIDE)
+    } else {
+        (NARROW, WIDE)
+    };
+    let mut probed = Probed {
+        leaves: HashSet::new(),
+        enough,
+    };
+    lower(
+        engine,
+        (plan, emission),
+        &mesh,
+        (&highest, |_| true, &mut probed),
+        &mut best,
+    )?;
     let again = |length: f64, faces: &[u32]| {
         let nothing = Goal::Within(f64::INFINITY);
-        measure(&engine.sources(plan, emission), watch, (&nothing, length), (faces, None, None))
+        measure(
+            &engine.sources(plan, emission),
+            watch,
+            (&nothing, length),
+            (faces, None, None),
+        )
     };
-    let mut worst = Worst { plan, measured, bounded: HashMap::new() };
+    let mut worst = Worst {
+        plan,
+        measured,
+        bounded: HashMap::new(),
+    };
     // In no round another one comes among the greatest.
     let mut candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
     // What failed for sure has no bound yet.
     if candidates.iter().any(|(bound, _)| bound.is_infinite()) {
-        let unbounded = worst.of_all().filter(|(bound, _)| bound.is_infinite()).map(|(_, place)| place.face);
+        let unbounded = worst
+            .of_all()
+            .filter(|(bound, _)| bound.is_infinite())
+            .map(|(_, place)| place.face);
         let unbounded: Vec<u32> = unbounded.collect();
         let found = again(f64::MAX, &unbounded)?;
-        let found = unbounded.into_iter().zip(found.into_iter().map(|found| found.worst));
+        let found = unbounded
+            .into_iter()
+            .zip(found.into_iter().map(|found| found.worst));
         worst.bounded = found.filter(|(_, (bound, _))| bound.is_finite()).collect();
         candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
     }
     // Which of them were looked at again, the lower bound for which they were, and whether that told which leaf is the worst.
     let mut tightened: HashMap<u32, (f64, bool)> = HashMap::new();
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
-    let mut room = if is_met { emission.triangles.len() / MET_SHARE + MET_AT_LEAST } else { usize::MAX };
+    let mut room = if is_met {
+        emission.triangles.len() / MET_SHARE + MET_AT_LEAST
+    } else {
+        usize::MAX
+    };
     for round in 0.. {
         // Before this round fewer than half as many were tightened.
         let most = PROBED.max(TIGHTENED << (round + 1));
         let order = greatest(candidates.iter().copied(), most, watch)?;
         best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
         let is_leaf = |place: Place| {
-            let is_tighter = tightened.get(&place.face).is_some_and(|&(_, is_tighter)| is_tighter);
+            let is_tighter = tightened
+                .get(&place.face)
+                .is_some_and(|&(_, is_tighter)| is_tighter);
             is_tighter || worst.is_leaf(place.face)
         };
-        lower(engine, (plan, emission), &mesh, (&order, is_leaf, &mut probed), &mut best)?;
+        lower(
+            engine,
+            (plan, emission),
+            &mesh,
+            (&order, is_leaf, &mut probed),
+            &mut best,
+        )?;
         if !best.certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
         // Bounds that are good enough for the goals need not be tight.
         let is_loose = |&(bound, place): &(f64, Place)| {
             bound > best.lower
-                && tightened.get(&place.face).is_none_or(|&(known, _)| wide * known < best.lower)
+                && tightened
+                    .get(&place.face)
+                    .is_none_or(|&(known, _)| wide * known < best.lower)
         };
         let (mut loose, mut stays) = (Vec::new(), 0.0);
-        for &(bound, place) in order.iter().filter(|known| is_loose(known)).take(TIGHTENED << round) {
+        for &(bound, place) in order
+            .iter()
+            .filter(|known| is_loose(known))
+            .take(TIGHTENED << round)
+        {
             let count = emission.triangles_of(place.face).len();
             if count > room {
                 (room, stays) = (0, bound);
@@ -160,12 +211,24 @@ pub(super) fn probe(
         }
         let found = again(NARROW * best.lower, &loose)?;
         let heights = greatest(found.iter().map(|face| face.highest), PROBED, watch)?;
-        lower(engine, (plan, emission), &mesh, (&heights, |_| true, &mut probed), &mut best)?;
-        let found: HashMap<u32, (f64, Place)> =
-            loose.into_iter().zip(found.into_iter().map(|found| found.worst)).collect();
+        lower(
+            engine,
+            (plan, emission),
+            &mesh,
+            (&heights, |_| true, &mut probed),
+            &mut best,
+        )?;
+        let found: HashMap<u32, (f64, Place)> = loose
+            .into_iter()
+            .zip(found.into_iter().map(|found| found.worst))
+            .collect();
         for known in &mut candidates {
-            let Some(found) = found.get(&known.1.face) else { continue };
-            let was_tighter = tightened.get(&known.1.face).is_some_and(|&(_, is_tighter)| is_tighter);
+            let Some(found) = found.get(&known.1.face) else {
+                continue;
+            };
+            let was_tighter = tightened
+                .get(&known.1.face)
+                .is_some_and(|&(_, is_tighter)| is_tighter);
             let is_tighter = found.0 < known.0;
             tightened.insert(known.1.face, (best.lower, is_tighter || was_tighter));
             if is_tighter {
@@ -198,7 +261,11 @@ impl Worst<'_> {
             Some(measured) => measured[face as usize].worst,
             None => self.plan.worst_of(face),
         };
-        if known.0.is_infinite() { self.bounded.get(&face).copied().unwrap_or(known) } else { known }
+        if known.0.is_infinite() {
+            self.bounded.get(&face).copied().unwrap_or(known)
+        } else {
+            known
+        }
     }
 
     fn of_all(&self) -> impl Iterator<Item = (f64, Place)> {
@@ -213,7 +280,8 @@ impl Worst<'_> {
 
 /// The order of bounds, the greatest first.
 fn by_bound(a: &(f64, Place), b: &(f64, Place)) -> Ordering {
-    b.0.total_cmp(&a.0).then_with(|| (a.1.face, a.1.path).cmp(&(b.1.face, b.1.path)))
+    b.0.total_cmp(&a.0)
+        .then_with(|| (a.1.face, a.1.path).cmp(&(b.1.face, b.1.path)))
 }
 
 /// So many of the greatest bounds, the greatest first.
@@ -266,11 +334,19 @@ fn lower(
     let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / plan.closed.len().max(1));
     let leaf = |place: Place| (place.face, is_leaf(place).then_some(place));
     let sources = engine.sources(plan, emission);
-    let mut left = order.iter().take(most_probed).map(|&(promise, place)| (promise, leaf(place))).peekable();
+    let mut left = order
+        .iter()
+        .take(most_probed)
+        .map(|&(promise, place)| (promise, leaf(place)))
+        .peekable();
     let enough = probed.enough * most;
     let is_enough = |best: &ErrorBounds| best.lower > enough;
     // Some are looked at together, by all threads, so many that these need not be woken for each; what is not needed any more is forgotten.
-    let most_at_once = if parallel::threads() > 1 { AT_ONCE * parallel::threads() } else { 1 };
+    let most_at_once = if parallel::threads() > 1 {
+        AT_ONCE * parallel::threads()
+    } else {
+        1
+    };
     let mut at_once = 1;
     loop {
         let mut some = Vec::with_capacity(at_once);
@@ -297,7 +373,9 @@ fn lower(
             if !probed.leaves.insert(leaf) {
                 continue;
             }
-            distances.into_iter().for_each(|(distance, point)| best.raise(distance, point));
+            distances
+                .into_iter()
+                .for_each(|(distance, point)| best.raise(distance, point));
         }
         at_once = most_at_once.min(2 * at_once);
     }
@@ -311,17 +389,29 @@ fn loose_anew(
     greatest: &[(f64, Place)],
     known: ErrorBounds,
 ) -> Result<ErrorBounds, RefineError> {
-    let lower = known.lower.max(ErrorBounds::LEAST * engine.control.mesh.diagonal());
+    let lower = known
+        .lower
+        .max(ErrorBounds::LEAST * engine.control.mesh.diagonal());
     if known.upper <= ErrorBounds::TIGHT * lower {
         return Ok(known);
     }
-    let (loose, others): (Vec<_>, Vec<_>) =
-        greatest.iter().copied().partition(|&(bound, _)| bound > WIDE * lower);
+    let (loose, others): (Vec<_>, Vec<_>) = greatest
+        .iter()
+        .copied()
+        .partition(|&(bound, _)| bound > WIDE * lower);
     let mut faces: Vec<u32> = loose.into_iter().map(|(_, place)| place.face).collect();
     faces.sort_unstable();
-    let Some(found) = nearer_mesh::anew(engine, sources, &faces, (&known, lower))? else { return Ok(known) };
-    let rest = others.into_iter().map(|(bound, _)| bound).fold(0.0, f64::max);
-    Ok(ErrorBounds { upper: known.upper.min(found.upper.max(rest)), ..found })
+    let Some(found) = nearer_mesh::anew(engine, sources, &faces, (&known, lower))? else {
+        return Ok(known);
+    };
+    let rest = others
+        .into_iter()
+        .map(|(bound, _)| bound)
+        .fold(0.0, f64::max);
+    Ok(ErrorBounds {
+        upper: known.upper.min(found.upper.max(rest)),
+        ..found
+    })
 }
 
 /// Where nothing is certain: the greatest distance of samples over the faces that may be worse than what was found; after
@@ -333,7 +423,10 @@ fn estimated(
     best: &mut ErrorBounds,
 ) -> Result<f64, RefineError> {
     let control = engine.control;
-    let triangles = Triangles { positions: &emission.positions, triangles: &emission.triangles };
+    let triangles = Triangles {
+        positions: &emission.positions,
+        triangles: &emission.triangles,
+    };
     let tree = Bvh::new_observed(triangles, &mut engine.watch.observer())?;
     let mut count = 0;
     let mut order: Vec<(f64, u32)> = worst.of_all().map(|(bound, _)| bound).zip(0..).collect();
@@ -345,15 +438,25 @@ fn estimated(
         let trees = &worst.plan.decision.trees;
         let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
-        sample(control.piece(face).surface(control.rules), levels.min(MOST_SAMPLED_LEVELS), &mut points);
+        sample(
+            control.piece(face).surface(control.rules),
+            levels.min(MOST_SAMPLED_LEVELS),
+            &mut points,
+        );
         count += points.len();
         let first = emission.triangles_of(face).start as u32;
-        let distances = engine.watch.pieces(points.len(), parallel::share(points.len()), |some| {
-            let distance = |point: &DVec3| tree.closest_from(point.to_array(), first).distance;
-            points[some].iter().map(distance).collect::<Vec<_>>()
-        })?;
+        let distances =
+            engine
+                .watch
+                .pieces(points.len(), parallel::share(points.len()), |some| {
+                    let distance =
+                        |point: &DVec3| tree.closest_from(point.to_array(), first).distance;
+                    points[some].iter().map(distance).collect::<Vec<_>>()
+                })?;
         let distances = distances.into_iter().flatten();
-        distances.zip(points).for_each(|(distance, point)| best.raise(distance, point));
+        distances
+            .zip(points)
+            .for_each(|(distance, point)| best.raise(distance, point));
     }
     Ok(best.lower)
 }
@@ -371,22 +474,37 @@ impl Plan {
     /// The greatest bound of a control face, and the leaf that has it.
     fn worst_of(&self, face: u32) -> (f64, Place) {
         let closing = self.closed[face as usize].extent().copied();
-        let extents = [Some(self.decision.extent(face)), closing].into_iter().flatten();
+        let extents = [Some(self.decision.extent(face)), closing]
+            .into_iter()
+            .flatten();
         let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
-        let greater =
-            |known: (f64, Place), other: (f64, Place)| if other.0 > known.0 { other } else { known };
-        judged.chain(self.settled.worst(face)).fold((0.0, Place::root(face)), greater)
+        let greater = |known: (f64, Place), other: (f64, Place)| {
+            if other.0 > known.0 { other } else { known }
+        };
+        judged
+            .chain(self.settled.worst(face))
+            .fold((0.0, Place::root(face)), greater)
     }
 }
 
 /// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
 /// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
 /// each neighbour. Points near an edge of a triangle count as on it ([`TriangleFrame::on_edge`]), on either side.
-pub(super) fn rounding(control: &Mesh, max_levels: usize, watch: &SharedWatch<'_>) -> Result<f64, Cancelled> {
-    let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+pub(super) fn rounding(
+    control: &Mesh,
+    max_levels: usize,
+    watch: &SharedWatch<'_>,
+) -> Result<f64, Cancelled> {
+    let size = control
+        .positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |size, x| size.max(x.abs()));
     let topology = control.topology();
     let valence = |v: usize| topology.valence_and_openness(VertexId(v as u32)).0;
-    let most = watch.pieces(control.vertex_count(), LOOKED_AT, |piece| piece.map(valence).max());
+    let most = watch.pieces(control.vertex_count(), LOOKED_AT, |piece| {
+        piece.map(valence).max()
+    });
     let most = most?.into_iter().flatten().max().unwrap_or(0);
     let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
     Ok((units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size)
@@ -404,12 +522,26 @@ mod tests {
         let mut unobserved = unobserved;
         let watch = SharedWatch::new(&mut unobserved, Stage::Assembling);
         let mut random = Random::new(5);
-        for (count, most) in [(0, 3), (2, 3), (5, 1), (300, 7), (5000, 64), (5000, 2500), (5000, 5000)] {
+        for (count, most) in [
+            (0, 3),
+            (2, 3),
+            (5, 1),
+            (300, 7),
+            (5000, 64),
+            (5000, 2500),
+            (5000, 5000),
+        ] {
             let mut all: Vec<(f64, Place)> = (0..count)
                 .map(|face| {
                     let value = random.below(count / 3 + 1) as f64;
                     let path = random.below(4) as u64;
-                    (value, Place { path, ..Place::root(face as u32) })
+                    (
+                        value,
+                        Place {
+                            path,
+                            ..Place::root(face as u32)
+                        },
+                    )
                 })
                 .collect();
             let found = greatest(all.iter().copied(), most, &watch).unwrap();

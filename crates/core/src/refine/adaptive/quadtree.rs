@@ -104,7 +104,12 @@ impl Trees {
         let words: usize = pieces.iter().map(|piece| piece.words.len()).sum();
         let count = faces + words;
         if count >= MOST_NODES {
-            return Err(MeshError::TooMany { what: "nodes", count, limit: MOST_NODES }.into());
+            return Err(MeshError::TooMany {
+                what: "nodes",
+                count,
+                limit: MOST_NODES,
+            }
+            .into());
         }
         let mut all = Vec::with_capacity(faces + words + words / 8);
         let mut base = faces as u32;
@@ -130,19 +135,32 @@ impl Trees {
     /// The word of a child of a node that has children.
     #[inline]
     pub(super) fn child(&self, word: u32, child: usize) -> u32 {
-        if word & LEAF != 0 { word - 1 } else { self.words[word as usize + child] }
+        if word & LEAF != 0 {
+            word - 1
+        } else {
+            self.words[word as usize + child]
+        }
     }
 
     /// What refuses `more` words than there are.
     pub(super) fn too_many(&self, more: usize) -> MeshError {
-        MeshError::TooMany { what: "nodes", count: self.words.len() + more, limit: MOST_NODES }
+        MeshError::TooMany {
+            what: "nodes",
+            count: self.words.len() + more,
+            limit: MOST_NODES,
+        }
     }
 
     /// The deepest level of a leaf below a node.
     pub(super) fn depth(&self, word: u32) -> u32 {
         match even_depth(word) {
             Some(depth) => depth,
-            None => 1 + (0..4).map(|child| self.depth(self.child(word, child))).max().unwrap_or(0),
+            None => {
+                1 + (0..4)
+                    .map(|child| self.depth(self.child(word, child)))
+                    .max()
+                    .unwrap_or(0)
+            }
         }
     }
 
@@ -158,7 +176,9 @@ impl Trees {
             let word = self.words[at];
             if word & LEAF != 0 {
                 let below = place.level - level;
-                return even_depth(word).filter(|&depth| depth >= below).map(|_| word - below);
+                return even_depth(word)
+                    .filter(|&depth| depth >= below)
+                    .map(|_| word - below);
             }
             at = word as usize + place.digit(level);
         }
@@ -173,7 +193,11 @@ impl Trees {
             word = self.child(word, leaf.digit(level));
             level += 1;
         }
-        Place { level, path: leaf.path >> (2 * (leaf.level - level)), ..leaf }
+        Place {
+            level,
+            path: leaf.path >> (2 * (leaf.level - level)),
+            ..leaf
+        }
     }
 
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
@@ -190,7 +214,11 @@ impl Trees {
                     return true;
                 }
                 if !is_split(word) {
-                    fresh(Place { level, path: place.path >> (2 * (place.level - level)), ..place });
+                    fresh(Place {
+                        level,
+                        path: place.path >> (2 * (place.level - level)),
+                        ..place
+                    });
                 }
                 match self.expanded(word) {
                     Some(first) => {
@@ -230,7 +258,8 @@ impl Trees {
         if self.words.len() + piece.words.len() >= MOST_NODES {
             return false;
         }
-        self.words.extend(piece.words.iter().map(|&word| rebased(word, base)));
+        self.words
+            .extend(piece.words.iter().map(|&word| rebased(word, base)));
         self.words[face as usize] = rebased(piece.roots[0], base);
         true
     }
@@ -242,7 +271,11 @@ impl Trees {
             return None;
         }
         // Nodes whose leaves are equally deep have no marks.
-        let below = if is_split(word) { word - 1 } else { LEAF | UNJUDGED | word & STRICT };
+        let below = if is_split(word) {
+            word - 1
+        } else {
+            LEAF | UNJUDGED | word & STRICT
+        };
         self.words.extend([below; 4]);
         Some(first as u32)
     }
@@ -264,10 +297,15 @@ impl Piece {
     pub(super) fn node(&mut self, children: [u32; 4]) -> u32 {
         let [first, ..] = children;
         let is_even = first & LEAF != 0 && first & MARKS == 0 && first & DEPTH < MOST_LEVELS;
-        if is_even && children.iter().all(|child| child & !BOUND == first & !BOUND) {
+        if is_even
+            && children
+                .iter()
+                .all(|child| child & !BOUND == first & !BOUND)
+        {
             // Of bounds the greatest, but none where one is not known.
             let bounds = children.map(|child| child & BOUND);
-            let [least, most] = [u32::min, u32::max].map(|of| bounds.into_iter().reduce(of).unwrap_or(0));
+            let [least, most] =
+                [u32::min, u32::max].map(|of| bounds.into_iter().reduce(of).unwrap_or(0));
             return (first & !BOUND | if least > 0 { most } else { 0 }) + 1;
         }
         self.irregular_node(children)
@@ -295,7 +333,11 @@ mod tests {
         for bound in bounds.chain([0.0, -0.0, 1.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]) {
             for depth in [0, 1, MOST_LEVELS] {
                 let word = bounded(LEAF + depth, bound);
-                assert_eq!((even_depth(word), is_split(word)), (Some(depth), depth > 0), "{bound}");
+                assert_eq!(
+                    (even_depth(word), is_split(word)),
+                    (Some(depth), depth > 0),
+                    "{bound}"
+                );
                 let known = bound_of(word).unwrap();
                 assert!(bound <= known, "{bound}: {known}");
                 assert!(
@@ -311,27 +353,46 @@ mod tests {
         assert_eq!(bound_of(bounded(LEAF | CONDITIONAL, 1.0)), None);
         let mut piece = Piece::default();
         let leaves = |last| [1.0, 3.0, 2.0, last].map(|bound| bounded(LEAF, bound));
-        assert_eq!(bound_of(piece.node(leaves(0.5))), bound_of(bounded(LEAF, 3.0)));
+        assert_eq!(
+            bound_of(piece.node(leaves(0.5))),
+            bound_of(bounded(LEAF, 3.0))
+        );
         assert_eq!(piece.node(leaves(f64::INFINITY)), LEAF + 1);
         assert!(piece.words.is_empty());
     }
 
     #[test]
     fn even_nodes_are_split_where_asked() {
-        let mut trees =
-            Trees::of(&[Piece { roots: vec![LEAF + 2, LEAF], words: vec![] }, Piece::default()], &mut || {
-                Ok(())
-            })
-            .unwrap();
+        let mut trees = Trees::of(
+            &[
+                Piece {
+                    roots: vec![LEAF + 2, LEAF],
+                    words: vec![],
+                },
+                Piece::default(),
+            ],
+            &mut || Ok(()),
+        )
+        .unwrap();
         let mut fresh = Vec::new();
-        let place = Place { face: 0, level: 4, path: 0b11_01_10_00 };
+        let place = Place {
+            face: 0,
+            level: 4,
+            path: 0b11_01_10_00,
+        };
         assert!(trees.ensure(place, |place| fresh.push(place)));
         // The first two levels were split already.
         assert_eq!(
-            fresh.iter().map(|place| (place.level, place.path)).collect::<Vec<_>>(),
+            fresh
+                .iter()
+                .map(|place| (place.level, place.path))
+                .collect::<Vec<_>>(),
             [(2, 0b11_01), (3, 0b11_01_10)]
         );
-        assert_eq!((trees.depth(trees.root(0)), trees.depth(trees.root(1))), (4, 0));
+        assert_eq!(
+            (trees.depth(trees.root(0)), trees.depth(trees.root(1))),
+            (4, 0)
+        );
         let middle = trees.child(trees.root(0), 3);
         assert_eq!(even_depth(trees.child(middle, 0)), Some(0));
         assert!(is_split(trees.child(middle, 1)));

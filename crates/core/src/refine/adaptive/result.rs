@@ -36,8 +36,12 @@ impl Outcome {
             let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
             let sources = engine.sources(&self.plan, &self.emission);
             let nothing = Goal::Within(f64::INFINITY);
-            self.measured =
-                Some(measure(&sources, engine.watch, (&nothing, f64::INFINITY), (&all, None, None))?);
+            self.measured = Some(measure(
+                &sources,
+                engine.watch,
+                (&nothing, f64::INFINITY),
+                (&all, None, None),
+            )?);
         }
         Ok(self)
     }
@@ -49,14 +53,26 @@ impl Outcome {
         stop: ExactStop,
         options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
-        let Self { plan, emission, measured } = self;
+        let Self {
+            plan,
+            emission,
+            measured,
+        } = self;
         let (control, watch) = (engine.control, engine.watch);
         watch.stage(Stage::Bounding, None)?;
-        let stop = if stop == ExactStop::Met && plan.has_failed { ExactStop::LevelCap } else { stop };
+        let stop = if stop == ExactStop::Met && plan.has_failed {
+            ExactStop::LevelCap
+        } else {
+            stop
+        };
         engine.check(&emission)?;
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
-        let mut error =
-            probe::probe(engine, &plan, &emission, (measured.as_deref(), is_met, options.tightens))?;
+        let mut error = probe::probe(
+            engine,
+            &plan,
+            &emission,
+            (measured.as_deref(), is_met, options.tightens),
+        )?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
         if options.tolerance.is_none()
             && options.triangles.is_none()
@@ -64,8 +80,14 @@ impl Outcome {
         {
             error.upper = f64::INFINITY;
         }
-        let failed = options.tolerance.filter(|&tolerance| exceeds(error.upper, tolerance));
-        let stop = if stop == ExactStop::Met && failed.is_some() { ExactStop::Rounding } else { stop };
+        let failed = options
+            .tolerance
+            .filter(|&tolerance| exceeds(error.upper, tolerance));
+        let stop = if stop == ExactStop::Met && failed.is_some() {
+            ExactStop::Rounding
+        } else {
+            stop
+        };
         let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
         let value = match &measured {
             None => plan.worst(),
@@ -77,10 +99,17 @@ impl Outcome {
             (None, None) => 0.0,
         };
         let pixels = options.pixels.and(measured.as_ref());
-        let pixels = pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
+        let pixels =
+            pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
         let levels = plan.levels(watch)?;
         drop(plan);
-        let mut exact = Exact { error, pixels, worst, stop, ..engine.assemble(emission, levels)? };
+        let mut exact = Exact {
+            error,
+            pixels,
+            worst,
+            stop,
+            ..engine.assemble(emission, levels)?
+        };
         if options.angle.is_some()
             && let Some(criteria) = &control.criteria
         {
@@ -110,15 +139,47 @@ impl Engine<'_> {
         let tags = sides::tags((control, watch), &emission)?;
         let sides = sides::sides((control, watch), &emission)?;
         let sharp = sharp_edges(&emission, watch)?;
-        let Emission { positions, normals, origins, triangles, twins, parents, starts, junctions, .. } =
-            emission;
-        let whole =
-            Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions };
+        let Emission {
+            positions,
+            normals,
+            origins,
+            triangles,
+            twins,
+            parents,
+            starts,
+            junctions,
+            ..
+        } = emission;
+        let whole = Assembled {
+            positions,
+            normals,
+            origins,
+            triangles,
+            twins,
+            parents,
+            tags,
+            sides,
+            junctions,
+        };
         let corners = control.mesh.vertex_count();
-        let (whole, unfolded) =
-            control.flat.merge((control, &self.edges), whole, (&starts, &sharp), corners, watch)?;
-        let Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions } =
-            whole;
+        let (whole, unfolded) = control.flat.merge(
+            (control, &self.edges),
+            whole,
+            (&starts, &sharp),
+            corners,
+            watch,
+        )?;
+        let Assembled {
+            positions,
+            normals,
+            origins,
+            triangles,
+            twins,
+            parents,
+            tags,
+            sides,
+            junctions,
+        } = whole;
         let outgoing =
             outgoing_half_edges_polled(&triangles, &twins, positions.len(), &mut |_| watch.poll())?;
         let topology = Topology::from_parts(triangles, twins, outgoing);
@@ -133,7 +194,12 @@ impl Engine<'_> {
             parents,
             is_optimized: false,
             side_origins: Vec::new(),
-            error: ErrorBounds { lower: 0.0, upper: f64::INFINITY, at: [0.0; 3], certified: false },
+            error: ErrorBounds {
+                lower: 0.0,
+                upper: f64::INFINITY,
+                at: [0.0; 3],
+                certified: false,
+            },
             pixels: None,
             attribute_bounds: Vec::new(),
             open_cones: 0,
@@ -157,14 +223,21 @@ pub(super) fn open_cones(
         let normals = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
         let normals = normals.map(|corner| vector(exact.corner_normal(corner)));
         let frame = TriangleFrame::new(corners);
-        let tilt = normals.iter().map(|normal| normal.distance(frame.normal())).fold(0.0, f64::max);
+        let tilt = normals
+            .iter()
+            .map(|normal| normal.distance(frame.normal()))
+            .fold(0.0, f64::max);
         let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
         // By equation (11) it is the triangle that counts.
-        let backs = criteria.backs(&region, |_, viewpoint, _| shows_back(&corners, viewpoint).then_some(0.0));
+        let backs = criteria.backs(&region, |_, viewpoint, _| {
+            shows_back(&corners, viewpoint).then_some(0.0)
+        });
         criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + CONE_ROUNDING
     };
-    let open = watch.pieces(exact.mesh.face_count(), parallel::share(exact.mesh.face_count()), |block| {
-        block.filter(|&face| is_open(face)).count()
-    });
+    let open = watch.pieces(
+        exact.mesh.face_count(),
+        parallel::share(exact.mesh.face_count()),
+        |block| block.filter(|&face| is_open(face)).count(),
+    );
     Ok(open?.into_iter().sum())
 }

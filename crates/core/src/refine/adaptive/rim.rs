@@ -79,5 +79,7 @@ impl Rim {
 
 /// Bits of the edges that are split.
 pub(super) fn bits(split: &[Option<usize>; 3]) -> u8 {
-    (0..3).fold(0, |bits, edge| bits | u8::from(split[edge].is_some()) << edge)
+    (0..3).fold(0, |bits, edge| {
+        bits | u8::from(split[edge].is_some()) << edge
+    })
 }

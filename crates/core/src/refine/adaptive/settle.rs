@@ -97,16 +97,25 @@ impl Engine<'_> {
             return Ok(());
         }
         self.watch.each(0..plan.closed.len() as u32, |face| {
-            let lists = [plan.decision.conditions(face), plan.closed[face as usize].conditions()];
+            let lists = [
+                plan.decision.conditions(face),
+                plan.closed[face as usize].conditions(),
+            ];
             if plan.settled.has(face) || lists.iter().all(|list| list.is_empty()) {
                 return;
             }
             let closing = |face: u32| plan.closed[face as usize].extent();
-            let (around, _) = plan.decision.around(self.control, &self.edges, face, closing);
-            let bounds =
-                lists.into_iter().flatten().map(|condition| (condition.bound(&around), condition.place));
+            let (around, _) = plan
+                .decision
+                .around(self.control, &self.edges, face, closing);
+            let bounds = lists
+                .into_iter()
+                .flatten()
+                .map(|condition| (condition.bound(&around), condition.place));
             let worst = bounds.max_by(|a, b| a.0.total_cmp(&b.0));
-            if let Some((bound, place)) = worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face)) {
+            if let Some((bound, place)) =
+                worst.filter(|&(bound, _)| bound <= plan.goal.allowed(face))
+            {
                 plan.settled.add(place, bound);
             }
         })
@@ -118,7 +127,10 @@ impl Engine<'_> {
         let faces = (0..plan.closed.len() as u32).filter(|&face| !plan.settled.has(face));
         self.watch.each(faces, |face| {
             let open = self.control.open(face);
-            let lists = [plan.decision.conditions(face), plan.closed[face as usize].conditions()];
+            let lists = [
+                plan.decision.conditions(face),
+                plan.closed[face as usize].conditions(),
+            ];
             for condition in lists.into_iter().flatten() {
                 areas.add(&self.edges, condition.place, open);
             }
@@ -130,7 +142,11 @@ impl Engine<'_> {
     fn failing(&self, plan: &mut Plan, areas: &Areas) -> Result<Vec<(Place, f64)>, RefineError> {
         let count = |face: u32| plan.closed[face as usize].triangles as usize;
         let in_faces: usize = areas.0.keys().map(|&face| count(face)).sum();
-        let in_areas: f64 = areas.0.iter().map(|(&face, area)| area.share() * count(face) as f64).sum();
+        let in_areas: f64 = areas
+            .0
+            .iter()
+            .map(|(&face, area)| area.share() * count(face) as f64)
+            .sum();
         // What is emitted first is taken over in the end; later looks are not worth that.
         let scope = match plan.emission {
             None if 2 * in_faces < plan.triangles => Scope::Faces(areas),
@@ -146,10 +162,19 @@ impl Engine<'_> {
     }
 
     /// The same by so much of the plan. Keeps what was emitted but areas.
-    fn failing_in(&self, plan: &mut Plan, scope: Scope<'_>) -> Result<Vec<(Place, f64)>, RefineError> {
+    fn failing_in(
+        &self,
+        plan: &mut Plan,
+        scope: Scope<'_>,
+    ) -> Result<Vec<(Place, f64)>, RefineError> {
         if matches!(scope, Scope::Areas(_)) {
             let emission = self.emit_some(plan, scope)?;
-            return Ok(failing(&emission, &plan.goal, &mut plan.settled, self.watch)?);
+            return Ok(failing(
+                &emission,
+                &plan.goal,
+                &mut plan.settled,
+                self.watch,
+            )?);
         }
         let emission = self.emit_instead(plan, scope)?;
         let found = failing(&emission, &plan.goal, &mut plan.settled, self.watch)?;
@@ -168,7 +193,10 @@ fn failing(
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<(Place, f64)>, Cancelled> {
     let sharp = sharp_edges(emission, watch)?;
-    let conditions = emission.conditions.iter().filter(|(condition, ..)| !settled.has(condition.place.face));
+    let conditions = emission
+        .conditions
+        .iter()
+        .filter(|(condition, ..)| !settled.has(condition.place.face));
     let conditions: Vec<&(Condition, u32, u32)> = conditions.collect();
     let found = watch.pieces(conditions.len(), BLOCK, |block| {
         let bounds = conditions[block].iter().map(|(condition, first, last)| {
@@ -180,9 +208,16 @@ fn failing(
                 squared = squared.max(turn);
                 (0..3).for_each(|edge| slopes[edge] = slopes[edge].min(room[edge]));
             }
-            let bound =
-                if is_known { condition.deviation.bound(squared.sqrt(), slopes) } else { f64::INFINITY };
-            (bound, is_known && bound <= goal.allowed(condition.place.face), condition.place)
+            let bound = if is_known {
+                condition.deviation.bound(squared.sqrt(), slopes)
+            } else {
+                f64::INFINITY
+            };
+            (
+                bound,
+                is_known && bound <= goal.allowed(condition.place.face),
+                condition.place,
+            )
         });
         bounds.collect::<Vec<_>>()
     })?;
@@ -210,9 +245,15 @@ fn has_neighbours(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> b
 }
 
 /// The half-edges along sharp edges.
-pub(super) fn sharp_edges(emission: &Emission, watch: &SharedWatch<'_>) -> Result<HashSet<u32>, Cancelled> {
+pub(super) fn sharp_edges(
+    emission: &Emission,
+    watch: &SharedWatch<'_>,
+) -> Result<HashSet<u32>, Cancelled> {
     let mut sharp = HashSet::new();
-    let all = emission.sharp.iter().flat_map(|(h, _)| emission.borders.along(*h));
+    let all = emission
+        .sharp
+        .iter()
+        .flat_map(|(h, _)| emission.borders.along(*h));
     watch.each(all, |&h| {
         sharp.insert(h);
     })?;

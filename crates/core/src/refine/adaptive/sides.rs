@@ -42,15 +42,24 @@ pub(super) fn sides(
     })?;
     let topology = control.mesh.topology();
     let mut is_tagged = vec![false; control.mesh.vertex_count()];
-    control.lasting.tagged_vertices().for_each(|vertex| is_tagged[vertex.index()] = true);
-    watch.each((0..3 * control.mesh.face_count() as u32).map(HalfEdgeId), |h| {
-        if is_tagged[topology.origin(h).index()] {
-            let (own, before) = (emission.borders.along(h.0), emission.borders.along(h.previous().0));
-            if let (Some(&from), Some(&to)) = (own.first(), before.last()) {
-                around(from, to, control.sided.at(topology, h));
+    control
+        .lasting
+        .tagged_vertices()
+        .for_each(|vertex| is_tagged[vertex.index()] = true);
+    watch.each(
+        (0..3 * control.mesh.face_count() as u32).map(HalfEdgeId),
+        |h| {
+            if is_tagged[topology.origin(h).index()] {
+                let (own, before) = (
+                    emission.borders.along(h.0),
+                    emission.borders.along(h.previous().0),
+                );
+                if let (Some(&from), Some(&to)) = (own.first(), before.last()) {
+                    around(from, to, control.sided.at(topology, h));
+                }
             }
-        }
-    })?;
+        },
+    )?;
     parallel::sort_polled(&mut sides, &mut |_| watch.poll(), |a, b| a.0.cmp(&b.0))?;
     Ok(sides)
 }
@@ -60,15 +69,26 @@ pub(super) fn tags(
     (control, watch): (&Control<'_>, &SharedWatch<'_>),
     emission: &Emission,
 ) -> Result<Tags, Cancelled> {
-    let corners = control.mesh.tags().corners.iter().filter(|tag| tag.sharpness >= INFINITELY_SHARP);
-    let mut tags = Tags { corners: corners.copied().collect(), ..Tags::default() };
+    let corners = control
+        .mesh
+        .tags()
+        .corners
+        .iter()
+        .filter(|tag| tag.sharpness >= INFINITELY_SHARP);
+    let mut tags = Tags {
+        corners: corners.copied().collect(),
+        ..Tags::default()
+    };
     watch.each(&emission.sharp, |(h, _)| {
         for &h in emission.borders.along(*h) {
             // Each is met from both sides.
             if h < emission.twins[h as usize] {
                 let triangle = emission.triangles[h as usize / 3];
                 let ends = [0, 1].map(|i| triangle[(h as usize + i) % 3]);
-                tags.creases.push(CreaseTag { vertices: ends, sharpness: INFINITELY_SHARP });
+                tags.creases.push(CreaseTag {
+                    vertices: ends,
+                    sharpness: INFINITELY_SHARP,
+                });
             }
         }
     })?;
@@ -82,18 +102,25 @@ pub(super) fn junctions(
     chains: &Chains,
     emission: &Emission,
 ) -> Result<Junctions, Cancelled> {
-    let mut junctions =
-        Junctions { vertices: control.mesh.junctions().vertices.clone(), edges: Groups::default() };
+    let mut junctions = Junctions {
+        vertices: control.mesh.junctions().vertices.clone(),
+        edges: Groups::default(),
+    };
     watch.each(0..edges.group_count(), |group| {
         let members = edges.members(group);
         let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());
-        let at = |turned: bool, count: usize, place: usize| if turned { count - 1 - place } else { place };
+        let at = |turned: bool, count: usize, place: usize| {
+            if turned { count - 1 - place } else { place }
+        };
         for place in 0..places {
-            let copy = |&(h, turned): &(u32, bool)| chains.own(h).0 + at(turned, places, place) as u32;
+            let copy =
+                |&(h, turned): &(u32, bool)| chains.own(h).0 + at(turned, places, place) as u32;
             junctions.vertices.push(members.iter().map(copy));
         }
         for place in 0..=places {
-            let copy = |&(h, turned): &(u32, bool)| emission.borders.along(h)[at(turned, places + 1, place)];
+            let copy = |&(h, turned): &(u32, bool)| {
+                emission.borders.along(h)[at(turned, places + 1, place)]
+            };
             junctions.edges.push(members.iter().map(copy));
         }
     })?;

@@ -22,13 +22,19 @@ pub(super) struct Ground {
 
 impl Ground {
     pub(super) fn of(net: &BezierTriangle) -> Self {
-        Self { piece: Quartic::of(net, 0), jet: OnceCell::new() }
+        Self {
+            piece: Quartic::of(net, 0),
+            jet: OnceCell::new(),
+        }
     }
 
     /// The same where parts are bounded for sure.
     pub(super) fn with_jet(net: &BezierTriangle) -> Self {
         let piece = Quartic::of(net, 0);
-        Self { jet: OnceCell::from(QuarticJet::of(&piece)), piece }
+        Self {
+            jet: OnceCell::from(QuarticJet::of(&piece)),
+            piece,
+        }
     }
 
     /// What bounds parts of it.
@@ -53,11 +59,18 @@ impl Ground {
             [u[l], v[l]] = *place;
         }
         let [points, normals] = self.piece.points_and_normals_at(&u, &v);
-        let vector =
-            |by_axis: &[[f64; N]; 3], l: usize| DVec3::new(by_axis[0][l], by_axis[1][l], by_axis[2][l]);
-        let mut found = [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; N];
+        let vector = |by_axis: &[[f64; N]; 3], l: usize| {
+            DVec3::new(by_axis[0][l], by_axis[1][l], by_axis[2][l])
+        };
+        let mut found = [LimitPoint {
+            position: DVec3::ZERO,
+            normal: DVec3::ZERO,
+        }; N];
         for (l, found) in found.iter_mut().enumerate() {
-            *found = LimitPoint { position: vector(&points, l), normal: vector(&normals, l) };
+            *found = LimitPoint {
+                position: vector(&points, l),
+                normal: vector(&normals, l),
+            };
         }
         found
     }
@@ -96,7 +109,10 @@ pub(super) struct GeneralPiece {
 #[allow(clippy::large_enum_variant)]
 enum Refinement {
     Extraordinary(AroundVertex),
-    Any { middles: [LimitPoint; 3], children: Vec<SurfacePiece> },
+    Any {
+        middles: [LimitPoint; 3],
+        children: Vec<SurfacePiece>,
+    },
 }
 
 /// Three regular pieces beside one at an irregular vertex. They stay part of what was refined, since of many of them nobody asks for anything.
@@ -118,9 +134,13 @@ impl SurfacePiece {
     /// All of it.
     pub(super) fn surface<'a>(&'a self, rules: &'a Rules<'a>) -> Surface<'a> {
         match self {
-            Self::Regular(points, ground) => {
-                Surface::Regular(RegularPiece { points: PointsOf::Own(points), ground }, Spot::WHOLE)
-            }
+            Self::Regular(points, ground) => Surface::Regular(
+                RegularPiece {
+                    points: PointsOf::Own(points),
+                    ground,
+                },
+                Spot::WHOLE,
+            ),
             Self::General(piece) => Surface::General(piece, rules),
         }
     }
@@ -138,7 +158,11 @@ impl<'a> RegularPiece<'a> {
 
 impl GeneralPiece {
     fn of(patch: Patch, corners: [LimitPoint; 3]) -> Self {
-        Self { patch, corners, refined: OnceCell::new() }
+        Self {
+            patch,
+            corners,
+            refined: OnceCell::new(),
+        }
     }
 
     fn refined(&self, rules: &Rules<'_>) -> &Refinement {
@@ -178,11 +202,20 @@ impl GeneralPiece {
         };
         if around.refined.is_regular(child) {
             let points = PointsOf::Part(&around.refined, child);
-            return Surface::Regular(RegularPiece { points, ground: &around.grounds[child] }, Spot::WHOLE);
+            return Surface::Regular(
+                RegularPiece {
+                    points,
+                    ground: &around.grounds[child],
+                },
+                Spot::WHOLE,
+            );
         }
         let at_vertex = around.at_vertex.get_or_init(|| {
             let own = child_corners(self.corners, *around.middles(), child);
-            Box::new(Self::of(Patch::Extraordinary(Box::new(around.refined.own().clone())), own))
+            Box::new(Self::of(
+                Patch::Extraordinary(Box::new(around.refined.own().clone())),
+                own,
+            ))
         });
         Surface::General(at_vertex, rules)
     }
@@ -223,14 +256,26 @@ impl<'a> Surface<'a> {
     /// The limits in the middles of the edges.
     pub(super) fn middles(self) -> [LimitPoint; 3] {
         match self {
-            Surface::Unknown => [LimitPoint { position: DVec3::ZERO, normal: DVec3::ZERO }; 3],
-            Surface::Regular(piece, spot) => piece.ground().at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
+            Surface::Unknown => {
+                [LimitPoint {
+                    position: DVec3::ZERO,
+                    normal: DVec3::ZERO,
+                }; 3]
+            }
+            Surface::Regular(piece, spot) => piece
+                .ground()
+                .at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
             Surface::General(piece, rules) => *piece.middles(rules),
         }
     }
 
     /// Evaluates the points at the given places along an edge, from 0 to 1 and ascending.
-    pub(super) fn along(self, edge: usize, places: &[f64], found: &mut impl FnMut(usize, LimitPoint)) {
+    pub(super) fn along(
+        self,
+        edge: usize,
+        places: &[f64],
+        found: &mut impl FnMut(usize, LimitPoint),
+    ) {
         self.part_along(edge, (0.0, 1.0), (0, places.len()), places, found);
     }
 
@@ -259,23 +304,28 @@ impl<'a> Surface<'a> {
                     } else {
                         let points: [LimitPoint; LANES] =
                             ground.at(from_fn(|l| place((at + l).min(last - 1))));
-                        (at..last).zip(points).for_each(|(at, point)| found(at, point));
+                        (at..last)
+                            .zip(points)
+                            .for_each(|(at, point)| found(at, point));
                     }
                     at += count;
                 }
             }
             Surface::General(piece, rules) => {
                 let half = 0.5 * length;
-                let middle = first + places[first..last].partition_point(|&place| place < from + half);
+                let middle =
+                    first + places[first..last].partition_point(|&place| place < from + half);
                 let mut next = middle;
                 if middle < last && places[middle] == from + half {
                     found(middle, piece.middles(rules)[edge]);
                     next += 1;
                 }
-                for (child, from, first, last) in
-                    [(edge, from, first, middle), ((edge + 1) % 3, from + half, next, last)]
-                {
-                    self.child(child).part_along(edge, (from, half), (first, last), places, found);
+                for (child, from, first, last) in [
+                    (edge, from, first, middle),
+                    ((edge + 1) % 3, from + half, next, last),
+                ] {
+                    self.child(child)
+                        .part_along(edge, (from, half), (first, last), places, found);
                 }
             }
         }

@@ -38,30 +38,62 @@ impl<'a> Trial<'a> {
         let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewer, rest| {
             behind.is_back(corners, viewer, rest)
         });
-        let cone = criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region, &backs);
+        let cone =
+            criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region, &backs);
         let is_given_up = seen.level as usize >= criteria.deepest_cone();
-        Self { criteria, limit, seen, region, backs, cone: if is_given_up { cone.min(1.0) } else { cone } }
+        Self {
+            criteria,
+            limit,
+            seen,
+            region,
+            backs,
+            cone: if is_given_up { cone.min(1.0) } else { cone },
+        }
     }
 
     /// Whether a triangle fails for sure with a point of its piece so high over it.
     pub(super) fn is_lost(&self, height: f64) -> bool {
-        let least = Apart { own: height, height, across: 0.0 };
+        let least = Apart {
+            own: height,
+            height,
+            across: 0.0,
+        };
         exceeds(self.cone, self.limit)
-            || exceeds(self.criteria.distance_ratio(&least, &self.region, &self.backs), self.limit)
+            || exceeds(
+                self.criteria
+                    .distance_ratio(&least, &self.region, &self.backs),
+                self.limit,
+            )
     }
 
     /// What the triangle comes to with this deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
         let (chord, slopes) = self.seen.expected();
         let apart = deviation.apart(chord, slopes);
-        let distance = self.criteria.distance_ratio(&apart, &self.region.grown(apart.own), &self.backs);
+        let distance =
+            self.criteria
+                .distance_ratio(&apart, &self.region.grown(apart.own), &self.backs);
         // What is not a number fails.
-        if exceeds(distance, self.cone) { distance } else { self.cone }
+        if exceeds(distance, self.cone) {
+            distance
+        } else {
+            self.cone
+        }
     }
 
     fn verdict(&self, value: f64) -> Verdict {
-        let outcome = if exceeds(value, self.limit) { Outcome::Fails } else { Outcome::Passes };
-        Verdict { outcome, extent: Extent { bound: value, ..self.seen.extent() } }
+        let outcome = if exceeds(value, self.limit) {
+            Outcome::Fails
+        } else {
+            Outcome::Passes
+        };
+        Verdict {
+            outcome,
+            extent: Extent {
+                bound: value,
+                ..self.seen.extent()
+            },
+        }
     }
 
     pub(super) fn regular(
@@ -78,7 +110,11 @@ impl<'a> Trial<'a> {
         let heights = ground.jet().heights(cell, self.seen.frame.normal());
         let (low, high) = heights.range();
         if self.is_lost(low) {
-            let least = Apart { own: low, height: low, across: 0.0 };
+            let least = Apart {
+                own: low,
+                height: low,
+                across: 0.0,
+            };
             return self.verdict(self.cone.max(self.criteria.distance_ratio(
                 &least,
                 &self.region,
@@ -124,6 +160,11 @@ impl<'a> Trial<'a> {
         if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
             return self.verdict(self.cone);
         }
-        self.verdict(self.value(&pieces.deviation(part, &self.seen.frame, rules, self.effort(open))))
+        self.verdict(self.value(&pieces.deviation(
+            part,
+            &self.seen.frame,
+            rules,
+            self.effort(open),
+        )))
     }
 }

@@ -24,7 +24,11 @@ pub(super) struct Knot {
 
 impl Knot {
     pub(super) fn new(at: u32, vertex: u32) -> Self {
-        Self { at, vertex, half_edge: NONE }
+        Self {
+            at,
+            vertex,
+            half_edge: NONE,
+        }
     }
 }
 
@@ -47,20 +51,41 @@ impl Side {
     /// Number of the `i`-th knot from the edge's start.
     #[inline]
     pub(super) fn knot(&self, i: usize) -> usize {
-        if self.reversed { self.last - i } else { self.first + i }
+        if self.reversed {
+            self.last - i
+        } else {
+            self.first + i
+        }
     }
 
     /// Number of the knot that keeps the `i`-th stretch from the edge's start.
     #[inline]
     pub(super) fn stretch(&self, i: usize) -> usize {
-        if self.reversed { self.last - 1 - i } else { self.first + i }
+        if self.reversed {
+            self.last - 1 - i
+        } else {
+            self.first + i
+        }
     }
 
     /// Both halves, given the number of the knot in the middle.
     #[inline]
     fn halves(&self, middle: usize) -> [Self; 2] {
-        let (lower, upper) = (Self { last: middle, ..*self }, Self { first: middle, ..*self });
-        if self.reversed { [upper, lower] } else { [lower, upper] }
+        let (lower, upper) = (
+            Self {
+                last: middle,
+                ..*self
+            },
+            Self {
+                first: middle,
+                ..*self
+            },
+        );
+        if self.reversed {
+            [upper, lower]
+        } else {
+            [lower, upper]
+        }
     }
 
     /// The number of the knot in the middle of a side that is split.
@@ -106,7 +131,9 @@ pub(super) struct Node<'a> {
 impl Node<'_> {
     /// Whether no neighbour has split an edge of a leaf.
     pub(super) fn is_plain(&self) -> bool {
-        self.sides.iter().all(|side| side.segments() == 1 << self.depth)
+        self.sides
+            .iter()
+            .all(|side| side.segments() == 1 << self.depth)
     }
 
     /// The vertex inside it in column i and row j, both from 1 on.
@@ -118,7 +145,11 @@ impl Node<'_> {
 
     /// Triangles that its leaves are covered with.
     pub(super) fn triangles(&self) -> usize {
-        let split: usize = self.sides.iter().map(|side| side.segments() - (1 << self.depth)).sum();
+        let split: usize = self
+            .sides
+            .iter()
+            .map(|side| side.segments() - (1 << self.depth))
+            .sum();
         (1 << (2 * self.depth)) + split
     }
 }
@@ -138,8 +169,19 @@ pub(super) struct Walk<'a> {
 const ASKED: u32 = 32;
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(trees: &'a Trees, knots: Vec<Knot>, next: u32, is_stopped: &'a IsStopped<'a>) -> Self {
-        Self { trees, knots, next, is_stopped, until_asked: ASKED }
+    pub(super) fn new(
+        trees: &'a Trees,
+        knots: Vec<Knot>,
+        next: u32,
+        is_stopped: &'a IsStopped<'a>,
+    ) -> Self {
+        Self {
+            trees,
+            knots,
+            next,
+            is_stopped,
+            until_asked: ASKED,
+        }
     }
 
     /// Whether nothing is visited any more.
@@ -169,9 +211,19 @@ impl<'a> Walk<'a> {
             let n = 1u32 << depth;
             self.next += if n > 2 { (n - 1) * (n - 2) / 2 } else { 0 };
             let has = |mark: u32| even_depth(word) == Some(0) && word & mark != 0;
-            let (is_unjudged, is_conditional, is_strict) = (has(UNJUDGED), has(CONDITIONAL), has(STRICT));
-            let node =
-                Node { place, spot, depth, is_unjudged, is_conditional, is_strict, sides, interior, surface };
+            let (is_unjudged, is_conditional, is_strict) =
+                (has(UNJUDGED), has(CONDITIONAL), has(STRICT));
+            let node = Node {
+                place,
+                spot,
+                depth,
+                is_unjudged,
+                is_conditional,
+                is_strict,
+                sides,
+                interior,
+                surface,
+            };
             visitor.leaves(&node, &mut self.knots);
             return;
         }
@@ -186,7 +238,11 @@ impl<'a> Walk<'a> {
             let pair = [(children[(edge + 2) % 3], false), (children[3], true)];
             self.next = merge(self.trees, edge, &pair, self.next, &mut self.knots);
             self.knots.push(Knot::new(FULL, to));
-            Side { first, last: self.knots.len() - 1, reversed: false }
+            Side {
+                first,
+                last: self.knots.len() - 1,
+                reversed: false,
+            }
         });
         let halves = [0, 1, 2].map(|edge| sides[edge].halves(middles[edge]));
         // The middle one knows the chains' points.
@@ -196,7 +252,10 @@ impl<'a> Walk<'a> {
         }
         for child in 0..4 {
             let own = if child == 3 {
-                chains.map(|chain| Side { reversed: true, ..chain })
+                chains.map(|chain| Side {
+                    reversed: true,
+                    ..chain
+                })
             } else {
                 let mut own = chains;
                 own[child] = halves[child][0];
@@ -212,7 +271,13 @@ impl<'a> Walk<'a> {
 
 /// Appends the knots strictly inside an edge: the union of what the nodes along it have split. Each node comes with whether
 /// the edge, which has this number in all of them, runs the other way there. Gives the next free vertex number.
-fn merge(trees: &Trees, edge: usize, pair: &[(u32, bool); 2], next: u32, knots: &mut Vec<Knot>) -> u32 {
+fn merge(
+    trees: &Trees,
+    edge: usize,
+    pair: &[(u32, bool); 2],
+    next: u32,
+    knots: &mut Vec<Knot>,
+) -> u32 {
     let members = pair.map(|(word, turned)| (word, edge, turned));
     let mut next = next;
     merged(trees, &members, 0, FULL, &mut |at| {
@@ -231,16 +296,20 @@ pub(super) fn merged<const N: usize>(
     length: u32,
     found: &mut impl FnMut(u32),
 ) {
-    let deepest =
-        members.iter().try_fold(0, |deepest: u32, &(word, ..)| Some(deepest.max(even_depth(word)?)));
+    let deepest = members.iter().try_fold(0, |deepest: u32, &(word, ..)| {
+        Some(deepest.max(even_depth(word)?))
+    });
     if let Some(depth) = deepest {
         (1..1 << depth).for_each(|i| found(from + i * (length >> depth)));
         return;
     }
     let half = |second: bool| {
         members.map(|(word, edge, turned)| {
-            let below =
-                if is_split(word) { trees.child(word, along_edge(edge, second != turned)) } else { LEAF };
+            let below = if is_split(word) {
+                trees.child(word, along_edge(edge, second != turned))
+            } else {
+                LEAF
+            };
             (below, edge, turned)
         })
     };
@@ -257,13 +326,21 @@ pub(super) fn merged_all(
     length: u32,
     found: &mut impl FnMut(u32),
 ) {
-    let split: Vec<_> = members.iter().copied().filter(|&(word, ..)| is_split(word)).collect();
+    let split: Vec<_> = members
+        .iter()
+        .copied()
+        .filter(|&(word, ..)| is_split(word))
+        .collect();
     if split.is_empty() {
         return;
     }
     let half = |second: bool| -> Vec<_> {
         let below = |&(word, edge, turned): &(u32, usize, bool)| {
-            (trees.child(word, along_edge(edge, second != turned)), edge, turned)
+            (
+                trees.child(word, along_edge(edge, second != turned)),
+                edge,
+                turned,
+            )
         };
         split.iter().map(below).collect()
     };

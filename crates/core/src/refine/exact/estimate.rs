@@ -71,19 +71,32 @@ pub fn exact_estimate_observed(
     }
     let of = |triangles: usize, is_counted| {
         let triangles = triangles.min(options.budget().0).max(control.face_count());
-        Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted }
+        Estimate {
+            triangles,
+            memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE),
+            is_counted,
+        }
     };
-    let quality = options.tolerance.is_some() || options.angle.is_some() || options.pixels.is_some();
+    let quality =
+        options.tolerance.is_some() || options.angle.is_some() || options.pixels.is_some();
     if !quality {
         return Ok(of(options.budget().0, false));
     }
     let (faces, coarsest) = (control.face_count(), coarsest(control, options));
-    if let Some(tolerance) = options.tolerance.filter(|_| faces >= SAMPLED_FROM && is_distance_alone(options))
+    if let Some(tolerance) = options
+        .tolerance
+        .filter(|_| faces >= SAMPLED_FROM && is_distance_alone(options))
     {
         let step = faces / SAMPLES;
-        let seeds: Vec<HalfEdgeId> =
-            (step / 2..faces).step_by(step).map(|face| HalfEdgeId::of(FaceId(face as u32), 0)).collect();
-        let rings = if scheme.support() == Support::OneRing { 2 } else { 4 };
+        let seeds: Vec<HalfEdgeId> = (step / 2..faces)
+            .step_by(step)
+            .map(|face| HalfEdgeId::of(FaceId(face as u32), 0))
+            .collect();
+        let rings = if scheme.support() == Support::OneRing {
+            2
+        } else {
+            4
+        };
         let around = submesh(control, &Sharpness::of(control), &seeds, rings);
         let weight = faces as f64 / seeds.len() as f64;
         let counted = (weight * COUNTED as f64) as usize;
@@ -98,7 +111,10 @@ pub fn exact_estimate_observed(
             )?;
             Ok((weight * over as f64) as usize)
         })?;
-        return Ok(Estimate { is_counted: false, ..found });
+        return Ok(Estimate {
+            is_counted: false,
+            ..found
+        });
     }
     approached(faces, coarsest, COUNTED, of, |times| {
         adaptive::count(control, scheme, options, times, observer)
@@ -118,7 +134,10 @@ fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
         (options.angle, COARSE_ANGLE),
         (options.pixels, COARSE_PIXELS),
     ];
-    let times = goals.into_iter().filter_map(|(goal, coarse)| Some(coarse / goal?)).fold(COARSEST, f64::max);
+    let times = goals
+        .into_iter()
+        .filter_map(|(goal, coarse)| Some(coarse / goal?))
+        .fold(COARSEST, f64::max);
     times.log2().ceil().min(MOST_HALVINGS).exp2()
 }
 
@@ -130,15 +149,29 @@ fn optimised(
     tolerance: f64,
     observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
-    let free = ExactOptions { triangles: None, max_triangles: None, ..options.clone() };
-    let plain = ExactOptions { optimize: false, ..free.clone() };
+    let free = ExactOptions {
+        triangles: None,
+        max_triangles: None,
+        ..options.clone()
+    };
+    let plain = ExactOptions {
+        optimize: false,
+        ..free.clone()
+    };
     let mut times = coarsest(control, options);
     let mut before = adaptive::count(control, scheme, &plain, times, observer)?;
     while times > 1.0 && 2 * before <= COLLAPSED {
         times /= 2.0;
         before = adaptive::count(control, scheme, &plain, times, observer)?;
     }
-    let left = simplified(control, scheme, &free.tolerance(times * tolerance), observer)?.mesh.face_count();
+    let left = simplified(
+        control,
+        scheme,
+        &free.tolerance(times * tolerance),
+        observer,
+    )?
+    .mesh
+    .face_count();
     let is_counted = times == 1.0;
     let whole = match is_counted {
         true => before,
@@ -146,7 +179,11 @@ fn optimised(
     };
     let triangles = (whole as f64 * left as f64 / before.max(1) as f64).round() as usize;
     let triangles = triangles.min(options.budget().0);
-    Ok(Estimate { triangles, memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE), is_counted })
+    Ok(Estimate {
+        triangles,
+        memory_bytes: triangles.saturating_mul(BYTES_PER_TRIANGLE),
+        is_counted,
+    })
 }
 
 /// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
@@ -164,11 +201,18 @@ fn approached(
             return Ok(of(triangles, true));
         }
         if triangles > counted && triangles > before {
-            let growth = (triangles as f64 / before as f64).powf(1.0 / halvings).min(MOST_GROWTH);
-            return Ok(of((triangles as f64 * growth.powf(times.log2())) as usize, false));
+            let growth = (triangles as f64 / before as f64)
+                .powf(1.0 / halvings)
+                .min(MOST_GROWTH);
+            return Ok(of(
+                (triangles as f64 * growth.powf(times.log2())) as usize,
+                false,
+            ));
         }
         // As many as surely leave few enough, so that hardly anything is counted twice.
-        let most = (counted as f64 / triangles.max(1) as f64).log(MOST_GROWTH).floor();
+        let most = (counted as f64 / triangles.max(1) as f64)
+            .log(MOST_GROWTH)
+            .floor();
         halvings = most.clamp(1.0, times.log2());
         (times, before) = (times / halvings.exp2(), triangles);
     }

@@ -75,7 +75,11 @@ pub fn exact_frames_observed(
 ) -> Result<Frames, RefineError> {
     options.check(control)?;
     check(all, options)?;
-    let options = ExactOptions { flat_regions: false, origins: true, ..options.clone() };
+    let options = ExactOptions {
+        flat_regions: false,
+        origins: true,
+        ..options.clone()
+    };
     let control = match all[0].len() == control.vertex_count() {
         true => control.clone().with_positions(all[0].clone())?,
         false => control.clone(),
@@ -83,10 +87,24 @@ pub fn exact_frames_observed(
     let Some((scaled, options, factor)) = scale::scaled(&control, &options)? else {
         return middling((&control, scheme), all, &options, observer);
     };
-    let all: Vec<_> = all.iter().map(|frame| scale::positions(frame, factor)).collect();
-    let Frames { refined, replay, errors } = middling((&scaled, scheme), &all, &options, observer)?;
-    let errors = errors.into_iter().map(|error| scale::bounds(error, factor)).collect();
-    Ok(Frames { refined: scale::result(refined, factor)?, replay, errors })
+    let all: Vec<_> = all
+        .iter()
+        .map(|frame| scale::positions(frame, factor))
+        .collect();
+    let Frames {
+        refined,
+        replay,
+        errors,
+    } = middling((&scaled, scheme), &all, &options, observer)?;
+    let errors = errors
+        .into_iter()
+        .map(|error| scale::bounds(error, factor))
+        .collect();
+    Ok(Frames {
+        refined: scale::result(refined, factor)?,
+        replay,
+        errors,
+    })
 }
 
 /// The same for models of a middling size.
@@ -105,18 +123,44 @@ fn middling(
         }
         found.replay.frame(positions, &mut frame)?;
         let triangles = found.refined.mesh.triangles();
-        let surface = (Triangles { positions: &frame.positions, triangles }, &[][..]);
+        let surface = (
+            Triangles {
+                positions: &frame.positions,
+                triangles,
+            },
+            &[][..],
+        );
         *error = tighter::tighter(*error, surface, (&control, scheme), options, observer)?;
     }
-    let upper = found.errors.iter().map(|error| error.upper).fold(0.0, f64::max);
-    let refined = met(Exact { error: found.errors[0], ..found.refined }, upper, options);
-    Ok(Frames { refined, replay: found.replay, errors: found.errors })
+    let upper = found
+        .errors
+        .iter()
+        .map(|error| error.upper)
+        .fold(0.0, f64::max);
+    let refined = met(
+        Exact {
+            error: found.errors[0],
+            ..found.refined
+        },
+        upper,
+        options,
+    );
+    Ok(Frames {
+        refined,
+        replay: found.replay,
+        errors: found.errors,
+    })
 }
 
 /// Refuses what has no meaning for frames.
 fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineError> {
     let refused = [
-        ("number of frames", frames.len(), frames.is_empty(), "at least one"),
+        (
+            "number of frames",
+            frames.len(),
+            frames.is_empty(),
+            "at least one",
+        ),
         (
             "number of triangles",
             options.triangles.unwrap_or(0),
@@ -134,7 +178,12 @@ fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineE
     ];
     for (name, value, is_refused, expected) in refused {
         if is_refused {
-            return Err(MeshError::BadOption { name, value: value as f64, expected }.into());
+            return Err(MeshError::BadOption {
+                name,
+                value: value as f64,
+                expected,
+            }
+            .into());
         }
     }
     Ok(())

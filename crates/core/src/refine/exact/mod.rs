@@ -24,7 +24,11 @@ use crate::scheme::Scheme;
 ///
 /// # Errors
 /// A goal that is no positive number, a vertex without a limit, or more elements than can be numbered.
-pub fn exact(control: &Mesh, scheme: &dyn Scheme, options: &ExactOptions) -> Result<Exact, RefineError> {
+pub fn exact(
+    control: &Mesh,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+) -> Result<Exact, RefineError> {
     exact_observed(control, scheme, options, &mut unobserved)
 }
 
@@ -58,9 +62,11 @@ pub fn exact_observed(
 /// The same, met where a tolerance is all that is asked and `upper` shows that it is: what triangles come to one by one can be more.
 fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     match options.tolerance {
-        Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => {
-            Exact { stop: ExactStop::Met, worst: found.worst.min(upper / tolerance), ..found }
-        }
+        Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => Exact {
+            stop: ExactStop::Met,
+            worst: found.worst.min(upper / tolerance),
+            ..found
+        },
         _ => found,
     }
 }

@@ -16,8 +16,14 @@ pub(super) fn scaled(
     control: &Mesh,
     goals: &ExactOptions,
 ) -> Result<Option<(Mesh, ExactOptions, f64)>, RefineError> {
-    let Some(factor) = factor(control) else { return Ok(None) };
-    Ok(Some((mesh(control, factor)?, options(goals, factor), factor)))
+    let Some(factor) = factor(control) else {
+        return Ok(None);
+    };
+    Ok(Some((
+        mesh(control, factor)?,
+        options(goals, factor),
+        factor,
+    )))
 }
 
 /// Positions with their coordinates multiplied.
@@ -27,7 +33,11 @@ pub(super) fn positions(positions: &[[f64; 3]], factor: f64) -> Vec<[f64; 3]> {
 
 /// The power of two that brings a mesh's coordinates near 1; `None` where they are middling already.
 pub(in crate::refine) fn factor(mesh: &Mesh) -> Option<f64> {
-    let greatest = mesh.positions().iter().flatten().fold(0.0f64, |greatest, x| greatest.max(x.abs()));
+    let greatest = mesh
+        .positions()
+        .iter()
+        .flatten()
+        .fold(0.0f64, |greatest, x| greatest.max(x.abs()));
     if greatest == 0.0 || !greatest.is_finite() {
         return None;
     }
@@ -38,7 +48,9 @@ pub(in crate::refine) fn factor(mesh: &Mesh) -> Option<f64> {
 
 /// A mesh with its coordinates multiplied.
 pub(in crate::refine) fn mesh(mesh: &Mesh, factor: f64) -> Result<Mesh, RefineError> {
-    Ok(mesh.clone().with_positions(positions(mesh.positions(), factor))?)
+    Ok(mesh
+        .clone()
+        .with_positions(positions(mesh.positions(), factor))?)
 }
 
 /// A tolerance for the multiplied mesh: one that vanishes or overflows still is one.
@@ -49,9 +61,16 @@ pub(in crate::refine) fn length(length: f64, factor: f64) -> f64 {
 /// Goals for the multiplied mesh.
 fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
     let point = |p: [f64; 3]| p.map(|x| x * factor);
-    let camera = |camera: &Camera| Camera { eye: point(camera.eye), target: point(camera.target), ..*camera };
+    let camera = |camera: &Camera| Camera {
+        eye: point(camera.eye),
+        target: point(camera.target),
+        ..*camera
+    };
     let view = |view: View| match view.viewpoint {
-        Viewpoint::Eye(eye) => View { viewpoint: Viewpoint::Eye(point(eye)), ..view },
+        Viewpoint::Eye(eye) => View {
+            viewpoint: Viewpoint::Eye(point(eye)),
+            ..view
+        },
         Viewpoint::Direction(_) => view,
     };
     ExactOptions {
@@ -66,11 +85,26 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
 pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let error = bounds(result.error, factor);
     let off_planes = result.off_planes / factor;
-    Ok(Exact { mesh: mesh(&result.mesh, 1.0 / factor)?, error, off_planes, ..result })
+    Ok(Exact {
+        mesh: mesh(&result.mesh, 1.0 / factor)?,
+        error,
+        off_planes,
+        ..result
+    })
 }
 
 /// A distance at the size that was asked for.
 pub(super) fn bounds(error: ErrorBounds, factor: f64) -> ErrorBounds {
-    let ErrorBounds { lower, upper, at, certified } = error;
-    ErrorBounds { lower: lower / factor, upper: upper / factor, at: at.map(|x| x / factor), certified }
+    let ErrorBounds {
+        lower,
+        upper,
+        at,
+        certified,
+    } = error;
+    ErrorBounds {
+        lower: lower / factor,
+        upper: upper / factor,
+        at: at.map(|x| x / factor),
+        certified,
+    }
 }

@@ -69,8 +69,14 @@ pub(super) fn tighter(
     if is_met && count > MET_MOST {
         return Ok(error);
     }
-    let room = options.triangles_by_memory().map_or(usize::MAX, |most| most.saturating_sub(count));
-    let most = if is_met { MET_IN_ANY_CASE + MET_FOR_EACH * count } else { IN_ANY_CASE + FOR_EACH * count };
+    let room = options
+        .triangles_by_memory()
+        .map_or(usize::MAX, |most| most.saturating_sub(count));
+    let most = if is_met {
+        MET_IN_ANY_CASE + MET_FOR_EACH * count
+    } else {
+        IN_ANY_CASE + FOR_EACH * count
+    };
     let most = most.min(room);
     // Bounds that are much too great, as on needles, would take a mesh that is far too fine.
     if error.upper.is_finite() && triangles_at(known.finest(), count, error.upper) > most as f64 {
@@ -80,13 +86,24 @@ pub(super) fn tighter(
     // Where there is no bound yet, one that is not tight is of no use.
     let is_bounded = error.upper.is_finite();
     let nearer = |near: f64, observer: &mut Observer<'_>| -> Result<Option<Exact>, RefineError> {
-        let goals = ExactOptions::default().unfold(!within_rims.is_empty()).origins(false).tolerance(near);
+        let goals = ExactOptions::default()
+            .unfold(!within_rims.is_empty())
+            .origins(false)
+            .tolerance(near);
         // Of use are few triangles to be made, not few to be left, and bounds that are met, not tight ones.
-        let goals = ExactOptions { strips: false, tightens: false, ..goals };
+        let goals = ExactOptions {
+            strips: false,
+            tightens: false,
+            ..goals
+        };
         let found = within(control, scheme, (&goals, most), observer)?;
         Ok(found.filter(|found| found.within_rims == within_rims && found.error.upper.is_finite()))
     };
-    let coarse = if is_bounded { COARSE * error.upper } else { 0.0 };
+    let coarse = if is_bounded {
+        COARSE * error.upper
+    } else {
+        0.0
+    };
     let mut near = (FIRST / COARSE * coarse).max(known.finest());
     let mut found = nearer(near, observer)?;
     let is_too_fine = found.is_none();
@@ -98,7 +115,10 @@ pub(super) fn tighter(
     }
     while let Some(mesh) = found {
         let (count, off) = (mesh.mesh.face_count(), mesh.error.upper);
-        let trees = [&tree, &Bvh::new_observed(mesh.mesh.as_triangles(), observer)?];
+        let trees = [
+            &tree,
+            &Bvh::new_observed(mesh.mesh.as_triangles(), observer)?,
+        ];
         // A search that is cut short would take longer with a finer mesh.
         let is_cut_short = !known.measure(trees, off, observer)?;
         if is_cut_short || is_too_fine || near <= known.finest() || known.is_tight() {
@@ -110,7 +130,11 @@ pub(super) fn tighter(
         }
         found = nearer(near, observer)?;
     }
-    Ok(if is_bounded || known.is_tight() { known.bounds } else { error })
+    Ok(if is_bounded || known.is_tight() {
+        known.bounds
+    } else {
+        error
+    })
 }
 
 /// The triangles that a mesh has at least to be so near, by those of one that is farther away.
@@ -127,7 +151,10 @@ struct Known {
 
 impl Known {
     fn new(bounds: ErrorBounds, control: &Mesh) -> Self {
-        Self { bounds, least: ErrorBounds::LEAST * control.diagonal() }
+        Self {
+            bounds,
+            least: ErrorBounds::LEAST * control.diagonal(),
+        }
     }
 
     /// The distance that was found.

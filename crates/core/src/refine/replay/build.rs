@@ -91,7 +91,11 @@ pub(super) fn build(
     let (mut corners, faces) = groups_of(&wants.spots);
     // Those of the same stencil follow each other: the same weights, the same number of points.
     corners.sort_by_key(|corner| control.stencils.by_vertex[corner.of as usize]);
-    let mut building = Building { table: Table::default(), slots: vec![0; wants.spots.len()], next: 0 };
+    let mut building = Building {
+        table: Table::default(),
+        slots: vec![0; wants.spots.len()],
+        next: 0,
+    };
     building.corners(control, &corners, &wants.spots)?;
     let shapes = shapes(control, &faces, &wants.spots, watch)?;
     watch.stage(Stage::Weighing, Some(shapes.len()))?;
@@ -101,14 +105,30 @@ pub(super) fn build(
         length,
         &mut |done| watch.done(done),
         |block, is_stopped| {
-            let mut probe = Probe::new(control.mesh, control.sharpness, control.large, control.rules);
+            let mut probe = Probe::new(
+                control.mesh,
+                control.sharpness,
+                control.large,
+                control.rules,
+            );
             let weigh = |shape: usize| weigh(&mut probe, &shapes[shape], &faces);
-            block.take_while(|_| !is_stopped()).map(weigh).collect::<Vec<_>>()
+            block
+                .take_while(|_| !is_stopped())
+                .map(weigh)
+                .collect::<Vec<_>>()
         },
     )?;
     for (shape, weighed) in shapes.iter().zip(weighed.into_iter().flatten()) {
-        let face = || shape.members.first().map_or(0, |member| faces[member.group].of);
-        building.shape(shape, weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?)?;
+        let face = || {
+            shape
+                .members
+                .first()
+                .map_or(0, |member| faces[member.group].of)
+        };
+        building.shape(
+            shape,
+            weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?,
+        )?;
     }
     if let Some(why) = control.rules.failure() {
         return Err(why.clone().into());
@@ -129,7 +149,11 @@ fn groups_of(spots: &[Spot]) -> (Vec<Group>, Vec<Group>) {
     let grouped = |mut all: Vec<(u32, u32)>| {
         all.sort_unstable();
         let own = all.chunk_by(|a, b| a.0 == b.0);
-        own.map(|own| Group { of: own[0].0, spots: own.iter().map(|&(_, spot)| spot).collect() }).collect()
+        own.map(|own| Group {
+            of: own[0].0,
+            spots: own.iter().map(|&(_, spot)| spot).collect(),
+        })
+        .collect()
     };
     (grouped(corners), grouped(faces))
 }
@@ -142,32 +166,54 @@ fn shapes(
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Shape>, Cancelled> {
     let supports = parallel::pieces_polled(faces.len(), FACES, &mut |_| watch.poll(), |block| {
-        let of =
-            |face: usize| Support::of(control.mesh, control.sharpness, control.large, FaceId(faces[face].of));
+        let of = |face: usize| {
+            Support::of(
+                control.mesh,
+                control.sharpness,
+                control.large,
+                FaceId(faces[face].of),
+            )
+        };
         block.map(of).collect::<Vec<_>>()
     })?;
     let mut shapes: Vec<Shape> = Vec::new();
     let mut known: HashMap<Vec<u32>, usize> = HashMap::new();
     let mut numbers: Vec<HashMap<[u64; 2], u32>> = Vec::new();
     for (group, mut support) in supports.into_iter().flatten().enumerate() {
-        let at = *known.entry(core::mem::take(&mut support.key)).or_insert_with(|| {
-            shapes.push(Shape { members: Vec::new(), places: Vec::new() });
-            numbers.push(HashMap::new());
-            shapes.len() - 1
-        });
+        let at = *known
+            .entry(core::mem::take(&mut support.key))
+            .or_insert_with(|| {
+                shapes.push(Shape {
+                    members: Vec::new(),
+                    places: Vec::new(),
+                });
+                numbers.push(HashMap::new());
+                shapes.len() - 1
+            });
         let shape = &mut shapes[at];
         let places = faces[group].spots.iter().map(|&spot| {
-            let Spot::Over(_, bits) = spots[spot as usize] else { return 0 };
+            let Spot::Over(_, bits) = spots[spot as usize] else {
+                return 0;
+            };
             let [u, v] = Spot::place(bits);
             let weights = [1.0 - u - v, u, v];
-            let place = [weights[(support.turn + 1) % 3], weights[(support.turn + 2) % 3]];
-            *numbers[at].entry(place.map(f64::to_bits)).or_insert_with(|| {
-                shape.places.push(place);
-                shape.places.len() as u32 - 1
-            })
+            let place = [
+                weights[(support.turn + 1) % 3],
+                weights[(support.turn + 2) % 3],
+            ];
+            *numbers[at]
+                .entry(place.map(f64::to_bits))
+                .or_insert_with(|| {
+                    shape.places.push(place);
+                    shape.places.len() as u32 - 1
+                })
         });
         let places = places.collect();
-        shape.members.push(Member { group, support, places });
+        shape.members.push(Member {
+            group,
+            support,
+            places,
+        });
     }
     Ok(shapes)
 }
@@ -191,8 +237,14 @@ fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighe
         own.sort_by_key(|(standing, ..)| standing.piece);
         let mut taken = MemberRows::default();
         for on_piece in own.chunk_by(|a, b| a.0.piece == b.0.piece) {
-            let coded = on_piece.iter().map(|(standing, _, spot)| Some((coded(standing.at)?, *spot)));
-            let coded = if on_piece.len() < MANY { None } else { coded.collect::<Option<Vec<_>>>() };
+            let coded = on_piece
+                .iter()
+                .map(|(standing, _, spot)| Some((coded(standing.at)?, *spot)));
+            let coded = if on_piece.len() < MANY {
+                None
+            } else {
+                coded.collect::<Option<Vec<_>>>()
+            };
             match coded {
                 Some(places) => {
                     let block = &mut blocks[on_piece[0].0.piece as usize];
@@ -200,21 +252,33 @@ fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighe
                     taken.pieces.push(MemberPiece { weights, places });
                 }
                 None => taken.rows.extend(on_piece.iter().map(|&(_, place, spot)| {
-                    (*rows[place as usize].get_or_insert_with(|| next(&mut row_count)), spot)
+                    (
+                        *rows[place as usize].get_or_insert_with(|| next(&mut row_count)),
+                        spot,
+                    )
                 })),
             }
         }
         members.push(taken);
     }
-    let wanted =
-        Wanted { support: &first.support, face, places: &shape.places, rows: &rows, pieces: &blocks };
+    let wanted = Wanted {
+        support: &first.support,
+        face,
+        places: &shape.places,
+        rows: &rows,
+        pieces: &blocks,
+    };
     let weights = probe.weights(&wanted);
     // From numbers to starts.
     let groups = groups(first.support.points.len()) as u32;
     for member in &mut members {
-        member.rows.iter_mut().for_each(|(row, _)| *row *= SUMS as u32 * groups);
+        member
+            .rows
+            .iter_mut()
+            .for_each(|(row, _)| *row *= SUMS as u32 * groups);
         for piece in &mut member.pieces {
-            piece.weights = (row_count * SUMS as u32 + piece.weights * COEFFICIENTS as u32) * groups;
+            piece.weights =
+                (row_count * SUMS as u32 + piece.weights * COEFFICIENTS as u32) * groups;
         }
     }
     Some(Weighed { weights, members })
@@ -228,7 +292,9 @@ fn next(count: &mut u32) -> u32 {
 /// A place in whole steps, if it is one of these.
 fn coded(at: Place) -> Option<[u16; 2]> {
     let steps = at.map(|weight| weight * WHOLE);
-    let is_whole = steps.iter().all(|&step| step.fract() == 0.0 && (0.0..=WHOLE).contains(&step));
+    let is_whole = steps
+        .iter()
+        .all(|&step| step.fract() == 0.0 && (0.0..=WHOLE).contains(&step));
     is_whole.then(|| steps.map(|step| step as u16))
 }
 
@@ -247,16 +313,28 @@ impl Building {
         let start = self.table.weights.len();
         self.table.weights.extend_from_slice(weights);
         let is_small = self.table.weights.len() <= u32::MAX as usize;
-        if is_small { Ok(start as u32) } else { Err(ReplayError::TooLarge) }
+        if is_small {
+            Ok(start as u32)
+        } else {
+            Err(ReplayError::TooLarge)
+        }
     }
 
     fn points(&mut self, points: &[u32]) -> Result<u32, ReplayError> {
         self.table.points.extend_from_slice(points);
-        let Some(&first) = points.first() else { return Ok(0) };
+        let Some(&first) = points.first() else {
+            return Ok(0);
+        };
         let full = 1 + LANES * groups(points.len());
-        self.table.points.extend(core::iter::repeat_n(first, full - points.len()));
+        self.table
+            .points
+            .extend(core::iter::repeat_n(first, full - points.len()));
         let is_small = self.table.points.len() <= u32::MAX as usize;
-        if is_small { Ok(points.len() as u32) } else { Err(ReplayError::TooLarge) }
+        if is_small {
+            Ok(points.len() as u32)
+        } else {
+            Err(ReplayError::TooLarge)
+        }
     }
 
     fn take_slot(&mut self, spot: u32) {
@@ -278,23 +356,35 @@ impl Building {
             if starts[number].is_none() {
                 starts[number] = Some(self.stencil(&control.stencils.list[number])?);
             }
-            let ring = control.mesh.topology().ring(VertexId(corner.of)).map(|v| v.0);
+            let ring = control
+                .mesh
+                .topology()
+                .ring(VertexId(corner.of))
+                .map(|v| v.0);
             let points: Vec<u32> = [corner.of].into_iter().chain(ring).collect();
             let points = self.points(&points)?;
             // Spots of one side share its slot.
             let mut slots: Vec<(u32, u32)> = Vec::new();
             for &spot in &corner.spots {
-                let Spot::Corner(_, side) = spots[spot as usize] else { continue };
+                let Spot::Corner(_, side) = spots[spot as usize] else {
+                    continue;
+                };
                 if let Some(&(_, slot)) = slots.iter().find(|&&(known, _)| known == side) {
                     self.slots[spot as usize] = slot;
                     continue;
                 }
-                let start = starts[number].as_ref().and_then(|starts| starts.get(side as usize));
+                let start = starts[number]
+                    .as_ref()
+                    .and_then(|starts| starts.get(side as usize));
                 self.table.rows.push(start.copied().unwrap_or(0));
                 slots.push((side, self.next));
                 self.take_slot(spot);
             }
-            self.table.jobs.push(Job { points, rows: slots.len() as u32, pieces: 0 });
+            self.table.jobs.push(Job {
+                points,
+                rows: slots.len() as u32,
+                pieces: 0,
+            });
         }
         self.table.corner_jobs = self.table.jobs.len();
         self.table.sides.sort_unstable_by_key(|&(start, _)| start);
@@ -308,7 +398,8 @@ impl Building {
         for side in &stencil.sides {
             let mut weights = vec![[0.0; LANES]; SUMS * groups];
             let of_position = stencil.position[1..].iter().copied();
-            let tangents = [0, 1].map(|tangent| side.tangents.iter().map(move |weights| weights[tangent]));
+            let tangents =
+                [0, 1].map(|tangent| side.tangents.iter().map(move |weights| weights[tangent]));
             let [first, second] = tangents;
             for (i, weight) in of_position.enumerate() {
                 weights[i / LANES][i % LANES] = weight;
@@ -319,7 +410,9 @@ impl Building {
                 }
             }
             let start = self.weights(&weights)?;
-            self.table.sides.push((start, [side.first as u32, side.faces as u32]));
+            self.table
+                .sides
+                .push((start, [side.first as u32, side.faces as u32]));
             starts.push(start);
         }
         Ok(starts)
@@ -331,13 +424,20 @@ impl Building {
         for (member, taken) in shape.members.iter().zip(weighed.members) {
             let points = self.points(&member.support.points)?;
             let (rows, pieces) = (taken.rows.len() as u32, taken.pieces.len() as u32);
-            self.table.jobs.push(Job { points, rows, pieces });
+            self.table.jobs.push(Job {
+                points,
+                rows,
+                pieces,
+            });
             for (row, spot) in taken.rows {
                 self.table.rows.push(start + row);
                 self.take_slot(spot);
             }
             for MemberPiece { weights, places } in taken.pieces {
-                self.table.pieces.push(Piece { weights: start + weights, places: places.len() as u32 });
+                self.table.pieces.push(Piece {
+                    weights: start + weights,
+                    places: places.len() as u32,
+                });
                 for (place, spot) in places {
                     self.table.places.push(place);
                     self.take_slot(spot);

@@ -130,7 +130,9 @@ impl Gathered {
     /// Takes the first of the points and the differences of all others to it, in whole groups.
     #[inline]
     fn gather<const NORMALS: bool>(&mut self, points: &[u32], inputs: &Inputs) {
-        let Some((&first, others)) = points.split_first() else { return };
+        let Some((&first, others)) = points.split_first() else {
+            return;
+        };
         let first = f64x4::from(inputs[first as usize]);
         let [x, y, z, _] = first.to_array();
         self.first = [x, y, z];
@@ -157,7 +159,11 @@ impl Gathered {
             let [x, y, z, _] = of.to_array();
             x.max(y).max(z)
         });
-        self.scale = if SAFE_SIZES.contains(&size) { 1.0 } else { reciprocal(size) };
+        self.scale = if SAFE_SIZES.contains(&size) {
+            1.0
+        } else {
+            reciprocal(size)
+        };
         let scaled = self.scale * size;
         // Coordinates far from the origin have fewer digits to spare for differences.
         let least = CROSS_ROUNDING * scaled * (scaled + self.scale * first);
@@ -202,7 +208,11 @@ impl Row<'_> {
         let scale = self.gathered.scale;
         let s = self.gathered.sum(self.tangents.0).map(|s| scale * s);
         let t = self.gathered.sum(self.tangents.1).map(|t| scale * t);
-        let [x, y, z] = [s[1] * t[2] - s[2] * t[1], s[2] * t[0] - s[0] * t[2], s[0] * t[1] - s[1] * t[0]];
+        let [x, y, z] = [
+            s[1] * t[2] - s[2] * t[1],
+            s[2] * t[0] - s[0] * t[2],
+            s[0] * t[1] - s[1] * t[0],
+        ];
         let square = x * x + y * y + z * z;
         (square > self.gathered.least_square).then_some(([x, y, z], square))
     }
@@ -236,7 +246,11 @@ impl Pending {
         let factors = self.squares.map(|square| 1.0 / square.sqrt());
         let [x, y, z] = self.by_axis;
         for (at, &slot) in self.slots[..self.count].iter().enumerate() {
-            normals[slot] = [x[at] * factors[at], y[at] * factors[at], z[at] * factors[at]];
+            normals[slot] = [
+                x[at] * factors[at],
+                y[at] * factors[at],
+                z[at] * factors[at],
+            ];
         }
         self.count = 0;
     }
@@ -245,7 +259,11 @@ impl Pending {
 /// The reciprocal of a size, as far as that is a number.
 fn reciprocal(size: f64) -> f64 {
     let reciprocal = size.recip();
-    if reciprocal.is_normal() { reciprocal } else { 1.0 }
+    if reciprocal.is_normal() {
+        reciprocal
+    } else {
+        1.0
+    }
 }
 
 impl Table {
@@ -270,7 +288,10 @@ impl Table {
             at.piece += job.pieces as usize;
             since += at.slot - slot;
         }
-        self.runs.push(At { job: self.jobs.len(), ..at });
+        self.runs.push(At {
+            job: self.jobs.len(),
+            ..at
+        });
     }
 
     /// Slots in all.
@@ -292,7 +313,12 @@ impl Table {
     }
 
     /// Fills all slots: positions, and normals where there is room for them.
-    pub(super) fn fill(&self, inputs: &Inputs, positions: &mut [[f64; 3]], normals: &mut [[f64; 3]]) {
+    pub(super) fn fill(
+        &self,
+        inputs: &Inputs,
+        positions: &mut [[f64; 3]],
+        normals: &mut [[f64; 3]],
+    ) {
         let with_normals = !normals.is_empty();
         let (mut positions, mut normals) = (positions, normals);
         let mut runs = Vec::with_capacity(self.runs.len());
@@ -302,10 +328,11 @@ impl Table {
             let own_normals = split_off(&mut normals, if with_normals { count } else { 0 });
             runs.push((ends[0], ends[1].job, own, own_normals));
         }
-        let run = |(at, last, positions, normals): (At, usize, &mut [_], &mut [_])| match with_normals {
-            true => self.run::<true>(inputs, (at, last), positions, normals),
-            false => self.run::<false>(inputs, (at, last), positions, normals),
-        };
+        let run =
+            |(at, last, positions, normals): (At, usize, &mut [_], &mut [_])| match with_normals {
+                true => self.run::<true>(inputs, (at, last), positions, normals),
+                false => self.run::<false>(inputs, (at, last), positions, normals),
+            };
         uncancelled(|_| parallel::each_polled(runs, &mut |_| Ok(()), run));
     }
 
@@ -329,8 +356,9 @@ impl Table {
                     match sums.cross_product() {
                         Some(cross) => pending.add(slot, cross, normals),
                         None if number < self.corner_jobs => {
-                            normals[slot] =
-                                self.average(row, &points[..job.points as usize], inputs).to_array();
+                            normals[slot] = self
+                                .average(row, &points[..job.points as usize], inputs)
+                                .to_array();
                         }
                         None => normals[slot] = [0.0; 3],
                     }
@@ -341,7 +369,11 @@ impl Table {
             for piece in &self.pieces[at.piece..at.piece + job.pieces as usize] {
                 let places = &self.places[at.place..at.place + piece.places as usize];
                 let slots = at.slot - from.slot..at.slot - from.slot + places.len();
-                let own = if NORMALS { &mut normals[slots.clone()] } else { &mut [][..] };
+                let own = if NORMALS {
+                    &mut normals[slots.clone()]
+                } else {
+                    &mut [][..]
+                };
                 self.piece::<NORMALS>(&gathered, piece.weights, places, &mut positions[slots], own);
                 at.place += places.len();
                 at.slot += places.len();
@@ -356,7 +388,11 @@ impl Table {
     fn row<'a>(&'a self, gathered: &'a Gathered, row: u32) -> Row<'a> {
         let groups = gathered.differences.len();
         let (position, tangents) = self.weights[row as usize..][..SUMS * groups].split_at(groups);
-        Row { gathered, position, tangents: tangents.split_at(groups) }
+        Row {
+            gathered,
+            position,
+            tangents: tangents.split_at(groups),
+        }
     }
 
     /// Places on a polynomial.
@@ -398,13 +434,18 @@ impl Table {
     /// What stands for the normal at a control vertex without a tangent plane: the average of the faces' on its side.
     #[cold]
     fn average(&self, row: u32, points: &[u32], inputs: &Inputs) -> DVec3 {
-        let Ok(at) = self.sides.binary_search_by_key(&row, |&(row, _)| row) else { return DVec3::ZERO };
+        let Ok(at) = self.sides.binary_search_by_key(&row, |&(row, _)| row) else {
+            return DVec3::ZERO;
+        };
         let [first, faces] = self.sides[at].1;
-        let Some((&vertex, ring)) = points.split_first() else { return DVec3::ZERO };
+        let Some((&vertex, ring)) = points.split_first() else {
+            return DVec3::ZERO;
+        };
         let centre = input(inputs, vertex);
         let edge = |slot: u32| input(inputs, ring[slot as usize % ring.len()]) - centre;
-        let faces: Vec<[DVec3; 2]> =
-            (first..first + faces).map(|slot| [edge(slot), edge(slot + 1)]).collect();
+        let faces: Vec<[DVec3; 2]> = (first..first + faces)
+            .map(|slot| [edge(slot), edge(slot + 1)])
+            .collect();
         area_weighted_normal(&faces)
     }
 
@@ -412,7 +453,10 @@ impl Table {
     pub(super) fn take(&self, slots: &[[f64; 3]], vertices: &mut [[f64; 3]]) {
         parallel::for_each_chunk(vertices, TAKEN, |chunk, vertices| {
             let own = &self.slots[chunk * TAKEN..];
-            vertices.iter_mut().zip(own).for_each(|(vertex, &slot)| *vertex = slots[slot as usize]);
+            vertices
+                .iter_mut()
+                .zip(own)
+                .for_each(|(vertex, &slot)| *vertex = slots[slot as usize]);
         });
     }
 }

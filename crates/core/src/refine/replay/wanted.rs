@@ -65,7 +65,9 @@ fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
     let around = topology.outgoing_ring(vertex);
     let faces = around.clone().count();
     let slot = around.clone().position(|other| other == h).unwrap_or(0);
-    let own = sides.iter().position(|side| (slot + faces - side.first) % faces < side.faces);
+    let own = sides
+        .iter()
+        .position(|side| (slot + faces - side.first) % faces < side.faces);
     own.unwrap_or(0) as u32
 }
 
@@ -78,13 +80,22 @@ impl Wants {
     ) -> Result<Self, ReplayError> {
         let count = refined.mesh.vertex_count();
         if refined.origins.len() != count {
-            return Err(ReplayError::NoOrigins { origins: refined.origins.len(), vertices: count });
+            return Err(ReplayError::NoOrigins {
+                origins: refined.origins.len(),
+                vertices: count,
+            });
         }
         let spot = |(vertex, origin): (u32, &Origin)| {
             Spot::of(control, stencils, origin).ok_or(ReplayError::Elsewhere { vertex })
         };
-        let spots = (0..).zip(&refined.origins).map(spot).collect::<Result<Vec<_>, _>>()?;
-        let mut wants = Self { spots, ..Self::default() };
+        let spots = (0..)
+            .zip(&refined.origins)
+            .map(spot)
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut wants = Self {
+            spots,
+            ..Self::default()
+        };
         wants.add_sides(control, stencils, refined)?;
         Ok(wants)
     }
@@ -118,7 +129,9 @@ impl Wants {
         }
         around.sort_unstable();
         around.dedup();
-        let several = around.chunk_by(|a, b| a.0 == b.0).filter(|own| own.len() > 1);
+        let several = around
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|own| own.len() > 1);
         let spots = |own: &[(u32, u32)]| own.iter().map(|&(_, spot)| spot).collect();
         self.averages = several.map(|own| (own[0].0, spots(own))).collect();
         Ok(())

@@ -59,7 +59,12 @@ impl<'a> Probe<'a> {
             mesh.set_position(vertex, [0.0; 3]);
         }
         (0..large.vertices().count()).for_each(|number| large.set_mean(number, DVec3::ZERO));
-        Self { mesh, sharpness, large, rules }
+        Self {
+            mesh,
+            sharpness,
+            large,
+            rules,
+        }
     }
 
     fn set(&mut self, point: u32, to: DVec3) {
@@ -84,7 +89,10 @@ impl<'a> Probe<'a> {
         let mut on_face = on_face(support, places);
         self.descend(&self.patch(face), &mut on_face, DEEPEST, &mut |_, own| {
             for place in own {
-                found[place.number] = Some(Standing { piece: count, at: place.at });
+                found[place.number] = Some(Standing {
+                    piece: count,
+                    at: place.at,
+                });
             }
             count += 1;
         });
@@ -93,7 +101,13 @@ impl<'a> Probe<'a> {
 
     /// The weights that are wanted: all rows, then all blocks of coefficients.
     pub(super) fn weights(&mut self, wanted: &Wanted<'_>) -> Vec<[f64; LANES]> {
-        let Wanted { support, face, places, rows, pieces } = *wanted;
+        let Wanted {
+            support,
+            face,
+            places,
+            rows,
+            pieces,
+        } = *wanted;
         let groups = groups(support.points.len());
         let row_count = rows.iter().flatten().count();
         let block_start = row_count * SUMS * groups;
@@ -102,7 +116,10 @@ impl<'a> Probe<'a> {
         let others = support.points.get(1..).unwrap_or_default();
         for (three, points) in others.chunks(3).enumerate() {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-            points.iter().zip(axes).for_each(|(&point, axis)| self.set(point, axis));
+            points
+                .iter()
+                .zip(axes)
+                .for_each(|(&point, axis)| self.set(point, axis));
             let patch = self.patch(face);
             let mut write = |start: usize, value: DVec3| {
                 for (axis, value) in value.to_array().into_iter().enumerate().take(points.len()) {
@@ -111,22 +128,34 @@ impl<'a> Probe<'a> {
                 }
             };
             let mut number = 0;
-            self.descend(&patch, &mut on_face(support, places), DEEPEST, &mut |piece, own| {
-                if let Some(block) = pieces[number] {
-                    let start = block_start + block as usize * COEFFICIENTS * groups;
-                    for (i, value) in piece.coefficients().into_iter().enumerate() {
-                        write(start + i * groups, value);
+            self.descend(
+                &patch,
+                &mut on_face(support, places),
+                DEEPEST,
+                &mut |piece, own| {
+                    if let Some(block) = pieces[number] {
+                        let start = block_start + block as usize * COEFFICIENTS * groups;
+                        for (i, value) in piece.coefficients().into_iter().enumerate() {
+                            write(start + i * groups, value);
+                        }
                     }
-                }
-                number += 1;
-                for (row, at) in own.iter().filter_map(|place| Some((rows[place.number]?, place.at))) {
-                    let start = row as usize * SUMS * groups;
-                    let [by_u, by_v] = piece.tangents(at[0], at[1]);
-                    let sums = [piece.point(at[0], at[1]), by_u, by_v];
-                    sums.into_iter().enumerate().for_each(|(i, value)| write(start + i * groups, value));
-                }
-            });
-            points.iter().for_each(|&point| self.set(point, DVec3::ZERO));
+                    number += 1;
+                    for (row, at) in own
+                        .iter()
+                        .filter_map(|place| Some((rows[place.number]?, place.at)))
+                    {
+                        let start = row as usize * SUMS * groups;
+                        let [by_u, by_v] = piece.tangents(at[0], at[1]);
+                        let sums = [piece.point(at[0], at[1]), by_u, by_v];
+                        sums.into_iter()
+                            .enumerate()
+                            .for_each(|(i, value)| write(start + i * groups, value));
+                    }
+                },
+            );
+            points
+                .iter()
+                .for_each(|&point| self.set(point, DVec3::ZERO));
         }
         for row in weights[..block_start].chunks_mut((SUMS * groups).max(1)) {
             scale(&mut row[groups..]);
@@ -161,9 +190,15 @@ impl<'a> Probe<'a> {
 
 /// Weights of tangents that are far from 1 come from deep parts; normals do not depend on their size.
 fn scale(tangents: &mut [[f64; LANES]]) {
-    let greatest = tangents.as_flattened().iter().fold(0.0f64, |greatest, weight| greatest.max(weight.abs()));
+    let greatest = tangents
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |greatest, weight| greatest.max(weight.abs()));
     if greatest > 0.0 {
-        tangents.as_flattened_mut().iter_mut().for_each(|weight| *weight /= greatest);
+        tangents
+            .as_flattened_mut()
+            .iter_mut()
+            .for_each(|weight| *weight /= greatest);
     }
 }
 
@@ -183,7 +218,11 @@ fn on_face(support: &Support, places: &[Place]) -> Vec<Standpoint> {
         for (corner, weight) in [1.0 - u - v, u, v].into_iter().enumerate() {
             weights[(support.turn + corner) % 3] = weight;
         }
-        Standpoint { number, at: [weights[1], weights[2]], part: 0 }
+        Standpoint {
+            number,
+            at: [weights[1], weights[2]],
+            part: 0,
+        }
     };
     places.iter().enumerate().map(turned).collect()
 }

@@ -68,9 +68,16 @@ impl Grid {
         Ok(Self {
             levels,
             segments: n,
-            triangles: topology.triangles().iter().map(|t| t.map(|v| v as u16)).collect(),
+            triangles: topology
+                .triangles()
+                .iter()
+                .map(|t| t.map(|v| v as u16))
+                .collect(),
             twins: topology.raw_twins().to_vec(),
-            outgoing: topology.vertices().map(|v| topology.outgoing(v).0).collect(),
+            outgoing: topology
+                .vertices()
+                .map(|v| topology.outgoing(v).0)
+                .collect(),
             places,
             borders,
             on_sides,
@@ -102,7 +109,10 @@ impl Grid {
 
 impl Owned {
     fn new(places: &[[usize; 2]], starts: &[usize], n: usize, mask: usize) -> Self {
-        let mut owned = Self { ranks: vec![0; places.len()], ..Self::default() };
+        let mut owned = Self {
+            ranks: vec![0; places.len()],
+            ..Self::default()
+        };
         for level in starts.windows(2) {
             let start = owned.vertices.len();
             owned.starts.push(start);
@@ -151,7 +161,12 @@ fn sides(topology: &Topology, places: &[[usize; 2]], n: usize) -> ([Vec<u32>; 3]
             }
         }
     }
-    debug_assert!(on_sides.iter().flatten().all(|&v| side_of(places[v as usize], n).is_some()));
+    debug_assert!(
+        on_sides
+            .iter()
+            .flatten()
+            .all(|&v| side_of(places[v as usize], n).is_some())
+    );
     (borders, on_sides)
 }
 
@@ -189,7 +204,13 @@ impl<'a> Numbering<'a> {
             let last = bases[level];
             bases.push(last + (topology.face_count() * inside + edges as usize * on_side) as u32);
         }
-        Self { grid, topology, owned, sides_before, bases }
+        Self {
+            grid,
+            topology,
+            owned,
+            sides_before,
+            bases,
+        }
     }
 
     pub(super) fn vertex_count(&self) -> usize {
@@ -235,7 +256,12 @@ impl<'a> Numbering<'a> {
             if self.owned[face] >> side & 1 != 0 {
                 continue;
             }
-            let Some(twin) = self.topology.twin(HalfEdgeId::of(FaceId(face as u32), side)) else { continue };
+            let Some(twin) = self
+                .topology
+                .twin(HalfEdgeId::of(FaceId(face as u32), side))
+            else {
+                continue;
+            };
             let (other, ranks) = (twin.face().index(), &self.of(twin.face().index()).ranks);
             let of_other = self.grid.on_sides[twin.corner()].iter().rev();
             for (place, (&v, &w)) in (1usize..).zip(self.grid.on_sides[side].iter().zip(of_other)) {
@@ -255,13 +281,18 @@ impl<'a> Numbering<'a> {
             *twin = local.wrapping_add(first);
         }
         for side in 0..3 {
-            let across = self.topology.twin(HalfEdgeId::of(FaceId(face as u32), side));
+            let across = self
+                .topology
+                .twin(HalfEdgeId::of(FaceId(face as u32), side));
             let border = &self.grid.borders[side];
             match across {
                 None => border.iter().for_each(|&h| twins[h as usize] = NONE),
                 Some(across) => {
                     let first = self.first(across.face().index());
-                    for (&h, &twin) in border.iter().zip(self.grid.borders[across.corner()].iter().rev()) {
+                    for (&h, &twin) in border
+                        .iter()
+                        .zip(self.grid.borders[across.corner()].iter().rev())
+                    {
                         twins[h as usize] = first + twin;
                     }
                 }

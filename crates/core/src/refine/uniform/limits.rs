@@ -86,7 +86,15 @@ pub(super) fn refined_at_limit(
     let numbering = Numbering::new(&grid, mesh.topology());
     let pieces = Pieces::new(mesh, &sharpness, rules, &grid);
     let orders = pieces.slots.orders(&grid);
-    let work = Work { mesh, sharpness: &sharpness, grid: &grid, numbering, pieces, orders, wanted };
+    let work = Work {
+        mesh,
+        sharpness: &sharpness,
+        grid: &grid,
+        numbering,
+        pieces,
+        orders,
+        wanted,
+    };
 
     let vertices = work.numbering.vertex_count();
     let faces = mesh.face_count() << (2 * levels);
@@ -96,12 +104,20 @@ pub(super) fn refined_at_limit(
     let mut outgoing = untouched_defaults::<u32>(if_wanted(wanted.connections, vertices));
     let mut positions = untouched_defaults::<[f64; 3]>(vertices);
     let mut by_vertex = untouched_defaults::<[f64; 3]>(if_wanted(wanted.normals, vertices));
-    let blocks = work.blocks(&mut triangles, &mut twins, &mut outgoing, &mut positions, &mut by_vertex);
+    let blocks = work.blocks(
+        &mut triangles,
+        &mut twins,
+        &mut outgoing,
+        &mut positions,
+        &mut by_vertex,
+    );
     let flat = parallel::each_polled(blocks, &mut |_| watch.poll(), |slots| work.fill(slots))?;
     for (outgoing, v) in outgoing.iter_mut().zip(mesh.topology().vertices()) {
         *outgoing = work.at_corner(mesh.topology().outgoing(v));
     }
-    let corners = rules.table().positions_polled(mesh, &mut |_| watch.poll())??;
+    let corners = rules
+        .table()
+        .positions_polled(mesh, &mut |_| watch.poll())??;
     positions[..mesh.vertex_count()].copy_from_slice(&corners);
     watch.poll()?;
     let normals = match wanted.normals {
@@ -112,8 +128,19 @@ pub(super) fn refined_at_limit(
     if let Some(why) = rules.failure() {
         return Err(why.clone().into());
     }
-    let tags = if wanted.connections { work.tags() } else { Tags::default() };
-    Ok(AtLimit { triangles, twins, outgoing, positions, normals, tags })
+    let tags = if wanted.connections {
+        work.tags()
+    } else {
+        Tags::default()
+    };
+    Ok(AtLimit {
+        triangles,
+        twins,
+        outgoing,
+        positions,
+        normals,
+        tags,
+    })
 }
 
 impl<'a> Work<'a> {
@@ -177,7 +204,9 @@ impl<'a> Work<'a> {
             if self.wanted.connections {
                 self.numbering.twins(face, split_off(&mut twins, 3 * each));
             }
-            let turn = self.pieces.evaluate(face, self.numbering.sides(face), &mut values);
+            let turn = self
+                .pieces
+                .evaluate(face, self.numbering.sides(face), &mut values);
             let first = self.numbering.first(face);
             let owned = self.numbering.of(face);
             let order = &self.orders[usize::from(self.numbering.sides(face))][turn];
@@ -185,13 +214,22 @@ impl<'a> Work<'a> {
             for (level, slots) in (1..).zip(&mut levels) {
                 let own = owned.level(level);
                 let (vertices, order) = (&owned.vertices[own.clone()], &order[own]);
-                for (slot, &v) in split_off(&mut slots.outgoing, vertices.len()).iter_mut().zip(vertices) {
+                for (slot, &v) in split_off(&mut slots.outgoing, vertices.len())
+                    .iter_mut()
+                    .zip(vertices)
+                {
                     *slot = first + grid.outgoing[v as usize];
                 }
-                for (slot, &at) in split_off(&mut slots.points, order.len()).iter_mut().zip(order) {
+                for (slot, &at) in split_off(&mut slots.points, order.len())
+                    .iter_mut()
+                    .zip(order)
+                {
                     *slot = values.points[at as usize];
                 }
-                for (slot, &at) in split_off(&mut slots.normals, order.len()).iter_mut().zip(order) {
+                for (slot, &at) in split_off(&mut slots.normals, order.len())
+                    .iter_mut()
+                    .zip(order)
+                {
                     *slot = values.normals[at as usize];
                     is_flat |= *slot == [0.0; 3];
                 }
@@ -200,7 +238,10 @@ impl<'a> Work<'a> {
                 flat.push(face as u32);
             }
         }
-        debug_assert!(levels.iter().all(|left| left.points.is_empty()), "each slot is filled");
+        debug_assert!(
+            levels.iter().all(|left| left.points.is_empty()),
+            "each slot is filled"
+        );
         flat
     }
 
@@ -219,18 +260,28 @@ impl<'a> Work<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<SidedNormals, RefineError> {
         let topology = self.mesh.topology();
-        let old = rules.table().plane_normals(self.mesh, &mut |_| watch.poll())??;
+        let old = rules
+            .table()
+            .plane_normals(self.mesh, &mut |_| watch.poll())??;
         by_vertex[..self.mesh.vertex_count()].copy_from_slice(old.by_vertex());
         let mut normals = SidedNormals::new(by_vertex);
         for &(h, normal) in old.sides() {
-            normals.add_side(topology.origin(h), [HalfEdgeId(self.at_corner(h))].into_iter(), normal);
+            normals.add_side(
+                topology.origin(h),
+                [HalfEdgeId(self.at_corner(h))].into_iter(),
+                normal,
+            );
         }
         for &(h, _) in old.sides().iter().filter(|(_, normal)| *normal == [0.0; 3]) {
             normals.by_vertex_mut()[topology.origin(h).index()] = [0.0; 3];
         }
         let without = |v: &VertexId| normals.by_vertex()[v.index()] == [0.0; 3];
         let corners = topology.vertices().filter(without);
-        flat.extend(corners.flat_map(|v| topology.outgoing_ring(v)).map(|h| h.face().0));
+        flat.extend(
+            corners
+                .flat_map(|v| topology.outgoing_ring(v))
+                .map(|h| h.face().0),
+        );
         self.add_creases(&mut normals, &mut flat, watch)?;
         let mut normals = normals.finished();
         if !flat.is_empty() {
@@ -255,7 +306,10 @@ impl<'a> Work<'a> {
         let mut rooms = [self.pieces.room(true), self.pieces.room(true)];
         let mut numbers = vec![0u32; self.grid.places.len()];
         for h in topology.half_edges() {
-            let Some(twin) = topology.twin(h).filter(|&twin| h < twin && self.sharpness.edge(h) > 0.0) else {
+            let Some(twin) = topology
+                .twin(h)
+                .filter(|&twin| h < twin && self.sharpness.edge(h) > 0.0)
+            else {
                 continue;
             };
             watch.poll()?;
@@ -274,13 +328,18 @@ impl<'a> Work<'a> {
                     by_vertex[number as usize] = [0.0; 3];
                     flat.extend([h.face().0, twin.face().0]);
                 } else {
-                    by_vertex[number as usize] = unit_or_zero(vector(both[0]) + vector(both[1])).to_array();
+                    by_vertex[number as usize] =
+                        unit_or_zero(vector(both[0]) + vector(both[1])).to_array();
                 }
-                for (side, (normal, rim)) in
-                    [h, twin].into_iter().zip(both.into_iter().zip([sides[0][i + 1], sides[1][j + 1]]))
+                for (side, (normal, rim)) in [h, twin]
+                    .into_iter()
+                    .zip(both.into_iter().zip([sides[0][i + 1], sides[1][j + 1]]))
                 {
                     let first = self.numbering.first(side.face().index());
-                    let leaving = self.grid.leaving(rim).map(|local| HalfEdgeId(first + local));
+                    let leaving = self
+                        .grid
+                        .leaving(rim)
+                        .map(|local| HalfEdgeId(first + local));
                     normals.add_side(VertexId(number), leaving, normal);
                 }
             }
@@ -290,10 +349,14 @@ impl<'a> Work<'a> {
 
     /// The normals of a face at the vertices inside the side of `h`, in its order.
     fn along(&self, h: HalfEdgeId, values: &mut Values) -> Vec<[f64; 3]> {
-        let turn = self.pieces.evaluate(h.face().index(), 1 << h.corner(), values);
+        let turn = self
+            .pieces
+            .evaluate(h.face().index(), 1 << h.corner(), values);
         let places = &self.pieces.slots.turned[turn];
         let vertices = self.grid.on_sides[h.corner()].iter();
-        vertices.map(|&v| values.normals[places[v as usize] as usize]).collect()
+        vertices
+            .map(|&v| values.normals[places[v as usize] as usize])
+            .collect()
     }
 
     /// Where there is no tangent plane, the average of the normals of faces: of those that the steps give.
@@ -304,11 +367,17 @@ impl<'a> Work<'a> {
         rules: &Rules<'_>,
         watch: &mut Watch<'_>,
     ) -> Result<(), RefineError> {
-        let seeds: Vec<HalfEdgeId> = flat.iter().map(|&face| HalfEdgeId::of(FaceId(face), 0)).collect();
+        let seeds: Vec<HalfEdgeId> = flat
+            .iter()
+            .map(|&face| HalfEdgeId::of(FaceId(face), 0))
+            .collect();
         let around = submesh(self.mesh, self.sharpness, &seeds, 1);
         let options = super::UniformOptions::default().levels(self.grid.levels);
-        let around = super::uniform_observed(&around, rules.scheme(), &options, &mut watch.observer())?.mesh;
-        let averages = rules.table().sided_normals_polled(&around, &mut |_| watch.poll())??;
+        let around =
+            super::uniform_observed(&around, rules.scheme(), &options, &mut watch.observer())?.mesh;
+        let averages = rules
+            .table()
+            .sided_normals_polled(&around, &mut |_| watch.poll())??;
         let mut numbers = vec![0u32; self.grid.places.len()];
         let half_edges = self.grid.half_edge_count();
         for (place, &face) in flat.iter().enumerate() {
@@ -316,15 +385,23 @@ impl<'a> Work<'a> {
             for (&number, &local) in numbers.iter().zip(&self.grid.outgoing) {
                 let normal = &mut normals.by_vertex_mut()[number as usize];
                 if *normal == [0.0; 3] {
-                    let vertex = around.topology().origin(HalfEdgeId((place * half_edges) as u32 + local));
+                    let vertex = around
+                        .topology()
+                        .origin(HalfEdgeId((place * half_edges) as u32 + local));
                     *normal = averages.by_vertex()[vertex.index()];
                 }
             }
         }
-        for (h, normal) in normals.sides_mut().filter(|(_, normal)| **normal == [0.0; 3]) {
+        for (h, normal) in normals
+            .sides_mut()
+            .filter(|(_, normal)| **normal == [0.0; 3])
+        {
             let (face, local) = (h.index() / half_edges, h.index() % half_edges);
             if let Ok(place) = flat.binary_search(&(face as u32)) {
-                *normal = averages.at(around.topology(), HalfEdgeId((place * half_edges + local) as u32));
+                *normal = averages.at(
+                    around.topology(),
+                    HalfEdgeId((place * half_edges + local) as u32),
+                );
             }
         }
         Ok(())
@@ -333,29 +410,43 @@ impl<'a> Work<'a> {
     /// The tags: each crease goes to the edges along it.
     fn tags(&self) -> Tags {
         let (tags, topology) = (self.mesh.tags(), self.mesh.topology());
-        let sharpness =
-            |start: f64| (0..self.grid.levels).try_fold(start, |sharpness, _| less_sharp(sharpness));
+        let sharpness = |start: f64| {
+            (0..self.grid.levels).try_fold(start, |sharpness, _| less_sharp(sharpness))
+        };
         let mut numbers = vec![0u32; self.grid.places.len()];
         let mut refined = Tags::default();
         for crease in &tags.creases {
             let [a, b] = crease.vertices;
-            let (Some(h), Some(sharpness)) =
-                (topology.edge_between(VertexId(a), VertexId(b)), sharpness(crease.sharpness))
-            else {
+            let (Some(h), Some(sharpness)) = (
+                topology.edge_between(VertexId(a), VertexId(b)),
+                sharpness(crease.sharpness),
+            ) else {
                 continue;
             };
             self.numbering.numbers(h.face().index(), &mut numbers);
-            let inside = self.grid.on_sides[h.corner()].iter().map(|&v| numbers[v as usize]);
+            let inside = self.grid.on_sides[h.corner()]
+                .iter()
+                .map(|&v| numbers[v as usize]);
             let [from, to] = topology.ends(h).map(|v| v.0);
             let mut along: Vec<u32> = [from].into_iter().chain(inside).chain([to]).collect();
             if from != a {
                 along.reverse();
             }
-            refined.creases.extend(along.windows(2).map(|w| CreaseTag { vertices: [w[0], w[1]], sharpness }));
+            refined.creases.extend(along.windows(2).map(|w| CreaseTag {
+                vertices: [w[0], w[1]],
+                sharpness,
+            }));
         }
-        let corners = tags.corners.iter().filter_map(|corner| Some((corner, sharpness(corner.sharpness)?)));
-        refined.corners =
-            corners.map(|(corner, sharpness)| crate::mesh::CornerTag { sharpness, ..*corner }).collect();
+        let corners = tags
+            .corners
+            .iter()
+            .filter_map(|corner| Some((corner, sharpness(corner.sharpness)?)));
+        refined.corners = corners
+            .map(|(corner, sharpness)| crate::mesh::CornerTag {
+                sharpness,
+                ..*corner
+            })
+            .collect();
         refined
     }
 }

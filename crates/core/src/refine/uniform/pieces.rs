@@ -55,9 +55,15 @@ impl Slots {
         let mut of_place = vec![NOWHERE; (n + 1) * (n + 1)];
         let mut next = 0usize;
         let mut starts = [0; 5];
-        let inside = (1..n).flat_map(|j| (1..n - j).map(move |i| [i, j])).collect::<Vec<_>>();
-        let sides =
-            [0, 1, 2].map(|side| grid.on_sides[side].iter().map(|&v| grid.places[v as usize]).collect());
+        let inside = (1..n)
+            .flat_map(|j| (1..n - j).map(move |i| [i, j]))
+            .collect::<Vec<_>>();
+        let sides = [0, 1, 2].map(|side| {
+            grid.on_sides[side]
+                .iter()
+                .map(|&v| grid.places[v as usize])
+                .collect()
+        });
         let [first, second, third]: [Vec<_>; 3] = sides;
         for (group, places) in [inside, first, second, third].iter().enumerate() {
             starts[group] = next;
@@ -75,7 +81,11 @@ impl Slots {
             };
             grid.places.iter().map(slot).collect()
         });
-        Self { starts, of_place, turned }
+        Self {
+            starts,
+            of_place,
+            turned,
+        }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -85,9 +95,16 @@ impl Slots {
     /// By the set of owned sides and the corner that comes first: the slots of the vertices that a face counts as its own, in their order.
     pub(super) fn orders(&self, grid: &Grid) -> Vec<[Vec<u16>; 3]> {
         let order = |owned: &Owned, turn: usize| {
-            owned.vertices.iter().map(|&v| self.turned[turn][usize::from(v)]).collect()
+            owned
+                .vertices
+                .iter()
+                .map(|&v| self.turned[turn][usize::from(v)])
+                .collect()
         };
-        grid.owned.iter().map(|owned| [0, 1, 2].map(|turn| order(owned, turn))).collect()
+        grid.owned
+            .iter()
+            .map(|owned| [0, 1, 2].map(|turn| order(owned, turn)))
+            .collect()
     }
 }
 
@@ -128,7 +145,8 @@ impl<'a> Pieces<'a> {
         let valence = |v: usize| {
             let vertex = VertexId(v as u32);
             let (valence, open) = topology.valence_and_openness(vertex);
-            let plain = !open && !sharpness.is_tagged(vertex) && (3..=TABULATED as u32).contains(&valence);
+            let plain =
+                !open && !sharpness.is_tagged(vertex) && (3..=TABULATED as u32).contains(&valence);
             if plain { valence as u8 } else { 0 }
         };
         Self {
@@ -161,31 +179,48 @@ impl<'a> Pieces<'a> {
                 self.evaluate_regular(sides, values);
                 return turn;
             }
-            let size =
-                values.controls[1..].iter().fold(DVec3::ZERO, |most, p| most.max(p.abs())).max_element();
+            let size = values.controls[1..]
+                .iter()
+                .fold(DVec3::ZERO, |most, p| most.max(p.abs()))
+                .max_element();
             if SAFE_SIZES.contains(&size) {
                 let weights = self.weights[valence].get_or_init(|| Weights::new(valence, self));
                 for group in 0..4 {
                     // Side 0 of the face that is turned is side `turn` of the face.
                     if group == 0 || sides >> ((group - 1 + turn) % 3) & 1 != 0 {
-                        weights.apply(self.slots.starts[group]..self.slots.starts[group + 1], size, values);
+                        weights.apply(
+                            self.slots.starts[group]..self.slots.starts[group + 1],
+                            size,
+                            values,
+                        );
                     }
                 }
                 return turn;
             }
         }
-        let patch = root_patch(self.mesh, self.sharpness, &self.large, FaceId(face as u32), self.rules);
+        let patch = root_patch(
+            self.mesh,
+            self.sharpness,
+            &self.large,
+            FaceId(face as u32),
+            self.rules,
+        );
         self.evaluate_patch(&patch, values);
         0
     }
 
     /// Evaluates a face whose corners are regular, whose control points are gathered, by rows of its polynomial.
     fn evaluate_regular(&self, sides: u8, values: &mut Values) {
-        let Values { points, normals, controls } = values;
+        let Values {
+            points,
+            normals,
+            controls,
+        } = values;
         let first = core::mem::take(&mut controls[0]);
         // By corner, the ring from the next corner on, as `gather` numbers its points.
         let rings = [[1, 2, 3, 4, 5, 6], [2, 0, 6, 7, 8, 9], [0, 1, 9, 10, 11, 3]];
-        let net = BezierTriangle::of(&assemble([0, 1, 2], rings.each_ref(), [0; 3]).map(|i| controls[i]));
+        let net =
+            BezierTriangle::of(&assemble([0, 1, 2], rings.each_ref(), [0; 3]).map(|i| controls[i]));
         let quartic = |corner: usize| {
             let mut all = coefficients(&net, corner);
             all[0] += first;
@@ -258,7 +293,13 @@ impl<'a> Pieces<'a> {
                 if values.normals.is_empty() {
                     piece.points_along(v, 0.0, step, &mut points[..count]);
                 } else {
-                    piece.points_and_normals_along(v, 0.0, step, &mut points[..count], &mut normals[..count]);
+                    piece.points_and_normals_along(
+                        v,
+                        0.0,
+                        step,
+                        &mut points[..count],
+                        &mut normals[..count],
+                    );
                 }
                 for a in 0..count {
                     if let Some(slot) = self.slot(part.place(a, b)) {
@@ -288,13 +329,19 @@ impl<'a> Pieces<'a> {
         visit: &mut dyn FnMut(Part),
     ) {
         if let Patch::Regular(points) = patch {
-            visit(Part { net: BezierTriangle::of(points), segments, origin, flipped });
+            visit(Part {
+                net: BezierTriangle::of(points),
+                segments,
+                origin,
+                flipped,
+            });
         } else if segments > 1 {
             let half = segments / 2;
             let refined = patch.refined(self.rules);
             let [i, j] = origin;
-            for (part, origin) in
-                [[i, j], [i + half, j], [i, j + half], [i + half, j + half]].into_iter().enumerate()
+            for (part, origin) in [[i, j], [i + half, j], [i, j + half], [i + half, j + half]]
+                .into_iter()
+                .enumerate()
             {
                 // The middle part stands on its head; it is regular, so that none of its own does.
                 self.for_each_regular(&refined.part(part), half, origin, part == 3, visit);
@@ -318,7 +365,11 @@ impl Part {
     #[inline]
     fn place(&self, a: usize, b: usize) -> [usize; 2] {
         let [i, j] = self.origin;
-        if self.flipped { [i - a, j - b] } else { [i + a, j + b] }
+        if self.flipped {
+            [i - a, j - b]
+        } else {
+            [i + a, j + b]
+        }
     }
 }
 
@@ -342,18 +393,25 @@ impl Weights {
             let patch = Patch::Extraordinary(Box::new(patch));
             pieces.for_each_regular(&patch, pieces.segments, [0, 0], false, &mut |part| {
                 let piece = Quartic::of(&part.net, 0);
-                let (step, zoom) = (1.0 / part.segments as f64, (pieces.segments / part.segments) as f64);
+                let (step, zoom) = (
+                    1.0 / part.segments as f64,
+                    (pieces.segments / part.segments) as f64,
+                );
                 for b in 0..=part.segments {
                     for a in 0..=part.segments - b {
-                        let Some(slot) = pieces.slot(part.place(a, b)) else { continue };
+                        let Some(slot) = pieces.slot(part.place(a, b)) else {
+                            continue;
+                        };
                         let (u, v) = (a as f64 * step, b as f64 * step);
                         let [by_u, by_v] = piece.tangents(u, v);
-                        for (kind, value) in
-                            [piece.point(u, v), zoom * by_u, zoom * by_v].into_iter().enumerate()
+                        for (kind, value) in [piece.point(u, v), zoom * by_u, zoom * by_v]
+                            .into_iter()
+                            .enumerate()
                         {
                             let row = (slot / LANES * 3 + kind) * count;
                             for control in 3 * three..count.min(3 * three + 3) {
-                                weights[(row + control) * LANES + slot % LANES] = value[control - 3 * three];
+                                weights[(row + control) * LANES + slot % LANES] =
+                                    value[control - 3 * three];
                             }
                         }
                     }
@@ -365,13 +423,16 @@ impl Weights {
 
     /// Evaluates the given slots, a multiple of [`LANES`]. `size` is that of the greatest difference.
     fn apply(&self, slots: Range<usize>, size: f64, values: &mut Values) {
-        let Some((first, differences)) = values.controls.split_first() else { return };
+        let Some((first, differences)) = values.controls.split_first() else {
+            return;
+        };
         let count = differences.len();
         let first = first.to_array();
         // Coordinates far from the origin have fewer digits to spare for differences.
         let distance = first.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let least = CROSS_ROUNDING * size * (size + distance);
-        let rows = self.0[3 * count * slots.start..3 * count * slots.end].chunks_exact(3 * count * LANES);
+        let rows =
+            self.0[3 * count * slots.start..3 * count * slots.end].chunks_exact(3 * count * LANES);
         let points = values.points[slots.clone()].as_chunks_mut::<LANES>().0;
         if values.normals.is_empty() {
             for (row, points) in rows.zip(points) {
@@ -384,7 +445,11 @@ impl Weights {
             let (position, tangents) = row.split_at(count * LANES);
             let (by_u, by_v) = tangents.split_at(count * LANES);
             *points = moved(combined(position, differences), first);
-            *normals = units(&combined(by_u, differences), &combined(by_v, differences), least * least);
+            *normals = units(
+                &combined(by_u, differences),
+                &combined(by_v, differences),
+                least * least,
+            );
         }
     }
 }
@@ -419,7 +484,11 @@ fn units(s: &[[f64; LANES]; 3], t: &[[f64; LANES]; 3], least_square: f64) -> [[f
         let y = s[2][l] * t[0][l] - s[0][l] * t[2][l];
         let z = s[0][l] * t[1][l] - s[1][l] * t[0][l];
         let square = x * x + y * y + z * z;
-        let factor = if square > least_square { 1.0 / square.sqrt() } else { 0.0 };
+        let factor = if square > least_square {
+            1.0 / square.sqrt()
+        } else {
+            0.0
+        };
         (units[0][l], units[1][l], units[2][l]) = (x * factor, y * factor, z * factor);
     }
     core::array::from_fn(|l| [units[0][l], units[1][l], units[2][l]])

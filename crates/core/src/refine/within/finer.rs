@@ -16,19 +16,32 @@ pub(super) struct Finer {
 
 impl Finer {
     /// The faces of a mesh, divided so often.
-    pub(super) fn new(mesh: &Mesh, levels: usize, observer: &mut Observer<'_>) -> Result<Self, RefineError> {
+    pub(super) fn new(
+        mesh: &Mesh,
+        levels: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Self, RefineError> {
         if levels == 0 {
-            return Ok(Self { mesh: mesh.clone(), parts: FaceParts::default() });
+            return Ok(Self {
+                mesh: mesh.clone(),
+                parts: FaceParts::default(),
+            });
         }
         // Only how faces hang together is taken from the scheme, and what becomes of tags.
         let options = UniformOptions::default().levels(levels).origins(true);
         let divided = uniform_observed(mesh, &Loop, &options, observer)?;
-        let positions = divided.origins.iter().map(|origin| place(mesh.as_triangles(), origin).to_array());
+        let positions = divided
+            .origins
+            .iter()
+            .map(|origin| place(mesh.as_triangles(), origin).to_array());
         let finer = divided.mesh.with_positions(positions.collect())?;
         let sharpness = Sharpness::of(mesh);
         let kept = (mesh.vertex_count()..finer.vertex_count())
             .filter(|&v| is_kept(mesh, &sharpness, &divided.origins[v]))
-            .map(|v| CornerTag { vertex: v as u32, sharpness: f64::INFINITY });
+            .map(|v| CornerTag {
+                vertex: v as u32,
+                sharpness: f64::INFINITY,
+            });
         let mut tags = finer.tags().clone();
         tags.corners.extend(kept);
         let finer = finer.with_tags(tags)?;
@@ -46,8 +59,11 @@ impl Finer {
 
 /// Whether a new vertex is on a sharp edge or a boundary between vertices that keep their place: the surface is straight there.
 fn is_kept(mesh: &Mesh, sharpness: &Sharpness<'_>, origin: &Origin) -> bool {
-    let Some(opposite) = origin.barycentric.iter().position(|&weight| weight == 0.0) else { return false };
+    let Some(opposite) = origin.barycentric.iter().position(|&weight| weight == 0.0) else {
+        return false;
+    };
     let edge = HalfEdgeId(3 * origin.face + (opposite as u32 + 1) % 3);
     let is_corner = |v: VertexId| sharpness.rule(v) == VertexRule::Corner;
-    sharpness.edge(edge) >= INFINITELY_SHARP && mesh.topology().ends(edge).into_iter().all(is_corner)
+    sharpness.edge(edge) >= INFINITELY_SHARP
+        && mesh.topology().ends(edge).into_iter().all(is_corner)
 }

@@ -142,7 +142,11 @@ impl Within {
 ///
 /// # Errors
 /// The distance is not a length above 0, the scheme lets vertices stay where they are, or one of refinement's own.
-pub fn within(mesh: &Mesh, scheme: &dyn Scheme, options: &WithinOptions) -> Result<Within, RefineError> {
+pub fn within(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    options: &WithinOptions,
+) -> Result<Within, RefineError> {
     within_observed(mesh, scheme, options, &mut unobserved)
 }
 
@@ -159,7 +163,13 @@ pub fn within_observed(
     let bound = Bound::new(mesh, scheme, options)?;
     let mut sharper = Sharper::new(mesh);
     let mut levels = 0;
-    let (Smoothed { control, refined, .. }, parts, distance) = loop {
+    let (
+        Smoothed {
+            control, refined, ..
+        },
+        parts,
+        distance,
+    ) = loop {
         let Finer { mesh: finer, parts } = Finer::new(&sharper.mesh, levels, observer)?;
         let smoothed = smoothed(&finer, scheme, &bound, observer)?;
         let known = match smoothed.is_wrong(&bound) {
@@ -185,7 +195,15 @@ pub fn within_observed(
     };
     let inverted = turned_over_triangles(mesh.as_triangles(), &refined, &parts);
     let sharpened = sharper.edges;
-    Ok(Within { control, parts, refined, distance, within: bound.within, inverted, sharpened })
+    Ok(Within {
+        control,
+        parts,
+        refined,
+        distance,
+        within: bound.within,
+        inverted,
+        sharpened,
+    })
 }
 
 /// Whether the faces of a mesh may be divided so often.
@@ -204,20 +222,44 @@ struct Bound {
 
 impl Bound {
     fn new(mesh: &Mesh, scheme: &dyn Scheme, options: &WithinOptions) -> Result<Self, RefineError> {
-        let &WithinOptions { within, tolerance, max_triangles } = options;
+        let &WithinOptions {
+            within,
+            tolerance,
+            max_triangles,
+        } = options;
         if !(within > 0.0 && within.is_finite()) {
             let (name, expected) = ("the distance from the mesh", "a length above 0");
-            return Err(MeshError::BadOption { name, value: within, expected }.into());
+            return Err(MeshError::BadOption {
+                name,
+                value: within,
+                expected,
+            }
+            .into());
         }
-        let tolerance = tolerance.unwrap_or(WithinOptions::usual_tolerance(within, mesh.diagonal()));
+        let tolerance =
+            tolerance.unwrap_or(WithinOptions::usual_tolerance(within, mesh.diagonal()));
         if !(tolerance > 0.0 && tolerance < within) {
-            let (name, expected) = ("the tolerance", "a length above 0, below the distance from the mesh");
-            return Err(MeshError::BadOption { name, value: tolerance, expected }.into());
+            let (name, expected) = (
+                "the tolerance",
+                "a length above 0, below the distance from the mesh",
+            );
+            return Err(MeshError::BadOption {
+                name,
+                value: tolerance,
+                expected,
+            }
+            .into());
         }
         if !is_certified(scheme) {
-            return Err(RefineError::NotSmoothing { scheme: scheme.name().to_owned() });
+            return Err(RefineError::NotSmoothing {
+                scheme: scheme.name().to_owned(),
+            });
         }
-        Ok(Self { within, tolerance, max_triangles })
+        Ok(Self {
+            within,
+            tolerance,
+            max_triangles,
+        })
     }
 
     /// How far limits may be from vertices: what refining takes is left to it.
@@ -241,13 +283,18 @@ impl Smoothed {
 
     /// Whether something is turned over, or farther from its face than it may be: not only beside its partner.
     fn is_wrong(&self, bound: &Bound) -> bool {
-        self.farthest(|fault| fault.off) > bound.within || self.faults.iter().any(|fault| fault.is_inverted)
+        self.farthest(|fault| fault.off) > bound.within
+            || self.faults.iter().any(|fault| fault.is_inverted)
     }
 
     /// How much more often than `levels` times faces have to be divided, as it looks: not at all where that does not help.
     fn missing_levels(&self, bound: &Bound, levels: usize) -> usize {
         let off = self.farthest(|fault| fault.off);
-        let farthest = if off > bound.within { off } else { self.farthest(|fault| fault.distance) };
+        let farthest = if off > bound.within {
+            off
+        } else {
+            self.farthest(|fault| fault.distance)
+        };
         match farthest > bound.within {
             true => (farthest / bound.room()).log2().ceil() as usize,
             false => usize::from(levels < MOST_UNFOLDING),
@@ -274,10 +321,20 @@ impl Smoothed {
         observer: &mut Observer<'_>,
     ) -> Result<InputDistance, RefineError> {
         let meshes = [mesh.as_triangles(), self.refined.mesh.as_triangles()];
-        Ok(match InputDistance::new(finer.as_triangles(), &self.refined, &self.refined.origins, 0.0)? {
-            Some(distance) => distance.decided(meshes, bound.within, observer)?,
-            None => InputDistance { lower: 0.0, upper: f64::INFINITY },
-        })
+        Ok(
+            match InputDistance::new(
+                finer.as_triangles(),
+                &self.refined,
+                &self.refined.origins,
+                0.0,
+            )? {
+                Some(distance) => distance.decided(meshes, bound.within, observer)?,
+                None => InputDistance {
+                    lower: 0.0,
+                    upper: f64::INFINITY,
+                },
+            },
+        )
     }
 }
 
@@ -287,7 +344,9 @@ fn smoothed(
     bound: &Bound,
     observer: &mut Observer<'_>,
 ) -> Result<Smoothed, RefineError> {
-    let exact = ExactOptions::default().flat_regions(false).max_triangles(bound.max_triangles);
+    let exact = ExactOptions::default()
+        .flat_regions(false)
+        .max_triangles(bound.max_triangles);
     let mut watch = Watch::new(observer, Stage::Interpolating);
     watch.triangles(mesh.face_count());
     let mut near = NearVertices::new(mesh, scheme, &mut watch)?;
@@ -305,13 +364,21 @@ fn smoothed(
         rounds += 1;
         let shifted = shift.applied(mesh, &away, &reach, |v| near.is_free(v));
         let control = near.control(&shifted, &mut watch)?;
-        let refined =
-            exact_observed(&control, scheme, &exact.clone().tolerance(tolerance), &mut watch.observer())?;
+        let refined = exact_observed(
+            &control,
+            scheme,
+            &exact.clone().tolerance(tolerance),
+            &mut watch.observer(),
+        )?;
         let poll: &mut Poll<'_> = &mut |_| watch.poll();
         let faults = faults(mesh, &refined, poll)?;
         is_solved = !reduced(mesh, &mut reach, &shifted, &faults, bound);
         let is_shifted = shift.corrected(&refined, 2.0 * bound.room(), poll)?;
-        let found = Smoothed { control, refined, faults };
+        let found = Smoothed {
+            control,
+            refined,
+            faults,
+        };
         let is_wrong = found.is_wrong(bound);
         if (is_solved && (!is_shifted || is_wrong)) || rounds == MOST_ROUNDS {
             if tolerance == bound.tolerance || is_wrong {
@@ -325,7 +392,9 @@ fn smoothed(
 
 /// What being near counts beside being fair.
 fn nearness(mesh: &Mesh, within: f64) -> f64 {
-    let sum: f64 = (0..mesh.face_count()).map(|face| perimeter(mesh, face)).sum();
+    let sum: f64 = (0..mesh.face_count())
+        .map(|face| perimeter(mesh, face))
+        .sum();
     let edge = sum / (3.0 * mesh.face_count() as f64);
     let longest = (DISTANCES * within).max(EDGES * edge);
     (PI * edge / longest).powi(4).max(LEAST_NEARNESS)
@@ -348,7 +417,8 @@ struct Fault {
 /// By face, what is wrong with the refined mesh.
 fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault>, Cancelled> {
     let (input, positions) = (mesh.as_triangles(), refined.mesh.positions());
-    let partners = parallel::map_polled(positions.len(), poll, |v| place(input, &refined.origins[v]))?;
+    let partners =
+        parallel::map_polled(positions.len(), poll, |v| place(input, &refined.origins[v]))?;
     let mut faults = vec![Fault::default(); mesh.face_count()];
     for (triangle, &parent) in refined.mesh.triangles().iter().zip(&refined.parents) {
         let fault = &mut faults[parent as usize];
@@ -357,7 +427,9 @@ fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault
             let distance = at.distance(partners[v]);
             if distance > fault.distance.min(fault.off) {
                 fault.distance = fault.distance.max(distance);
-                let [a, b, c] = input.corners(parent as usize).map(|corner| vector(corner) - at);
+                let [a, b, c] = input
+                    .corners(parent as usize)
+                    .map(|corner| vector(corner) - at);
                 fault.off = fault.off.max(closest_to_origin(a, b, c).squared.sqrt());
             }
         }
@@ -369,17 +441,39 @@ fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault
 }
 
 /// Reduces the reach of vertices of faces with faults, from where their limits are; says whether any could be reduced.
-fn reduced(mesh: &Mesh, reach: &mut [f64], away: &[DVec3], faults: &[Fault], bound: &Bound) -> bool {
+fn reduced(
+    mesh: &Mesh,
+    reach: &mut [f64],
+    away: &[DVec3],
+    faults: &[Fault],
+    bound: &Bound,
+) -> bool {
     // Half of what refining may take is for what another refinement of the same surface differs by.
     let most = bound.room() + 0.5 * bound.tolerance;
     let mut is_reduced = false;
     for (triangle, fault) in mesh.triangles().iter().zip(faults) {
         let is_far = fault.distance > most;
-        for v in triangle.iter().map(|&v| v as usize).filter(|_| is_far || fault.is_inverted) {
+        for v in triangle
+            .iter()
+            .map(|&v| v as usize)
+            .filter(|_| is_far || fault.is_inverted)
+        {
             let now = away[v].length();
-            let near = if is_far { now - NEARER * (fault.distance - bound.room()) } else { now };
-            let kept = if fault.is_inverted { near.min(UNFOLDED * now) } else { near };
-            let kept = if kept < LEAST_REACH * bound.room() { 0.0 } else { kept };
+            let near = if is_far {
+                now - NEARER * (fault.distance - bound.room())
+            } else {
+                now
+            };
+            let kept = if fault.is_inverted {
+                near.min(UNFOLDED * now)
+            } else {
+                near
+            };
+            let kept = if kept < LEAST_REACH * bound.room() {
+                0.0
+            } else {
+                kept
+            };
             if kept < reach[v] {
                 reach[v] = kept;
                 is_reduced = true;

@@ -35,7 +35,12 @@ pub(super) struct Sharper {
 
 impl Sharper {
     pub(super) fn new(mesh: &Mesh) -> Self {
-        Self { mesh: mesh.clone(), is_flat: vec![false; mesh.face_count()], times: 0, edges: 0 }
+        Self {
+            mesh: mesh.clone(),
+            is_flat: vec![false; mesh.face_count()],
+            times: 0,
+            edges: 0,
+        }
     }
 
     /// Makes the mesh sharper around faults; says whether there was anything to make sharper. Where the surface is not too far off, but folds,
@@ -54,7 +59,10 @@ impl Sharper {
         let count = |is_flat: &[bool]| is_flat.iter().filter(|&&is_flat| is_flat).count();
         let before = count(&self.is_flat);
         let added = self.around(is_faulty, RINGS.get(self.times - BY_ANGLE - 1).copied());
-        self.is_flat.iter_mut().zip(added).for_each(|(flat, is_added)| *flat |= is_added);
+        self.is_flat
+            .iter_mut()
+            .zip(added)
+            .for_each(|(flat, is_added)| *flat |= is_added);
         self.keep_flat()?;
         Ok(count(&self.is_flat) > before)
     }
@@ -63,30 +71,52 @@ impl Sharper {
     fn bent_edges(&self, is_faulty: &[bool]) -> Vec<HalfEdgeId> {
         let (topology, sharpness) = (self.mesh.topology(), Sharpness::of(&self.mesh));
         let angle = |h: HalfEdgeId| {
-            let twin = topology.twin(h).filter(|_| sharpness.edge(h) < INFINITELY_SHARP)?;
+            let twin = topology
+                .twin(h)
+                .filter(|_| sharpness.edge(h) < INFINITELY_SHARP)?;
             let [one, other] = [h, twin].map(|h| self.mesh.unit_face_normal(h.face().index()));
             Some(one.angle_between(other)).filter(|&angle| angle > FLAT)
         };
         let mut bent = Vec::new();
         for triangle in corners_of(&self.mesh, is_faulty) {
-            let rings = triangle.iter().flat_map(|&v| topology.outgoing_ring(VertexId(v)));
+            let rings = triangle
+                .iter()
+                .flat_map(|&v| topology.outgoing_ring(VertexId(v)));
             let around: Vec<_> = rings.filter_map(|h| Some((h, angle(h)?))).collect();
             let greatest = around.iter().map(|&(_, angle)| angle).fold(0.0, f64::max);
-            bent.extend(around.iter().filter(|(_, angle)| *angle >= OF_GREATEST * greatest).map(|&(h, _)| h));
+            bent.extend(
+                around
+                    .iter()
+                    .filter(|(_, angle)| *angle >= OF_GREATEST * greatest)
+                    .map(|&(h, _)| h),
+            );
         }
-        bent.iter_mut().for_each(|h| *h = topology.twin(*h).map_or(*h, |twin| twin.min(*h)));
+        bent.iter_mut()
+            .for_each(|h| *h = topology.twin(*h).map_or(*h, |twin| twin.min(*h)));
         bent.sort_unstable();
         bent.dedup();
         self.without_ends(bent, &sharpness)
     }
 
     /// Edges without those that lead nowhere: where a single sharp edge ends, the system for control points is not symmetric.
-    fn without_ends(&self, mut edges: Vec<HalfEdgeId>, sharpness: &Sharpness<'_>) -> Vec<HalfEdgeId> {
+    fn without_ends(
+        &self,
+        mut edges: Vec<HalfEdgeId>,
+        sharpness: &Sharpness<'_>,
+    ) -> Vec<HalfEdgeId> {
         let topology = self.mesh.topology();
-        let others = |v: VertexId| sharpness.spokes(v).filter(|&sharpness| sharpness > 0.0).count();
+        let others = |v: VertexId| {
+            sharpness
+                .spokes(v)
+                .filter(|&sharpness| sharpness > 0.0)
+                .count()
+        };
         loop {
             let mut counts: HashMap<VertexId, usize> = HashMap::new();
-            edges.iter().flat_map(|&h| topology.ends(h)).for_each(|v| *counts.entry(v).or_default() += 1);
+            edges
+                .iter()
+                .flat_map(|&h| topology.ends(h))
+                .for_each(|v| *counts.entry(v).or_default() += 1);
             let before = edges.len();
             edges.retain(|&h| topology.ends(h).iter().all(|&v| counts[&v] + others(v) > 1));
             if edges.len() == before {
@@ -106,14 +136,23 @@ impl Sharper {
             }
             let roots = sets.into_roots();
             let mut is_own = vec![false; roots.len()];
-            corners_of(&self.mesh, is_faulty).for_each(|[a, ..]| is_own[roots[a as usize] as usize] = true);
-            return triangles.iter().map(|&[a, ..]| is_own[roots[a as usize] as usize]).collect();
+            corners_of(&self.mesh, is_faulty)
+                .for_each(|[a, ..]| is_own[roots[a as usize] as usize] = true);
+            return triangles
+                .iter()
+                .map(|&[a, ..]| is_own[roots[a as usize] as usize])
+                .collect();
         };
         let mut all = is_faulty.to_vec();
         for _ in 0..rings {
             let mut is_near = vec![false; self.mesh.vertex_count()];
-            corners_of(&self.mesh, &all).flatten().for_each(|v| is_near[v as usize] = true);
-            all = triangles.iter().map(|corners| corners.iter().any(|&v| is_near[v as usize])).collect();
+            corners_of(&self.mesh, &all)
+                .flatten()
+                .for_each(|v| is_near[v as usize] = true);
+            all = triangles
+                .iter()
+                .map(|corners| corners.iter().any(|&v| is_near[v as usize]))
+                .collect();
         }
         all
     }
@@ -123,27 +162,47 @@ impl Sharper {
     fn keep_flat(&mut self) -> Result<(), MeshError> {
         let (topology, sharpness) = (self.mesh.topology(), Sharpness::of(&self.mesh));
         let mut is_corner = vec![false; self.mesh.vertex_count()];
-        corners_of(&self.mesh, &self.is_flat).flatten().for_each(|v| is_corner[v as usize] = true);
+        corners_of(&self.mesh, &self.is_flat)
+            .flatten()
+            .for_each(|v| is_corner[v as usize] = true);
         // Boundaries are sharp as they are.
         let is_new = |&h: &HalfEdgeId| {
             let is_first = topology.twin(h).is_some_and(|twin| h < twin);
             let ends = topology.ends(h);
-            is_first && sharpness.edge(h) < INFINITELY_SHARP && ends.iter().any(|v| is_corner[v.index()])
+            is_first
+                && sharpness.edge(h) < INFINITELY_SHARP
+                && ends.iter().any(|v| is_corner[v.index()])
         };
-        let ends: Vec<[u32; 2]> =
-            topology.half_edges().filter(is_new).map(|h| topology.ends(h).map(|v| v.0)).collect();
+        let ends: Vec<[u32; 2]> = topology
+            .half_edges()
+            .filter(is_new)
+            .map(|h| topology.ends(h).map(|v| v.0))
+            .collect();
         self.edges += ends.len();
         let mut tags = self.mesh.tags().clone();
         tags.creases
-            .extend(ends.into_iter().map(|vertices| CreaseTag { vertices, sharpness: f64::INFINITY }));
+            .extend(ends.into_iter().map(|vertices| CreaseTag {
+                vertices,
+                sharpness: f64::INFINITY,
+            }));
         let corners = (0..).zip(&is_corner).filter(|&(_, &is_corner)| is_corner);
-        tags.add_corners(corners.map(|(vertex, _)| CornerTag { vertex, sharpness: f64::INFINITY }));
+        tags.add_corners(corners.map(|(vertex, _)| CornerTag {
+            vertex,
+            sharpness: f64::INFINITY,
+        }));
         self.mesh = self.mesh.clone().with_tags(tags)?;
         Ok(())
     }
 }
 
 /// The vertices of the faces that are marked.
-fn corners_of<'a>(mesh: &'a Mesh, is_marked: &'a [bool]) -> impl Iterator<Item = [u32; 3]> + use<'a> {
-    mesh.triangles().iter().zip(is_marked).filter(|&(_, &is_marked)| is_marked).map(|(&corners, _)| corners)
+fn corners_of<'a>(
+    mesh: &'a Mesh,
+    is_marked: &'a [bool],
+) -> impl Iterator<Item = [u32; 3]> + use<'a> {
+    mesh.triangles()
+        .iter()
+        .zip(is_marked)
+        .filter(|&(_, &is_marked)| is_marked)
+        .map(|(&corners, _)| corners)
 }

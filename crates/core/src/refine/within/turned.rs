@@ -21,17 +21,27 @@ pub(super) fn turned_over(input: Triangles<'_>, found: &Exact, parts: &FaceParts
     }
     let normal_of = |face: u32| normal(input, face as usize);
     let looks_away = |triangle: u32, face: u32| {
-        found.mesh.scaled_face_normal(triangle as usize).dot(normal_of(face)) < 0.0
+        found
+            .mesh
+            .scaled_face_normal(triangle as usize)
+            .dot(normal_of(face))
+            < 0.0
     };
     let whole = |triangle: u32| parts.whole(found.parents[triangle as usize]);
     let pieces = parallel::pieces(found.mesh.face_count(), |triangles| {
         let triangles = triangles.map(|triangle| triangle as u32);
-        triangles.filter(|&triangle| looks_away(triangle, whole(triangle))).collect::<Vec<_>>()
+        triangles
+            .filter(|&triangle| looks_away(triangle, whole(triangle)))
+            .collect::<Vec<_>>()
     });
     let mut suspects = pieces.concat();
     if !suspects.is_empty() {
         let around = Around::of(input);
-        suspects.retain(|&triangle| around.faces(whole(triangle)).all(|face| looks_away(triangle, face)));
+        suspects.retain(|&triangle| {
+            around
+                .faces(whole(triangle))
+                .all(|face| looks_away(triangle, face))
+        });
     }
     all.extend(suspects);
     all.sort_unstable();
@@ -54,8 +64,11 @@ struct Around<'m> {
 
 impl<'m> Around<'m> {
     fn of(mesh: Triangles<'m>) -> Self {
-        let corners =
-            || (0..).zip(mesh.triangles).flat_map(|(face, corners)| corners.map(|v| (v as usize, face)));
+        let corners = || {
+            (0..)
+                .zip(mesh.triangles)
+                .flat_map(|(face, corners)| corners.map(|v| (v as usize, face)))
+        };
         let mut starts = vec![0u32; mesh.positions.len() + 1];
         corners().for_each(|(v, _)| starts[v + 1] += 1);
         for v in 0..mesh.positions.len() {
@@ -66,7 +79,11 @@ impl<'m> Around<'m> {
             faces[next[v] as usize] = face;
             next[v] += 1;
         }
-        Self { mesh, starts, faces }
+        Self {
+            mesh,
+            starts,
+            faces,
+        }
     }
 
     /// The faces that share a vertex with one, and itself.

@@ -48,14 +48,28 @@ impl Shift {
             sets.unite(a, b);
             sets.unite(a, c);
         }
-        for pair in mesh.junctions().vertices.iter().flat_map(|copies| copies.windows(2)) {
+        for pair in mesh
+            .junctions()
+            .vertices
+            .iter()
+            .flat_map(|copies| copies.windows(2))
+        {
             sets.unite(pair[0], pair[1]);
         }
         poll(0)?;
         let (of_vertices, count) = numbered(&sets.into_roots());
-        let of_faces: Vec<u32> = mesh.triangles().iter().map(|&[a, ..]| of_vertices[a as usize]).collect();
+        let of_faces: Vec<u32> = mesh
+            .triangles()
+            .iter()
+            .map(|&[a, ..]| of_vertices[a as usize])
+            .collect();
         let sizes = sizes(mesh, &of_faces, count, poll)?;
-        let part = |size: Size| Part { is_closed: true, volume: size.volume, by: 0.0, before: None };
+        let part = |size: Size| Part {
+            is_closed: true,
+            volume: size.volume,
+            by: 0.0,
+            before: None,
+        };
         let mut parts: Vec<Part> = sizes.into_iter().map(part).collect();
         let cut: BTreeSet<u32> = mesh.junctions().edges.iter().flatten().copied().collect();
         let topology = mesh.topology();
@@ -63,7 +77,11 @@ impl Shift {
         for rim in topology.half_edges().filter(is_rim) {
             parts[of_faces[rim.face().index()] as usize].is_closed = false;
         }
-        Ok(Self { of_faces, of_vertices, parts })
+        Ok(Self {
+            of_faces,
+            of_vertices,
+            parts,
+        })
     }
 
     /// Limits that are so far `away` from the vertices of the mesh, those shifted that may be, within the reach of each.
@@ -103,10 +121,19 @@ impl Shift {
         most: f64,
         poll: &mut Poll<'_>,
     ) -> Result<bool, Cancelled> {
-        let of_faces: Vec<u32> = refined.parents.iter().map(|&face| self.of_faces[face as usize]).collect();
+        let of_faces: Vec<u32> = refined
+            .parents
+            .iter()
+            .map(|&face| self.of_faces[face as usize])
+            .collect();
         let sizes = sizes(&refined.mesh, &of_faces, self.parts.len(), poll)?;
         let mut is_changed = false;
-        for (part, now) in self.parts.iter_mut().zip(sizes).filter(|(part, _)| part.is_closed) {
+        for (part, now) in self
+            .parts
+            .iter_mut()
+            .zip(sizes)
+            .filter(|(part, _)| part.is_closed)
+        {
             let missing = part.volume - now.volume;
             if missing.abs() <= SAME * part.volume.abs() || now.area == 0.0 {
                 continue;
@@ -142,7 +169,10 @@ fn numbered(roots: &[u32]) -> (Vec<u32>, usize) {
             count += 1;
         }
     }
-    (roots.iter().map(|&root| numbers[root as usize]).collect(), count as usize)
+    (
+        roots.iter().map(|&root| numbers[root as usize]).collect(),
+        count as usize,
+    )
 }
 
 /// Area and volume of a part.
@@ -153,18 +183,28 @@ struct Size {
 }
 
 /// The sizes of the parts of a mesh, by the part of each of its faces.
-fn sizes(mesh: &Mesh, of_faces: &[u32], parts: usize, poll: &mut Poll<'_>) -> Result<Vec<Size>, Cancelled> {
+fn sizes(
+    mesh: &Mesh,
+    of_faces: &[u32],
+    parts: usize,
+    poll: &mut Poll<'_>,
+) -> Result<Vec<Size>, Cancelled> {
     let mut sizes = vec![Size::default(); parts];
     // Seen from there, volumes keep their digits wherever the mesh is.
     let middle = mesh
         .as_triangles()
         .bounding_box()
-        .map_or(DVec3::ZERO, |[low, high]| 0.5 * (vector(low) + vector(high)));
+        .map_or(DVec3::ZERO, |[low, high]| {
+            0.5 * (vector(low) + vector(high))
+        });
     for (face, &part) in of_faces.iter().enumerate() {
         if face.is_multiple_of(PIECE) {
             poll(face)?;
         }
-        let [a, b, c] = mesh.as_triangles().corners(face).map(|corner| vector(corner) - middle);
+        let [a, b, c] = mesh
+            .as_triangles()
+            .corners(face)
+            .map(|corner| vector(corner) - middle);
         let size = &mut sizes[part as usize];
         size.area += 0.5 * (b - a).cross(c - a).length();
         size.volume += a.dot(b.cross(c)) / 6.0;

@@ -33,7 +33,9 @@ impl<'m> Forest<'m> {
         let mut limits = table.positions(control)?;
         // Copies where sheets were cut apart have the same bits, whatever the order of their rings.
         for copies in control.junctions().vertices.iter() {
-            copies.iter().for_each(|&v| limits[v as usize] = limits[copies[0] as usize]);
+            copies
+                .iter()
+                .for_each(|&v| limits[v as usize] = limits[copies[0] as usize]);
         }
         let normals = table.plane_normals(control, &mut |_| Ok(()))??;
         let mut forest = Self {
@@ -73,18 +75,30 @@ impl<'m> Forest<'m> {
             };
             let first = self.vertices.len() as u32;
             let sides: Vec<Vec<HalfEdgeId>> = match sharpness.is_tagged(v) {
-                true => {
-                    sharpness.sectors(v).iter().map(|sector| sector.outgoing(topology).collect()).collect()
-                }
+                true => sharpness
+                    .sectors(v)
+                    .iter()
+                    .map(|sector| sector.outgoing(topology).collect())
+                    .collect(),
                 false => vec![topology.outgoing_ring(v).collect()],
             };
             for side in sides {
                 let number = self.vertices.len() as u32;
-                let normal = side.first().map_or(DVec3::ZERO, |&h| vector(self.normals.at(topology, h)));
+                let normal = side
+                    .first()
+                    .map_or(DVec3::ZERO, |&h| vector(self.normals.at(topology, h)));
                 side.into_iter().for_each(|h| of_corner[h.index()] = number);
                 let limit = Some(vector(limits[v.index()]));
                 let maker = v.0;
-                self.vertices.push(Vertex { kind, level: 0, at, maker, limit, normal: Some(normal), first });
+                self.vertices.push(Vertex {
+                    kind,
+                    level: 0,
+                    at,
+                    maker,
+                    limit,
+                    normal: Some(normal),
+                    first,
+                });
                 if let Some(origins) = &mut self.origins {
                     origins.push(of_control(self.control, v));
                 }
@@ -97,9 +111,18 @@ impl<'m> Forest<'m> {
         let topology = self.control.topology();
         let place = |h: HalfEdgeId| vector(self.control.positions()[topology.target(h).index()]);
         let outgoing: Vec<HalfEdgeId> = topology.outgoing_ring(v).collect();
-        let first = outgoing.iter().position(|&h| sharp.is_sharp(h)).unwrap_or(0);
-        let ring = outgoing[first..].iter().chain(&outgoing[..first]).map(|&h| place(h)).collect();
-        self.darts.push(Dart { rings: vec![(at, ring)] });
+        let first = outgoing
+            .iter()
+            .position(|&h| sharp.is_sharp(h))
+            .unwrap_or(0);
+        let ring = outgoing[first..]
+            .iter()
+            .chain(&outgoing[..first])
+            .map(|&h| place(h))
+            .collect();
+        self.darts.push(Dart {
+            rings: vec![(at, ring)],
+        });
         self.darts.len() as u32 - 1
     }
 
@@ -110,7 +133,10 @@ impl<'m> Forest<'m> {
         let across = half_edges.map(|h| {
             let is_sharp = sharp.is_sharp(h);
             bits |= u8::from(is_sharp) << h.corner();
-            topology.twin(h).filter(|_| !is_sharp).map_or(NONE, |twin| twin.0)
+            topology
+                .twin(h)
+                .filter(|_| !is_sharp)
+                .map_or(NONE, |twin| twin.0)
         });
         let (children, apexes) = ([NONE; 3], [NONE; 2]);
         self.nodes.push(Node {
@@ -136,15 +162,23 @@ impl<'m> Forest<'m> {
         };
         for copies in junctions.edges.iter() {
             let start = copies.first().map(|&h| place(HalfEdgeId(h)));
-            let sides = copies.iter().map(|&h| (h, Some(place(HalfEdgeId(h))) != start)).collect();
-            self.add_rim(Group { sides, is_crease: false });
+            let sides = copies
+                .iter()
+                .map(|&h| (h, Some(place(HalfEdgeId(h))) != start))
+                .collect();
+            self.add_rim(Group {
+                sides,
+                is_crease: false,
+            });
         }
         for h in topology.half_edges().filter(|&h| sharp.is_sharp(h)) {
             if self.rim_of.contains_key(&h.0) {
                 continue;
             }
-            let sides: Vec<(Side, bool)> =
-                [(h.0, false)].into_iter().chain(topology.twin(h).map(|twin| (twin.0, true))).collect();
+            let sides: Vec<(Side, bool)> = [(h.0, false)]
+                .into_iter()
+                .chain(topology.twin(h).map(|twin| (twin.0, true)))
+                .collect();
             let is_crease = sides.len() > 1;
             self.add_rim(Group { sides, is_crease });
         }

@@ -31,8 +31,9 @@ impl Forest<'_> {
                 result.extend(self.is_real(t).then_some(Triangle::Leaf(t as u32)));
                 continue;
             }
-            let thirds =
-                (0..3).filter(|&edge| !node.is_sharp(edge)).map(|edge| Triangle::Third(side(t, edge)));
+            let thirds = (0..3)
+                .filter(|&edge| !node.is_sharp(edge))
+                .map(|edge| Triangle::Third(side(t, edge)));
             result.extend(thirds.filter(|&third| self.is_there(third)));
         }
         result
@@ -51,7 +52,10 @@ impl Forest<'_> {
     /// More elements than can be numbered, or coordinates that overflow.
     pub(in crate::sqrt3) fn emit(mut self) -> Result<Emitted, RefineError> {
         let result = self.result();
-        let corners: Vec<[u32; 3]> = result.iter().map(|&triangle| self.corners(triangle)).collect();
+        let corners: Vec<[u32; 3]> = result
+            .iter()
+            .map(|&triangle| self.corners(triangle))
+            .collect();
         let used = corners.iter().flatten().copied();
         // Limits may need more nodes and vertices than there are.
         let (count, mut is_used) = (self.vertices.len(), vec![false; self.vertices.len()]);
@@ -67,7 +71,10 @@ impl Forest<'_> {
             positions[number] = self.limit(v).to_array();
             normals[v as usize] = self.normal(v);
         }
-        let triangles = corners.iter().map(|own| own.map(|v| numbers[v as usize])).collect();
+        let triangles = corners
+            .iter()
+            .map(|own| own.map(|v| numbers[v as usize]))
+            .collect();
         let topology = Topology::from_triangles(triangles, positions.len())?;
         crate::mesh::check_finite(&positions)?;
         let (tags, junctions) = (self.tags(&numbers), self.junctions(&topology, &numbers));
@@ -84,12 +91,24 @@ impl Forest<'_> {
         let levels = result.iter().map(steps).max().unwrap_or(0);
         let mut origins = Vec::new();
         if let Some(all) = &self.origins {
-            origins.resize(mesh.vertex_count(), Origin { face: 0, barycentric: [0.0; 3] });
+            origins.resize(
+                mesh.vertex_count(),
+                Origin {
+                    face: 0,
+                    barycentric: [0.0; 3],
+                },
+            );
             for v in (0..count).rev().filter(|&v| is_used[v]) {
                 origins[numbers[v] as usize] = all[v];
             }
         }
-        Ok(Emitted { mesh, normals, origins, parents, levels })
+        Ok(Emitted {
+            mesh,
+            normals,
+            origins,
+            parents,
+            levels,
+        })
     }
 
     /// By vertex, its number in the result.
@@ -114,13 +133,26 @@ impl Forest<'_> {
 
     /// Corners as they were, and the parts of creases.
     fn tags(&self, numbers: &[u32]) -> Tags {
-        let mut tags = Tags { creases: Vec::new(), corners: self.control.tags().corners.clone() };
+        let mut tags = Tags {
+            creases: Vec::new(),
+            corners: self.control.tags().corners.clone(),
+        };
         let all = self.control.tags().creases.iter().map(|tag| tag.sharpness);
         let sharpness = all.fold(0.0, f64::max);
-        for rim in self.rims.result().filter(|rim| self.rims.groups[rim.group as usize].is_crease) {
-            let ends = rim.ends.iter().map(|ends| ends.map(|v| numbers[v as usize]));
+        for rim in self
+            .rims
+            .result()
+            .filter(|rim| self.rims.groups[rim.group as usize].is_crease)
+        {
+            let ends = rim
+                .ends
+                .iter()
+                .map(|ends| ends.map(|v| numbers[v as usize]));
             let vertices = ends.into_iter().find(|ends| !ends.contains(&NONE));
-            tags.creases.extend(vertices.map(|vertices| CreaseTag { vertices, sharpness }));
+            tags.creases.extend(vertices.map(|vertices| CreaseTag {
+                vertices,
+                sharpness,
+            }));
         }
         tags
     }
@@ -128,7 +160,10 @@ impl Forest<'_> {
     /// Copies where sheets were cut apart.
     fn junctions(&self, topology: &Topology, numbers: &[u32]) -> Junctions {
         let control = self.control.junctions();
-        let mut junctions = Junctions { vertices: control.vertices.clone(), edges: Groups::default() };
+        let mut junctions = Junctions {
+            vertices: control.vertices.clone(),
+            edges: Groups::default(),
+        };
         if control.is_empty() {
             return junctions;
         }
@@ -137,13 +172,21 @@ impl Forest<'_> {
             !group.is_crease && group.sides.len() > 1
         };
         for rim in self.rims.result().filter(|rim| is_cut_apart(rim.group)) {
-            let ends = rim.ends.iter().map(|ends| ends.map(|v| VertexId(numbers[v as usize])));
-            junctions.edges.push(ends.filter_map(|[a, b]| topology.edge_between(a, b)).map(|h| h.0));
+            let ends = rim
+                .ends
+                .iter()
+                .map(|ends| ends.map(|v| VertexId(numbers[v as usize])));
+            junctions.edges.push(
+                ends.filter_map(|[a, b]| topology.edge_between(a, b))
+                    .map(|h| h.0),
+            );
         }
         for rim in self.rims.cut().filter(|rim| is_cut_apart(rim.group)) {
             let middle = &self.rims.rims[rim.parts[1] as usize];
             for end in 0..2 {
-                junctions.vertices.push(middle.ends.iter().map(|ends| numbers[ends[end] as usize]));
+                junctions
+                    .vertices
+                    .push(middle.ends.iter().map(|ends| numbers[ends[end] as usize]));
             }
         }
         junctions
@@ -159,7 +202,11 @@ fn sided(mesh: &Mesh, corners: &[[u32; 3]], mut normals: Vec<DVec3>) -> SidedNor
             averages[v as usize] += mesh.face_normal_vector(face);
         }
     }
-    for (normal, average) in normals.iter_mut().zip(averages).filter(|(normal, _)| **normal == DVec3::ZERO) {
+    for (normal, average) in normals
+        .iter_mut()
+        .zip(averages)
+        .filter(|(normal, _)| **normal == DVec3::ZERO)
+    {
         *normal = unit_or_zero(average);
     }
     // By number, the sum over sides, one of these, and whether there are more.

@@ -179,7 +179,10 @@ impl Forest<'_> {
             let own = side(t, edge);
             if self.nodes[t].is_sharp(edge) {
                 new.push(self.make_beside_sharp(own));
-            } else if let Some(other) = self.across(own).filter(|&other| self.node(other).is_grown()) {
+            } else if let Some(other) = self
+                .across(own)
+                .filter(|&other| self.node(other).is_grown())
+            {
                 new.extend([self.make_child(own, other), self.make_child(other, own)]);
             }
         }
@@ -219,11 +222,20 @@ impl Forest<'_> {
 
     /// The child of a half-edge with a neighbour across it.
     fn make_child(&mut self, own: Side, other: Side) -> usize {
-        let apexes = [self.node(other).apex(edge_of(other)), self.node(own).apex(edge_of(own))];
+        let apexes = [
+            self.node(other).apex(edge_of(other)),
+            self.node(own).apex(edge_of(own)),
+        ];
         let corners = [self.ends(own)[0], apexes[0], apexes[1]];
         // Beside an edge that was cut, it has one of the outer parts.
-        let first = self.node(other).cut_edge().filter(|cut| (cut + 2) % 3 == edge_of(other));
-        let last = self.node(own).cut_edge().filter(|cut| (cut + 1) % 3 == edge_of(own));
+        let first = self
+            .node(other)
+            .cut_edge()
+            .filter(|cut| (cut + 2) % 3 == edge_of(other));
+        let last = self
+            .node(own)
+            .cut_edge()
+            .filter(|cut| (cut + 1) % 3 == edge_of(own));
         let sharp = u8::from(first.is_some()) | u8::from(last.is_some()) << 2;
         let child = self.push_node(corners, own, sharp);
         if let Some(cut) = first {
@@ -258,9 +270,10 @@ impl Forest<'_> {
         for edge in 0..3 {
             let across = match self.neighbour(node, edge) {
                 Neighbour::Child(of, edge) => self.child(of).map(|child| side(child, edge)),
-                Neighbour::ChildAcross(of) => {
-                    self.across(of).and_then(|other| self.child(other)).map(|child| side(child, 0))
-                }
+                Neighbour::ChildAcross(of) => self
+                    .across(of)
+                    .and_then(|other| self.child(other))
+                    .map(|child| side(child, 0)),
                 Neighbour::None => None,
             };
             if let Some(across) = across {
@@ -312,7 +325,11 @@ impl Forest<'_> {
         let missing = match self.neighbour(node_of(at), edge_of(at)) {
             Neighbour::Child(of, _) => {
                 self.grow(node_of(of));
-                if self.node(of).is_sharp(edge_of(of)) { None } else { Some(of) }
+                if self.node(of).is_sharp(edge_of(of)) {
+                    None
+                } else {
+                    Some(of)
+                }
             }
             Neighbour::ChildAcross(of) => Some(of),
             Neighbour::None => return None,

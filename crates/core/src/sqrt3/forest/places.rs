@@ -40,8 +40,10 @@ impl Dart {
     fn refined(vertex: DVec3, ring: &[DVec3]) -> (DVec3, Vec<DVec3>) {
         let shape = RingShape::interior(ring.len() as u32);
         let mask = DoubleStep.vertex_mask(shape);
-        let moved =
-            ring.iter().zip(&mask.ring).fold(mask.centre * vertex, |sum, (&p, &weight)| sum + weight * p);
+        let moved = ring
+            .iter()
+            .zip(&mask.ring)
+            .fold(mask.centre * vertex, |sum, (&p, &weight)| sum + weight * p);
         let edge = DoubleStep.edge_mask(EdgeShape::between(shape, RingShape::interior(6)));
         let point = |j: usize| match j {
             0 => beside(2.0 * vertex - ring[0], vertex, ring[0]),
@@ -55,14 +57,23 @@ impl Dart {
     /// Its position at a level.
     fn at(&mut self, level: u8) -> DVec3 {
         let &(vertex, ref ring) = self.ring(usize::from(level / 2));
-        if level.is_multiple_of(2) { vertex } else { smoothed(vertex, ring.iter().copied()) }
+        if level.is_multiple_of(2) {
+            vertex
+        } else {
+            smoothed(vertex, ring.iter().copied())
+        }
     }
 }
 
 impl Forest<'_> {
     /// Position of a vertex at a level not below its own.
     pub(super) fn at(&mut self, vertex: u32, level: u8) -> DVec3 {
-        let Vertex { kind, level: first, at, .. } = self.vertices[vertex as usize];
+        let Vertex {
+            kind,
+            level: first,
+            at,
+            ..
+        } = self.vertices[vertex as usize];
         if level == first {
             return at;
         }
@@ -96,7 +107,11 @@ impl Forest<'_> {
     pub(super) fn make_centre(&mut self, t: usize) -> u32 {
         let node = &self.nodes[t];
         let (corners, level) = (node.corners, node.level);
-        let kind = if node.sharp != 0 { Kind::BesideSharp } else { Kind::Smooth(shrinking(6)) };
+        let kind = if node.sharp != 0 {
+            Kind::BesideSharp
+        } else {
+            Kind::Smooth(shrinking(6))
+        };
         let at = centre(corners.map(|v| self.at(v, level)));
         if self.origins.is_some() {
             let barycentric = self.centre_origin(t);
@@ -109,7 +124,10 @@ impl Forest<'_> {
     pub(super) fn make_points(&mut self, on: Side, [a, b]: [u32; 2]) -> [u32; 2] {
         let (t, level) = (node_of(on), self.node(on).level);
         let places = [a, b].map(|v| self.at_even(v, level));
-        let new = [self.beside(a, places), self.beside(b, [places[1], places[0]])];
+        let new = [
+            self.beside(a, places),
+            self.beside(b, [places[1], places[0]]),
+        ];
         let after = [a, b].map(|v| self.at_even(v, level + 1));
         [0, 1].map(|end| {
             // Both neighbours on the curve two steps on.
@@ -127,7 +145,10 @@ impl Forest<'_> {
 
     /// The new point of a curve near a vertex, from the places of both ends.
     fn beside(&mut self, near: u32, [here, there]: [DVec3; 2]) -> DVec3 {
-        let beyond = match (self.vertices[near as usize].kind, self.vertices[near as usize].limit) {
+        let beyond = match (
+            self.vertices[near as usize].kind,
+            self.vertices[near as usize].limit,
+        ) {
             // The limit is (before + 4 here + after) / 6 at every even level.
             (Kind::Curve, Some(limit)) => 6.0 * limit - 4.0 * here - there,
             _ => 2.0 * here - there,
@@ -137,13 +158,23 @@ impl Forest<'_> {
 
     fn push_vertex(&mut self, kind: Kind, level: u8, at: DVec3, maker: Side) -> u32 {
         let first = self.vertices.len() as u32;
-        self.vertices.push(Vertex { kind, level, at, maker, limit: None, normal: None, first });
+        self.vertices.push(Vertex {
+            kind,
+            level,
+            at,
+            maker,
+            limit: None,
+            normal: None,
+            first,
+        });
         first
     }
 
     /// Limit position of a vertex.
     pub(in crate::sqrt3) fn limit(&mut self, vertex: u32) -> DVec3 {
-        let Vertex { kind, limit, maker, .. } = self.vertices[vertex as usize];
+        let Vertex {
+            kind, limit, maker, ..
+        } = self.vertices[vertex as usize];
         if let Some(limit) = limit {
             return limit;
         }
@@ -162,7 +193,11 @@ impl Forest<'_> {
     /// The six points around the centre of a node, where it is regular.
     fn regular_ring(&mut self, maker: Side, kind: Kind) -> [DVec3; 6] {
         let t = node_of(maker);
-        if kind == Kind::BesideSharp { self.second_ring(t) } else { self.first_ring(t) }
+        if kind == Kind::BesideSharp {
+            self.second_ring(t)
+        } else {
+            self.first_ring(t)
+        }
     }
 
     /// The points around the centre of a node without sharp edges, at the level at which it came about: corners and, between them,
@@ -237,7 +272,12 @@ impl Forest<'_> {
 
     /// Unit limit normal of a vertex; zero where it has none.
     pub(in crate::sqrt3) fn normal(&mut self, vertex: u32) -> DVec3 {
-        let Vertex { kind, normal, maker, .. } = self.vertices[vertex as usize];
+        let Vertex {
+            kind,
+            normal,
+            maker,
+            ..
+        } = self.vertices[vertex as usize];
         if let Some(normal) = normal {
             return normal;
         }
@@ -266,11 +306,23 @@ impl Forest<'_> {
         let [l, r] = self.nodes[t].apexes;
         let is_first = vertex == l;
         let beyond = self.apex_across(side(t, if is_first { edge + 2 } else { edge + 1 }));
-        let Some(beyond) = beyond else { return DVec3::ZERO };
+        let Some(beyond) = beyond else {
+            return DVec3::ZERO;
+        };
         let (beyond, third) = (self.vertices[beyond as usize].at, self.at(third, level));
         let ring = match is_first {
-            true => [self.vertices[r as usize].at, third, beyond, self.at_even(a, level)],
-            false => [self.at_even(b, level), beyond, third, self.vertices[l as usize].at],
+            true => [
+                self.vertices[r as usize].at,
+                third,
+                beyond,
+                self.at_even(a, level),
+            ],
+            false => [
+                self.at_even(b, level),
+                beyond,
+                third,
+                self.vertices[l as usize].at,
+            ],
         };
         // √3/2 on inner neighbours, −5√3/12 on those of the curve, −√3/6 on the vertex.
         let here = self.vertices[vertex as usize].at;
@@ -292,7 +344,10 @@ impl Forest<'_> {
 
     /// The place of a vertex in the control face of a node.
     fn origin_in(&self, vertex: u32, t: usize) -> [f64; 3] {
-        let own = self.origins.as_ref().and_then(|all| all.get(vertex as usize));
+        let own = self
+            .origins
+            .as_ref()
+            .and_then(|all| all.get(vertex as usize));
         let here = own.and_then(|own| own.in_face(self.control.triangles(), self.nodes[t].root));
         here.map_or([0.0; 3], |origin| origin.barycentric)
     }
@@ -309,5 +364,9 @@ impl Forest<'_> {
 fn spanned(along: DVec3, across: DVec3) -> DVec3 {
     let [along, across] = [unit_or_zero(along), unit_or_zero(across)];
     let normal = along.cross(across);
-    if normal.length() > LEAST_SINE { unit_or_zero(normal) } else { DVec3::ZERO }
+    if normal.length() > LEAST_SINE {
+        unit_or_zero(normal)
+    } else {
+        DVec3::ZERO
+    }
 }

@@ -42,7 +42,13 @@ impl Rims {
     pub(super) fn add(&mut self, group: Group, ends: Vec<[u32; 2]>) -> u32 {
         let number = self.groups.len() as u32;
         self.groups.push(group);
-        self.rims.push(Rim { group: number, parent: None, parts: [NONE; 3], ends, is_cut: false });
+        self.rims.push(Rim {
+            group: number,
+            parent: None,
+            parts: [NONE; 3],
+            ends,
+            is_cut: false,
+        });
         self.rims.len() as u32 - 1
     }
 
@@ -53,7 +59,13 @@ impl Rims {
             let (group, sides, first) = (own.group, own.ends.len(), self.rims.len() as u32);
             for part in 0..3 {
                 let (parts, ends) = ([NONE; 3], vec![[NONE; 2]; sides]);
-                self.rims.push(Rim { group, parent: Some((rim, part)), parts, ends, is_cut: false });
+                self.rims.push(Rim {
+                    group,
+                    parent: Some((rim, part)),
+                    parts,
+                    ends,
+                    is_cut: false,
+                });
             }
             self.rims[rim as usize].parts = [first, first + 1, first + 2];
         }
@@ -62,8 +74,13 @@ impl Rims {
 
     /// Those that are edges of the result.
     pub(super) fn result(&self) -> impl Iterator<Item = &Rim> {
-        let is_there = |rim: &Rim| rim.parent.is_none_or(|(parent, _)| self.rims[parent as usize].is_cut);
-        self.rims.iter().filter(move |rim| !rim.is_cut && is_there(rim))
+        let is_there = |rim: &Rim| {
+            rim.parent
+                .is_none_or(|(parent, _)| self.rims[parent as usize].is_cut)
+        };
+        self.rims
+            .iter()
+            .filter(move |rim| !rim.is_cut && is_there(rim))
     }
 
     /// Those that are cut in the result.
@@ -81,7 +98,9 @@ impl Forest<'_> {
     pub(super) fn cut(&mut self, at: Side) -> [u32; 2] {
         let ends = self.ends(at);
         let points = self.make_points(at, ends);
-        let Some(&(rim, number)) = self.rim_of.get(&at) else { return points };
+        let Some(&(rim, number)) = self.rim_of.get(&at) else {
+            return points;
+        };
         let parts = self.rims.parts(rim);
         let turned = self.rims.is_turned(rim, number);
         let along = |[a, b]: [u32; 2]| if turned { [b, a] } else { [a, b] };
@@ -95,7 +114,10 @@ impl Forest<'_> {
             return points;
         }
         let middle = &self.rims.rims[parts[1] as usize].ends;
-        if let Some(&first) = middle.iter().find(|ends| ends[0] != NONE && **ends != [l, r]) {
+        if let Some(&first) = middle
+            .iter()
+            .find(|ends| ends[0] != NONE && **ends != [l, r])
+        {
             for (own, first) in [l, r].into_iter().zip(first) {
                 self.vertices[own as usize].first = self.vertices[first as usize].first;
             }
@@ -105,9 +127,16 @@ impl Forest<'_> {
 
     /// Notes which part of a sharp edge that was cut a half-edge lies on: `part` in the direction of the edge `cut`.
     pub(super) fn note_part(&mut self, cut: Side, part: usize, own: Side) {
-        let Some(&(rim, number)) = self.rim_of.get(&cut) else { return };
-        let part = if self.rims.is_turned(rim, number) { 2 - part } else { part };
-        self.rim_of.insert(own, (self.rims.parts(rim)[part], number));
+        let Some(&(rim, number)) = self.rim_of.get(&cut) else {
+            return;
+        };
+        let part = if self.rims.is_turned(rim, number) {
+            2 - part
+        } else {
+            part
+        };
+        self.rim_of
+            .insert(own, (self.rims.parts(rim)[part], number));
     }
 
     /// The half-edge of an even level on a side of a rim, grown for if it isn't there.
@@ -119,7 +148,11 @@ impl Forest<'_> {
         let cut = self.odd_owner(parent, number)?;
         let (t, edge) = (node_of(cut), edge_of(cut));
         self.grow(t);
-        let part = if self.rims.is_turned(rim, number) { 2 - part } else { part };
+        let part = if self.rims.is_turned(rim, number) {
+            2 - part
+        } else {
+            part
+        };
         match part {
             0 => {
                 let other = self.require(side(t, edge + 2))?;

@@ -36,7 +36,9 @@ impl Forest<'_> {
             }
             return;
         }
-        let Some(other) = self.require(own) else { return };
+        let Some(other) = self.require(own) else {
+            return;
+        };
         self.grow(node_of(own));
         self.grow(node_of(other));
         for child in [self.child(own), self.child(other)].into_iter().flatten() {

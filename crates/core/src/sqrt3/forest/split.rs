@@ -44,7 +44,9 @@ impl Forest<'_> {
     pub(in crate::sqrt3) fn is_there(&self, triangle: Triangle) -> bool {
         match triangle {
             Triangle::Leaf(node) => !self.nodes[node as usize].is_split,
-            Triangle::Third(own) => !self.across(own).is_some_and(|other| self.node(other).is_split),
+            Triangle::Third(own) => !self
+                .across(own)
+                .is_some_and(|other| self.node(other).is_split),
         }
     }
 
@@ -73,7 +75,10 @@ impl Forest<'_> {
         for &other in &sides {
             self.split_parents(other)?;
         }
-        let new: Vec<usize> = sides.into_iter().filter(|&other| !self.nodes[other].is_split).collect();
+        let new: Vec<usize> = sides
+            .into_iter()
+            .filter(|&other| !self.nodes[other].is_split)
+            .collect();
         // Each split gives three triangles for one, or two more where the thirds beside it become nodes.
         if self.triangles + 2 * new.len() > self.max_triangles {
             return Err(Full);
@@ -100,12 +105,18 @@ impl Forest<'_> {
 
     /// The sharp edge that is cut with a node, and all nodes that are cut with it, the node among them.
     fn cut_together(&mut self, t: usize) -> (Option<u32>, Vec<usize>) {
-        let cut = self.nodes[t].cut_edge().and_then(|edge| self.rim_of.get(&side(t, edge)).copied());
-        let Some((rim, own)) = cut else { return (None, vec![t]) };
+        let cut = self.nodes[t]
+            .cut_edge()
+            .and_then(|edge| self.rim_of.get(&side(t, edge)).copied());
+        let Some((rim, own)) = cut else {
+            return (None, vec![t]);
+        };
         let sides = self.rims.rims[rim as usize].ends.len() as u32;
         let others = (0..sides).filter(|&number| number != own);
-        let others: Vec<usize> =
-            others.filter_map(|number| self.odd_owner(rim, number)).map(node_of).collect();
+        let others: Vec<usize> = others
+            .filter_map(|number| self.odd_owner(rim, number))
+            .map(node_of)
+            .collect();
         (Some(rim), core::iter::once(t).chain(others).collect())
     }
 
@@ -123,7 +134,12 @@ impl Forest<'_> {
                     continue;
                 }
             };
-            self.fresh.extend(children.into_iter().flatten().map(|child| Triangle::Leaf(child as u32)));
+            self.fresh.extend(
+                children
+                    .into_iter()
+                    .flatten()
+                    .map(|child| Triangle::Leaf(child as u32)),
+            );
         }
     }
 

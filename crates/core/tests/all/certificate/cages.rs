@@ -21,7 +21,11 @@ pub(crate) struct Cage {
 pub(crate) fn cage(seed: u64) -> Cage {
     let mut random = Random::new(seed);
     // A few of the small ones have no face that is any good.
-    core::iter::repeat_with(|| random_cage(&mut random, seed)).take(MOST_TRIES).flatten().next().unwrap()
+    core::iter::repeat_with(|| random_cage(&mut random, seed))
+        .take(MOST_TRIES)
+        .flatten()
+        .next()
+        .unwrap()
 }
 
 fn random_cage(random: &mut Random, seed: u64) -> Option<Cage> {
@@ -41,8 +45,13 @@ fn random_cage(random: &mut Random, seed: u64) -> Option<Cage> {
         fins(&mut positions, &mut triangles, random, &mut what);
     }
     deform(&mut positions, random, &mut what);
-    let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
-    triangles.iter().for_each(|triangle| soup.faces.push(triangle));
+    let mut soup = PolygonSoup {
+        positions,
+        ..PolygonSoup::default()
+    };
+    triangles
+        .iter()
+        .for_each(|triangle| soup.faces.push(triangle));
     let mesh = match Mesh::from_soup(&soup, &Default::default()) {
         Ok((mesh, _)) => mesh,
         Err(MeshError::NoFaces { .. }) => return None,
@@ -55,14 +64,21 @@ fn random_cage(random: &mut Random, seed: u64) -> Option<Cage> {
 type Raw = (Vec<Point>, Vec<[u32; 3]>, String);
 
 fn base(random: &mut Random, seed: u64) -> Raw {
-    let raw = |mesh: Mesh, what: String| (mesh.positions().to_vec(), mesh.triangles().to_vec(), what);
+    let raw =
+        |mesh: Mesh, what: String| (mesh.positions().to_vec(), mesh.triangles().to_vec(), what);
     let size = |random: &mut Random| 3 + random.below(4) as u32;
     match random.below(10) {
         0 => raw(octahedron(), "octahedron".into()),
         1 => raw(lumpy(1 + random.below(30), seed), "lumpy".into()),
         2 => raw(torus(size(random), size(random)), "torus".into()),
-        3 => raw(sheet(1 + random.below(5) as u32, 1 + random.below(5) as u32, seed), "sheet".into()),
-        4 => washer(3 + random.below(8) as u32, 0.02 * (1 + random.below(20)) as f64),
+        3 => raw(
+            sheet(1 + random.below(5) as u32, 1 + random.below(5) as u32, seed),
+            "sheet".into(),
+        ),
+        4 => washer(
+            3 + random.below(8) as u32,
+            0.02 * (1 + random.below(20)) as f64,
+        ),
         5 => bipyramid([3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20, 30, 40][random.below(13)]),
         6 => fan([2, 3, 4, 6, 9, 20, 30, 40][random.below(8)]),
         7 => soup_of_tetrahedra(1 + random.below(3) as u32),
@@ -108,14 +124,23 @@ fn fan(n: u32) -> Raw {
         let angle = 5.0 * f64::from(i) / f64::from(n);
         positions.push([angle.cos(), angle.sin(), 0.2 * f64::from(i % 3)]);
     }
-    (positions, (1..=n).map(|i| [0, i, i + 1]).collect(), format!("fan of {n}"))
+    (
+        positions,
+        (1..=n).map(|i| [0, i, i + 1]).collect(),
+        format!("fan of {n}"),
+    )
 }
 
 fn soup_of_tetrahedra(count: u32) -> Raw {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for i in 0..count {
         let x = f64::from(i);
-        positions.extend([[x, 0.0, 0.0], [x + 1.0, 0.0, 0.1], [x, 1.0, 0.0], [x + 0.2, 0.3, 1.0]]);
+        positions.extend([
+            [x, 0.0, 0.0],
+            [x + 1.0, 0.0, 0.1],
+            [x, 1.0, 0.0],
+            [x + 0.2, 0.3, 1.0],
+        ]);
         let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         triangles.extend(faces.map(|face| face.map(|v: u32| 4 * i + v)));
     }
@@ -132,9 +157,17 @@ fn book(pages: u32, n: u32) -> Raw {
         for column in 1..=2 {
             let (x, y) = (f64::from(column), 0.3 * f64::from(column * column));
             let (sine, cosine) = angle.sin_cos();
-            positions.extend((0..=n).map(|i| [f64::from(i), cosine * x - sine * y, sine * x + cosine * y]));
+            positions.extend(
+                (0..=n).map(|i| [f64::from(i), cosine * x - sine * y, sine * x + cosine * y]),
+            );
         }
-        let at = |i: u32, column: u32| if column == 0 { i } else { first + (column - 1) * (n + 1) + i };
+        let at = |i: u32, column: u32| {
+            if column == 0 {
+                i
+            } else {
+                first + (column - 1) * (n + 1) + i
+            }
+        };
         for (i, j) in (0..n).flat_map(|i| [(i, 0), (i, 1)]) {
             triangles.push([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
             triangles.push([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
@@ -144,7 +177,12 @@ fn book(pages: u32, n: u32) -> Raw {
 }
 
 /// Triangles more at edges that have theirs.
-fn fins(positions: &mut Vec<Point>, triangles: &mut Vec<[u32; 3]>, random: &mut Random, what: &mut String) {
+fn fins(
+    positions: &mut Vec<Point>,
+    triangles: &mut Vec<[u32; 3]>,
+    random: &mut Random,
+    what: &mut String,
+) {
     let count = 1 + random.below(4);
     for _ in 0..count {
         let (f, i) = (random.below(triangles.len()), random.below(3));
@@ -176,9 +214,14 @@ fn flip(triangles: &mut [[u32; 3]], random: &mut Random) {
     for _ in 0..2 * triangles.len() {
         let (f, i) = (random.below(triangles.len()), random.below(3));
         let [a, b, c] = [0, 1, 2].map(|k| triangles[f][(i + k) % 3]);
-        let beyond = triangles.iter().position(|t| (0..3).any(|k| (t[k], t[(k + 1) % 3]) == (b, a)));
+        let beyond = triangles
+            .iter()
+            .position(|t| (0..3).any(|k| (t[k], t[(k + 1) % 3]) == (b, a)));
         let Some(g) = beyond else { continue };
-        let d = triangles[g].into_iter().find(|&v| v != a && v != b).unwrap();
+        let d = triangles[g]
+            .into_iter()
+            .find(|&v| v != a && v != b)
+            .unwrap();
         let joined = triangles.iter().any(|t| t.contains(&c) && t.contains(&d));
         if c != d && !joined {
             (triangles[f], triangles[g]) = ([c, a, d], [d, b, c]);
@@ -197,7 +240,11 @@ fn deform(positions: &mut [Point], random: &mut Random, what: &mut String) {
         let factors: Point = std::array::from_fn(|_| 10f64.powf(-4.0 * random.signed().max(0.0)));
         let shear = [0.0, 0.0, 3.0, 30.0][random.below(4)];
         for p in positions.iter_mut() {
-            *p = [p[0] * factors[0] + shear * p[1], p[1] * factors[1], p[2] * factors[2]];
+            *p = [
+                p[0] * factors[0] + shear * p[1],
+                p[1] * factors[1],
+                p[2] * factors[2],
+            ];
         }
         *what += &format!(", stretched {factors:?}, sheared {shear}");
     }
@@ -211,7 +258,9 @@ fn deform(positions: &mut [Point], random: &mut Random, what: &mut String) {
         *what += &format!(", times {scale:e}");
     } else if random.below(4) == 0 {
         let place: Point = std::array::from_fn(|_| 1e6 * random.signed());
-        positions.iter_mut().for_each(|p| *p = std::array::from_fn(|i| p[i] + place[i]));
+        positions
+            .iter_mut()
+            .for_each(|p| *p = std::array::from_fn(|i| p[i] + place[i]));
         *what += ", far away";
     }
 }
@@ -233,16 +282,26 @@ fn tagged(mesh: Mesh, random: &mut Random, what: &mut String) -> Mesh {
         for i in 0..3 {
             let vertices = [triangle[i], triangle[(i + 1) % 3]];
             if random.below(200) < share {
-                tags.creases.push(CreaseTag { vertices, sharpness: sharpness(random) });
+                tags.creases.push(CreaseTag {
+                    vertices,
+                    sharpness: sharpness(random),
+                });
             }
         }
     }
     for vertex in 0..mesh.vertex_count() as u32 {
         if random.below(800) < share {
-            tags.corners.push(CornerTag { vertex, sharpness: sharpness(random) });
+            tags.corners.push(CornerTag {
+                vertex,
+                sharpness: sharpness(random),
+            });
         }
     }
     let kind = if fades { "fading " } else { "" };
-    *what += &format!(", {} {kind}creases and {} corners", tags.creases.len(), tags.corners.len());
+    *what += &format!(
+        ", {} {kind}creases and {} corners",
+        tags.creases.len(),
+        tags.corners.len()
+    );
     mesh.with_tags(tags).unwrap()
 }

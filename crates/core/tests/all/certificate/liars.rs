@@ -44,7 +44,10 @@ impl Scheme for Liar {
             Lie::ValenceFour => shape == RingShape::interior(4),
         };
         match stays {
-            true => VertexMask { centre: 1.0, ring: vec![0.0; shape.valence as usize] },
+            true => VertexMask {
+                centre: 1.0,
+                ring: vec![0.0; shape.valence as usize],
+            },
             false => Loop.vertex_mask(shape),
         }
     }
@@ -57,7 +60,12 @@ impl Scheme for Liar {
         }
         // 1/4 everywhere instead of 3/8 and 1/8.
         let twice = |ring: Vec<f64>| ring.into_iter().map(|weight| 2.0 * weight).collect();
-        EdgeMask { origin: 0.25, target: 0.25, origin_ring: twice(mask.origin_ring), ..mask }
+        EdgeMask {
+            origin: 0.25,
+            target: 0.25,
+            origin_ring: twice(mask.origin_ring),
+            ..mask
+        }
     }
 
     fn loop_family(&self) -> Option<LoopFamily> {
@@ -67,9 +75,13 @@ impl Scheme for Liar {
 
 /// The greatest distance found between a mesh and what uniform refinement tends to.
 fn by_brute_force(control: &Mesh, scheme: &dyn Scheme, mesh: Triangles<'_>) -> f64 {
-    let fine = uniform(control, scheme, &UniformOptions::default().levels(7)).unwrap().mesh;
+    let fine = uniform(control, scheme, &UniformOptions::default().levels(7))
+        .unwrap()
+        .mesh;
     let samples = SamplingOptions::default().samples(50_000);
-    hausdorff(mesh, fine.as_triangles(), &samples).unwrap().symmetric()
+    hausdorff(mesh, fine.as_triangles(), &samples)
+        .unwrap()
+        .symmetric()
 }
 
 fn cases() -> [(Lie, Mesh); 4] {
@@ -86,16 +98,27 @@ fn what_is_called_proven_holds_for_schemes_that_lie() {
     for (lie, control) in cases() {
         let scheme = Liar { lie, says: None };
         let tolerance = 0.002 * control.diagonal();
-        let result = exact(&control, &scheme, &ExactOptions::default().tolerance(tolerance)).unwrap();
+        let result = exact(
+            &control,
+            &scheme,
+            &ExactOptions::default().tolerance(tolerance),
+        )
+        .unwrap();
         let found = by_brute_force(&control, &scheme, result.mesh.as_triangles());
         let error = result.error;
         // Seven levels of refinement are that far from the limit themselves.
         let holds = found <= error.upper + 0.1 * tolerance;
-        assert!(holds || !error.certified, "{lie:?}: {found} where {error:?} is called proven");
+        assert!(
+            holds || !error.certified,
+            "{lie:?}: {found} where {error:?} is called proven"
+        );
         assert_eq!(is_certified(&scheme), error.certified);
         // Estimates are not far off either, as long as a scheme keeps to its contract: far ends are not within one ring.
         let keeps = !matches!(lie, Lie::FarEnds);
-        assert!(!keeps || found <= 1.3 * error.upper, "{lie:?}: {found} where about {error:?} was estimated");
+        assert!(
+            !keeps || found <= 1.3 * error.upper,
+            "{lie:?}: {found} where about {error:?} was estimated"
+        );
     }
 }
 
@@ -112,12 +135,20 @@ fn masks_alone_prove_nothing() {
 fn masks_of_the_family_are_never_asked_for() {
     for family in [Loop, LoopWarren] {
         for (lie, control) in cases() {
-            let scheme = Liar { lie, says: Some(family) };
+            let scheme = Liar {
+                lie,
+                says: Some(family),
+            };
             let options = ExactOptions::default().tolerance(0.002 * control.diagonal());
             let [found, expected] = [&scheme as &dyn Scheme, &family].map(|scheme| {
                 let exact = exact(&control, scheme, &options).unwrap();
                 let levels = UniformOptions::default().levels(2).limit(true);
-                (exact.mesh, exact.normals, exact.error, uniform(&control, scheme, &levels).unwrap().mesh)
+                (
+                    exact.mesh,
+                    exact.normals,
+                    exact.error,
+                    uniform(&control, scheme, &levels).unwrap().mesh,
+                )
             });
             assert!(found == expected && found.2.certified, "{lie:?}");
         }

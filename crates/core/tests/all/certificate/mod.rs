@@ -83,7 +83,11 @@ fn goal(control: &Mesh, random: &mut Random) -> Goal {
 
 #[test]
 fn no_sample_of_a_random_cage_is_beyond_its_bound() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|value| value.parse::<u64>().ok());
+    let asked = |name: &str| {
+        std::env::var(name)
+            .ok()
+            .and_then(|value| value.parse::<u64>().ok())
+    };
     let seeds = match asked("LIMITMESH_CAGE") {
         Some(seed) => seed..seed + 1,
         None => 0..asked("LIMITMESH_CAGES").unwrap_or(USUAL_CAGES),
@@ -100,16 +104,33 @@ fn no_sample_of_a_random_cage_is_beyond_its_bound() {
         }
     }
     eprintln!("{confirmed} confirmed at what is certified");
-    assert!(failures.is_empty(), "{} cages failed: {failures:?}", failures.len());
-    assert!(!is_usual || confirmed >= USUALLY_CONFIRMED, "{confirmed} confirmed");
+    assert!(
+        failures.is_empty(),
+        "{} cages failed: {failures:?}",
+        failures.len()
+    );
+    assert!(
+        !is_usual || confirmed >= USUALLY_CONFIRMED,
+        "{confirmed} confirmed"
+    );
 }
 
 /// Whether the result is confirmed at what is certified.
 fn attack(seed: u64) -> Result<bool, String> {
-    let Cage { mesh: control, what } = cage(seed);
+    let Cage {
+        mesh: control,
+        what,
+    } = cage(seed);
     let mut random = Random::new(seed ^ 0x5eed);
-    let scheme: &dyn Scheme = if random.below(4) == 0 { &LoopWarren } else { &Loop };
-    let Goal { options, what: goal } = goal(&control, &mut random);
+    let scheme: &dyn Scheme = if random.below(4) == 0 {
+        &LoopWarren
+    } else {
+        &Loop
+    };
+    let Goal {
+        options,
+        what: goal,
+    } = goal(&control, &mut random);
     let about = |why: String| format!("{why}\n    {what}, {}: {goal}", scheme.name());
     let result = exact(&control, scheme, &options).map_err(|error| about(error.to_string()))?;
     check_form(&control, &result, &options).map_err(about)?;
@@ -130,29 +151,44 @@ fn ensure(holds: bool, why: impl FnOnce() -> String) -> Result<(), String> {
 /// What must hold without any measurement.
 fn check_form(control: &Mesh, result: &Exact, options: &ExactOptions) -> Result<(), String> {
     result.mesh.validate().map_err(|error| error.to_string())?;
-    let [before, after] = [control, &result.mesh].map(|mesh| mesh.topology().euler_characteristic());
-    ensure(before == after, || format!("Euler characteristic {after}, not {before}"))?;
-    let error = result.error;
-    ensure(error.lower >= 0.0 && error.lower <= error.upper && error.upper.is_finite(), || {
-        format!("{error:?}")
+    let [before, after] =
+        [control, &result.mesh].map(|mesh| mesh.topology().euler_characteristic());
+    ensure(before == after, || {
+        format!("Euler characteristic {after}, not {before}")
     })?;
+    let error = result.error;
+    ensure(
+        error.lower >= 0.0 && error.lower <= error.upper && error.upper.is_finite(),
+        || format!("{error:?}"),
+    )?;
     if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.tolerance) {
-        ensure(error.upper <= tolerance, || format!("met, but {error:?} beyond {tolerance:e}"))?;
+        ensure(error.upper <= tolerance, || {
+            format!("met, but {error:?} beyond {tolerance:e}")
+        })?;
     }
     let count = result.mesh.face_count();
-    let most = options.triangles.unwrap_or(usize::MAX).min(options.max_triangles.unwrap_or(usize::MAX));
-    ensure(count <= most.max(control.face_count()), || format!("{count} triangles, at most {most}"))
+    let most = options
+        .triangles
+        .unwrap_or(usize::MAX)
+        .min(options.max_triangles.unwrap_or(usize::MAX));
+    ensure(count <= most.max(control.face_count()), || {
+        format!("{count} triangles, at most {most}")
+    })
 }
 
 /// The limit surface three levels deeper than the result, or as deep as can be afforded, and one level deeper still.
 fn reference(control: &Mesh, scheme: &dyn Scheme, levels: usize) -> (Mesh, usize) {
-    let affordable = |level: &usize| control.face_count() << (2 * level) <= MOST_REFERENCE_TRIANGLES;
+    let affordable =
+        |level: &usize| control.face_count() << (2 * level) <= MOST_REFERENCE_TRIANGLES;
     let level = (1..=levels + 3).take_while(affordable).last().unwrap_or(1);
     (limit_reference(control, scheme, level).unwrap(), level)
 }
 
 fn largest(mesh: &Mesh) -> f64 {
-    mesh.positions().as_flattened().iter().fold(0.0, |size, x| size.max(x.abs()))
+    mesh.positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0, |size, x| size.max(x.abs()))
 }
 
 /// Dense samples, both ways.
@@ -180,19 +216,30 @@ fn check_samples(
     // in the end.
     let chords = || {
         let finer = limit_reference(control, scheme, level + 1).unwrap();
-        2.0 * finer.positions().iter().map(|&point| nearest.closest(point).distance).fold(0.0, f64::max)
+        2.0 * finer
+            .positions()
+            .iter()
+            .map(|&point| nearest.closest(point).distance)
+            .fold(0.0, f64::max)
     };
     let [mesh, surface] = [&output, &nearest].map(|of| of.closest(result.error.at).distance);
     let is_there = result.error.lower <= mesh.max(surface) + rounding;
-    ensure(is_there || result.error.lower <= surface + chords() + rounding, || {
-        format!("lower bound {:e} where {mesh:e} and {surface:e}", result.error.lower)
-    })?;
+    ensure(
+        is_there || result.error.lower <= surface + chords() + rounding,
+        || {
+            format!(
+                "lower bound {:e} where {mesh:e} and {surface:e}",
+                result.error.lower
+            )
+        },
+    )?;
     let mut worst = (0.0, [0.0; 3]);
     let step = (6 * result.mesh.face_count()).div_ceil(MOST_SAMPLES);
     for triangle in result.mesh.triangles().iter().step_by(step) {
         for weights in weights(random) {
             let corners = triangle.map(|v| result.mesh.positions()[v as usize]);
-            let point: Point = std::array::from_fn(|i| (0..3).map(|k| weights[k] * corners[k][i]).sum());
+            let point: Point =
+                std::array::from_fn(|i| (0..3).map(|k| weights[k] * corners[k][i]).sum());
             let distance = nearest.closest(point).distance;
             if distance > worst.0 {
                 worst = (distance, point);
@@ -204,7 +251,10 @@ fn check_samples(
     }
     let chords = chords();
     ensure(worst.0 - chords <= upper + rounding, || {
-        format!("mesh {:e} away (within {chords:e}), bound {upper:e}: {:?}", worst.0, worst.1)
+        format!(
+            "mesh {:e} away (within {chords:e}), bound {upper:e}: {:?}",
+            worst.0, worst.1
+        )
     })
 }
 
@@ -214,7 +264,14 @@ fn weights(random: &mut Random) -> [[f64; 3]; 6] {
         let [a, b, c] = [0; 3].map(|_| 1.0 + random.signed());
         [a, b, c].map(|x| x / (a + b + c))
     };
-    [[1.0 / 3.0; 3], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.5, 0.0, 0.5], any(), any()]
+    [
+        [1.0 / 3.0; 3],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.5],
+        [0.5, 0.0, 0.5],
+        any(),
+        any(),
+    ]
 }
 
 /// The same bytes for any number of threads.
@@ -224,7 +281,10 @@ fn check_threads(
     options: &ExactOptions,
     (result, threads): (&Exact, usize),
 ) -> Result<(), String> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     let other = pool.install(|| exact(control, scheme, options)).unwrap();
     let same = other.mesh.triangles() == result.mesh.triangles()
         && bits(other.mesh.positions()) == bits(result.mesh.positions())
@@ -245,12 +305,24 @@ fn check_independently(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> R
     if error.upper < 1e-9 * largest(control) {
         return Ok(());
     }
-    let options = ExactOptions::default().tolerance(error.upper / 20.0).max_triangles(Some(20_000));
+    let options = ExactOptions::default()
+        .tolerance(error.upper / 20.0)
+        .max_triangles(Some(20_000));
     let fine = exact(control, scheme, &options).unwrap();
-    let asked = CertifiedOptions::default().relative_gap(0.05).max_work(20_000_000);
-    let found = certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
+    let asked = CertifiedOptions::default()
+        .relative_gap(0.05)
+        .max_work(20_000_000);
+    let found =
+        certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
     let found = found.widened(fine.error.upper);
-    ensure(found.lower() <= error.upper && error.lower <= found.upper(), || {
-        format!("{error:?}, elsewhere {:e} to {:e}", found.lower(), found.upper())
-    })
+    ensure(
+        found.lower() <= error.upper && error.lower <= found.upper(),
+        || {
+            format!(
+                "{error:?}, elsewhere {:e} to {:e}",
+                found.lower(),
+                found.upper()
+            )
+        },
+    )
 }

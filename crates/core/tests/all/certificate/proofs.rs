@@ -12,7 +12,10 @@ use limitmesh_io::{Proof, ProofError};
 use crate::support::{Random, cross, minus};
 
 fn plain(mesh: &Mesh) -> Plain {
-    Plain { positions: mesh.positions().to_vec(), triangles: mesh.triangles().to_vec() }
+    Plain {
+        positions: mesh.positions().to_vec(),
+        triangles: mesh.triangles().to_vec(),
+    }
 }
 
 /// The triangles of a result that are refused at a length; none where there can be no proof.
@@ -23,7 +26,9 @@ pub(crate) fn refused(
     within: f64,
 ) -> Result<Option<Vec<Refusal>>, String> {
     // Triangles that came of collapses are over several control faces.
-    let (Some(scheme), false) = (scheme.loop_family(), result.is_optimized) else { return Ok(None) };
+    let (Some(scheme), false) = (scheme.loop_family(), result.is_optimized) else {
+        return Ok(None);
+    };
     let proof = Proof {
         control,
         holds_control: true,
@@ -43,19 +48,27 @@ pub(crate) fn refused(
 /// Confirmed at what is certified, or at some multiple, and refused below what was found; whether it is the former.
 pub(crate) fn check(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> Result<bool, String> {
     let error = result.error;
-    let size = control.positions().as_flattened().iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    let size = control
+        .positions()
+        .as_flattened()
+        .iter()
+        .fold(0.0f64, |size, x| size.max(x.abs()));
     // The checker squares lengths, and says so where that goes beyond its numbers.
     if !(1e-60..1e60).contains(&size) {
         return Ok(false);
     }
     let below = 0.999 * error.lower;
-    if below > 0.0 && refused(control, scheme, result, below)?.is_some_and(|refused| refused.is_empty()) {
+    if below > 0.0
+        && refused(control, scheme, result, below)?.is_some_and(|refused| refused.is_empty())
+    {
         return Err(format!("confirmed at {below:e}, although {error:?}"));
     }
     // Bounds that a search has tightened are not proven by the triangles one by one, which may drift along the surface; as far as the mesh is large they do not.
     let mut within = error.upper;
     while let Some(refused) = refused(control, scheme, result, within)? {
-        let [first, ..] = refused[..] else { return Ok(within == error.upper) };
+        let [first, ..] = refused[..] else {
+            return Ok(within == error.upper);
+        };
         if within > 4.0 * size {
             return Err(format!("not confirmed at {within:e}, {error:?}: {first:?}"));
         }
@@ -79,13 +92,20 @@ impl Changed {
             control,
             holds_control: true,
             scheme: Loop,
-            result: Triangles { positions: &self.mesh.positions, triangles: &self.mesh.triangles },
+            result: Triangles {
+                positions: &self.mesh.positions,
+                triangles: &self.mesh.triangles,
+            },
             origins: &self.origins,
             parents: &self.parents,
         };
-        let Ok(bytes) = proof.to_bytes(within) else { return true };
+        let Ok(bytes) = proof.to_bytes(within) else {
+            return true;
+        };
         let claim = Claim::read(&bytes).unwrap();
-        !verdict::refused(&plain(control), &self.mesh, &claim, within).unwrap().is_empty()
+        !verdict::refused(&plain(control), &self.mesh, &claim, within)
+            .unwrap()
+            .is_empty()
     }
 
     /// Moves a vertex along the normal of a triangle at it.
@@ -93,7 +113,8 @@ impl Changed {
         let [a, b, c] = self.mesh.triangles[t].map(|v| self.mesh.positions[v as usize]);
         let normal = cross(minus(b, a), minus(c, a));
         let share = by / normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        self.mesh.positions[self.mesh.triangles[t][0] as usize] = [0, 1, 2].map(|i| a[i] + share * normal[i]);
+        self.mesh.positions[self.mesh.triangles[t][0] as usize] =
+            [0, 1, 2].map(|i| a[i] + share * normal[i]);
     }
 }
 
@@ -101,8 +122,13 @@ impl Changed {
 fn faults_are_refused() {
     type Fault = fn(&mut Changed, usize, f64);
     let faults: [(&str, Fault); 8] = [
-        ("a vertex moved by 1.2 times the length", |result, t, within| result.moved(t, 1.2 * within)),
-        ("a vertex moved by twice the length", |result, t, within| result.moved(t, 2.0 * within)),
+        (
+            "a vertex moved by 1.2 times the length",
+            |result, t, within| result.moved(t, 1.2 * within),
+        ),
+        ("a vertex moved by twice the length", |result, t, within| {
+            result.moved(t, 2.0 * within)
+        }),
         ("a triangle removed", |result, t, _| {
             result.mesh.triangles.remove(t);
             result.parents.remove(t);
@@ -111,30 +137,45 @@ fn faults_are_refused() {
             result.mesh.triangles.insert(t, result.mesh.triangles[t]);
             result.parents.insert(t, result.parents[t]);
         }),
-        ("a triangle turned over", |result, t, _| result.mesh.triangles[t].swap(0, 1)),
+        ("a triangle turned over", |result, t, _| {
+            result.mesh.triangles[t].swap(0, 1)
+        }),
         ("another parent", |result, t, _| {
-            let other = result.parents.iter().position(|&parent| parent != result.parents[t]).unwrap();
+            let other = result
+                .parents
+                .iter()
+                .position(|&parent| parent != result.parents[t])
+                .unwrap();
             result.parents[t] = result.parents[other];
         }),
         ("another place", |result, t, _| {
             let [a, b, _] = result.mesh.triangles[t];
             result.origins[a as usize] = result.origins[b as usize];
         }),
-        ("a triangle over a vertex that is not its own", |result, t, _| {
-            let [a, b, _] = result.mesh.triangles[t];
-            let far = result
-                .mesh
-                .triangles
-                .iter()
-                .find(|triangle| !triangle.contains(&a) && !triangle.contains(&b));
-            result.mesh.triangles[t][2] = far.unwrap()[2];
-        }),
+        (
+            "a triangle over a vertex that is not its own",
+            |result, t, _| {
+                let [a, b, _] = result.mesh.triangles[t];
+                let far = result
+                    .mesh
+                    .triangles
+                    .iter()
+                    .find(|triangle| !triangle.contains(&a) && !triangle.contains(&b));
+                result.mesh.triangles[t][2] = far.unwrap()[2];
+            },
+        ),
     ];
     let mut random = Random::new(11);
     for name in ["cup", "bunny"] {
-        let control =
-            Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0;
-        let options = ExactOptions::default().tolerance(2e-3 * control.diagonal()).flat_regions(false);
+        let control = Mesh::from_soup(
+            &limitmesh_models::find(name).unwrap().soup(),
+            &Default::default(),
+        )
+        .unwrap()
+        .0;
+        let options = ExactOptions::default()
+            .tolerance(2e-3 * control.diagonal())
+            .flat_regions(false);
         let found = exact(&control, &Loop, &options).unwrap();
         let within = found.error.upper;
         let result = Changed {
@@ -143,18 +184,27 @@ fn faults_are_refused() {
             parents: found.parents.clone(),
         };
         assert!(!result.is_refused(&control, within), "{name} as it is");
-        assert!(result.is_refused(&control, 0.9 * within), "{name} at 0.9 of its length");
+        assert!(
+            result.is_refused(&control, 0.9 * within),
+            "{name} at 0.9 of its length"
+        );
         for _ in 0..6 {
             let t = random.below(result.parents.len());
             for (what, fault) in &faults {
                 let mut changed = result.clone();
                 fault(&mut changed, t, within);
-                assert!(changed.is_refused(&control, within), "{name}: {what}, triangle {t}");
+                assert!(
+                    changed.is_refused(&control, within),
+                    "{name}: {what}, triangle {t}"
+                );
             }
             // No fault: as near as is claimed.
             let mut near = result.clone();
             near.moved(t, 0.1 * within);
-            assert!(!near.is_refused(&control, 1.2 * within), "{name}: triangle {t}");
+            assert!(
+                !near.is_refused(&control, 1.2 * within),
+                "{name}: triangle {t}"
+            );
         }
     }
 }

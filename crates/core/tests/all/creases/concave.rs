@@ -6,7 +6,9 @@ use limitmesh::Mesh;
 use limitmesh::PolygonSoup;
 use limitmesh::VertexId;
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{BoundaryRule, BuildOptions, ConcaveCorners, CornerTag, CreaseTag, PolygonFaces, Tags};
+use limitmesh::mesh::{
+    BoundaryRule, BuildOptions, ConcaveCorners, CornerTag, CreaseTag, PolygonFaces, Tags,
+};
 use limitmesh::refine::{Exact, ExactOptions, UniformOptions, uniform};
 
 use crate::support::exact;
@@ -21,7 +23,11 @@ type Outline = Vec<[f64; 2]>;
 /// Twice the area of a triangle, or a polygon, counter-clockwise.
 fn twice_area(outline: &[[f64; 2]]) -> f64 {
     let next = outline.iter().cycle().skip(1);
-    outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()
+    outline
+        .iter()
+        .zip(next)
+        .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
+        .sum()
 }
 
 /// How far a point is outside a polygon; 0 inside.
@@ -34,7 +40,11 @@ fn outside(p: [f64; 2], outline: &[[f64; 2]]) -> f64 {
         let t = (-(u[0] * d[0] + u[1] * d[1]) / (d[0] * d[0] + d[1] * d[1])).clamp(0.0, 1.0);
         nearest = nearest.min((u[0] + t * d[0]).hypot(u[1] + t * d[1]));
     }
-    if winding.abs() > 0.5 * TAU { 0.0 } else { nearest }
+    if winding.abs() > 0.5 * TAU {
+        0.0
+    } else {
+        nearest
+    }
 }
 
 /// The prism over a polygon from z = 0 to z = 1: its caps as one polygon each.
@@ -48,7 +58,11 @@ fn prism(outline: &[[f64; 2]]) -> Mesh {
         let j = (i + 1) % n;
         faces.push(&[i, j, n + j, n + i]);
     }
-    let soup = PolygonSoup { positions: at(0.0).chain(at(1.0)).collect(), faces, ..PolygonSoup::default() };
+    let soup = PolygonSoup {
+        positions: at(0.0).chain(at(1.0)).collect(),
+        faces,
+        ..PolygonSoup::default()
+    };
     Mesh::from_soup(&soup, &BuildOptions::default()).unwrap().0
 }
 
@@ -63,7 +77,10 @@ fn assert_is_prism(mesh: &Mesh, outline: &[[f64; 2]], name: &str) {
         let p = t.map(|v| mesh.positions()[v as usize]);
         let flat = p.map(|p| [p[0], p[1]]);
         for corner in flat {
-            assert!(outside(corner, outline) < EPSILON, "{name}: {corner:?} is outside");
+            assert!(
+                outside(corner, outline) < EPSILON,
+                "{name}: {corner:?} is outside"
+            );
         }
         let is_on = |z: f64| p.iter().all(|p| (p[2] - z).abs() < EPSILON);
         let up = twice_area(&flat);
@@ -73,7 +90,10 @@ fn assert_is_prism(mesh: &Mesh, outline: &[[f64; 2]], name: &str) {
             areas[usize::from(is_on(1.0))] += 0.5 * turned;
             continue;
         }
-        assert!(up.abs() < EPSILON, "{name}: {p:?} is neither on a cap nor upright");
+        assert!(
+            up.abs() < EPSILON,
+            "{name}: {p:?} is neither on a cap nor upright"
+        );
         // Upright: seen from outside where its middle, a step to its right, is outside.
         let [u, v] = [1, 2].map(|i| [0, 1, 2].map(|axis| p[i][axis] - p[0][axis]));
         let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2]];
@@ -82,16 +102,30 @@ fn assert_is_prism(mesh: &Mesh, outline: &[[f64; 2]], name: &str) {
         if size > EPSILON {
             let step = |sign: f64| {
                 [0, 1].map(|axis| {
-                    (flat[0][axis] + flat[1][axis] + flat[2][axis]) / 3.0 + sign * 1e-6 * normal[axis] / size
+                    (flat[0][axis] + flat[1][axis] + flat[2][axis]) / 3.0
+                        + sign * 1e-6 * normal[axis] / size
                 })
             };
-            assert!(outside(step(1.0), outline) > 0.0, "{name}: {p:?} on a side is turned over");
-            assert!(outside(step(-1.0), outline) == 0.0, "{name}: {p:?} is inside");
+            assert!(
+                outside(step(1.0), outline) > 0.0,
+                "{name}: {p:?} on a side is turned over"
+            );
+            assert!(
+                outside(step(-1.0), outline) == 0.0,
+                "{name}: {p:?} is inside"
+            );
         }
     }
-    let expected = [0.5 * twice_area(outline), 0.5 * twice_area(outline), perimeter];
+    let expected = [
+        0.5 * twice_area(outline),
+        0.5 * twice_area(outline),
+        perimeter,
+    ];
     for (area, expected) in areas.iter().zip(expected) {
-        assert!((area - expected).abs() < EPSILON * (1.0 + expected), "{name}: {areas:?} for {expected}");
+        assert!(
+            (area - expected).abs() < EPSILON * (1.0 + expected),
+            "{name}: {areas:?} for {expected}"
+        );
     }
 }
 
@@ -106,11 +140,23 @@ fn creased(mesh: Mesh) -> Mesh {
 }
 
 fn refined(mesh: &Mesh) -> Exact {
-    exact(mesh, &Loop, &ExactOptions::default().tolerance(1e-3 * mesh.diagonal())).unwrap()
+    exact(
+        mesh,
+        &Loop,
+        &ExactOptions::default().tolerance(1e-3 * mesh.diagonal()),
+    )
+    .unwrap()
 }
 
 fn l_shape() -> Outline {
-    vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]]
+    vec![
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 1.0],
+        [1.0, 1.0],
+        [1.0, 2.0],
+        [0.0, 2.0],
+    ]
 }
 
 /// The prism over an L, its caps as fans around the vertex opposite to the concave corner.
@@ -130,8 +176,12 @@ fn an_l_stays_itself_and_as_it_is_tagged_it_folds() {
     let control = creased(l_prism());
     let folded = refined(&control);
     assert!(folded.inverted_triangles() > 0);
-    let beyond =
-        folded.mesh.positions().iter().map(|p| outside([p[0], p[1]], &l_shape())).fold(0.0, f64::max);
+    let beyond = folded
+        .mesh
+        .positions()
+        .iter()
+        .map(|p| outside([p[0], p[1]], &l_shape()))
+        .fold(0.0, f64::max);
     assert!(beyond > 0.02, "only {beyond} outside");
 
     let (control, concave) = divided(control);
@@ -170,7 +220,13 @@ fn prisms_over_random_polygons_stay_themselves() {
         let control = prism(&outline).with_creases_above(1e-3).unwrap();
         let (control, concave) = divided(control);
         concave_corners += concave.corners.count;
-        let mesh = uniform(&control, &Loop, &UniformOptions::default().levels(3).limit(true)).unwrap().mesh;
+        let mesh = uniform(
+            &control,
+            &Loop,
+            &UniformOptions::default().levels(3).limit(true),
+        )
+        .unwrap()
+        .mesh;
         assert_is_prism(&mesh, &outline, &format!("trial {trial}"));
     }
     assert!(concave_corners > 200, "{concave_corners}");
@@ -221,33 +277,61 @@ fn fan(spokes: &[(f64, f64)]) -> Mesh {
         [length * cosine, length * sine, 0.0]
     });
     let positions = core::iter::once([0.0; 3]).chain(ends).collect();
-    Mesh::from_triangles(positions, (1..spokes.len() as u32).map(|i| [0, i, i + 1]).collect()).unwrap()
+    Mesh::from_triangles(
+        positions,
+        (1..spokes.len() as u32).map(|i| [0, i, i + 1]).collect(),
+    )
+    .unwrap()
 }
 
 /// Spokes that leave a quarter open, an uneven number of them.
 fn round_rim() -> Vec<(f64, f64)> {
-    (0..10).map(|i| (30.0 * f64::from(i), 1.0 + 0.1 * f64::from(i % 2))).collect()
+    (0..10)
+        .map(|i| (30.0 * f64::from(i), 1.0 + 0.1 * f64::from(i % 2)))
+        .collect()
 }
 
 #[test]
 fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
     // The corner alone is tagged: at the other ends the boundary is smooth and is to stay so.
     let sheet = fan(&round_rim());
-    let corners = vec![CornerTag { vertex: 0, sharpness: f64::INFINITY }];
-    let tagged = sheet.clone().with_tags(Tags { corners, ..Tags::default() }).unwrap();
+    let corners = vec![CornerTag {
+        vertex: 0,
+        sharpness: f64::INFINITY,
+    }];
+    let tagged = sheet
+        .clone()
+        .with_tags(Tags {
+            corners,
+            ..Tags::default()
+        })
+        .unwrap();
     let (control, concave) = divided(tagged.clone());
     assert_eq!((concave.corners.count, concave.edges), (1, 1));
     assert_eq!(control.face_count(), sheet.face_count() + 6);
     let middle = sheet.vertex_count() as u32;
-    assert_eq!(control.tags().creases, [CreaseTag { vertices: [0, middle], sharpness: f64::INFINITY }]);
+    assert_eq!(
+        control.tags().creases,
+        [CreaseTag {
+            vertices: [0, middle],
+            sharpness: f64::INFINITY
+        }]
+    );
     // The rim is the curve that it was.
     let table = LimitTable::new(&Loop);
     for v in 1..middle {
-        let [before, now] = [&tagged, &control].map(|mesh| table.position(mesh, VertexId(v)).unwrap());
+        let [before, now] =
+            [&tagged, &control].map(|mesh| table.position(mesh, VertexId(v)).unwrap());
         assert!(distance(before, now) < 1e-15, "vertex {v}");
     }
     // Nothing is turned over.
-    let mesh = uniform(&control, &Loop, &UniformOptions::default().levels(5).limit(true)).unwrap().mesh;
+    let mesh = uniform(
+        &control,
+        &Loop,
+        &UniformOptions::default().levels(5).limit(true),
+    )
+    .unwrap()
+    .mesh;
     let least = mesh.triangles().iter().map(|t| {
         let p = t.map(|v| mesh.positions()[v as usize]);
         twice_area(&p.map(|p| [p[0], p[1]]))
@@ -259,8 +343,17 @@ fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
 #[test]
 fn faces_keep_their_numbers_and_parts_know_theirs() {
     let sheet = fan(&[(0.0, 1.0), (130.0, 1.2), (200.0, 0.7), (270.0, 1.0)]);
-    let corners = vec![CornerTag { vertex: 0, sharpness: f64::INFINITY }];
-    let tagged = sheet.clone().with_tags(Tags { corners, ..Tags::default() }).unwrap();
+    let corners = vec![CornerTag {
+        vertex: 0,
+        sharpness: f64::INFINITY,
+    }];
+    let tagged = sheet
+        .clone()
+        .with_tags(Tags {
+            corners,
+            ..Tags::default()
+        })
+        .unwrap();
     let (control, concave) = divided(tagged.clone());
     assert!(control.face_count() > sheet.face_count());
     let at = |mesh: &Mesh, face: u32, weights: [f64; 3]| -> Point {
@@ -269,7 +362,12 @@ fn faces_keep_their_numbers_and_parts_know_theirs() {
     };
     let mut areas = vec![0.0; sheet.face_count()];
     for face in 0..control.face_count() as u32 {
-        for weights in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.5, 0.25, 0.25]] {
+        for weights in [
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [0.5, 0.25, 0.25],
+        ] {
             let (whole, on_whole) = concave.parts.on_whole(face, weights);
             assert_eq!(whole, concave.parts.whole(face));
             assert!((face as usize) >= sheet.face_count() || whole == face);
@@ -290,7 +388,8 @@ fn faces_keep_their_numbers_and_parts_know_theirs() {
 fn corners_of_boundaries_are_divided_too() {
     let outline = l_shape();
     let positions = outline.iter().map(|p| [p[0], p[1], 0.0]).collect();
-    let flat = Mesh::from_triangles(positions, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]).unwrap();
+    let flat =
+        Mesh::from_triangles(positions, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]).unwrap();
     let (control, concave) = divided(flat.with_boundary(BoundaryRule::Fixed));
     assert_eq!(concave.corners.first, [3]);
     let refined = refined(&control);
@@ -299,14 +398,23 @@ fn corners_of_boundaries_are_divided_too() {
         .triangles()
         .iter()
         .map(|t| {
-            let area =
-                0.5 * twice_area(&t.map(|v| refined.mesh.positions()[v as usize]).map(|p| [p[0], p[1]]));
+            let area = 0.5
+                * twice_area(
+                    &t.map(|v| refined.mesh.positions()[v as usize])
+                        .map(|p| [p[0], p[1]]),
+                );
             assert!(area > 0.0);
             area
         })
         .sum();
     assert!((area - 3.0).abs() < 1e-12);
-    assert!(refined.mesh.positions().iter().all(|p| outside([p[0], p[1]], &outline) < 1e-12));
+    assert!(
+        refined
+            .mesh
+            .positions()
+            .iter()
+            .all(|p| outside([p[0], p[1]], &outline) < 1e-12)
+    );
 }
 
 /// A corner of 270° on a saddle: the sheet z = bend · x y, in two rings around the corner.
@@ -316,9 +424,17 @@ fn saddle(bend: f64) -> Mesh {
     let flat = core::iter::once([0.0; 2]).chain(ring(1.0)).chain(ring(2.0));
     let positions = flat.map(|[x, y]| [x, y, bend * x * y]).collect();
     let sectors = (1..5).flat_map(|i| [[0, i, i + 1], [i, i + 5, i + 6], [i, i + 6, i + 1]]);
-    let corners = vec![CornerTag { vertex: 0, sharpness: f64::INFINITY }];
+    let corners = vec![CornerTag {
+        vertex: 0,
+        sharpness: f64::INFINITY,
+    }];
     let sheet = Mesh::from_triangles(positions, sectors.collect()).unwrap();
-    sheet.with_tags(Tags { corners, ..Tags::default() }).unwrap()
+    sheet
+        .with_tags(Tags {
+            corners,
+            ..Tags::default()
+        })
+        .unwrap()
 }
 
 #[test]
@@ -334,7 +450,9 @@ fn a_curved_sector_that_is_divided_has_one_normal_at_its_corner() {
         for tag in &mesh.tags().creases {
             let [a, b] = tag.vertices.map(VertexId);
             let h = mesh.topology().edge_between(a, b).unwrap();
-            let Some(twin) = mesh.topology().twin(h) else { continue };
+            let Some(twin) = mesh.topology().twin(h) else {
+                continue;
+            };
             for (left, right) in [(h, twin.next()), (h.next(), twin)] {
                 let normals = [left, right].map(|corner| refined.corner_normal(corner));
                 let degrees = 2.0 * (0.5 * distance(normals[0], normals[1])).asin() / DEGREE;

@@ -29,10 +29,20 @@ fn fan(k: u32, open: bool) -> Mesh {
                 (whole * f64::from(i) / f64::from(parts) + 0.1 * f64::from(circle)).sin_cos();
             let bump = |a: f64, b: f64| (a * f64::from(i) + b * f64::from(circle)).sin();
             let radius = f64::from(circle) * (1.0 + 0.1 * bump(2.1, 0.7));
-            positions.push([radius * cosine, radius * sine, 0.4 * bump(1.3, 2.9) + 0.3 * bump(0.9, 0.2)]);
+            positions.push([
+                radius * cosine,
+                radius * sine,
+                0.4 * bump(1.3, 2.9) + 0.3 * bump(0.9, 0.2),
+            ]);
         }
     }
-    let at = |circle: u32, i: u32| if circle == 0 { 0 } else { 1 + (circle - 1) * k + i % k };
+    let at = |circle: u32, i: u32| {
+        if circle == 0 {
+            0
+        } else {
+            1 + (circle - 1) * k + i % k
+        }
+    };
     let mut triangles = Vec::new();
     for i in 0..parts {
         triangles.push([0, at(1, i), at(1, i + 1)]);
@@ -48,19 +58,38 @@ fn fan(k: u32, open: bool) -> Mesh {
 fn tagged(k: u32, open: bool, spokes: &[(u32, f64)], corner: f64) -> Mesh {
     let out = |&(slot, sharpness): &(u32, f64)| {
         (0..4).map(move |circle| {
-            let from = if circle == 0 { 0 } else { 1 + (circle - 1) * k + slot };
-            CreaseTag { vertices: [from, 1 + circle * k + slot], sharpness }
+            let from = if circle == 0 {
+                0
+            } else {
+                1 + (circle - 1) * k + slot
+            };
+            CreaseTag {
+                vertices: [from, 1 + circle * k + slot],
+                sharpness,
+            }
         })
     };
-    let corners = vec![CornerTag { vertex: 0, sharpness: corner }];
-    fan(k, open).with_tags(Tags { creases: spokes.iter().flat_map(out).collect(), corners }).unwrap()
+    let corners = vec![CornerTag {
+        vertex: 0,
+        sharpness: corner,
+    }];
+    fan(k, open)
+        .with_tags(Tags {
+            creases: spokes.iter().flat_map(out).collect(),
+            corners,
+        })
+        .unwrap()
 }
 
 /// The faces within `radius` edges of vertex 0, which stays vertex 0, with their tags, and their vertices' numbers.
 fn cropped(mesh: &Mesh, radius: usize) -> (Mesh, BTreeMap<u32, u32>) {
     let mut far = BTreeMap::from([(0u32, 0usize)]);
     for step in 1..=radius {
-        let known: Vec<u32> = far.iter().filter(|&(_, &d)| d == step - 1).map(|(&v, _)| v).collect();
+        let known: Vec<u32> = far
+            .iter()
+            .filter(|&(_, &d)| d == step - 1)
+            .map(|(&v, _)| v)
+            .collect();
         for v in known {
             for u in mesh.topology().ring(VertexId(v)) {
                 far.entry(u.0).or_insert(step);
@@ -69,23 +98,40 @@ fn cropped(mesh: &Mesh, radius: usize) -> (Mesh, BTreeMap<u32, u32>) {
     }
     let index: BTreeMap<u32, u32> = far.keys().copied().zip(0..).collect();
     let inside = |vertices: &[u32]| vertices.iter().all(|v| index.contains_key(v));
-    let triangles: Vec<[u32; 3]> =
-        mesh.triangles().iter().filter(|t| inside(&t[..])).map(|t| t.map(|v| index[&v])).collect();
-    let positions = index.keys().map(|&v| mesh.positions()[v as usize]).collect();
+    let triangles: Vec<[u32; 3]> = mesh
+        .triangles()
+        .iter()
+        .filter(|t| inside(&t[..]))
+        .map(|t| t.map(|v| index[&v]))
+        .collect();
+    let positions = index
+        .keys()
+        .map(|&v| mesh.positions()[v as usize])
+        .collect();
     let cropped = Mesh::from_triangles(positions, triangles).unwrap();
     let mut tags = mesh.tags().clone();
     tags.creases.retain(|tag| inside(&tag.vertices));
     tags.corners.retain(|tag| inside(&[tag.vertex]));
-    tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(|v| index[&v]));
-    tags.corners.iter_mut().for_each(|tag| tag.vertex = index[&tag.vertex]);
+    tags.creases
+        .iter_mut()
+        .for_each(|tag| tag.vertices = tag.vertices.map(|v| index[&v]));
+    tags.corners
+        .iter_mut()
+        .for_each(|tag| tag.vertex = index[&tag.vertex]);
     let (topology, edges) = (cropped.topology(), &mut tags.creases);
-    edges.retain(|tag| topology.edge_between(VertexId(tag.vertices[0]), VertexId(tag.vertices[1])).is_some());
+    edges.retain(|tag| {
+        topology
+            .edge_between(VertexId(tag.vertices[0]), VertexId(tag.vertices[1]))
+            .is_some()
+    });
     (cropped.with_tags(tags).unwrap(), index)
 }
 
 /// One refinement, and the new neighbour of vertex 0 on the edge to its neighbour `first`.
 fn step(mesh: &Mesh, scheme: &dyn Scheme, first: u32) -> (Mesh, u32) {
-    let refined = uniform(mesh, scheme, &UniformOptions::default().levels(1)).unwrap().mesh;
+    let refined = uniform(mesh, scheme, &UniformOptions::default().levels(1))
+        .unwrap()
+        .mesh;
     // Rings start at the same edge before and after.
     let slot = ring(mesh).iter().position(|&v| v == first).unwrap();
     let on_edge = ring(&refined)[slot];
@@ -113,7 +159,13 @@ fn iterated_position(mesh: &Mesh, scheme: &dyn Scheme) -> Point {
 }
 
 /// The normal, by iteration, of so many faces at vertex 0, counter-clockwise from the edge to `first`.
-fn iterated_normal(mesh: &Mesh, scheme: &dyn Scheme, first: u32, faces: usize, steps: usize) -> Point {
+fn iterated_normal(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+    first: u32,
+    faces: usize,
+    steps: usize,
+) -> Point {
     let mut mesh = mesh.clone();
     let mut first = first;
     // Rows of the map from the original space.
@@ -127,12 +179,18 @@ fn iterated_normal(mesh: &Mesh, scheme: &dyn Scheme, first: u32, faces: usize, s
             [0, 1, 2].map(|axis| p[axis] - origin[axis])
         };
         // A quarter turn in a closed ring, and half of an open one: never parallel.
-        let apart = if faces == around.len() { faces.div_ceil(4) } else { faces.div_ceil(2) };
+        let apart = if faces == around.len() {
+            faces.div_ceil(4)
+        } else {
+            faces.div_ceil(2)
+        };
         let (a, b) = (spoke(0), spoke(apart));
         let c = cross(a, b);
         if count == steps {
             let mapped = unit(c);
-            return unit([0, 1, 2].map(|axis| (0..3).map(|row| rows[row][axis] * mapped[row]).sum()));
+            return unit(
+                [0, 1, 2].map(|axis| (0..3).map(|row| rows[row][axis] * mapped[row]).sum()),
+            );
         }
         // The dual basis of a, b and their normal, as long as they are.
         let size = dot(c, c).sqrt();
@@ -144,8 +202,12 @@ fn iterated_normal(mesh: &Mesh, scheme: &dyn Scheme, first: u32, faces: usize, s
             let p = [0, 1, 2].map(|axis| p[axis] - origin[axis]);
             map.map(|row| dot(row, p))
         };
-        let next = map.map(|row| [0, 1, 2].map(|axis| (0..3).map(|i| row[i] * rows[i][axis]).sum()));
-        let most = next.as_flattened().iter().fold(0.0, |most: f64, x: &f64| most.max(x.abs()));
+        let next =
+            map.map(|row| [0, 1, 2].map(|axis| (0..3).map(|i| row[i] * rows[i][axis]).sum()));
+        let most = next
+            .as_flattened()
+            .iter()
+            .fold(0.0, |most: f64, x: &f64| most.max(x.abs()));
         rows = next.map(|row: Point| row.map(|x| x / most));
         let positions = mesh.positions().iter().map(moved).collect();
         let before = mesh.clone().with_positions(positions).unwrap();
@@ -159,10 +221,17 @@ fn check(name: &str, mesh: &Mesh, scheme: &dyn Scheme, steps: usize, tolerance: 
     let table = LimitTable::new(scheme);
     let position = table.position(mesh, CENTRE).unwrap();
     let expected = iterated_position(mesh, scheme);
-    assert!(distance(position, expected) < 1e-10, "{name}: {position:?}, expected {expected:?}");
+    assert!(
+        distance(position, expected) < 1e-10,
+        "{name}: {position:?}, expected {expected:?}"
+    );
     let all = table.sided_normals(mesh).unwrap();
     assert_eq!(table.positions(mesh).unwrap()[0], position, "{name}");
-    assert_eq!(table.normal(mesh, CENTRE).unwrap(), all.by_vertex()[0], "{name}");
+    assert_eq!(
+        table.normal(mesh, CENTRE).unwrap(),
+        all.by_vertex()[0],
+        "{name}"
+    );
     let lasting = Sharpness::of(mesh);
     let lasting = lasting.lasting();
     for sector in lasting.sectors(CENTRE) {
@@ -172,13 +241,21 @@ fn check(name: &str, mesh: &Mesh, scheme: &dyn Scheme, steps: usize, tolerance: 
             let normal = all.at(mesh.topology(), h);
             assert_eq!(table.normal_at(mesh, h).unwrap(), normal);
             let off = distance(normal, expected);
-            assert!(off < tolerance, "{name}, {:?}: {normal:?}, expected {expected:?} ({off})", sector.shape);
+            assert!(
+                off < tolerance,
+                "{name}, {:?}: {normal:?}, expected {expected:?} ({off})",
+                sector.shape
+            );
         }
     }
     let corners: Vec<HalfEdgeId> = mesh.topology().outgoing_ring(CENTRE).collect();
     assert_eq!(
         corners.len(),
-        lasting.sectors(CENTRE).iter().map(|s| s.shape.faces() as usize).sum::<usize>()
+        lasting
+            .sectors(CENTRE)
+            .iter()
+            .map(|s| s.shape.faces() as usize)
+            .sum::<usize>()
     );
 }
 
@@ -189,7 +266,13 @@ fn darts_have_the_limits_of_iteration() {
     for k in 3..=12 {
         for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
             let mesh = tagged(k, false, &[(k / 2, INFINITE)], 0.0);
-            check(&format!("{} dart {k}", scheme.name()), &mesh, scheme, 200, 1e-8);
+            check(
+                &format!("{} dart {k}", scheme.name()),
+                &mesh,
+                scheme,
+                200,
+                1e-8,
+            );
         }
     }
 }
@@ -197,12 +280,18 @@ fn darts_have_the_limits_of_iteration() {
 #[test]
 fn a_dart_of_six_edges_has_the_known_weights() {
     use limitmesh::ring::RingShape;
-    let shape = RingShape { dart: true, ..RingShape::interior(6) };
+    let shape = RingShape {
+        dart: true,
+        ..RingShape::interior(6)
+    };
     let table = LimitTable::new(&Loop);
     let stencil = table.stencil(shape).unwrap();
     let known = [0.5164, 0.0986, 0.0681, 0.0822, 0.0845, 0.0822, 0.0681];
     for (weight, known) in stencil.position_weights().iter().zip(known) {
-        assert!((weight - known).abs() < 5.1e-5, "{weight}, expected {known}");
+        assert!(
+            (weight - known).abs() < 5.1e-5,
+            "{weight}, expected {known}"
+        );
     }
 }
 
@@ -220,15 +309,25 @@ fn creases_have_the_limits_of_iteration_on_both_sides() {
 #[test]
 fn corners_have_the_limits_of_iteration() {
     // Sides of one face or two: with more of them Loop's surface has no tangent plane at a corner.
-    for (k, spokes) in [(6, vec![0, 2, 4]), (5, vec![1, 2, 4]), (5, vec![0, 1, 2, 3, 4]), (3, vec![0, 1, 2])]
-    {
+    for (k, spokes) in [
+        (6, vec![0, 2, 4]),
+        (5, vec![1, 2, 4]),
+        (5, vec![0, 1, 2, 3, 4]),
+        (3, vec![0, 1, 2]),
+    ] {
         let spokes: Vec<(u32, f64)> = spokes.into_iter().map(|slot| (slot, INFINITE)).collect();
         let mesh = tagged(k, false, &spokes, 0.0);
         check(&format!("corner {k}"), &mesh, &Loop, 120, 1e-8);
     }
     // A boundary vertex with a crease that runs into it.
     for k in [4, 5] {
-        check(&format!("open {k}"), &tagged(k, true, &[(2, INFINITE)], 0.0), &Loop, 120, 1e-8);
+        check(
+            &format!("open {k}"),
+            &tagged(k, true, &[(2, INFINITE)], 0.0),
+            &Loop,
+            120,
+            1e-8,
+        );
     }
 }
 
@@ -238,15 +337,39 @@ fn what_fades_has_the_limits_of_iteration() {
         for s in [0.5, 1.0, 1.5, 2.3, 3.7] {
             let name = |kind: &str| format!("{kind} {k}, sharpness {s}");
             let half = k / 2;
-            check(&name("dart"), &tagged(k, false, &[(0, s)], 0.0), &Loop, 120, 1e-8);
-            check(&name("crease"), &tagged(k, false, &[(0, s), (half, s)], 0.0), &Loop, 120, 1e-8);
+            check(
+                &name("dart"),
+                &tagged(k, false, &[(0, s)], 0.0),
+                &Loop,
+                120,
+                1e-8,
+            );
+            check(
+                &name("crease"),
+                &tagged(k, false, &[(0, s), (half, s)], 0.0),
+                &Loop,
+                120,
+                1e-8,
+            );
             check(&name("corner"), &tagged(k, false, &[], s), &Loop, 120, 1e-8);
             let mixed = [(0, s), (half, INFINITE), (k - 1, 0.7 * s)];
-            check(&name("mixed"), &tagged(k, false, &mixed, 0.4 * s), &Loop, 200, 1e-8);
+            check(
+                &name("mixed"),
+                &tagged(k, false, &mixed, 0.4 * s),
+                &Loop,
+                200,
+                1e-8,
+            );
         }
     }
     for s in [0.5, 1.0, 2.3] {
-        check("open", &tagged(5, true, &[(1, s), (3, 2.0)], 0.0), &Loop, 200, 1e-8);
+        check(
+            "open",
+            &tagged(5, true, &[(1, s), (3, 2.0)], 0.0),
+            &Loop,
+            200,
+            1e-8,
+        );
         check(
             "into crease",
             &tagged(7, false, &[(0, INFINITE), (2, s), (4, INFINITE)], 0.0),
@@ -265,7 +388,13 @@ fn two_ring_schemes_have_the_limits_of_iteration_at_tags() {
         let name = |kind: &str| format!("butterfly {kind} {k}");
         let crease = tagged(k, false, &[(0, INFINITE), (half, INFINITE)], 0.0);
         check(&name("crease"), &crease, &ModifiedButterfly, 120, 1e-7);
-        check(&name("dart"), &tagged(k, false, &[(0, INFINITE)], 0.0), &ModifiedButterfly, 120, 1e-7);
+        check(
+            &name("dart"),
+            &tagged(k, false, &[(0, INFINITE)], 0.0),
+            &ModifiedButterfly,
+            120,
+            1e-7,
+        );
         for s in [0.5, 1.0, 2.3] {
             let fading = tagged(k, false, &[(0, s), (half, s)], 0.0);
             check(&name("fading"), &fading, &ModifiedButterfly, 120, 1e-7);

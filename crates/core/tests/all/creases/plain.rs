@@ -21,7 +21,11 @@ fn ends(a: u32, b: u32) -> [u32; 2] {
 }
 
 fn less(sharpness: f64) -> f64 {
-    if sharpness >= 10.0 { sharpness } else { (sharpness - 1.0).max(0.0) }
+    if sharpness >= 10.0 {
+        sharpness
+    } else {
+        (sharpness - 1.0).max(0.0)
+    }
 }
 
 impl Plain {
@@ -30,13 +34,26 @@ impl Plain {
         Self {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
-            creases: tags.creases.iter().map(|t| (ends(t.vertices[0], t.vertices[1]), t.sharpness)).collect(),
-            corners: tags.corners.iter().map(|t| (t.vertex, t.sharpness)).collect(),
+            creases: tags
+                .creases
+                .iter()
+                .map(|t| (ends(t.vertices[0], t.vertices[1]), t.sharpness))
+                .collect(),
+            corners: tags
+                .corners
+                .iter()
+                .map(|t| (t.vertex, t.sharpness))
+                .collect(),
         }
     }
 
     fn combine(&self, terms: &[(f64, u32)]) -> Point {
-        std::array::from_fn(|axis| terms.iter().map(|&(w, v)| w * self.positions[v as usize][axis]).sum())
+        std::array::from_fn(|axis| {
+            terms
+                .iter()
+                .map(|&(w, v)| w * self.positions[v as usize][axis])
+                .sum()
+        })
     }
 
     /// One level.
@@ -61,8 +78,11 @@ impl Plain {
         for (v, edges) in (0u32..).zip(&edges_at) {
             let own = self.corners.get(&v).copied().unwrap_or(0.0);
             let rule = |own: f64, fade: &dyn Fn(f64) -> f64| -> Point {
-                let sharp: Vec<u32> =
-                    edges.iter().filter(|&&(_, s)| fade(s) > 0.0).map(|&(to, _)| to).collect();
+                let sharp: Vec<u32> = edges
+                    .iter()
+                    .filter(|&&(_, s)| fade(s) > 0.0)
+                    .map(|&(to, _)| to)
+                    .collect();
                 if own > 0.0 || sharp.len() > 2 {
                     return self.positions[v as usize];
                 }
@@ -78,11 +98,20 @@ impl Plain {
             let now = rule(own, &|s| s);
             let after = rule(less(own), &less);
             // Those that fade in this step: above 0 and not above 1.
-            let fading: Vec<f64> =
-                edges.iter().map(|&(_, s)| s).chain([own]).filter(|&s| s > 0.0 && s <= 1.0).collect();
-            let share =
-                if fading.is_empty() { 1.0 } else { fading.iter().sum::<f64>() / fading.len() as f64 };
-            positions.push(std::array::from_fn(|axis| share * now[axis] + (1.0 - share) * after[axis]));
+            let fading: Vec<f64> = edges
+                .iter()
+                .map(|&(_, s)| s)
+                .chain([own])
+                .filter(|&s| s > 0.0 && s <= 1.0)
+                .collect();
+            let share = if fading.is_empty() {
+                1.0
+            } else {
+                fading.iter().sum::<f64>() / fading.len() as f64
+            };
+            positions.push(std::array::from_fn(|axis| {
+                share * now[axis] + (1.0 - share) * after[axis]
+            }));
         }
         let (mut on, mut creases) = (BTreeMap::new(), BTreeMap::new());
         for (edge, faces) in &opposite {
@@ -108,8 +137,18 @@ impl Plain {
             [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
         };
         let triangles = self.triangles.iter().flat_map(split).collect();
-        let corners = self.corners.iter().map(|(&v, &s)| (v, less(s))).filter(|&(_, s)| s > 0.0).collect();
-        Self { positions, triangles, creases, corners }
+        let corners = self
+            .corners
+            .iter()
+            .map(|(&v, &s)| (v, less(s)))
+            .filter(|&(_, s)| s > 0.0)
+            .collect();
+        Self {
+            positions,
+            triangles,
+            creases,
+            corners,
+        }
     }
 }
 
@@ -122,16 +161,25 @@ pub(crate) fn randomly_tagged(mesh: Mesh, one_in: usize, seed: u64) -> Mesh {
         _ => 0.0,
     };
     let mut tags = Tags::default();
-    for h in topology.half_edges().filter(|&h| topology.twin(h).is_none_or(|twin| h < twin)) {
+    for h in topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_none_or(|twin| h < twin))
+    {
         let sharpness = sharpness();
         if sharpness > 0.0 {
-            tags.creases.push(CreaseTag { vertices: topology.ends(h).map(|v| v.0), sharpness });
+            tags.creases.push(CreaseTag {
+                vertices: topology.ends(h).map(|v| v.0),
+                sharpness,
+            });
         }
     }
     for vertex in topology.vertices() {
         let sharpness = sharpness();
         if sharpness > 0.0 {
-            tags.corners.push(CornerTag { vertex: vertex.0, sharpness });
+            tags.corners.push(CornerTag {
+                vertex: vertex.0,
+                sharpness,
+            });
         }
     }
     mesh.with_tags(tags).unwrap()

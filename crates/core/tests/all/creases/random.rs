@@ -15,13 +15,16 @@ fn any_mesh() -> impl Strategy<Value = Mesh> {
         (0..30usize, any::<u64>()).prop_map(|(splits, seed)| lumpy(splits, seed)),
         (1..5u32, 1..5u32, any::<u64>()).prop_map(|(m, n, seed)| sheet(m, n, seed)),
     ];
-    (shape, 1..8usize, any::<u64>()).prop_map(|(mesh, one_in, seed)| randomly_tagged(mesh, one_in, seed))
+    (shape, 1..8usize, any::<u64>())
+        .prop_map(|(mesh, one_in, seed)| randomly_tagged(mesh, one_in, seed))
 }
 
 const SCHEMES: [&dyn Scheme; 3] = [&Loop, &LoopWarren, &ModifiedButterfly];
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme) -> Mesh {
-    uniform(mesh, scheme, &UniformOptions::default().levels(2)).unwrap().mesh
+    uniform(mesh, scheme, &UniformOptions::default().levels(2))
+        .unwrap()
+        .mesh
 }
 
 proptest! {
@@ -78,11 +81,18 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let mesh = randomly_tagged(sheet(40, 30, 9), 6, 4);
     for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
         let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .unwrap();
             pool.install(|| {
                 let fine = refined(&mesh, scheme);
                 let table = LimitTable::new(scheme);
-                (table.positions(&fine).unwrap(), table.sided_normals(&fine).unwrap(), fine)
+                (
+                    table.positions(&fine).unwrap(),
+                    table.sided_normals(&fine).unwrap(),
+                    fine,
+                )
             })
         };
         assert!(run(1) == run(3));

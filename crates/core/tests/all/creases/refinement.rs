@@ -9,14 +9,18 @@ use crate::creases::plain::{Plain, randomly_tagged};
 use crate::support::*;
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
-    uniform(mesh, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh
+    uniform(mesh, scheme, &UniformOptions::default().levels(levels))
+        .unwrap()
+        .mesh
 }
 
 /// Checks that two meshes have the same triangles between the same points.
 fn assert_same(ours: &Mesh, plain: &Plain, name: &str) {
     let nearest = |p: &Point| {
         let near = |v: &usize| distance(*p, plain.positions[*v]);
-        let v = (0..plain.positions.len()).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
+        let v = (0..plain.positions.len())
+            .min_by(|a, b| near(a).total_cmp(&near(b)))
+            .unwrap();
         assert!(near(&v) < 1e-12, "{name}: {p:?} is {} away", near(&v));
         v as u32
     };
@@ -29,8 +33,15 @@ fn assert_same(ours: &Mesh, plain: &Plain, name: &str) {
         triangles.sort_unstable();
         triangles
     };
-    let renumbered = ours.triangles().iter().map(|t| t.map(|v| number[v as usize])).collect();
-    assert!(sorted(renumbered) == sorted(plain.triangles.clone()), "{name}");
+    let renumbered = ours
+        .triangles()
+        .iter()
+        .map(|t| t.map(|v| number[v as usize]))
+        .collect();
+    assert!(
+        sorted(renumbered) == sorted(plain.triangles.clone()),
+        "{name}"
+    );
 }
 
 #[test]
@@ -55,15 +66,26 @@ fn other_implementation(mesh: &Mesh, levels: usize) -> Vec<Point> {
     let corners = vec![3usize; mesh.face_count()];
     let tags = mesh.tags();
     let pairs: Vec<[u32; 2]> = tags.creases.iter().map(|tag| tag.vertices).collect();
-    let weights: Vec<f32> = tags.creases.iter().map(|tag| tag.sharpness.min(10.0) as f32).collect();
+    let weights: Vec<f32> = tags
+        .creases
+        .iter()
+        .map(|tag| tag.sharpness.min(10.0) as f32)
+        .collect();
     let vertices: Vec<u32> = tags.corners.iter().map(|tag| tag.vertex).collect();
-    let heights: Vec<f32> = tags.corners.iter().map(|tag| tag.sharpness.min(10.0) as f32).collect();
-    let descriptor =
-        far::TopologyDescriptor::new(mesh.vertex_count(), &corners, mesh.triangles().as_flattened())
-            .with_creases(&pairs, &weights)
-            .with_corners(&vertices, &heights);
-    let options =
-        sdc::Options::default().with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
+    let heights: Vec<f32> = tags
+        .corners
+        .iter()
+        .map(|tag| tag.sharpness.min(10.0) as f32)
+        .collect();
+    let descriptor = far::TopologyDescriptor::new(
+        mesh.vertex_count(),
+        &corners,
+        mesh.triangles().as_flattened(),
+    )
+    .with_creases(&pairs, &weights)
+    .with_corners(&vertices, &heights);
+    let options = sdc::Options::default()
+        .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
     let mut refiner =
         far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options).unwrap();
     refiner.refine_uniform(far::UniformOptions::new(levels));
@@ -78,12 +100,18 @@ fn other_implementation(mesh: &Mesh, levels: usize) -> Vec<Point> {
 }
 
 fn check_against_other(name: &str, mesh: &Mesh, levels: usize) {
-    let (ours, theirs) = (refined(mesh, &Loop, levels), other_implementation(mesh, levels));
+    let (ours, theirs) = (
+        refined(mesh, &Loop, levels),
+        other_implementation(mesh, levels),
+    );
     assert_eq!(ours.vertex_count(), theirs.len(), "{name}");
     // Its weights are f32.
     let tolerance = 2e-6 * mesh.diagonal();
     for &p in ours.positions() {
-        let nearest = theirs.iter().map(|&q| distance(p, q)).fold(f64::MAX, f64::min);
+        let nearest = theirs
+            .iter()
+            .map(|&q| distance(p, q))
+            .fold(f64::MAX, f64::min);
         assert!(nearest < tolerance, "{name}: {p:?} is {nearest} away");
     }
 }
@@ -92,7 +120,11 @@ fn check_against_other(name: &str, mesh: &Mesh, levels: usize) {
 fn tagged_refinement_is_the_other_implementation_s() {
     for (name, mesh) in samples() {
         for seed in 0..4 {
-            check_against_other(&format!("{name}, {seed}"), &randomly_tagged(mesh.clone(), 4, seed), 3);
+            check_against_other(
+                &format!("{name}, {seed}"),
+                &randomly_tagged(mesh.clone(), 4, seed),
+                3,
+            );
         }
     }
 }
@@ -101,11 +133,17 @@ fn tagged_refinement_is_the_other_implementation_s() {
 fn the_shared_models_with_tags_are_the_other_implementation_s() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
         // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(&mut std::io::stderr(), b"skipped: LIMITMESH_MODELS is not set\n");
+        let _ = std::io::Write::write_all(
+            &mut std::io::stderr(),
+            b"skipped: LIMITMESH_MODELS is not set\n",
+        );
         return;
     };
-    let models =
-        [("mechpart_creased.obj", 113, 3), ("rook_creased.obj", 280, 2), ("loop_icos_semisharp.obj", 15, 4)];
+    let models = [
+        ("mechpart_creased.obj", 113, 3),
+        ("rook_creased.obj", 280, 2),
+        ("loop_icos_semisharp.obj", 15, 4),
+    ];
     for (name, creases, levels) in models {
         let mesh = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
         assert_eq!(mesh.tags().creases.len(), creases);
@@ -116,13 +154,25 @@ fn the_shared_models_with_tags_are_the_other_implementation_s() {
 #[test]
 fn tags_of_sharpness_zero_change_nothing() {
     for (_, mesh) in samples() {
-        let creases = mesh.triangles().iter().map(|t| CreaseTag { vertices: [t[0], t[1]], sharpness: 0.0 });
-        let corners = (0..mesh.vertex_count() as u32).map(|vertex| CornerTag { vertex, sharpness: 0.0 });
-        let tags = Tags { creases: creases.collect(), corners: corners.collect() };
+        let creases = mesh.triangles().iter().map(|t| CreaseTag {
+            vertices: [t[0], t[1]],
+            sharpness: 0.0,
+        });
+        let corners = (0..mesh.vertex_count() as u32).map(|vertex| CornerTag {
+            vertex,
+            sharpness: 0.0,
+        });
+        let tags = Tags {
+            creases: creases.collect(),
+            corners: corners.collect(),
+        };
         let tagged = mesh.clone().with_tags(tags).unwrap();
         for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
             let (with, without) = (refined(&tagged, scheme, 2), refined(&mesh, scheme, 2));
-            assert_eq!((with.positions(), with.triangles()), (without.positions(), without.triangles()));
+            assert_eq!(
+                (with.positions(), with.triangles()),
+                (without.positions(), without.triangles())
+            );
         }
     }
 }

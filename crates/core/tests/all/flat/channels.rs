@@ -23,13 +23,20 @@ fn drum() -> Mesh {
             [c, s, z]
         })
     };
-    let positions: Vec<[f64; 3]> =
-        ring(0.0).chain(ring(1.0)).chain([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]).collect();
+    let positions: Vec<[f64; 3]> = ring(0.0)
+        .chain(ring(1.0))
+        .chain([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        .collect();
     let (bottom, top) = (2 * FACETS, 2 * FACETS + 1);
     let faces = (0..FACETS).flat_map(|i| {
         let next = (i + 1) % FACETS;
         let (up, next_up) = (FACETS + i, FACETS + next);
-        [[i, next, next_up], [i, next_up, up], [next, i, bottom], [up, next_up, top]]
+        [
+            [i, next, next_up],
+            [i, next_up, up],
+            [next, i, bottom],
+            [up, next_up, top],
+        ]
     });
     creased(positions, faces.collect())
 }
@@ -41,7 +48,12 @@ fn channel(domain: Domain, values: Vec<f64>) -> Channel {
 }
 
 fn refined(mesh: &Mesh, channels: &[Channel]) -> Exact {
-    exact(mesh, &Loop, &within(TOLERANCE).kept_edges(borders(channels, mesh))).unwrap()
+    exact(
+        mesh,
+        &Loop,
+        &within(TOLERANCE).kept_edges(borders(channels, mesh)),
+    )
+    .unwrap()
 }
 
 #[test]
@@ -71,12 +83,16 @@ fn located(mesh: &Mesh, point: [f64; 3], normal: [f64; 3]) -> usize {
     let surface = mesh.as_triangles();
     let faces = (0..mesh.face_count()).filter(|&face| {
         let corners = surface.corners(face);
-        let is_level = corners.iter().all(|corner| (corner[2] - point[2]).abs() < 1e-9);
+        let is_level = corners
+            .iter()
+            .all(|corner| (corner[2] - point[2]).abs() < 1e-9);
         is_level
             && (0..3).all(|i| {
                 let [from, to] = [corners[i], corners[(i + 1) % 3]];
-                let (along, away) =
-                    ([0, 1, 2].map(|i| to[i] - from[i]), [0, 1, 2].map(|i| point[i] - from[i]));
+                let (along, away) = (
+                    [0, 1, 2].map(|i| to[i] - from[i]),
+                    [0, 1, 2].map(|i| point[i] - from[i]),
+                );
                 dot(cross(along, away), normal) > -1e-12
             })
     });
@@ -90,19 +106,31 @@ fn located(mesh: &Mesh, point: [f64; 3], normal: [f64; 3]) -> usize {
 fn faces_bound_regions_where_their_values_differ() {
     let mesh = drum();
     let plain = refined(&mesh, &[]).mesh.face_count();
-    let divided = exact(&mesh, &Loop, &within(TOLERANCE).flat_regions(false)).unwrap().mesh.face_count();
+    let divided = exact(&mesh, &Loop, &within(TOLERANCE).flat_regions(false))
+        .unwrap()
+        .mesh
+        .face_count();
     let sector = |face: usize| face as u32 / 4;
-    let values: [&dyn Fn(usize) -> u32; 3] =
-        [&|face| u32::from(sector(face) < FACETS / 2), &|face| sector(face) % 2, &|face| {
-            u32::from(sector(face) == 5)
-        }];
+    let values: [&dyn Fn(usize) -> u32; 3] = [
+        &|face| u32::from(sector(face) < FACETS / 2),
+        &|face| sector(face) % 2,
+        &|face| u32::from(sector(face) == 5),
+    ];
     for value in values {
-        let own = channel(Domain::Face, (0..mesh.face_count()).map(|face| f64::from(value(face))).collect());
+        let own = channel(
+            Domain::Face,
+            (0..mesh.face_count())
+                .map(|face| f64::from(value(face)))
+                .collect(),
+        );
         let found = refined(&mesh, std::slice::from_ref(&own));
         found.mesh.validate().unwrap();
         assert!(found.error.upper <= TOLERANCE && found.error.certified);
         let count = found.mesh.face_count();
-        assert!(plain <= count && 2 * count < divided, "{plain} {count} {divided}");
+        assert!(
+            plain <= count && 2 * count < divided,
+            "{plain} {count} {divided}"
+        );
         let told = carried(&[own], &mesh, &Loop, &found).unwrap();
         let surface = found.mesh.as_triangles();
         let mut met = 0;
@@ -116,13 +144,22 @@ fn faces_bound_regions_where_their_values_differ() {
                 continue;
             }
             met += 1;
-            assert!(corners.iter().all(|corner| (corner[2] - corners[0][2]).abs() < 1e-12));
+            assert!(
+                corners
+                    .iter()
+                    .all(|corner| (corner[2] - corners[0][2]).abs() < 1e-12)
+            );
             // Near to each corner, and to the middle.
-            let middle = [0, 1, 2].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
+            let middle =
+                [0, 1, 2].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
             for corner in corners.iter().chain([&middle]) {
                 let point = [0, 1, 2].map(|i| 0.999 * corner[i] + 0.001 * middle[i]);
                 let own = located(&mesh, point, [0.0, 0.0, normal[2].signum()]);
-                assert_eq!(told[0].value(face), [f64::from(value(own))], "triangle {face} near {point:?}");
+                assert_eq!(
+                    told[0].value(face),
+                    [f64::from(value(own))],
+                    "triangle {face} near {point:?}"
+                );
             }
         }
         assert!(met > 2 * FACETS as usize, "{met}");

@@ -37,9 +37,19 @@ fn plate_of_slivers(facets: u32) -> Mesh {
         let next = (i + 1) % 3;
         triangles.extend([[3 + i, i, next], [3 + i, next, 3 + next]]);
     }
-    let corners = (0..3).map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP }).collect();
+    let corners = (0..3)
+        .map(|vertex| CornerTag {
+            vertex,
+            sharpness: INFINITELY_SHARP,
+        })
+        .collect();
     let plate = Mesh::from_triangles(positions, triangles).unwrap();
-    plate.with_tags(Tags { corners, ..Tags::default() }).unwrap()
+    plate
+        .with_tags(Tags {
+            corners,
+            ..Tags::default()
+        })
+        .unwrap()
 }
 
 /// What is handed out covers what the rims enclose, once.
@@ -48,11 +58,16 @@ fn plates_with_holes_do_not_fold() {
     let facets = 24;
     let plate = plate_of_slivers(facets);
     let hole = |i: u32| 6 + i % facets;
-    let [whole, folded] = [true, false].map(|flat| exact(&plate, &Loop, &within(1e-4).unfold(flat)).unwrap());
+    let [whole, folded] =
+        [true, false].map(|flat| exact(&plate, &Loop, &within(1e-4).unfold(flat)).unwrap());
     assert!(folded.inverted_triangles() > 0 && folded.unfolded == 0);
-    assert_eq!((whole.inverted_triangles(), whole.unfolded, whole.stop), (0, 1, ExactStop::Met));
-    let areas: Vec<f64> =
-        (0..whole.mesh.face_count() as u32).map(|face| whole.mesh.face_normal(FaceId(face))[2]).collect();
+    assert_eq!(
+        (whole.inverted_triangles(), whole.unfolded, whole.stop),
+        (0, 1, ExactStop::Met)
+    );
+    let areas: Vec<f64> = (0..whole.mesh.face_count() as u32)
+        .map(|face| whole.mesh.face_normal(FaceId(face))[2])
+        .collect();
     assert!(areas.iter().all(|&area| area > 0.0));
     // The hole's rim is a uniform cubic B-spline of its vertices: no chord is farther from it than asked.
     let bend = |t: f64, p: [f64; 4]| {
@@ -78,9 +93,14 @@ fn plates_with_holes_do_not_fold() {
     let area = 0.5 * areas.iter().sum::<f64>();
     let outside = 3.0 * 3f64.sqrt();
     // The chords of the rim leave it by the tolerance at most, along its length of half a circle's and less.
-    assert!((area - (outside - inside)).abs() < TAU * 0.5 * 1e-4, "{area} {inside}");
+    assert!(
+        (area - (outside - inside)).abs() < TAU * 0.5 * 1e-4,
+        "{area} {inside}"
+    );
     // What folds over has the rim divided as well.
-    assert!(whole.mesh.topology().boundary_edge_count() < folded.mesh.topology().boundary_edge_count());
+    assert!(
+        whole.mesh.topology().boundary_edge_count() < folded.mesh.topology().boundary_edge_count()
+    );
 }
 
 /// The ends of a mesh's boundary edges.
@@ -88,7 +108,8 @@ fn rims(mesh: &Mesh) -> Vec<[[f64; 3]; 2]> {
     let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let all: HashSet<[u32; 2]> = mesh.triangles().iter().flat_map(edges).collect();
     let open = all.iter().filter(|&&[from, to]| !all.contains(&[to, from]));
-    open.map(|ends| ends.map(|vertex| mesh.positions()[vertex as usize])).collect()
+    open.map(|ends| ends.map(|vertex| mesh.positions()[vertex as usize]))
+        .collect()
 }
 
 /// How far a point is from the nearest of some segments.
@@ -121,20 +142,33 @@ fn rims_whose_chords_cross_are_divided() {
         [[o, p, b], [o, b, a], [p, c, b]]
     };
     triangles.extend((0..6).flat_map(of_ring));
-    let mesh = Mesh::from_triangles(positions, triangles).unwrap().with_tags(plate.tags().clone()).unwrap();
+    let mesh = Mesh::from_triangles(positions, triangles)
+        .unwrap()
+        .with_tags(plate.tags().clone())
+        .unwrap();
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
     let curves = rims(&reference);
     for (tolerance, budget) in [(0.3, None), (0.1, None), (0.1, Some(70)), (0.003, None)] {
         let options = within(tolerance).unfold(true);
         let options = budget.map_or(options.clone(), |most| options.triangles(most));
         let found = exact(&mesh, &Loop, &options).unwrap();
-        assert!(found.inverted_triangles() == 0 && found.unfolded > 0, "{tolerance} {budget:?}");
+        assert!(
+            found.inverted_triangles() == 0 && found.unfolded > 0,
+            "{tolerance} {budget:?}"
+        );
         assert!(found.error.upper <= tolerance);
         let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
         assert_eq!(estimate.triangles, found.mesh.face_count());
         let chords = rims(&found.mesh);
-        let farthest = curves.iter().map(|&[point, _]| to_segments(point, &chords)).fold(0.0, f64::max);
-        assert!(found.error.lower <= farthest + 1e-9, "{:?} {farthest}", found.error);
+        let farthest = curves
+            .iter()
+            .map(|&[point, _]| to_segments(point, &chords))
+            .fold(0.0, f64::max);
+        assert!(
+            found.error.lower <= farthest + 1e-9,
+            "{:?} {farthest}",
+            found.error
+        );
     }
 }
 
@@ -147,14 +181,24 @@ fn balanced_angles_of_folding_sides_come_to_an_end() {
     let below = plate.positions().iter().map(|&[x, y, z]| [x, y, z - 1e-3]);
     let positions = plate.positions().iter().copied().chain(below).collect();
     let mut triangles = plate.triangles().to_vec();
-    triangles.extend(plate.triangles().iter().map(|&[a, b, c]| [a, c, b].map(|vertex| vertex + count)));
+    triangles.extend(
+        plate
+            .triangles()
+            .iter()
+            .map(|&[a, b, c]| [a, c, b].map(|vertex| vertex + count)),
+    );
     let topology = plate.topology();
-    for h in topology.half_edges().filter(|&h| topology.twin(h).is_none()) {
+    for h in topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_none())
+    {
         let [from, to] = topology.ends(h).map(|vertex| vertex.0);
         triangles.extend([[to, from, from + count], [to, from + count, to + count]]);
     }
     let slab = creased(positions, triangles);
-    let options = within(0.02 * slab.diagonal()).angle(20f64.to_radians()).unfold(true);
+    let options = within(0.02 * slab.diagonal())
+        .angle(20f64.to_radians())
+        .unfold(true);
     let most_triangles = |options: &ExactOptions| {
         let mut most = 0;
         let mut watch = |progress: &limitmesh::progress::Progress| {
@@ -169,7 +213,10 @@ fn balanced_angles_of_folding_sides_come_to_an_end() {
     let (most, found) = most_triangles(&options);
     assert!(found.mesh.face_count() <= plain.mesh.face_count());
     assert!(most <= plain_most, "{most} {plain_most}");
-    assert_eq!(exact_estimate(&slab, &Loop, &options).unwrap().triangles, found.mesh.face_count());
+    assert_eq!(
+        exact_estimate(&slab, &Loop, &options).unwrap().triangles,
+        found.mesh.face_count()
+    );
 }
 
 /// The same plate in the middle of a tent: where the surface goes on smoothly, what a rim encloses is not all that triangles which fold are near to,
@@ -193,10 +240,22 @@ fn what_folds_beside_smooth_surfaces_stays() {
     let samples = SamplingOptions::default().samples(30_000);
     for tolerance in [0.1, 0.02, 2e-3] {
         let found = exact(&tent, &Loop, &within(tolerance).unfold(true)).unwrap();
-        assert!(found.unfolded == 0 && found.inverted_triangles() > 0, "{tolerance}");
-        let sampled = hausdorff(found.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+        assert!(
+            found.unfolded == 0 && found.inverted_triangles() > 0,
+            "{tolerance}"
+        );
+        let sampled = hausdorff(
+            found.mesh.as_triangles(),
+            reference.as_triangles(),
+            &samples,
+        )
+        .unwrap();
         // The reference's own chords are off by less than this.
-        assert!(sampled.symmetric() <= found.error.upper + 2e-4, "{tolerance}: {:?}", found.error);
+        assert!(
+            sampled.symmetric() <= found.error.upper + 2e-4,
+            "{tolerance}: {:?}",
+            found.error
+        );
     }
 }
 
@@ -204,7 +263,13 @@ fn what_folds_beside_smooth_surfaces_stays() {
 fn stirred_grid(columns: u32, rows: u32, numbers: &mut Random, most: f64) -> Mesh {
     let cells = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
     let positions: Vec<[f64; 3]> = cells
-        .map(|(i, j)| [f64::from(i) + most * numbers.signed(), f64::from(j) + most * numbers.signed(), 0.0])
+        .map(|(i, j)| {
+            [
+                f64::from(i) + most * numbers.signed(),
+                f64::from(j) + most * numbers.signed(),
+                0.0,
+            ]
+        })
         .collect();
     Mesh::from_triangles(positions, grid(columns, rows)).unwrap()
 }
@@ -231,7 +296,9 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
         let [low, high] = [&sides[0], &sides[1]];
         let (mut i, mut j) = (0, 0);
         while i + 1 < low.len() || j + 1 < high.len() {
-            let next = |row: &[u32], at: usize| row.get(at + 1).map(|&vertex| positions[vertex as usize][0]);
+            let next = |row: &[u32], at: usize| {
+                row.get(at + 1).map(|&vertex| positions[vertex as usize][0])
+            };
             let is_low = match [next(low, i), next(high, j)] {
                 [Some(below), Some(above)] => below <= above,
                 [below, _] => below.is_some(),
@@ -242,13 +309,30 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
         }
     }
     let mesh = Mesh::from_triangles(positions, triangles).unwrap();
-    let inner = rows[1..rows.len() - 1].iter().flat_map(|row| row.windows(2));
-    let creases = inner.map(|edge| CreaseTag { vertices: [edge[0], edge[1]], sharpness: INFINITELY_SHARP });
-    let is_inside =
-        |vertex: &u32| rows[1..rows.len() - 1].iter().any(|row| row[1..row.len() - 1].contains(vertex));
+    let inner = rows[1..rows.len() - 1]
+        .iter()
+        .flat_map(|row| row.windows(2));
+    let creases = inner.map(|edge| CreaseTag {
+        vertices: [edge[0], edge[1]],
+        sharpness: INFINITELY_SHARP,
+    });
+    let is_inside = |vertex: &u32| {
+        rows[1..rows.len() - 1]
+            .iter()
+            .any(|row| row[1..row.len() - 1].contains(vertex))
+    };
     let around = (0..mesh.vertex_count() as u32).filter(|vertex| !is_inside(vertex));
-    let corners = around.map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP }).collect();
-    mesh.with_tags(Tags { creases: creases.collect(), corners }).unwrap()
+    let corners = around
+        .map(|vertex| CornerTag {
+            vertex,
+            sharpness: INFINITELY_SHARP,
+        })
+        .collect();
+    mesh.with_tags(Tags {
+        creases: creases.collect(),
+        corners,
+    })
+    .unwrap()
 }
 
 /// Regions that cannot be triangulated from their rims keep their triangles, and estimates count these.
@@ -271,13 +355,36 @@ fn estimates_count_regions_that_stay() {
 
 /// One mesh is as near as told to another of a much smaller distance, which stands for the same surface.
 fn assert_as_near_as_told(found: &Exact, fine: &Exact, what: &str) {
-    assert!(fine.error.lower <= fine.error.upper, "{what}: {:?}", fine.error);
-    assert!(found.error.lower <= found.error.upper, "{what}: {:?}", found.error);
+    assert!(
+        fine.error.lower <= fine.error.upper,
+        "{what}: {:?}",
+        fine.error
+    );
+    assert!(
+        found.error.lower <= found.error.upper,
+        "{what}: {:?}",
+        found.error
+    );
     let options = CertifiedOptions::default().gap(Some(fine.error.upper));
-    let apart = certified_hausdorff(found.mesh.as_triangles(), fine.mesh.as_triangles(), &options).unwrap();
+    let apart = certified_hausdorff(
+        found.mesh.as_triangles(),
+        fine.mesh.as_triangles(),
+        &options,
+    )
+    .unwrap();
     let off = fine.error.upper;
-    assert!(apart.lower() <= found.error.upper + off, "{what}: {:?} {}", found.error, apart.lower());
-    assert!(found.error.lower <= apart.upper() + off, "{what}: {:?} {}", found.error, apart.upper());
+    assert!(
+        apart.lower() <= found.error.upper + off,
+        "{what}: {:?} {}",
+        found.error,
+        apart.lower()
+    );
+    assert!(
+        found.error.lower <= apart.upper() + off,
+        "{what}: {:?} {}",
+        found.error,
+        apart.upper()
+    );
 }
 
 /// What grids, plates and strips that fold stand for is the same at each tolerance.
@@ -288,24 +395,41 @@ fn what_folds_is_the_same_at_each_tolerance() {
     for case in 0..24 {
         let mesh = match case % 3 {
             2 => strips_between_sharp_lines(&mut numbers),
-            0 => stirred_grid(4 + case % 4, 4 + case % 5, &mut numbers, 0.2 + 0.1 * f64::from(case % 9)),
+            0 => stirred_grid(
+                4 + case % 4,
+                4 + case % 5,
+                &mut numbers,
+                0.2 + 0.1 * f64::from(case % 9),
+            ),
             _ => {
                 let plate = plate_of_slivers(12 + case);
                 let most = 0.01 * f64::from(case % 8);
-                let stirred =
-                    |&[x, y, z]: &[f64; 3]| [x + most * numbers.signed(), y + most * numbers.signed(), z];
+                let stirred = |&[x, y, z]: &[f64; 3]| {
+                    [x + most * numbers.signed(), y + most * numbers.signed(), z]
+                };
                 let positions = plate.positions().iter().map(stirred).collect();
                 plate.with_positions(positions).unwrap()
             }
         };
-        let within = |share: f64| exact(&mesh, &Loop, &within(share * mesh.diagonal()).unfold(true)).unwrap();
+        let within = |share: f64| {
+            exact(&mesh, &Loop, &within(share * mesh.diagonal()).unfold(true)).unwrap()
+        };
         let fine = within(1e-4);
         for share in [0.03, 0.01, 3e-3] {
             assert_as_near_as_told(&within(share), &fine, &format!("{case} within {share}"));
         }
-        let balanced = super::within(0.01 * mesh.diagonal()).unfold(true).balance(true);
-        assert_as_near_as_told(&exact(&mesh, &Loop, &balanced).unwrap(), &fine, &format!("{case} balanced"));
-        (unfolded, folded) = (unfolded + fine.unfolded, folded + usize::from(fine.inverted_triangles() > 0));
+        let balanced = super::within(0.01 * mesh.diagonal())
+            .unfold(true)
+            .balance(true);
+        assert_as_near_as_told(
+            &exact(&mesh, &Loop, &balanced).unwrap(),
+            &fine,
+            &format!("{case} balanced"),
+        );
+        (unfolded, folded) = (
+            unfolded + fine.unfolded,
+            folded + usize::from(fine.inverted_triangles() > 0),
+        );
     }
     assert!(unfolded > 2 && folded > 2, "{unfolded} {folded}");
 }
@@ -320,10 +444,17 @@ fn what_folds_is_the_same_under_budgets() {
         for times in [1.2, 2.0, 3.0] {
             let most = (times * mesh.face_count() as f64) as usize;
             for is_balanced in [false, true] {
-                let options = ExactOptions::default().triangles(most).unfold(true).balance(is_balanced);
+                let options = ExactOptions::default()
+                    .triangles(most)
+                    .unfold(true)
+                    .balance(is_balanced);
                 let found = exact(&mesh, &Loop, &options).unwrap();
                 assert!(found.mesh.face_count() <= most);
-                assert_as_near_as_told(&found, &fine, &format!("{seed} with {most}, balanced {is_balanced}"));
+                assert_as_near_as_told(
+                    &found,
+                    &fine,
+                    &format!("{seed} with {most}, balanced {is_balanced}"),
+                );
             }
         }
     }
@@ -333,11 +464,37 @@ fn what_folds_is_the_same_under_budgets() {
 /// enclose is asked for, the one winds forwards there and the other backwards, but no triangle is where the plate's surface reaches.
 #[test]
 fn what_two_rims_undo_counts() {
-    let plate = [[-1.0, -5.0], [0.0, -2.0], [1.0, 1.0], [2.0, 1.0], [3.0, -2.0], [4.0, -5.0]];
-    let left = [[-22.8, -5.0], [-23.1, -5.0], [-22.8, -4.925], [-18.3, -3.8], [-11.7, -2.15], [-5.1, -0.5]];
-    let right =
-        [[1.5, 1.15], [8.1, -0.5], [14.7, -2.15], [21.3, -3.8], [25.8, -4.925], [26.1, -5.0], [25.8, -5.0]];
-    let positions = plate.iter().chain(&left).chain(&right).map(|&[x, y]| [x, y, 0.0]).collect();
+    let plate = [
+        [-1.0, -5.0],
+        [0.0, -2.0],
+        [1.0, 1.0],
+        [2.0, 1.0],
+        [3.0, -2.0],
+        [4.0, -5.0],
+    ];
+    let left = [
+        [-22.8, -5.0],
+        [-23.1, -5.0],
+        [-22.8, -4.925],
+        [-18.3, -3.8],
+        [-11.7, -2.15],
+        [-5.1, -0.5],
+    ];
+    let right = [
+        [1.5, 1.15],
+        [8.1, -0.5],
+        [14.7, -2.15],
+        [21.3, -3.8],
+        [25.8, -4.925],
+        [26.1, -5.0],
+        [25.8, -5.0],
+    ];
+    let positions = plate
+        .iter()
+        .chain(&left)
+        .chain(&right)
+        .map(|&[x, y]| [x, y, 0.0])
+        .collect();
     let triangles = [
         [0, 5, 4],
         [1, 0, 4],
@@ -362,14 +519,34 @@ fn what_two_rims_undo_counts() {
         [2, 11, 10],
     ];
     let mesh = Mesh::from_triangles(positions, triangles.to_vec()).unwrap();
-    let crease = |first| CreaseTag { vertices: [first, first + 1], sharpness: INFINITELY_SHARP };
-    let mesh = mesh.with_tags(Tags { creases: (0..5).map(crease).collect(), corners: Vec::new() }).unwrap();
+    let crease = |first| CreaseTag {
+        vertices: [first, first + 1],
+        sharpness: INFINITELY_SHARP,
+    };
+    let mesh = mesh
+        .with_tags(Tags {
+            creases: (0..5).map(crease).collect(),
+            corners: Vec::new(),
+        })
+        .unwrap();
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
-    for options in [within(0.8), within(0.4), within(0.2), ExactOptions::default().triangles(22)] {
+    for options in [
+        within(0.8),
+        within(0.4),
+        within(0.2),
+        ExactOptions::default().triangles(22),
+    ] {
         let found = exact(&mesh, &Loop, &options.unfold(true)).unwrap();
-        let sampled =
-            hausdorff(found.mesh.as_triangles(), reference.as_triangles(), &SamplingOptions::default());
+        let sampled = hausdorff(
+            found.mesh.as_triangles(),
+            reference.as_triangles(),
+            &SamplingOptions::default(),
+        );
         let sampled = sampled.unwrap().symmetric();
-        assert!(found.error.upper >= 0.99 * sampled, "{:?}, {sampled}", found.error);
+        assert!(
+            found.error.upper >= 0.99 * sampled,
+            "{:?}, {sampled}",
+            found.error
+        );
     }
 }

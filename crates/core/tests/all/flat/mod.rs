@@ -15,7 +15,14 @@ use limitmesh::scheme::Loop;
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
 pub(crate) fn washer(facets: u32, has_inner: bool) -> Mesh {
     let rings: &[(f64, f64)] = if has_inner {
-        &[(2.0, 0.0), (2.0, 1.0), (1.5, 1.0), (1.0, 1.0), (1.0, 0.0), (1.5, 0.0)]
+        &[
+            (2.0, 0.0),
+            (2.0, 1.0),
+            (1.5, 1.0),
+            (1.0, 1.0),
+            (1.0, 0.0),
+            (1.5, 0.0),
+        ]
     } else {
         &[(2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 0.0)]
     };
@@ -28,10 +35,16 @@ pub(crate) fn washer(facets: u32, has_inner: bool) -> Mesh {
     let positions = rings.iter().flat_map(ring).collect();
     let mut triangles = Vec::new();
     for (at, _) in rings.iter().enumerate() {
-        let (here, there) = (at as u32 * facets, (at as u32 + 1) % rings.len() as u32 * facets);
+        let (here, there) = (
+            at as u32 * facets,
+            (at as u32 + 1) % rings.len() as u32 * facets,
+        );
         for i in 0..facets {
             let next = (i + 1) % facets;
-            triangles.extend([[here + i, here + next, there + next], [here + i, there + next, there + i]]);
+            triangles.extend([
+                [here + i, here + next, there + next],
+                [here + i, there + next, there + i],
+            ]);
         }
     }
     creased(positions, triangles)
@@ -47,7 +60,10 @@ fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
     let (mut count, mut area) = (0, 0.0);
     for face in 0..result.mesh.face_count() {
         let [a, b, c] = surface.corners(face);
-        let normal = cross([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+        let normal = cross(
+            [0, 1, 2].map(|i| b[i] - a[i]),
+            [0, 1, 2].map(|i| c[i] - a[i]),
+        );
         let length = dot(normal, normal).sqrt();
         if dot(normal, direction) > 0.9998 * length {
             (count, area) = (count + 1, area + 0.5 * length);
@@ -71,16 +87,26 @@ fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
             result.mesh.topology().boundary_edge_count() == 0,
             mesh.topology().boundary_edge_count() == 0
         );
-        assert_eq!(result.mesh.topology().euler_characteristic(), mesh.topology().euler_characteristic());
+        assert_eq!(
+            result.mesh.topology().euler_characteristic(),
+            mesh.topology().euler_characteristic()
+        );
     }
     // What is flat here is flat to rounding, and costs no more; rims are divided as they need it themselves.
     for result in [&merged, &kept] {
         let error = &result.error;
-        assert!(error.lower <= error.upper && error.upper <= tolerance, "{error:?}");
+        assert!(
+            error.lower <= error.upper && error.upper <= tolerance,
+            "{error:?}"
+        );
     }
     let points = |result: &Exact| {
-        let mut points: Vec<[u64; 3]> =
-            result.mesh.positions().iter().map(|p| p.map(|x| x.to_bits())).collect();
+        let mut points: Vec<[u64; 3]> = result
+            .mesh
+            .positions()
+            .iter()
+            .map(|p| p.map(|x| x.to_bits()))
+            .collect();
         points.sort_unstable();
         points
     };
@@ -101,14 +127,19 @@ fn the_ends_of_a_peg_follow_their_rims_alone() {
         };
         let mut at_ends = 0;
         for direction in [axis, axis.map(|x| -x)] {
-            let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
+            let [(few, area), (many, same)] =
+                [&merged, &kept].map(|result| facing(result, direction));
             // Between curve and chords along the rim.
             assert!((area - same).abs() < TAU * tolerance, "{area} {same}");
             assert!(many > 2 * few, "{many} {few}");
             // As many as its rim's polygon has corners, less two.
-            let on_rim = merged.sides.iter().filter(|&&(_, normal)| dot(normal, direction) > 0.999_999);
-            let corners: std::collections::BTreeSet<u32> =
-                on_rim.map(|&(h, _)| merged.mesh.triangles()[h as usize / 3][h as usize % 3]).collect();
+            let on_rim = merged
+                .sides
+                .iter()
+                .filter(|&&(_, normal)| dot(normal, direction) > 0.999_999);
+            let corners: std::collections::BTreeSet<u32> = on_rim
+                .map(|&(h, _)| merged.mesh.triangles()[h as usize / 3][h as usize % 3])
+                .collect();
             assert_eq!(few + 2, corners.len());
             at_ends += corners.len();
         }
@@ -134,13 +165,17 @@ fn holes_and_control_vertices_stay() {
         let (merged, kept) = both(&mesh, 2e-3);
         assert!(merged.mesh.face_count() < kept.mesh.face_count());
         for direction in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
-            let [(few, area), (many, same)] = [&merged, &kept].map(|result| facing(result, direction));
+            let [(few, area), (many, same)] =
+                [&merged, &kept].map(|result| facing(result, direction));
             // Between curves and chords along the rims of radius 2 and 1.
             assert!((area - same).abs() < 3.0 * TAU * 2e-3, "{area} {same}");
             assert!(few < many);
         }
         for vertex in 0..mesh.vertex_count() {
-            assert_eq!(merged.mesh.positions()[vertex], kept.mesh.positions()[vertex]);
+            assert_eq!(
+                merged.mesh.positions()[vertex],
+                kept.mesh.positions()[vertex]
+            );
         }
     }
 }
@@ -154,7 +189,9 @@ fn boundaries_are_rims_too() {
         let (s, c) = (TAU * f64::from(i) / f64::from(facets)).sin_cos();
         [c, s, 0.0]
     }));
-    let triangles = (0..facets).map(|i| [0, 1 + i, 1 + (i + 1) % facets]).collect();
+    let triangles = (0..facets)
+        .map(|i| [0, 1 + i, 1 + (i + 1) % facets])
+        .collect();
     let mesh = Mesh::from_triangles(positions, triangles).unwrap();
     let (merged, kept) = both(&mesh, 1e-3);
     assert!(merged.mesh.face_count() < kept.mesh.face_count());
@@ -175,14 +212,19 @@ fn sheets_that_share_their_rims_stay_apart() {
             [c, stretch * s, 0.0]
         }));
         let rim = |i: u32| 2 + i % facets;
-        let triangles = (0..facets).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]);
+        let triangles =
+            (0..facets).flat_map(|i| [[0, rim(i), rim(i + 1)], [1, rim(i + 1), rim(i)]]);
         let mesh = creased(positions, triangles.collect());
         let (merged, kept) = both(&mesh, 1e-4);
         assert!(merged.mesh.face_count() < kept.mesh.face_count());
         for most in [100, 150, 200, 300] {
             let capped = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
             capped.mesh.validate().unwrap();
-            assert!(capped.mesh.face_count() <= most, "{} {most}", capped.mesh.face_count());
+            assert!(
+                capped.mesh.face_count() <= most,
+                "{} {most}",
+                capped.mesh.face_count()
+            );
         }
     }
 }
@@ -199,7 +241,11 @@ fn budgets_and_estimates_count_what_is_left() {
     assert!(2 * most < kept.mesh.face_count());
     let budget = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
     assert!(budget.mesh.face_count() <= most);
-    assert!(budget.error.upper <= 1.15 * merged.error.upper, "{:?}", budget.error);
+    assert!(
+        budget.error.upper <= 1.15 * merged.error.upper,
+        "{:?}",
+        budget.error
+    );
 }
 
 /// Collapses leave a rim's triangles and hold what they promise: of flat ends that follow the hierarchy nothing could be proven.
@@ -209,27 +255,48 @@ fn what_is_flat_is_optimised_with_proof() {
     let plain = exact(&mesh, &Loop, &within(2e-3)).unwrap();
     let optimised = exact(&mesh, &Loop, &within(2e-3).optimize(true)).unwrap();
     optimised.mesh.validate().unwrap();
-    assert!(optimised.mesh.face_count() <= plain.mesh.face_count(), "{}", optimised.mesh.face_count());
+    assert!(
+        optimised.mesh.face_count() <= plain.mesh.face_count(),
+        "{}",
+        optimised.mesh.face_count()
+    );
     assert!(optimised.error.upper <= 2e-3);
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
     let samples = SamplingOptions::default().samples(50_000);
-    let sampled = hausdorff(optimised.mesh.as_triangles(), reference.as_triangles(), &samples).unwrap();
+    let sampled = hausdorff(
+        optimised.mesh.as_triangles(),
+        reference.as_triangles(),
+        &samples,
+    )
+    .unwrap();
     // The reference's own chords leave the rims by less than this.
-    assert!(sampled.symmetric() <= optimised.error.upper + 2e-5, "{}", sampled.symmetric());
+    assert!(
+        sampled.symmetric() <= optimised.error.upper + 2e-5,
+        "{}",
+        sampled.symmetric()
+    );
 }
 
 /// Planes in files of single precision are planes, and nothing curved is taken for one.
 #[test]
 fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     let mesh = peg(16);
-    let rounded = mesh.positions().iter().map(|p| p.map(|x| f64::from(x as f32))).collect();
+    let rounded = mesh
+        .positions()
+        .iter()
+        .map(|p| p.map(|x| f64::from(x as f32)))
+        .collect();
     let rounded = mesh.clone().with_positions(rounded).unwrap();
     let options = within(1e-3);
     let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &options).unwrap());
     assert!(single.mesh.face_count() <= exactly.mesh.face_count() + 20);
     assert!(single.error.upper <= 1e-3);
     // Half a unit in the last place of single precision, in each coordinate of what spans a plane and is off it.
-    assert!(exactly.off_planes < 1e-12 && (1e-9..1e-6).contains(&single.off_planes), "{}", single.off_planes);
+    assert!(
+        exactly.off_planes < 1e-12 && (1e-9..1e-6).contains(&single.off_planes),
+        "{}",
+        single.off_planes
+    );
     // One vertex of an end off its plane by less than a thousandth: it is in the ring of all that meet at the fan's tip.
     let axis = [0, 1, 2].map(|i| (mesh.positions()[16][i] - mesh.positions()[0][i]) / 3.0);
     let mut positions = mesh.positions().to_vec();
@@ -241,7 +308,10 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     // Triangles in one plane are put together, but the end is none.
     let other = axis.map(|x| -x);
     let flat = facing(&merged, other).0;
-    assert!(10 * flat < count && count <= same && (area - as_large).abs() < 1e-6, "{flat} {count} {same}");
+    assert!(
+        10 * flat < count && count <= same && (area - as_large).abs() < 1e-6,
+        "{flat} {count} {same}"
+    );
     assert!(flat < facing(&kept, other).0);
 }
 
@@ -258,7 +328,8 @@ fn budgets_of_flat_faces_are_not_guessed_from_rounding() {
         for (u, v) in [(0.0, 0.0), (0.2, 0.0), (0.2, 0.2), (0.0, 0.2)] {
             positions.push([at[0] + u * c, at[1] + u * s, at[2] + v]);
         }
-        triangles.extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|corner| 4 * card + corner)));
+        triangles
+            .extend([[0, 1, 2], [0, 2, 3]].map(|corners| corners.map(|corner| 4 * card + corner)));
     }
     let mesh = Mesh::from_triangles(positions, triangles).unwrap();
     let mut rounds = 0;
@@ -273,9 +344,21 @@ fn budgets_of_flat_faces_are_not_guessed_from_rounding() {
         let options = ExactOptions::default().triangles(number);
         let result = limitmesh::refine::exact_observed(&mesh, &Loop, &options, &mut count).unwrap();
         let count = result.mesh.face_count();
-        assert!(count <= number && count >= 3 * number / 4, "{number}: {count}");
-        let own = exact(&mesh, &Loop, &ExactOptions::default().tolerance(result.error.upper)).unwrap();
-        assert!(own.mesh.face_count() <= count, "{number}: {count}, {}", own.mesh.face_count());
+        assert!(
+            count <= number && count >= 3 * number / 4,
+            "{number}: {count}"
+        );
+        let own = exact(
+            &mesh,
+            &Loop,
+            &ExactOptions::default().tolerance(result.error.upper),
+        )
+        .unwrap();
+        assert!(
+            own.mesh.face_count() <= count,
+            "{number}: {count}, {}",
+            own.mesh.face_count()
+        );
         assert!(result.error.upper < before, "{number}");
         before = result.error.upper;
     }

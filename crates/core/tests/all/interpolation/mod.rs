@@ -19,21 +19,35 @@ use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, VertexId};
 use nalgebra::{DMatrix, DVector};
 
-pub(crate) fn interpolate(mesh: &Mesh, scheme: &dyn Scheme) -> Result<Interpolated, InterpolateError> {
+pub(crate) fn interpolate(
+    mesh: &Mesh,
+    scheme: &dyn Scheme,
+) -> Result<Interpolated, InterpolateError> {
     limitmesh::interpolate::interpolate(mesh, scheme, &InterpolateOptions::default())
 }
 
 pub(crate) fn model(name: &str) -> Mesh {
-    Mesh::from_soup(&limitmesh_models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+    Mesh::from_soup(
+        &limitmesh_models::find(name).unwrap().soup(),
+        &Default::default(),
+    )
+    .unwrap()
+    .0
 }
 
 /// The greatest distance of the library's limits from the vertices of a mesh, but for those that are passed by.
 pub(crate) fn from_limits(found: &Interpolated, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
     let may_be = beside_long_edges(vertices);
-    assert!(found.passed_by.iter().all(|v| may_be.contains(&v.0)), "{:?} of {may_be:?}", found.passed_by);
+    assert!(
+        found.passed_by.iter().all(|v| may_be.contains(&v.0)),
+        "{:?} of {may_be:?}",
+        found.passed_by
+    );
     let limits = LimitTable::new(scheme).positions(&found.mesh).unwrap();
     let through = |v: &usize| !found.passed_by.contains(&VertexId(*v as u32));
-    let distances = (0..limits.len()).filter(through).map(|v| distance(limits[v], vertices.positions()[v]));
+    let distances = (0..limits.len())
+        .filter(through)
+        .map(|v| distance(limits[v], vertices.positions()[v]));
     distances.fold(0.0, f64::max)
 }
 
@@ -45,21 +59,34 @@ fn beside_long_edges(mesh: &Mesh) -> Vec<u32> {
             .iter()
             .for_each(|&[p, q]| *faces.entry([p.min(q), p.max(q)]).or_insert(0) += 1);
     }
-    let boundary = faces.iter().filter(|&(_, &count)| count == 1).map(|(&ends, _)| ends);
-    let lines: Vec<[u32; 2]> = boundary.chain(mesh.tags().creases.iter().map(|tag| tag.vertices)).collect();
-    let length = |[a, b]: [u32; 2]| distance(mesh.positions()[a as usize], mesh.positions()[b as usize]);
+    let boundary = faces
+        .iter()
+        .filter(|&(_, &count)| count == 1)
+        .map(|(&ends, _)| ends);
+    let lines: Vec<[u32; 2]> = boundary
+        .chain(mesh.tags().creases.iter().map(|tag| tag.vertices))
+        .collect();
+    let length =
+        |[a, b]: [u32; 2]| distance(mesh.positions()[a as usize], mesh.positions()[b as usize]);
     let shortest = |v: u32| {
-        let own = lines.iter().filter(|ends| ends.contains(&v)).map(|&ends| length(ends));
+        let own = lines
+            .iter()
+            .filter(|ends| ends.contains(&v))
+            .map(|&ends| length(ends));
         own.fold(f64::INFINITY, f64::min)
     };
-    let is_long =
-        |ends: &&[u32; 2]| length(**ends) > 3.0 * shortest(ends[0]).min(shortest(ends[1])) * (1.0 - 1e-12);
+    let is_long = |ends: &&[u32; 2]| {
+        length(**ends) > 3.0 * shortest(ends[0]).min(shortest(ends[1])) * (1.0 - 1e-12)
+    };
     lines.iter().filter(is_long).flatten().copied().collect()
 }
 
 pub(crate) fn farthest(a: &[Point], b: &[Point]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter().zip(b).map(|(&a, &b)| distance(a, b)).fold(0.0, f64::max)
+    a.iter()
+        .zip(b)
+        .map(|(&a, &b)| distance(a, b))
+        .fold(0.0, f64::max)
 }
 
 /// The limit weights of a mesh without tags, from closed forms alone: `β` is the weight of an interior vertex's neighbours.
@@ -77,7 +104,11 @@ pub(crate) fn dense(mesh: &Mesh, beta: impl Fn(f64) -> f64) -> DMatrix<f64> {
     }
     let mut matrix = DMatrix::zeros(n, n);
     for (v, around) in neighbours.iter().enumerate() {
-        let boundary: Vec<usize> = around.iter().filter(|&&(_, count)| count == 1).map(|&(u, _)| u).collect();
+        let boundary: Vec<usize> = around
+            .iter()
+            .filter(|&&(_, count)| count == 1)
+            .map(|&(u, _)| u)
+            .collect();
         if let [a, b] = boundary[..] {
             matrix[(v, v)] = 2.0 / 3.0;
             (matrix[(v, a)], matrix[(v, b)]) = (1.0 / 6.0, 1.0 / 6.0);
@@ -86,7 +117,9 @@ pub(crate) fn dense(mesh: &Mesh, beta: impl Fn(f64) -> f64) -> DMatrix<f64> {
         let k = around.len() as f64;
         let own = 3.0 / (8.0 * beta(k));
         matrix[(v, v)] = own / (own + k);
-        around.iter().for_each(|&(u, _)| matrix[(v, u)] = 1.0 / (own + k));
+        around
+            .iter()
+            .for_each(|&(u, _)| matrix[(v, u)] = 1.0 / (own + k));
     }
     matrix
 }
@@ -99,11 +132,16 @@ pub(crate) fn loop_beta(k: f64) -> f64 {
 pub(crate) fn dense_solution(matrix: &DMatrix<f64>, mesh: &Mesh) -> Vec<Point> {
     let lu = matrix.clone().lu();
     let axis = |axis: usize| {
-        let right = DVector::from_iterator(mesh.vertex_count(), mesh.positions().iter().map(|p| p[axis]));
+        let right = DVector::from_iterator(
+            mesh.vertex_count(),
+            mesh.positions().iter().map(|p| p[axis]),
+        );
         lu.solve(&right).unwrap()
     };
     let [x, y, z] = [axis(0), axis(1), axis(2)];
-    (0..mesh.vertex_count()).map(|v| [x[v], y[v], z[v]]).collect()
+    (0..mesh.vertex_count())
+        .map(|v| [x[v], y[v], z[v]])
+        .collect()
 }
 
 /// Uniform refinement brings each old vertex nearer to its limit, without any limit stencil.
@@ -114,10 +152,19 @@ pub(crate) fn refinement_tends_to(
     levels: usize,
     near: f64,
 ) {
-    let refined = uniform(control, scheme, &UniformOptions::default().levels(levels)).unwrap().mesh;
-    let away = farthest(&refined.positions()[..vertices.vertex_count()], vertices.positions());
+    let refined = uniform(control, scheme, &UniformOptions::default().levels(levels))
+        .unwrap()
+        .mesh;
+    let away = farthest(
+        &refined.positions()[..vertices.vertex_count()],
+        vertices.positions(),
+    );
     let before = farthest(control.positions(), vertices.positions());
-    assert!(away < near * before, "{}: {away} of {before}", scheme.name());
+    assert!(
+        away < near * before,
+        "{}: {away} of {before}",
+        scheme.name()
+    );
 }
 
 /// Tags on some edges and vertices, many of them fading, some single ones that end in darts.
@@ -126,16 +173,27 @@ pub(crate) fn tagged(mesh: Mesh, seed: u64, lasting_only: bool) -> Mesh {
     let mut sharpness = |one_in| {
         let is_tagged = random.below(one_in) == 0;
         let fading = 1.6 + 1.5 * random.signed();
-        is_tagged.then_some(if lasting_only || random.below(2) == 0 { f64::INFINITY } else { fading })
+        is_tagged.then_some(if lasting_only || random.below(2) == 0 {
+            f64::INFINITY
+        } else {
+            fading
+        })
     };
     let mut tags = Tags::default();
     let topology = mesh.topology();
-    for h in topology.half_edges().filter(|&h| topology.twin(h).is_some_and(|twin| h < twin)) {
+    for h in topology
+        .half_edges()
+        .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin))
+    {
         let vertices = topology.ends(h).map(|v| v.0);
-        tags.creases.extend(sharpness(8).map(|sharpness| CreaseTag { vertices, sharpness }));
+        tags.creases.extend(sharpness(8).map(|sharpness| CreaseTag {
+            vertices,
+            sharpness,
+        }));
     }
     for vertex in 0..mesh.vertex_count() as u32 {
-        tags.corners.extend(sharpness(15).map(|sharpness| CornerTag { vertex, sharpness }));
+        tags.corners
+            .extend(sharpness(15).map(|sharpness| CornerTag { vertex, sharpness }));
     }
     mesh.with_tags(tags).unwrap()
 }

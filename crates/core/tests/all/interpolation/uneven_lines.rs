@@ -34,19 +34,34 @@ fn extruded_around(profile: &[[f64; 2]], middle: [f64; 2], height: f64) -> Mesh 
 /// How far what comes of leading the surface through the vertices is from the mesh, at least and at most, and vertices passed by.
 fn apart(mesh: &Mesh) -> ([f64; 2], usize) {
     let found = interpolate(mesh, &Loop).unwrap();
-    assert!(found.residual < 1e-12 * mesh.diagonal(), "{}", found.residual);
-    let options = ExactOptions::default().tolerance(1e-4 * mesh.diagonal()).unfold(true);
+    assert!(
+        found.residual < 1e-12 * mesh.diagonal(),
+        "{}",
+        found.residual
+    );
+    let options = ExactOptions::default()
+        .tolerance(1e-4 * mesh.diagonal())
+        .unfold(true);
     let smooth = exact(&found.mesh, &Loop, &options).unwrap();
     assert_eq!(smooth.inverted_triangles(), 0);
     let options = CertifiedOptions::default();
-    let apart = certified_hausdorff(smooth.mesh.as_triangles(), mesh.as_triangles(), &options).unwrap();
+    let apart =
+        certified_hausdorff(smooth.mesh.as_triangles(), mesh.as_triangles(), &options).unwrap();
     ([apart.lower(), apart.upper()], found.passed_by.len())
 }
 
 #[test]
 fn a_vertex_near_the_end_of_a_straight_edge_does_no_harm() {
-    let (box_apart, passed_by) =
-        apart(&extruded(&[[0.0, 0.0], [5.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]], 5.0));
+    let (box_apart, passed_by) = apart(&extruded(
+        &[
+            [0.0, 0.0],
+            [5.0, 0.0],
+            [60.0, 0.0],
+            [60.0, 40.0],
+            [0.0, 40.0],
+        ],
+        5.0,
+    ));
     assert!(box_apart[1] < 1e-7, "{box_apart:?}");
     assert_eq!(passed_by, 2);
 }
@@ -56,35 +71,52 @@ fn a_vertex_near_the_end_of_a_straight_edge_does_no_harm() {
 fn rounded_corners_between_long_edges_keep_their_shape() {
     for segments in [2, 6, 24] {
         let mut profile = Vec::new();
-        for (corner, [x, y]) in
-            [[30.0, 15.0], [-30.0, 15.0], [-30.0, -15.0], [30.0, -15.0]].iter().enumerate()
+        for (corner, [x, y]) in [[30.0, 15.0], [-30.0, 15.0], [-30.0, -15.0], [30.0, -15.0]]
+            .iter()
+            .enumerate()
         {
             for i in 0..=segments {
-                let (s, c) = (TAU * (corner as f64 + f64::from(i) / f64::from(segments)) / 4.0).sin_cos();
+                let (s, c) =
+                    (TAU * (corner as f64 + f64::from(i) / f64::from(segments)) / 4.0).sin_cos();
                 profile.push([x + 5.0 * c, y + 5.0 * s]);
             }
         }
         let mesh = extruded(&profile, 8.0);
         let (found, passed_by) = apart(&mesh);
         let sagitta = 5.0 * (1.0 - (TAU / f64::from(8 * segments)).cos());
-        assert!(found[1] < 3.0 * sagitta && passed_by == 16, "{segments}: {found:?} {sagitta} {passed_by}");
+        assert!(
+            found[1] < 3.0 * sagitta && passed_by == 16,
+            "{segments}: {found:?} {sagitta} {passed_by}"
+        );
     }
 }
 
 /// Evenly spaced lines are led through all their vertices.
 #[test]
 fn edges_up_to_three_times_as_long_count_as_they_are() {
-    let profile = [[0.0, 0.0], [10.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]];
+    let profile = [
+        [0.0, 0.0],
+        [10.0, 0.0],
+        [40.0, 0.0],
+        [40.0, 30.0],
+        [0.0, 30.0],
+    ];
     assert_eq!(apart(&extruded(&profile, 20.0)).1, 0);
-    let circle: Vec<[f64; 2]> =
-        (0..24).map(|i| (TAU * f64::from(i) / 24.0).sin_cos()).map(|(s, c)| [c, s]).collect();
+    let circle: Vec<[f64; 2]> = (0..24)
+        .map(|i| (TAU * f64::from(i) / 24.0).sin_cos())
+        .map(|(s, c)| [c, s])
+        .collect();
     assert_eq!(apart(&extruded(&circle, 1.0)).1, 0);
 }
 
 /// Led through a vertex near the corner of a flat face, its control point came to lie beyond that corner.
 #[test]
 fn a_vertex_near_the_corner_of_a_flat_face_stays() {
-    let mesh = extruded_around(&[[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]], [57.0, 37.0], 30.0);
+    let mesh = extruded_around(
+        &[[0.0, 0.0], [60.0, 0.0], [60.0, 40.0], [0.0, 40.0]],
+        [57.0, 37.0],
+        30.0,
+    );
     let (box_apart, passed_by) = apart(&mesh);
     assert!(box_apart[1] < 1e-7 && passed_by == 0, "{box_apart:?}");
     // Where the sides are smooth it is led through.

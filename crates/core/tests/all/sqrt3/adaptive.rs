@@ -7,13 +7,23 @@ use crate::sqrt3::models::{icosahedron, junction, sharp, smooth, tetrahedron};
 use crate::support::{Point, distance, octahedron, unnumbered};
 
 fn cone(mesh: &Mesh, degrees: f64) -> Sqrt3 {
-    adaptive(mesh, &Sqrt3Options::default().angle(Some(degrees.to_radians())).origins(true)).unwrap()
+    adaptive(
+        mesh,
+        &Sqrt3Options::default()
+            .angle(Some(degrees.to_radians()))
+            .origins(true),
+    )
+    .unwrap()
 }
 
 /// Icosahedron, octahedron, tetrahedron, and the icosahedron three times as high.
 fn solids() -> [(&'static str, Mesh); 4] {
     let high = icosahedron();
-    let positions = high.positions().iter().map(|&[x, y, z]| [x, y, 3.0 * z]).collect();
+    let positions = high
+        .positions()
+        .iter()
+        .map(|&[x, y, z]| [x, y, 3.0 * z])
+        .collect();
     [
         ("icosahedron", icosahedron()),
         ("octahedron", octahedron()),
@@ -25,7 +35,12 @@ fn solids() -> [(&'static str, Mesh); 4] {
 /// As a prototype in another language counted them, which had no code in common: the least set is unique.
 #[test]
 fn cones_give_the_known_numbers_of_triangles() {
-    let known = [[180, 540, 1620], [216, 648, 1944], [204, 972, 3036], [268, 1036, 4044]];
+    let known = [
+        [180, 540, 1620],
+        [216, 648, 1944],
+        [204, 972, 3036],
+        [268, 1036, 4044],
+    ];
     for ((name, mesh), expected) in solids().iter().zip(known) {
         let found = [20.0, 10.0, 5.0].map(|degrees| cone(mesh, degrees).mesh.face_count());
         assert_eq!(found, expected, "{name}");
@@ -45,9 +60,15 @@ fn all() -> Vec<(&'static str, Mesh)> {
 fn everything_divided_is_uniform() {
     for (name, mesh) in all() {
         for level in 0..=4 {
-            let options = Sqrt3Options::default().angle(Some(1e-12)).max_levels(level).origins(true);
+            let options = Sqrt3Options::default()
+                .angle(Some(1e-12))
+                .max_levels(level)
+                .origins(true);
             let found = adaptive(&mesh, &options).unwrap();
-            let options = UniformOptions::default().levels(level).limit(true).origins(true);
+            let options = UniformOptions::default()
+                .levels(level)
+                .limit(true)
+                .origins(true);
             let expected = uniform(&mesh, &options).unwrap();
             let [found_faces, all] = [&found.mesh, &expected.mesh].map(|mesh| unnumbered(mesh, 9));
             if ["single", "one edge"].contains(&name) && level > 0 {
@@ -57,7 +78,10 @@ fn everything_divided_is_uniform() {
                     found_faces.as_flattened().iter().all(|at| all.contains(at)),
                     "{name}, level {level}"
                 );
-                assert!(found_faces.len() <= expected.mesh.face_count(), "{name}, level {level}");
+                assert!(
+                    found_faces.len() <= expected.mesh.face_count(),
+                    "{name}, level {level}"
+                );
                 continue;
             }
             assert_eq!(found.stop, ExactStop::LevelCap, "{name}, level {level}");
@@ -78,12 +102,24 @@ fn results_are_made_of_uniform_levels() {
             "{name}"
         );
         let closed = mesh.topology().boundary_edge_count() == 0;
-        assert_eq!(found.mesh.topology().boundary_edge_count() == 0, closed, "{name}");
+        assert_eq!(
+            found.mesh.topology().boundary_edge_count() == 0,
+            closed,
+            "{name}"
+        );
         if closed {
-            assert_eq!((found.mesh.face_count() - mesh.face_count()) % 2, 0, "{name}");
+            assert_eq!(
+                (found.mesh.face_count() - mesh.face_count()) % 2,
+                0,
+                "{name}"
+            );
         }
         let level = found.levels.min(6);
-        let options = UniformOptions::default().levels(level).limit(true).normals(true).origins(true);
+        let options = UniformOptions::default()
+            .levels(level)
+            .limit(true)
+            .normals(true)
+            .origins(true);
         let tower = uniform(&mesh, &options).unwrap();
         let by_place = |v: usize| {
             let origin = tower.origins[v];
@@ -110,16 +146,21 @@ fn results_are_made_of_uniform_levels() {
             }
             let [a, b] = [found.normals.by_vertex()[v], normals[other]];
             let dot: f64 = (0..3).map(|i| a[i] * b[i]).sum();
-            let plain =
-                found.mesh.tags().creases.is_empty() && !found.mesh.tags().corners.iter().any(|_| true);
-            assert!(!plain || dot > 1.0 - 1e-9 || v < mesh.vertex_count(), "{name}, {v}: {dot}");
+            let plain = found.mesh.tags().creases.is_empty()
+                && !found.mesh.tags().corners.iter().any(|_| true);
+            assert!(
+                !plain || dot > 1.0 - 1e-9 || v < mesh.vertex_count(),
+                "{name}, {v}: {dot}"
+            );
         }
         assert!(compared > 0, "{name}");
         for (face, &parent) in found.parents.iter().enumerate() {
             let corners = found.mesh.triangles()[face];
-            let inside = corners
-                .iter()
-                .filter(|&&v| found.origins[v as usize].in_face(mesh.triangles(), parent).is_some());
+            let inside = corners.iter().filter(|&&v| {
+                found.origins[v as usize]
+                    .in_face(mesh.triangles(), parent)
+                    .is_some()
+            });
             assert!(inside.count() >= 2, "{name}, face {face}");
         }
     }
@@ -148,7 +189,10 @@ fn no_triangle_leaves_its_cone() {
 /// its faces in another order gives the same.
 #[test]
 fn results_do_not_depend_on_the_order() {
-    for (name, mesh) in [("lumpy", crate::support::lumpy(12, 7)), ("sheet", crate::support::sheet(3, 3, 3))] {
+    for (name, mesh) in [
+        ("lumpy", crate::support::lumpy(12, 7)),
+        ("sheet", crate::support::sheet(3, 3, 3)),
+    ] {
         let expected = unnumbered(&cone(&mesh, 12.0).mesh, 9);
         let both = Sqrt3Options::default().angle(Some(12f64.to_radians()));
         let both = adaptive(&mesh, &both.tolerance(Some(mesh.diagonal()))).unwrap();
@@ -156,9 +200,15 @@ fn results_do_not_depend_on_the_order() {
         for turn in [1, 5, 7] {
             let mut triangles = mesh.triangles().to_vec();
             triangles.rotate_left(turn);
-            triangles.iter_mut().for_each(|corners| corners.rotate_left(turn % 3));
+            triangles
+                .iter_mut()
+                .for_each(|corners| corners.rotate_left(turn % 3));
             let turned = Mesh::from_triangles(mesh.positions().to_vec(), triangles).unwrap();
-            assert_eq!(unnumbered(&cone(&turned, 12.0).mesh, 9), expected, "{name}, {turn}");
+            assert_eq!(
+                unnumbered(&cone(&turned, 12.0).mesh, 9),
+                expected,
+                "{name}, {turn}"
+            );
         }
     }
 }
@@ -170,13 +220,22 @@ fn tolerances_hold_about() {
         let tolerance = 0.003 * mesh.diagonal();
         let found = adaptive(&mesh, &Sqrt3Options::default().tolerance(Some(tolerance))).unwrap();
         let estimate = found.estimated_distance.unwrap();
-        assert!(estimate <= tolerance && estimate > 0.2 * tolerance, "{name}");
-        let fine = uniform(&mesh, &UniformOptions::default().levels(7).limit(true)).unwrap().mesh;
+        assert!(
+            estimate <= tolerance && estimate > 0.2 * tolerance,
+            "{name}"
+        );
+        let fine = uniform(&mesh, &UniformOptions::default().levels(7).limit(true))
+            .unwrap()
+            .mesh;
         let options = limitmesh::measure::SamplingOptions::default().samples(20_000);
         let measured =
-            limitmesh::measure::hausdorff(found.mesh.as_triangles(), fine.as_triangles(), &options).unwrap();
+            limitmesh::measure::hausdorff(found.mesh.as_triangles(), fine.as_triangles(), &options)
+                .unwrap();
         let measured = measured.symmetric();
-        assert!(measured < 1.3 * estimate && measured > 0.7 * estimate, "{name}: {measured} {estimate}");
+        assert!(
+            measured < 1.3 * estimate && measured > 0.7 * estimate,
+            "{name}: {measured} {estimate}"
+        );
     }
 }
 
@@ -187,10 +246,15 @@ fn caps_and_budgets_are_not_passed() {
         let found = adaptive(&mesh, &Sqrt3Options::default().triangles(Some(triangles))).unwrap();
         assert_eq!(found.stop, ExactStop::Triangles);
         let count = found.mesh.face_count();
-        assert!(count <= triangles && count + 12 > triangles.min(1000), "{count} of {triangles}");
+        assert!(
+            count <= triangles && count + 12 > triangles.min(1000),
+            "{count} of {triangles}"
+        );
         found.mesh.validate().unwrap();
     }
-    let options = Sqrt3Options::default().angle(Some(0.01)).max_triangles(Some(500));
+    let options = Sqrt3Options::default()
+        .angle(Some(0.01))
+        .max_triangles(Some(500));
     let found = adaptive(&mesh, &options).unwrap();
     assert_eq!(found.stop, ExactStop::TriangleCap);
     assert!(found.mesh.face_count() <= 500 && found.worst > 1.0);
@@ -199,7 +263,10 @@ fn caps_and_budgets_are_not_passed() {
             let options = Sqrt3Options::default().triangles(Some(most));
             let found = adaptive(&mesh, &options).unwrap();
             found.mesh.validate().unwrap();
-            assert!(found.mesh.face_count() <= most.max(mesh.face_count()), "{name}");
+            assert!(
+                found.mesh.face_count() <= most.max(mesh.face_count()),
+                "{name}"
+            );
         }
     }
 }
@@ -210,10 +277,22 @@ fn options_that_mean_nothing_are_errors() {
     assert!(refused(Sqrt3Options::default()));
     assert!(refused(Sqrt3Options::default().angle(Some(0.0))));
     assert!(refused(Sqrt3Options::default().angle(Some(f64::NAN))));
-    assert!(refused(Sqrt3Options::default().tolerance(Some(f64::INFINITY))));
-    assert!(refused(Sqrt3Options::default().triangles(Some(9)).max_levels(49)));
-    let creases = vec![limitmesh::mesh::CreaseTag { vertices: [0, 2], sharpness: 1.0 }];
-    let fading = octahedron().with_tags(Tags { creases, corners: Vec::new() }).unwrap();
+    assert!(refused(
+        Sqrt3Options::default().tolerance(Some(f64::INFINITY))
+    ));
+    assert!(refused(
+        Sqrt3Options::default().triangles(Some(9)).max_levels(49)
+    ));
+    let creases = vec![limitmesh::mesh::CreaseTag {
+        vertices: [0, 2],
+        sharpness: 1.0,
+    }];
+    let fading = octahedron()
+        .with_tags(Tags {
+            creases,
+            corners: Vec::new(),
+        })
+        .unwrap();
     let error = adaptive(&fading, &Sqrt3Options::default().angle(Some(0.1))).unwrap_err();
     assert!(matches!(error, RefineError::FadingTag { .. }));
 }
@@ -226,7 +305,11 @@ fn observers_can_stop_it() {
     let mut calls = 0;
     let mut observer = |_: &limitmesh::progress::Progress| {
         calls += 1;
-        if calls > 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if calls > 3 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     };
     let result = limitmesh::sqrt3::adaptive_observed(&icosahedron(), &options, &mut observer);
     assert!(matches!(result, Err(RefineError::Cancelled(_))));

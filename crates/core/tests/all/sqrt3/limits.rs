@@ -14,7 +14,10 @@ pub(crate) fn lattice(radius: i32, height: impl Fn(f64, f64) -> f64) -> Mesh {
     for i in -radius..=radius {
         for j in -radius..=radius {
             if (i + j).abs() <= radius {
-                let (x, y) = (f64::from(i) + 0.5 * f64::from(j), 0.75f64.sqrt() * f64::from(j));
+                let (x, y) = (
+                    f64::from(i) + 0.5 * f64::from(j),
+                    0.75f64.sqrt() * f64::from(j),
+                );
                 number.insert((i, j), positions.len() as u32);
                 positions.push([x, y, height(x, y)]);
             }
@@ -22,8 +25,15 @@ pub(crate) fn lattice(radius: i32, height: impl Fn(f64, f64) -> f64) -> Mesh {
     }
     let mut triangles = Vec::new();
     for (i, j) in (-radius..radius).flat_map(|i| (-radius..radius).map(move |j| (i, j))) {
-        for corners in [[(i, j), (i + 1, j), (i, j + 1)], [(i + 1, j), (i + 1, j + 1), (i, j + 1)]] {
-            let found: Vec<u32> = corners.iter().filter_map(|place| number.get(place)).copied().collect();
+        for corners in [
+            [(i, j), (i + 1, j), (i, j + 1)],
+            [(i + 1, j), (i + 1, j + 1), (i, j + 1)],
+        ] {
+            let found: Vec<u32> = corners
+                .iter()
+                .filter_map(|place| number.get(place))
+                .copied()
+                .collect();
             if let [a, b, c] = found[..] {
                 triangles.push([a, b, c]);
             }
@@ -36,7 +46,11 @@ pub(crate) fn lattice(radius: i32, height: impl Fn(f64, f64) -> f64) -> Mesh {
 fn rim_fan(faces: usize) -> Mesh {
     let spoke = |j: usize| {
         let angle = std::f64::consts::PI * j as f64 / faces as f64;
-        [angle.cos(), angle.sin(), 0.3 * (2.0 * angle).sin() + 0.1 * (j % 3) as f64]
+        [
+            angle.cos(),
+            angle.sin(),
+            0.3 * (2.0 * angle).sin() + 0.1 * (j % 3) as f64,
+        ]
     };
     let mut positions = vec![[0.0, 0.0, 0.2]];
     positions.extend((0..=faces).map(spoke));
@@ -60,7 +74,11 @@ fn the_solids_have_their_known_limits() {
     for limit in limit_positions(&octahedron()).unwrap() {
         assert!((radius(&limit) - 3.0 / 7.0).abs() < 1e-15);
     }
-    for (limit, corner) in limit_positions(&tetrahedron()).unwrap().iter().zip(tetrahedron().positions()) {
+    for (limit, corner) in limit_positions(&tetrahedron())
+        .unwrap()
+        .iter()
+        .zip(tetrahedron().positions())
+    {
         assert!(distance(*limit, corner.map(|x| x / 6.0)) < 1e-15);
     }
 }
@@ -70,10 +88,17 @@ fn the_solids_have_their_known_limits() {
 fn quadratics_are_reproduced_on_the_lattice() {
     let bowl = lattice(6, |x, y| x * x + y * y - 0.5);
     let saddle = lattice(6, |x, y| x * y);
-    let (limits, normals) = (limit_positions(&bowl).unwrap(), limit_normals(&bowl).unwrap());
+    let (limits, normals) = (
+        limit_positions(&bowl).unwrap(),
+        limit_normals(&bowl).unwrap(),
+    );
     let flat = limit_positions(&saddle).unwrap();
     let mut compared = 0;
-    for v in bowl.topology().vertices().filter(|&v| !bowl.topology().is_boundary(v)) {
+    for v in bowl
+        .topology()
+        .vertices()
+        .filter(|&v| !bowl.topology().is_boundary(v))
+    {
         let [x, y, z] = limits[v.index()];
         assert!((z - (x * x + y * y)).abs() < 1e-12);
         assert!(angle_between(normals.by_vertex()[v.index()], [-2.0 * x, -2.0 * y, 1.0]) < 1e-12);
@@ -84,8 +109,15 @@ fn quadratics_are_reproduced_on_the_lattice() {
     assert_eq!(compared, 91);
     // And at all levels, as far from the boundary as the step's masks reach.
     for level in 1..=4 {
-        let refined = uniform(&bowl, &UniformOptions::default().levels(level).limit(true)).unwrap().mesh;
-        for [x, y, z] in refined.positions().iter().copied().filter(|p| p[0].hypot(p[1]) < 2.5) {
+        let refined = uniform(&bowl, &UniformOptions::default().levels(level).limit(true))
+            .unwrap()
+            .mesh;
+        for [x, y, z] in refined
+            .positions()
+            .iter()
+            .copied()
+            .filter(|p| p[0].hypot(p[1]) < 2.5)
+        {
             assert!((z - (x * x + y * y)).abs() < 1e-12, "level {level}");
         }
     }
@@ -97,7 +129,9 @@ fn limits_do_not_change_with_the_level() {
     for (name, mesh) in smooth().into_iter().chain(sharp()) {
         let expected = limit_positions(&mesh).unwrap();
         for level in 1..=5 {
-            let refined = uniform(&mesh, &UniformOptions::default().levels(level).limit(true)).unwrap().mesh;
+            let refined = uniform(&mesh, &UniformOptions::default().levels(level).limit(true))
+                .unwrap()
+                .mesh;
             for (v, &limit) in expected.iter().enumerate() {
                 let off = distance(limit, refined.positions()[v]);
                 assert!(off < 1e-13, "{name}, level {level}, vertex {v}: {off}");
@@ -106,8 +140,14 @@ fn limits_do_not_change_with_the_level() {
         // What the steps themselves come to.
         let deep = levels(&mesh, 6).mesh;
         for (v, &limit) in expected.iter().enumerate() {
-            let (near, far) = (distance(limit, deep.positions()[v]), distance(limit, mesh.positions()[v]));
-            assert!(near <= 0.06 * far + 1e-13, "{name}, vertex {v}: {near} of {far}");
+            let (near, far) = (
+                distance(limit, deep.positions()[v]),
+                distance(limit, mesh.positions()[v]),
+            );
+            assert!(
+                near <= 0.06 * far + 1e-13,
+                "{name}, vertex {v}: {near} of {far}"
+            );
         }
     }
 }
@@ -118,7 +158,11 @@ fn normals_do_not_change_with_the_level() {
         let expected = limit_normals(&mesh).unwrap();
         let all: Vec<Mesh> = (0..=4).map(|level| levels(&mesh, level).mesh).collect();
         for level in 1..=4 {
-            let refined = uniform(&mesh, &UniformOptions::default().levels(level).normals(true)).unwrap();
+            let refined = uniform(
+                &mesh,
+                &UniformOptions::default().levels(level).normals(true),
+            )
+            .unwrap();
             let normals = refined.normals.unwrap();
             for h in mesh.topology().half_edges() {
                 let vertex = mesh.topology().origin(h);
@@ -131,7 +175,9 @@ fn normals_do_not_change_with_the_level() {
                 for pair in all[..=level].windows(2) {
                     let smooth = [Some(own), pair[0].topology().twin(own.previous())];
                     let leaves = |h: HalfEdgeId| pair[1].triangles()[h.index()][0] == vertex.0;
-                    own = HalfEdgeId(3 * smooth.into_iter().flatten().find(|&h| leaves(h)).unwrap().0);
+                    own = HalfEdgeId(
+                        3 * smooth.into_iter().flatten().find(|&h| leaves(h)).unwrap().0,
+                    );
                 }
                 let found = normals.at(refined.mesh.topology(), own);
                 let off = angle_between(found, expected.at(mesh.topology(), h));
@@ -152,7 +198,9 @@ fn normals_on_rims_are_those_of_the_closed_form() {
         let x = (3.0 * theta.sin() - 4.0 * sigma) / (3.0 * (1.0 + 2.0 * theta.cos()));
         let along: Point = std::array::from_fn(|i| at(1)[i] - at(k)[i]);
         let across: Point = std::array::from_fn(|i| {
-            let inner: f64 = (1..=k - 2).map(|j| (j as f64 * theta).sin() * at(j + 1)[i]).sum();
+            let inner: f64 = (1..=k - 2)
+                .map(|j| (j as f64 * theta).sin() * at(j + 1)[i])
+                .sum();
             inner + x * (at(1)[i] + at(k)[i]) + (-2.0 * x - sigma) * at(0)[i]
         });
         let expected: Point = std::array::from_fn(|i| {
@@ -162,7 +210,10 @@ fn normals_on_rims_are_those_of_the_closed_form() {
         assert!(angle_between(found, expected) < 1e-9, "k = {k}");
         let position: Point = std::array::from_fn(|i| (at(1)[i] + 4.0 * at(0)[i] + at(k)[i]) / 6.0);
         assert!(distance(limit_positions(&mesh).unwrap()[0], position) < 1e-15);
-        assert_eq!(tangent_plane(&mesh, VertexId(0)).unwrap(), [TangentPlane::Surface]);
+        assert_eq!(
+            tangent_plane(&mesh, VertexId(0)).unwrap(),
+            [TangentPlane::Surface]
+        );
     }
     // From seven edges on, patterns inside shrink no faster than the boundary.
     for k in 7..=10 {
@@ -182,20 +233,26 @@ fn corners_have_the_plane_of_their_edges_or_none() {
         let [a, b, c] = mesh.as_triangles().corners(h.face().index());
         let edge = |p: Point| -> Point { std::array::from_fn(|i| p[i] - a[i]) };
         let (p, q) = (edge(b), edge(c));
-        let face: Point =
-            std::array::from_fn(|i| p[(i + 1) % 3] * q[(i + 2) % 3] - p[(i + 2) % 3] * q[(i + 1) % 3]);
+        let face: Point = std::array::from_fn(|i| {
+            p[(i + 1) % 3] * q[(i + 2) % 3] - p[(i + 2) % 3] * q[(i + 1) % 3]
+        });
         assert!(angle_between(normals.at(mesh.topology(), h), face) < 1e-12);
     }
     let tip = creased(octahedron(), &[], &[4]);
-    assert_eq!(tangent_plane(&tip, VertexId(4)).unwrap(), [TangentPlane::None]);
+    assert_eq!(
+        tangent_plane(&tip, VertexId(4)).unwrap(),
+        [TangentPlane::None]
+    );
 }
 
 /// Face normals far down tend to the limit normals.
 #[test]
 fn face_normals_tend_to_the_limit_normals() {
-    for (name, mesh) in
-        [("icosahedron", icosahedron()), ("octahedron", octahedron()), ("torus", crate::support::torus(5, 4))]
-    {
+    for (name, mesh) in [
+        ("icosahedron", icosahedron()),
+        ("octahedron", octahedron()),
+        ("torus", crate::support::torus(5, 4)),
+    ] {
         let expected = limit_normals(&mesh).unwrap();
         let deep = levels(&mesh, 8).mesh;
         for v in mesh.topology().vertices() {

@@ -6,7 +6,12 @@ use limitmesh::mesh::{BuildOptions, CornerTag, CreaseTag, PolygonSoup, Tags};
 use crate::support::{Point, lumpy, octahedron, sheet, torus};
 
 pub(crate) fn tetrahedron() -> Mesh {
-    let corners = vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+    let corners = vec![
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
     Mesh::from_triangles(corners, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]).unwrap()
 }
 
@@ -15,11 +20,18 @@ pub(crate) fn icosahedron() -> Mesh {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let length = (1.0 + golden * golden).sqrt();
     let mut positions: Vec<Point> = Vec::new();
-    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+    for (a, b) in [
+        (1.0, golden),
+        (-1.0, golden),
+        (1.0, -golden),
+        (-1.0, -golden),
+    ] {
         positions.extend([[0.0, a, b], [a, b, 0.0], [b, 0.0, a]].map(|p| p.map(|x| x / length)));
     }
     let near = |i: usize, j: usize| {
-        let d: f64 = (0..3).map(|k| (positions[i][k] - positions[j][k]).powi(2)).sum();
+        let d: f64 = (0..3)
+            .map(|k| (positions[i][k] - positions[j][k]).powi(2))
+            .sum();
         i != j && d < 1.2
     };
     let mut triangles = Vec::new();
@@ -48,8 +60,17 @@ pub(crate) fn single() -> Mesh {
 
 pub(crate) fn creased(mesh: Mesh, edges: &[[u32; 2]], corners: &[u32]) -> Mesh {
     let sharpness = f64::INFINITY;
-    let creases = edges.iter().map(|&vertices| CreaseTag { vertices, sharpness }).collect();
-    let corners = corners.iter().map(|&vertex| CornerTag { vertex, sharpness }).collect();
+    let creases = edges
+        .iter()
+        .map(|&vertices| CreaseTag {
+            vertices,
+            sharpness,
+        })
+        .collect();
+    let corners = corners
+        .iter()
+        .map(|&vertex| CornerTag { vertex, sharpness })
+        .collect();
     mesh.with_tags(Tags { creases, corners }).unwrap()
 }
 
@@ -75,10 +96,19 @@ pub(crate) fn sharp() -> Vec<(&'static str, Mesh)> {
         ("equator", creased(octahedron(), &equator, &[])),
         ("dart", creased(octahedron(), &[[0, 2], [2, 1]], &[])),
         ("one edge", creased(octahedron(), &[[0, 2]], &[])),
-        ("crossing", creased(octahedron(), &[[0, 2], [2, 1], [4, 2], [2, 5]], &[])),
+        (
+            "crossing",
+            creased(octahedron(), &[[0, 2], [2, 1], [4, 2], [2, 5]], &[]),
+        ),
         ("tip", creased(octahedron(), &[], &[4])),
-        ("corners", creased(sheet(), &[[11, 12], [12, 13], [13, 14]], &[0, 12, 20])),
-        ("boundary", creased(sheet(), &[[10, 11], [11, 12], [12, 17]], &[2])),
+        (
+            "corners",
+            creased(sheet(), &[[11, 12], [12, 13], [13, 14]], &[0, 12, 20]),
+        ),
+        (
+            "boundary",
+            creased(sheet(), &[[10, 11], [11, 12], [12, 17]], &[2]),
+        ),
     ]
 }
 
@@ -107,7 +137,11 @@ pub(crate) fn junction() -> Mesh {
         vec![1, 8, 2],
     ];
     let faces = faces.iter().map(|face| &face[..]).collect();
-    let soup = PolygonSoup { positions, faces, ..PolygonSoup::default() };
+    let soup = PolygonSoup {
+        positions,
+        faces,
+        ..PolygonSoup::default()
+    };
     let (mesh, _) = Mesh::from_soup(&soup, &BuildOptions::default()).unwrap();
     assert!(!mesh.junctions().is_empty());
     mesh

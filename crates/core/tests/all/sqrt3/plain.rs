@@ -26,9 +26,18 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
         }
     }
     let is_boundary = |[a, b]: [u32; 2]| left.contains_key(&[a, b]) && !left.contains_key(&[b, a]);
-    let before =
-        |v: u32| left.keys().copied().find(|&edge| edge[1] == v && is_boundary(edge)).map(|[a, _]| a);
-    let after = |v: u32| left.keys().copied().find(|&edge| edge[0] == v && is_boundary(edge)).map(|[_, b]| b);
+    let before = |v: u32| {
+        left.keys()
+            .copied()
+            .find(|&edge| edge[1] == v && is_boundary(edge))
+            .map(|[a, _]| a)
+    };
+    let after = |v: u32| {
+        left.keys()
+            .copied()
+            .find(|&edge| edge[0] == v && is_boundary(edge))
+            .map(|[_, b]| b)
+    };
 
     let mut positions: Vec<Point> = Vec::new();
     for v in 0..old.len() as u32 {
@@ -40,7 +49,11 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
             }
             (Some(_), Some(_)) => here,
             _ => {
-                let ring: Vec<u32> = left.keys().filter(|edge| edge[0] == v).map(|edge| edge[1]).collect();
+                let ring: Vec<u32> = left
+                    .keys()
+                    .filter(|edge| edge[0] == v)
+                    .map(|edge| edge[1])
+                    .collect();
                 let n = ring.len() as f64;
                 let alpha = (4.0 - 2.0 * (2.0 * std::f64::consts::PI / n).cos()) / 9.0;
                 let mut terms = vec![(1.0 - alpha, here)];
@@ -52,14 +65,23 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
     // Faces become fans around their centre, or three triangles from the corner opposite the boundary.
     let mut parts: Vec<[u32; 3]> = Vec::new();
     for &[a, b, c] in &mesh.triangles {
-        let turned =
-            [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|&[a, b, _]| cuts && is_boundary([a, b]));
+        let turned = [[a, b, c], [b, c, a], [c, a, b]]
+            .into_iter()
+            .find(|&[a, b, _]| cuts && is_boundary([a, b]));
         let new = positions.len() as u32;
         if let Some([a, b, c]) = turned {
             let [p, q] = [before(a).unwrap(), after(b).unwrap()].map(|v| old[v as usize]);
             let [pa, pb] = [a, b].map(|v| old[v as usize]);
-            positions.push(combine(&[(1.0 / 27.0, p), (16.0 / 27.0, pa), (10.0 / 27.0, pb)]));
-            positions.push(combine(&[(10.0 / 27.0, pa), (16.0 / 27.0, pb), (1.0 / 27.0, q)]));
+            positions.push(combine(&[
+                (1.0 / 27.0, p),
+                (16.0 / 27.0, pa),
+                (10.0 / 27.0, pb),
+            ]));
+            positions.push(combine(&[
+                (10.0 / 27.0, pa),
+                (16.0 / 27.0, pb),
+                (1.0 / 27.0, q),
+            ]));
             parts.extend([[a, new, c], [new, new + 1, c], [new + 1, b, c]]);
         } else {
             positions.push(combine(&[a, b, c].map(|v| (1.0 / 3.0, old[v as usize]))));
@@ -83,5 +105,8 @@ pub(crate) fn step(mesh: &Plain, cuts: bool) -> Plain {
             _ => triangles.push([a, b, c]),
         }
     }
-    Plain { positions, triangles }
+    Plain {
+        positions,
+        triangles,
+    }
 }

@@ -19,7 +19,12 @@ pub(super) enum LabelKind {
 }
 
 /// The names of the channels, in the order of [`LabelKind`].
-const LABELS: [&str; 4] = [channels::OBJECT, channels::GROUP, channels::MATERIAL, channels::SMOOTHING_GROUP];
+const LABELS: [&str; 4] = [
+    channels::OBJECT,
+    channels::GROUP,
+    channels::MATERIAL,
+    channels::SMOOTHING_GROUP,
+];
 
 /// What has been met so far.
 #[derive(Default)]
@@ -79,15 +84,24 @@ impl Attributes {
 
     /// The channel of normals, if there are any, and all that are named.
     fn normals(&mut self, corners: usize) -> Option<Channel> {
-        let (normals, mut indices) =
-            (std::mem::take(&mut self.normals), std::mem::take(&mut self.normal_corners));
+        let (normals, mut indices) = (
+            std::mem::take(&mut self.normals),
+            std::mem::take(&mut self.normal_corners),
+        );
         let missing = normals.len() as u32;
-        if indices.is_empty() || indices.iter().any(|&index| index >= missing && index != NONE) {
+        if indices.is_empty()
+            || indices
+                .iter()
+                .any(|&index| index >= missing && index != NONE)
+        {
             return None;
         }
         indices.resize(corners, NONE);
         // Corners without one have none that could differ.
-        indices.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = missing);
+        indices
+            .iter_mut()
+            .filter(|index| **index == NONE)
+            .for_each(|index| *index = missing);
         let values = normals.into_iter().chain([[0.0; 3]]).flatten().collect();
         let channel = Channel::new(channels::NORMALS, Semantic::Other, Domain::Corner, 3);
         Some(channel.with(values, indices))
@@ -101,7 +115,11 @@ impl Attributes {
 
     /// A name that holds from a face on.
     pub(super) fn label(&mut self, kind: LabelKind, name: String, face: usize) {
-        let Labels { numbers, names, changes } = &mut self.labels[kind as usize];
+        let Labels {
+            numbers,
+            names,
+            changes,
+        } = &mut self.labels[kind as usize];
         let number = *numbers.entry(name).or_insert_with_key(|name| {
             names.push(name.clone());
             names.len() as u32 - 1
@@ -117,7 +135,9 @@ impl Attributes {
     /// Whether a corner names a texture coordinate that there is not: which others are meant is anybody's guess then.
     pub(super) fn has_wrong_textures(&self) -> bool {
         let count = self.textures.len() as u32;
-        self.texture_corners.iter().any(|&index| index >= count && index != NONE)
+        self.texture_corners
+            .iter()
+            .any(|&index| index >= count && index != NONE)
     }
 
     /// How many of so many corners have no texture coordinates where others do.
@@ -125,7 +145,12 @@ impl Attributes {
         if self.texture_corners.is_empty() || self.has_wrong_textures() {
             return 0;
         }
-        corners - self.texture_corners.iter().filter(|&&index| index != NONE).count()
+        corners
+            - self
+                .texture_corners
+                .iter()
+                .filter(|&&index| index != NONE)
+                .count()
     }
 
     /// Whether one of so many faces has a material.
@@ -134,28 +159,54 @@ impl Attributes {
     }
 
     /// All as channels of a soup.
-    pub(super) fn channels(mut self, vertices: usize, faces: usize, corners: usize) -> Vec<Channel> {
+    pub(super) fn channels(
+        mut self,
+        vertices: usize,
+        faces: usize,
+        corners: usize,
+    ) -> Vec<Channel> {
         let is_wrong = self.has_wrong_textures();
         let mut found: Vec<Channel> = self.normals(corners).into_iter().collect();
-        let Self { textures, texture_arity, mut texture_corners, mut colours, labels, .. } = self;
+        let Self {
+            textures,
+            texture_arity,
+            mut texture_corners,
+            mut colours,
+            labels,
+            ..
+        } = self;
         if !texture_corners.is_empty() && !is_wrong {
             texture_corners.resize(corners, NONE);
             let arity = texture_arity.max(2);
-            let mut values: Vec<f64> = textures.iter().flat_map(|place| &place[..arity]).copied().collect();
+            let mut values: Vec<f64> = textures
+                .iter()
+                .flat_map(|place| &place[..arity])
+                .copied()
+                .collect();
             if texture_corners.contains(&NONE) {
                 // Corners without one have the texture's origin.
                 let missing = textures.len() as u32;
                 values.extend(std::iter::repeat_n(0.0, arity));
-                texture_corners.iter_mut().filter(|index| **index == NONE).for_each(|index| *index = missing);
+                texture_corners
+                    .iter_mut()
+                    .filter(|index| **index == NONE)
+                    .for_each(|index| *index = missing);
             }
-            let channel =
-                Channel::new(channels::TEXTURE, Semantic::TextureCoordinates, Domain::Corner, arity);
+            let channel = Channel::new(
+                channels::TEXTURE,
+                Semantic::TextureCoordinates,
+                Domain::Corner,
+                arity,
+            );
             found.push(channel.with(values, texture_corners));
         }
         if !colours.is_empty() {
             colours.resize(vertices, None);
             // Programs show vertices without a colour white.
-            let values = colours.iter().flat_map(|colour| colour.unwrap_or([1.0; 3])).collect();
+            let values = colours
+                .iter()
+                .flat_map(|colour| colour.unwrap_or([1.0; 3]))
+                .collect();
             let channel = Channel::new(channels::COLOUR, Semantic::Colour, Domain::Vertex, 3);
             found.push(channel.with(values, (0..vertices as u32).collect()));
         }
@@ -169,8 +220,9 @@ impl Attributes {
 impl Labels {
     /// Whether one of so many faces stands under a name.
     fn are_used(&self, faces: usize) -> bool {
-        let is_used =
-            |&(face, number): &(usize, u32)| face < faces && !self.names[number as usize].is_empty();
+        let is_used = |&(face, number): &(usize, u32)| {
+            face < faces && !self.names[number as usize].is_empty()
+        };
         self.changes.iter().any(is_used)
     }
 
@@ -179,7 +231,9 @@ impl Labels {
         if !self.are_used(faces) {
             return None;
         }
-        let Self { mut names, changes, .. } = self;
+        let Self {
+            mut names, changes, ..
+        } = self;
         let mut indices = Vec::with_capacity(faces);
         let first = changes.first().map_or(0, |&(face, _)| face);
         if first > 0 {
@@ -191,7 +245,8 @@ impl Labels {
             indices.resize(end.max(indices.len()), number);
         }
         let values = (0..names.len()).map(|number| number as f64).collect();
-        let mut channel = Channel::new(name, Semantic::Label, Domain::Face, 1).with(values, indices);
+        let mut channel =
+            Channel::new(name, Semantic::Label, Domain::Face, 1).with(values, indices);
         channel.labels = names;
         Some(channel)
     }

@@ -51,7 +51,12 @@ impl Colours {
     ///
     /// # Errors
     /// There are some that cannot be read as colours.
-    pub(super) fn channel(mut self, name: &str, domain: Domain, count: usize) -> Result<Option<Channel>, ()> {
+    pub(super) fn channel(
+        mut self,
+        name: &str,
+        domain: Domain,
+        count: usize,
+    ) -> Result<Option<Channel>, ()> {
         if self.values.is_empty() && !self.is_wrong {
             return Ok(None);
         }
@@ -67,8 +72,16 @@ impl Colours {
             (true, _) => GREY,
             _ => own[i] / most,
         };
-        let values = self.values.iter().flat_map(|own| (0..arity).map(|i| usual(own, i))).collect();
-        let storage = if is_bytes { Storage::Byte } else { Storage::Single };
+        let values = self
+            .values
+            .iter()
+            .flat_map(|own| (0..arity).map(|i| usual(own, i)))
+            .collect();
+        let storage = if is_bytes {
+            Storage::Byte
+        } else {
+            Storage::Single
+        };
         let channel = Channel::new(name, Semantic::Colour, domain, arity).stored(storage);
         Ok(Some(channel.with(values, (0..count as u32).collect())))
     }

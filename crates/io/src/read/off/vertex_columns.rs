@@ -35,8 +35,13 @@ pub(super) struct VertexColumns {
 impl VertexColumns {
     /// Those that the keyword announces.
     pub(super) fn new(keyword: &OffKeyword<'_>) -> Self {
-        let column =
-            |is_there: bool, arity| is_there.then(|| Column { arity, values: Vec::new(), is_wrong: false });
+        let column = |is_there: bool, arity| {
+            is_there.then(|| Column {
+                arity,
+                values: Vec::new(),
+                is_wrong: false,
+            })
+        };
         Self {
             normals: column(keyword.has_normals, NORMAL),
             colours: Colours::default(),
@@ -52,7 +57,10 @@ impl VertexColumns {
             words = rest;
         }
         if let Some(textures) = &mut self.textures {
-            let start = words.len().saturating_sub(TEXTURE_COORDINATE).min(COLOUR_NUMBERS);
+            let start = words
+                .len()
+                .saturating_sub(TEXTURE_COORDINATE)
+                .min(COLOUR_NUMBERS);
             let end = words.len().min(start + TEXTURE_COORDINATE);
             textures.read(&words[start..end], vertex);
             words = &words[..start];
@@ -64,12 +72,21 @@ impl VertexColumns {
     /// where edges were meant to be sharp.
     pub(super) fn channels(self, count: usize, left_out: &mut LeftOut) -> Vec<Channel> {
         let mut channels = Vec::new();
-        if self.normals.as_ref().is_some_and(|normals| !normals.values.is_empty()) {
+        if self
+            .normals
+            .as_ref()
+            .is_some_and(|normals| !normals.values.is_empty())
+        {
             left_out.note(Kind::Normals);
         }
         let kinds = [
             (self.normals, NORMALS, Semantic::Other, Kind::Normals),
-            (self.textures, TEXTURE, Semantic::TextureCoordinates, Kind::TextureCoordinates),
+            (
+                self.textures,
+                TEXTURE,
+                Semantic::TextureCoordinates,
+                Kind::TextureCoordinates,
+            ),
         ];
         for (column, name, semantic, kind) in kinds {
             match column.map_or(Ok(None), |column| column.channel(name, semantic, count)) {
@@ -91,7 +108,12 @@ impl Column {
             return;
         }
         let before = self.values.len();
-        self.values.extend(words.iter().filter_map(|word| number(word)).filter(|value| value.is_finite()));
+        self.values.extend(
+            words
+                .iter()
+                .filter_map(|word| number(word))
+                .filter(|value| value.is_finite()),
+        );
         // One that begins after the first vertex lacks those before.
         self.is_wrong |= before != vertex * self.arity || self.values.len() != before + self.arity;
     }

@@ -43,7 +43,9 @@ impl Columns {
         let (mut of_property, mut columns) = (Vec::new(), Vec::new());
         let is_scalar = |&at: &usize| matches!(element.properties[at].kind, Kind::Scalar(_));
         let has_normals = element.name == "vertex"
-            && NORMALS.iter().all(|name| element.find(&[name]).as_ref().is_some_and(is_scalar));
+            && NORMALS
+                .iter()
+                .all(|name| element.find(&[name]).as_ref().is_some_and(is_scalar));
         let is_passed_over =
             |name: &str| PASSED_OVER.contains(&name) && !(has_normals && NORMALS.contains(&name));
         for property in &element.properties {
@@ -58,7 +60,10 @@ impl Columns {
                 values: Vec::new(),
             }));
         }
-        Self { of_property, columns }
+        Self {
+            of_property,
+            columns,
+        }
     }
 
     /// Whether the numbers of a property are kept.
@@ -79,7 +84,8 @@ impl Columns {
     pub(super) fn channels(mut self, domain: Domain, count: usize) -> (Vec<Channel>, Vec<String>) {
         let (mut found, mut lost) = (Vec::new(), Vec::new());
         self.columns.retain(|column| {
-            let is_whole = column.values.len() == count && column.values.iter().all(|x| x.is_finite());
+            let is_whole =
+                column.values.len() == count && column.values.iter().all(|x| x.is_finite());
             if !is_whole && !NORMALS.contains(&column.name.as_str()) {
                 lost.push(column.name.clone());
             }
@@ -89,7 +95,9 @@ impl Columns {
         found.extend(normals(&mut columns, domain, count));
         for (names, semantic) in GROUPS {
             let place = |name: &&str| columns.iter().position(|column| column.name == *name);
-            let Some(places) = names.iter().map(place).collect::<Option<Vec<usize>>>() else { continue };
+            let Some(places) = names.iter().map(place).collect::<Option<Vec<usize>>>() else {
+                continue;
+            };
             let scale = |column: &Column| match (semantic, column.scalar) {
                 (Semantic::Colour, Scalar::U8) => 255.0,
                 (Semantic::Colour, Scalar::U16) => 65535.0,
@@ -97,18 +105,32 @@ impl Columns {
             };
             let mut values = Vec::with_capacity(names.len() * count);
             for element in 0..count {
-                values.extend(places.iter().map(|&at| columns[at].values[element] / scale(&columns[at])));
+                values.extend(
+                    places
+                        .iter()
+                        .map(|&at| columns[at].values[element] / scale(&columns[at])),
+                );
             }
             let storage = match columns[places[0]].scalar {
                 Scalar::U8 if semantic == Semantic::Colour => Storage::Byte,
                 scalar => storage(scalar),
             };
-            let channel = Channel::new(names.join(","), semantic, domain, names.len()).stored(storage);
+            let channel =
+                Channel::new(names.join(","), semantic, domain, names.len()).stored(storage);
             found.push(channel.with(values, (0..count as u32).collect()));
             columns.retain(|column| !names.contains(&column.name.as_str()));
         }
-        for Column { name, scalar, values } in columns {
-            let semantic = if scalar.is_integer() { Semantic::Label } else { Semantic::Other };
+        for Column {
+            name,
+            scalar,
+            values,
+        } in columns
+        {
+            let semantic = if scalar.is_integer() {
+                Semantic::Label
+            } else {
+                Semantic::Other
+            };
             let channel = Channel::new(name, semantic, domain, 1).stored(storage(scalar));
             found.push(channel.with(values, (0..count as u32).collect()));
         }
@@ -119,12 +141,20 @@ impl Columns {
 /// The channel of normals, if all three numbers are there; then none of them is in the columns any more.
 fn normals(columns: &mut Vec<Column>, domain: Domain, count: usize) -> Option<Channel> {
     let places = NORMALS.map(|name| columns.iter().position(|column| column.name == name));
-    let found = places.iter().copied().collect::<Option<Vec<usize>>>().map(|places| {
-        let values = (0..count).flat_map(|element| places.iter().map(move |&at| (at, element)));
-        let values = values.map(|(at, element)| columns[at].values[element]).collect();
-        let channel = Channel::new(crate::channels::NORMALS, Semantic::Other, domain, 3);
-        channel.stored(Storage::Single).with(values, (0..count as u32).collect())
-    });
+    let found = places
+        .iter()
+        .copied()
+        .collect::<Option<Vec<usize>>>()
+        .map(|places| {
+            let values = (0..count).flat_map(|element| places.iter().map(move |&at| (at, element)));
+            let values = values
+                .map(|(at, element)| columns[at].values[element])
+                .collect();
+            let channel = Channel::new(crate::channels::NORMALS, Semantic::Other, domain, 3);
+            channel
+                .stored(Storage::Single)
+                .with(values, (0..count as u32).collect())
+        });
     columns.retain(|column| !NORMALS.contains(&column.name.as_str()));
     found
 }
@@ -166,8 +196,17 @@ impl CornerTextures {
 
     /// The channel, if every face had a place for each corner.
     pub(super) fn channel(self) -> Option<Channel> {
-        let Self { values, indices, is_wrong } = self;
-        let channel = Channel::new(TEXTURE_LISTS, Semantic::TextureCoordinates, Domain::Corner, 2);
+        let Self {
+            values,
+            indices,
+            is_wrong,
+        } = self;
+        let channel = Channel::new(
+            TEXTURE_LISTS,
+            Semantic::TextureCoordinates,
+            Domain::Corner,
+            2,
+        );
         let channel = channel.stored(Storage::Single);
         (!is_wrong && !indices.is_empty()).then(|| channel.with(values, indices))
     }

@@ -99,17 +99,24 @@ pub(super) struct Element {
 impl Element {
     /// Least bytes that one such element takes in the file.
     pub(super) fn least_size(&self, encoding: Encoding) -> usize {
-        self.properties.iter().map(|p| p.kind.least_size(encoding)).sum()
+        self.properties
+            .iter()
+            .map(|p| p.kind.least_size(encoding))
+            .sum()
     }
 
     /// Whether every such element takes equally many bytes in a binary file.
     pub(super) fn has_fixed_size(&self) -> bool {
-        self.properties.iter().all(|p| matches!(p.kind, Kind::Scalar(_)))
+        self.properties
+            .iter()
+            .all(|p| matches!(p.kind, Kind::Scalar(_)))
     }
 
     /// The place of the property with one of these names.
     pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
-        self.properties.iter().position(|p| names.contains(&p.name.as_str()))
+        self.properties
+            .iter()
+            .position(|p| names.contains(&p.name.as_str()))
     }
 }
 
@@ -129,14 +136,18 @@ impl Header {
         const NORMALS: [&str; 3] = ["nx", "ny", "nz"];
         let elements = || self.elements.iter().filter(|element| element.count > 0);
         let has_strips = elements().any(|e| e.name == "tristrips");
-        let has_normals =
-            elements().any(|e| e.name == "vertex" && NORMALS.iter().all(|name| e.find(&[name]).is_some()));
+        let has_normals = elements()
+            .any(|e| e.name == "vertex" && NORMALS.iter().all(|name| e.find(&[name]).is_some()));
         let extra = |element: &Element| -> Option<String> {
             // Lists other than these, and what strips have, have no place.
             let is_carried = |property: &&Property| match (element.name.as_str(), property.kind) {
-                ("vertex", Kind::Scalar(_)) => has_normals || !NORMALS.contains(&property.name.as_str()),
+                ("vertex", Kind::Scalar(_)) => {
+                    has_normals || !NORMALS.contains(&property.name.as_str())
+                }
                 ("face", Kind::Scalar(_)) => !has_strips,
-                ("face", Kind::List { .. }) => !has_strips && property.name == crate::channels::TEXTURE_LISTS,
+                ("face", Kind::List { .. }) => {
+                    !has_strips && property.name == crate::channels::TEXTURE_LISTS
+                }
                 _ => false,
             };
             let taken: &[&str] = match element.name.as_str() {
@@ -155,7 +166,10 @@ impl Header {
             (!names.is_empty()).then(|| format!("{} properties {}", element.name, names.join(", ")))
         };
         let normals = has_normals.then(|| "normals".to_owned());
-        normals.into_iter().chain(elements().filter_map(extra)).collect()
+        normals
+            .into_iter()
+            .chain(elements().filter_map(extra))
+            .collect()
     }
 }
 
@@ -171,11 +185,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
     let mut texture_files = Vec::new();
     loop {
         let line = lines.next()?;
-        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).collect();
+        let words: Vec<&[u8]> = line
+            .split(u8::is_ascii_whitespace)
+            .filter(|w| !w.is_empty())
+            .collect();
         match *words.as_slice() {
             // Blanks are part of the name.
             [b"comment", b"TextureFile", _, ..] => {
-                let at = line.windows(TEXTURE_FILE.len()).position(|own| own == TEXTURE_FILE).unwrap_or(0);
+                let at = line
+                    .windows(TEXTURE_FILE.len())
+                    .position(|own| own == TEXTURE_FILE)
+                    .unwrap_or(0);
                 texture_files.push(names::read(line[at + TEXTURE_FILE.len()..].trim_ascii()));
             }
             [] | [b"comment" | b"obj_info", ..] => {}
@@ -183,7 +203,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
             [b"element", name, count] => {
                 let element = read_element(&lines, name, count)?;
                 if elements.iter().any(|e| e.name == element.name) {
-                    return Err(lines.saying(format!("the header has a second element {}", quoted(name))));
+                    return Err(
+                        lines.saying(format!("the header has a second element {}", quoted(name)))
+                    );
                 }
                 if elements.len() >= MOST_DECLARED {
                     let met = format!("one more element {}", quoted(name));
@@ -208,8 +230,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
             }
             [b"end_header"] => break,
             _ => {
-                let expected =
-                    "format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or end_header";
+                let expected = "format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or end_header";
                 return Err(lines.flaw(quoted(line), expected));
             }
         }
@@ -217,7 +238,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header, Flaw> {
     let Some(encoding) = encoding else {
         return Err(lines.saying("the header names no format, such as ascii 1.0"));
     };
-    Ok(Header { encoding, elements, texture_files, body: (lines.at, lines.line + 1) })
+    Ok(Header {
+        encoding,
+        elements,
+        texture_files,
+        body: (lines.at, lines.line + 1),
+    })
 }
 
 fn read_format(lines: &Lines<'_>, name: &[u8], version: &[u8]) -> Result<Encoding, Flaw> {
@@ -228,7 +254,10 @@ fn read_format(lines: &Lines<'_>, name: &[u8], version: &[u8]) -> Result<Encodin
         b"ascii" => Ok(Encoding::Ascii),
         b"binary_little_endian" => Ok(Encoding::LittleEndian),
         b"binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(lines.flaw(quoted(name), "ascii, binary_little_endian or binary_big_endian")),
+        _ => Err(lines.flaw(
+            quoted(name),
+            "ascii, binary_little_endian or binary_big_endian",
+        )),
     }
 }
 
@@ -237,8 +266,17 @@ fn read_element(lines: &Lines<'_>, name: &[u8], count: &[u8]) -> Result<Element,
         return Err(lines.flaw(quoted(count), "the number of elements"));
     };
     let name = String::from_utf8_lossy(name).into_owned();
-    let count = check_count(count, &format!("elements {}", quoted(name.as_bytes())), lines.place())?;
-    Ok(Element { name, count, properties: Vec::new(), line: lines.line })
+    let count = check_count(
+        count,
+        &format!("elements {}", quoted(name.as_bytes())),
+        lines.place(),
+    )?;
+    Ok(Element {
+        name,
+        count,
+        properties: Vec::new(),
+        line: lines.line,
+    })
 }
 
 fn read_property(lines: &Lines<'_>, words: &[&[u8]]) -> Result<Property, Flaw> {
@@ -254,14 +292,19 @@ fn read_property(lines: &Lines<'_>, words: &[&[u8]]) -> Result<Property, Flaw> {
         [b"list", count, item, name] => {
             let (count, item) = (scalar(count)?, scalar(item)?);
             if !count.is_integer() {
-                return Err(lines.flaw(quoted(words[1]), "an integer type for the length of a list"));
+                return Err(
+                    lines.flaw(quoted(words[1]), "an integer type for the length of a list")
+                );
             }
             (name, Kind::List { count, item })
         }
         [kind, name] => (name, Kind::Scalar(scalar(kind)?)),
         _ => return Err(lines.saying("a property is written as TYPE NAME or list TYPE TYPE NAME")),
     };
-    Ok(Property { name: String::from_utf8_lossy(name).into_owned(), kind })
+    Ok(Property {
+        name: String::from_utf8_lossy(name).into_owned(),
+        kind,
+    })
 }
 
 /// The lines of the header. All end as the first one does, since a binary body may begin with any byte.
@@ -274,13 +317,21 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn new(bytes: &'a [u8]) -> Self {
-        let first = bytes.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(bytes.len());
+        let first = bytes
+            .iter()
+            .position(|&b| b == b'\n' || b == b'\r')
+            .unwrap_or(bytes.len());
         let end: &[u8] = match bytes[first..] {
             [b'\r', b'\n', ..] => b"\r\n",
             [b'\r', ..] => b"\r",
             _ => b"\n",
         };
-        Self { bytes, at: 0, line: 0, end }
+        Self {
+            bytes,
+            at: 0,
+            line: 0,
+            end,
+        }
     }
 
     fn next(&mut self) -> Result<&'a [u8], Flaw> {

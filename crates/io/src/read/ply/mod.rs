@@ -31,7 +31,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<PolygonSoup, Flaw> {
 
 fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Flaw> {
     let Some(vertices) = header.elements.iter().find(|e| e.name == "vertex") else {
-        return Err(Flaw::saying(Place::Line(header.body.1 - 1), "the header has no element vertex"));
+        return Err(Flaw::saying(
+            Place::Line(header.body.1 - 1),
+            "the header has no element vertex",
+        ));
     };
     let vertices = vertices.count;
     let mut soup = PolygonSoup {
@@ -48,7 +51,8 @@ fn read_body(header: &Header, mut source: impl Source) -> Result<PolygonSoup, Fl
             _ => skip_element(element, &mut source)?,
         }
     }
-    soup.left_out.extend(trailing_bytes(source.trailing(), "element"));
+    soup.left_out
+        .extend(trailing_bytes(source.trailing(), "element"));
     Ok(soup)
 }
 
@@ -64,7 +68,9 @@ fn check_room(encoding: Encoding, element: &Element, source: &impl Source) -> Re
         return Ok(());
     }
     let met = format!("{left} bytes up to the end of the file");
-    let Element { name, count, line, .. } = element;
+    let Element {
+        name, count, line, ..
+    } = element;
     let expected = format!("{count} elements {name} of {size} bytes each, as line {line} promises");
     Err(Flaw::new(source.place(), met, expected).element(name, left / size))
 }
@@ -77,9 +83,14 @@ fn read_vertices(
 ) -> Result<(), Flaw> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
-        let found = element.find(&[name]).filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
+        let found = element
+            .find(&[name])
+            .filter(|&p| matches!(element.properties[p].kind, Kind::Scalar(_)));
         *axis = found.ok_or_else(|| {
-            Flaw::saying(Place::Line(element.line), format!("element vertex has no number {name}"))
+            Flaw::saying(
+                Place::Line(element.line),
+                format!("element vertex has no number {name}"),
+            )
         })?;
     }
     // No more than the rest of the file can hold; the last line of a text may lack its end.
@@ -87,8 +98,8 @@ fn read_vertices(
     let mut positions = Vec::with_capacity(element.count.min(most));
     let mut columns = Columns::of(element);
     for index in 0..element.count {
-        let point =
-            read_vertex(element, source, axes, &mut columns).map_err(|flaw| flaw.element("vertex", index))?;
+        let point = read_vertex(element, source, axes, &mut columns)
+            .map_err(|flaw| flaw.element("vertex", index))?;
         positions.push(point);
     }
     soup.positions = positions;
@@ -100,7 +111,8 @@ fn read_vertices(
 
 /// Tells about properties some of whose numbers are none.
 fn not_finite(element: &str, names: &[String]) -> Option<String> {
-    (!names.is_empty()).then(|| format!("{element} properties {} (not all finite)", names.join(", ")))
+    (!names.is_empty())
+        .then(|| format!("{element} properties {} (not all finite)", names.join(", ")))
 }
 
 #[inline]
@@ -121,7 +133,9 @@ fn read_vertex(
                 }
                 point[axis] = value;
             }
-            (Kind::Scalar(scalar), None) if columns.has(i) => columns.push(i, source.number(scalar)?),
+            (Kind::Scalar(scalar), None) if columns.has(i) => {
+                columns.push(i, source.number(scalar)?)
+            }
             (kind, _) => skip_property(kind, source)?,
         }
     }
@@ -139,7 +153,8 @@ fn find_index_list(element: &Element) -> Result<(usize, Scalar, Scalar), Flaw> {
         Kind::List { count, item } if item.is_integer() => Ok((list, count, item)),
         _ => {
             let (property, element_name) = (&element.properties[list].name, &element.name);
-            let problem = format!("property {property} of element {element_name} is no list of integers");
+            let problem =
+                format!("property {property} of element {element_name} is no list of integers");
             Err(Flaw::saying(Place::Line(element.line), problem))
         }
     }
@@ -207,8 +222,9 @@ fn read_polygons<S: Source>(
     for triangle in strips.iter() {
         push_face(faces, triangle, || source.place())?;
     }
-    let textures =
-        element.find(&[TEXTURE_LISTS]).filter(|&at| matches!(element.properties[at].kind, Kind::List { .. }));
+    let textures = element
+        .find(&[TEXTURE_LISTS])
+        .filter(|&at| matches!(element.properties[at].kind, Kind::List { .. }));
     let (mut columns, mut places) = (Columns::of(element), (Vec::new(), Vec::new()));
     let mut more = |property: usize, kind: Kind, source: &mut S| match kind {
         Kind::Scalar(scalar) if columns.has(property) => {
@@ -248,9 +264,9 @@ fn read_polygons<S: Source>(
         }
         match corners.channel() {
             Some(channel) => soup.channels.push(channel),
-            None => soup
-                .left_out
-                .push(format!("face properties {TEXTURE_LISTS} (not two numbers for each corner)")),
+            None => soup.left_out.push(format!(
+                "face properties {TEXTURE_LISTS} (not two numbers for each corner)"
+            )),
         }
     }
     Ok(())
@@ -293,7 +309,8 @@ fn vertex_index(index: i64, vertices: usize, source: &impl Source) -> Result<u32
 }
 
 fn list_length(count: i64, source: &impl Source) -> Result<usize, Flaw> {
-    usize::try_from(count).map_err(|_| Flaw::new(source.place(), count.to_string(), "the length of a list"))
+    usize::try_from(count)
+        .map_err(|_| Flaw::new(source.place(), count.to_string(), "the length of a list"))
 }
 
 fn skip_element(element: &Element, source: &mut impl Source) -> Result<(), Flaw> {

@@ -13,7 +13,8 @@ pub(super) trait Source {
     fn integer(&mut self, scalar: Scalar) -> Result<i64, Flaw>;
 
     /// Adds the next `count` values, of an integer type, to `values`.
-    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw>;
+    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>)
+    -> Result<(), Flaw>;
 
     /// Steps over `count` values.
     fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), Flaw>;
@@ -47,26 +48,40 @@ pub(super) struct Text<'a> {
 
 impl<'a> Text<'a> {
     pub(super) fn new(bytes: &'a [u8], (at, line): (usize, usize)) -> Self {
-        Self { scanner: Scanner::starting_at(bytes, at, line), fresh: true }
+        Self {
+            scanner: Scanner::starting_at(bytes, at, line),
+            fresh: true,
+        }
     }
 
     fn word(&mut self) -> Option<&'a [u8]> {
-        if std::mem::take(&mut self.fresh) { self.scanner.first_word() } else { self.scanner.word() }
+        if std::mem::take(&mut self.fresh) {
+            self.scanner.first_word()
+        } else {
+            self.scanner.word()
+        }
     }
 }
 
 impl Source for Text<'_> {
     fn number(&mut self, _: Scalar) -> Result<f64, Flaw> {
         let word = self.word();
-        word.and_then(number).ok_or_else(|| self.scanner.unexpected(word, "a number"))
+        word.and_then(number)
+            .ok_or_else(|| self.scanner.unexpected(word, "a number"))
     }
 
     fn integer(&mut self, _: Scalar) -> Result<i64, Flaw> {
         let word = self.word();
-        word.and_then(integer).ok_or_else(|| self.scanner.unexpected(word, "an integer"))
+        word.and_then(integer)
+            .ok_or_else(|| self.scanner.unexpected(word, "an integer"))
     }
 
-    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw> {
+    fn integers(
+        &mut self,
+        scalar: Scalar,
+        count: usize,
+        values: &mut Vec<i64>,
+    ) -> Result<(), Flaw> {
         for _ in 0..count {
             values.push(self.integer(scalar)?);
         }
@@ -85,7 +100,9 @@ impl Source for Text<'_> {
 
     fn end_element(&mut self) -> Result<(), Flaw> {
         if let Some(word) = self.scanner.word() {
-            return Err(self.scanner.unexpected(Some(word), "the end of the line after the last property"));
+            return Err(self
+                .scanner
+                .unexpected(Some(word), "the end of the line after the last property"));
         }
         self.scanner.next_line();
         self.fresh = true;
@@ -128,12 +145,18 @@ impl<'a, const BIG: bool> Binary<'a, BIG> {
     #[cold]
     fn too_short(&self, needed: usize) -> Flaw {
         let expected = format!("{needed} bytes from byte {}", self.at);
-        Flaw::new(Place::Byte(self.bytes.len()), "the end of the file", expected)
+        Flaw::new(
+            Place::Byte(self.bytes.len()),
+            "the end of the file",
+            expected,
+        )
     }
 
     #[inline]
     fn take<const N: usize>(&mut self) -> Result<[u8; N], Flaw> {
-        let Some(&value) = self.bytes[self.at..].first_chunk::<N>() else { return Err(self.too_short(N)) };
+        let Some(&value) = self.bytes[self.at..].first_chunk::<N>() else {
+            return Err(self.too_short(N));
+        };
         self.at += N;
         Ok(value)
     }
@@ -167,21 +190,40 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
             Scalar::U32 => i64::from(u32::from_le_bytes(self.take()?)),
             Scalar::F32 | Scalar::F64 => {
                 let value = self.number(scalar)?;
-                return Err(Flaw::new(self.place(), quoted(value.to_string().as_bytes()), "an integer"));
+                return Err(Flaw::new(
+                    self.place(),
+                    quoted(value.to_string().as_bytes()),
+                    "an integer",
+                ));
             }
         })
     }
 
     #[inline]
-    fn integers(&mut self, scalar: Scalar, count: usize, values: &mut Vec<i64>) -> Result<(), Flaw> {
+    fn integers(
+        &mut self,
+        scalar: Scalar,
+        count: usize,
+        values: &mut Vec<i64>,
+    ) -> Result<(), Flaw> {
         let needed = scalar.size().saturating_mul(count);
-        let Some(bytes) = self.bytes[self.at..].get(..needed) else { return Err(self.too_short(needed)) };
+        let Some(bytes) = self.bytes[self.at..].get(..needed) else {
+            return Err(self.too_short(needed));
+        };
         // Nearly all files have 32-bit indices: read without asking for the type and the length each time.
         if matches!(scalar, Scalar::I32 | Scalar::U32) {
             let signed = scalar == Scalar::I32;
             values.extend(bytes.as_chunks::<4>().0.iter().map(|&four| {
-                let value = if BIG { u32::from_be_bytes(four) } else { u32::from_le_bytes(four) };
-                if signed { i64::from(value.cast_signed()) } else { i64::from(value) }
+                let value = if BIG {
+                    u32::from_be_bytes(four)
+                } else {
+                    u32::from_le_bytes(four)
+                };
+                if signed {
+                    i64::from(value.cast_signed())
+                } else {
+                    i64::from(value)
+                }
             }));
             self.at += needed;
             return Ok(());
@@ -229,6 +271,9 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
     }
 
     fn fork(&self) -> Self {
-        Self { bytes: self.bytes, at: self.at }
+        Self {
+            bytes: self.bytes,
+            at: self.at,
+        }
     }
 }

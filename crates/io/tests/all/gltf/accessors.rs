@@ -9,7 +9,9 @@ fn positions(accessor: &str, view: &str, bin: &[u8]) -> Vec<[f64; 3]> {
         r#""buffers":[{{"byteLength":{length}}}],"bufferViews":[{{"buffer":0,"byteLength":{length}{view}}}],
            "accessors":[{{"count":3,"type":"VEC3",{accessor}}}]"#
     );
-    mesh(&glb(&document(&top, r#""attributes":{"POSITION":0}"#), bin)).soup.positions
+    mesh(&glb(&document(&top, r#""attributes":{"POSITION":0}"#), bin))
+        .soup
+        .positions
 }
 
 #[test]
@@ -19,24 +21,58 @@ fn component_types() {
     let of = |kind: u32, rest: &str, bin: &[u8]| {
         positions(&format!(r#"{view},"componentType":{kind}{rest}"#), "", bin)
     };
-    assert_eq!(of(5120, "", &bytes), [[0.0, 1.0, 127.0], [-128.0, -127.0, -1.0], [2.0, 3.0, 4.0]]);
-    assert_eq!(of(5121, "", &bytes), [[0.0, 1.0, 127.0], [128.0, 129.0, 255.0], [2.0, 3.0, 4.0]]);
+    assert_eq!(
+        of(5120, "", &bytes),
+        [[0.0, 1.0, 127.0], [-128.0, -127.0, -1.0], [2.0, 3.0, 4.0]]
+    );
+    assert_eq!(
+        of(5121, "", &bytes),
+        [[0.0, 1.0, 127.0], [128.0, 129.0, 255.0], [2.0, 3.0, 4.0]]
+    );
     let normalized = r#","normalized":true"#;
     assert_eq!(
         of(5120, normalized, &bytes),
-        [[0.0, 1.0 / 127.0, 1.0], [-1.0, -1.0, -1.0 / 127.0], [2.0 / 127.0, 3.0 / 127.0, 4.0 / 127.0]]
+        [
+            [0.0, 1.0 / 127.0, 1.0],
+            [-1.0, -1.0, -1.0 / 127.0],
+            [2.0 / 127.0, 3.0 / 127.0, 4.0 / 127.0]
+        ]
     );
-    assert_eq!(of(5121, normalized, &bytes)[1], [128.0 / 255.0, 129.0 / 255.0, 1.0]);
-    let words: Vec<u8> =
-        [0u16, 1, 32767, 32768, 32769, 65535, 2, 3, 4].iter().flat_map(|w| w.to_le_bytes()).collect();
-    assert_eq!(of(5122, "", &words), [[0.0, 1.0, 32767.0], [-32768.0, -32767.0, -1.0], [2.0, 3.0, 4.0]]);
+    assert_eq!(
+        of(5121, normalized, &bytes)[1],
+        [128.0 / 255.0, 129.0 / 255.0, 1.0]
+    );
+    let words: Vec<u8> = [0u16, 1, 32767, 32768, 32769, 65535, 2, 3, 4]
+        .iter()
+        .flat_map(|w| w.to_le_bytes())
+        .collect();
+    assert_eq!(
+        of(5122, "", &words),
+        [
+            [0.0, 1.0, 32767.0],
+            [-32768.0, -32767.0, -1.0],
+            [2.0, 3.0, 4.0]
+        ]
+    );
     assert_eq!(of(5123, "", &words)[1], [32768.0, 32769.0, 65535.0]);
-    assert_eq!(of(5122, normalized, &words)[1], [-1.0, -1.0, -1.0 / 32767.0]);
-    assert_eq!(of(5123, normalized, &words)[0], [0.0, 1.0 / 65535.0, 32767.0 / 65535.0]);
-    let large: Vec<u8> = [0u32, 1, u32::MAX, 7, 8, 9, 2, 3, 4].iter().flat_map(|w| w.to_le_bytes()).collect();
+    assert_eq!(
+        of(5122, normalized, &words)[1],
+        [-1.0, -1.0, -1.0 / 32767.0]
+    );
+    assert_eq!(
+        of(5123, normalized, &words)[0],
+        [0.0, 1.0 / 65535.0, 32767.0 / 65535.0]
+    );
+    let large: Vec<u8> = [0u32, 1, u32::MAX, 7, 8, 9, 2, 3, 4]
+        .iter()
+        .flat_map(|w| w.to_le_bytes())
+        .collect();
     assert_eq!(of(5125, "", &large)[0], [0.0, 1.0, 4_294_967_295.0]);
     let real = floats(&[0.1, -2.5, 1e-30, 4.0, 5.0, 6.0, 7.0, 8.0, 3e38]);
-    assert_eq!(of(5126, "", &real)[0], [f64::from(0.1f32), -2.5, f64::from(1e-30f32)]);
+    assert_eq!(
+        of(5126, "", &real)[0],
+        [f64::from(0.1f32), -2.5, f64::from(1e-30f32)]
+    );
 }
 
 #[test]
@@ -54,7 +90,10 @@ fn offsets_and_strides() {
         r#","byteStride":10"#,
         &bin[..bin.len() - 4],
     );
-    assert_eq!(found, [[0.0, 1.0, 2.0], [10.0, 11.0, 12.0], [20.0, 21.0, 22.0]]);
+    assert_eq!(
+        found,
+        [[0.0, 1.0, 2.0], [10.0, 11.0, 12.0], [20.0, 21.0, 22.0]]
+    );
 }
 
 #[test]
@@ -66,7 +105,11 @@ fn without_a_view_there_are_zeros_that_sparse_values_replace() {
         "accessors":[{"count":3,"type":"VEC3","componentType":5126,"sparse":{"count":1,
             "indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":1}}}]"#;
     let found = mesh(&glb(&document(top, r#""attributes":{"POSITION":0}"#), &bin));
-    assert_eq!(found.soup.positions, [[0.0; 3], [7.0, 8.0, 9.0]], "two of three are one");
+    assert_eq!(
+        found.soup.positions,
+        [[0.0; 3], [7.0, 8.0, 9.0]],
+        "two of three are one"
+    );
     assert_eq!(found.soup.faces.get(0), [0, 0, 1]);
 }
 
@@ -77,7 +120,10 @@ fn data_uris_hold_buffers() {
         "bufferViews":[{"buffer":0,"byteLength":9}],
         "accessors":[{"count":3,"type":"VEC3","componentType":5121,"bufferView":0}]"#;
     let found = mesh(document(top, r#""attributes":{"POSITION":0}"#).as_bytes());
-    assert_eq!(found.soup.positions, [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0], [6.0, 7.0, 8.0]]);
+    assert_eq!(
+        found.soup.positions,
+        [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0], [6.0, 7.0, 8.0]]
+    );
 }
 
 /// Corners of five vertices on the axis in the order of the indices, by mode.
@@ -93,16 +139,32 @@ fn faces(mode: u32, indices: &[u8]) -> Vec<Vec<f64>> {
     );
     let primitive = format!(r#""attributes":{{"POSITION":0}},"indices":1,"mode":{mode}"#);
     let soup = mesh(&glb(&document(&top, &primitive), &bin)).soup;
-    soup.faces.iter().map(|face| face.iter().map(|&v| soup.positions[v as usize][0]).collect()).collect()
+    soup.faces
+        .iter()
+        .map(|face| {
+            face.iter()
+                .map(|&v| soup.positions[v as usize][0])
+                .collect()
+        })
+        .collect()
 }
 
 #[test]
 fn strips_and_fans_become_triangles() {
-    assert_eq!(faces(4, &[0, 1, 2, 4, 3, 2]), [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]]);
+    assert_eq!(
+        faces(4, &[0, 1, 2, 4, 3, 2]),
+        [[0.0, 1.0, 2.0], [4.0, 3.0, 2.0]]
+    );
     // The specification's windings.
-    assert_eq!(faces(5, &[0, 1, 2, 3, 4]), [[0.0, 1.0, 2.0], [1.0, 3.0, 2.0], [2.0, 3.0, 4.0]]);
+    assert_eq!(
+        faces(5, &[0, 1, 2, 3, 4]),
+        [[0.0, 1.0, 2.0], [1.0, 3.0, 2.0], [2.0, 3.0, 4.0]]
+    );
     assert_eq!(faces(6, &[0, 1, 2, 3]), [[1.0, 2.0, 0.0], [2.0, 3.0, 0.0]]);
     // What joins strips has no area.
-    assert_eq!(faces(5, &[0, 1, 2, 2, 3, 4]), [[0.0, 1.0, 2.0], [2.0, 4.0, 3.0]]);
+    assert_eq!(
+        faces(5, &[0, 1, 2, 2, 3, 4]),
+        [[0.0, 1.0, 2.0], [2.0, 4.0, 3.0]]
+    );
     assert!(faces(1, &[0, 1]).is_empty() && faces(0, &[0]).is_empty());
 }

@@ -6,12 +6,23 @@ use limitmesh_io::gltf::{Geometry, VertexAttribute};
 use limitmesh_io::{Asset, Format, Output, WriteOptions, read_bytes, write_to};
 use std::fs;
 
-const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.1], [1.0, 0.0, 0.2], [1.0, 1.0, 0.3], [0.0, 1.0, -0.4]];
+const SQUARE: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.1],
+    [1.0, 0.0, 0.2],
+    [1.0, 1.0, 0.3],
+    [0.0, 1.0, -0.4],
+];
 const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 fn geometry() -> Geometry<'static> {
     const UP: [[f64; 3]; 4] = [[0.0, 0.0, 2.0], [0.0, 3.0, 4.0], [0.0; 3], [1.0, 0.0, 0.0]];
-    Geometry { positions: &SQUARE, normals: Some(&UP), triangles: &HALVES, attributes: &[], targets: &[] }
+    Geometry {
+        positions: &SQUARE,
+        normals: Some(&UP),
+        triangles: &HALVES,
+        attributes: &[],
+        targets: &[],
+    }
 }
 
 /// A triangle amid things that nobody knows, and that may name its accessor, spelt in ways that no writer would.
@@ -20,7 +31,10 @@ fn odd() -> String {
 	"bufferViews":[{"buffer":0,"byteLength":36}], "accessors":[{"count":3,"type":"VEC3","componentType":5126,"bufferView":0}],
 	"nodes":[{"mesh":0,"translation":[1.0e+0,0.10,-0]}],"extensions":{"ODD_thing":{"b":[0,2, 3],"a":"\u00e9\/"}},
 	"extras":{"z":1.000000000000000000001,"a":12345678901234567890123}, "materials":[{}]"#;
-    document(top, r#""extras":{"y":1.50},"material":0,"mode":4,"attributes":{"POSITION":0}"#)
+    document(
+        top,
+        r#""extras":{"y":1.50},"material":0,"mode":4,"attributes":{"POSITION":0}"#,
+    )
 }
 
 #[test]
@@ -31,20 +45,40 @@ fn all_but_a_primitive_stays_to_the_byte() {
     let written = asset.to_bytes(Format::Glb).unwrap();
     let (new, bin) = parts(&written);
     let old = text
-        .replace(r#""byteLength":36, "name""#, &format!(r#""byteLength":{}, "name""#, 36 + 48 + 48 + 12))
-        .replace(r#""attributes":{"POSITION":0}"#, r#""attributes":{"POSITION":1,"NORMAL":2},"indices":3"#);
+        .replace(
+            r#""byteLength":36, "name""#,
+            &format!(r#""byteLength":{}, "name""#, 36 + 48 + 48 + 12),
+        )
+        .replace(
+            r#""attributes":{"POSITION":0}"#,
+            r#""attributes":{"POSITION":1,"NORMAL":2},"indices":3"#,
+        );
     // What is appended stands at the end of the arrays.
     let at = |key: &str, in_text: &str| in_text.find(key).unwrap();
-    assert_eq!(new[..at("\"bufferViews\"", &new)], old[..at("\"bufferViews\"", &old)]);
-    assert_eq!(new[at("\"nodes\"", &new)..].trim_end(), &old[at("\"nodes\"", &old)..]);
+    assert_eq!(
+        new[..at("\"bufferViews\"", &new)],
+        old[..at("\"bufferViews\"", &old)]
+    );
+    assert_eq!(
+        new[at("\"nodes\"", &new)..].trim_end(),
+        &old[at("\"nodes\"", &old)..]
+    );
     assert!(new.contains(r#""bufferViews":[{"buffer":0,"byteLength":36},{"#));
     assert_eq!(bin[..36], floats(&[0.0; 9]));
     let single = |v: u32| SQUARE[v as usize].map(|x| x as f32);
-    assert_eq!(triangles_of(&written, 0, 0), HALVES.map(|corners| corners.map(single)));
+    assert_eq!(
+        triangles_of(&written, 0, 0),
+        HALVES.map(|corners| corners.map(single))
+    );
     // Normals have length 1, also where there was no direction.
-    let normals: Vec<f32> =
-        bin[84..132].chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
-    assert_eq!(normals, [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
+    let normals: Vec<f32> = bin[84..132]
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+        .collect();
+    assert_eq!(
+        normals,
+        [0.0, 0.0, 1.0, 0.0, 0.6, 0.8, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0]
+    );
     // And it can be read again.
     assert_eq!(read_bytes(&written, Format::Glb).unwrap().faces.len(), 2);
 }
@@ -77,9 +111,9 @@ fn short_indices_end_at_65535_vertices() {
             )
             .unwrap();
         let written = asset.to_bytes(Format::Glb).unwrap();
-        assert!(
-            parts(&written).0.contains(&format!("\"componentType\":{kind},\"count\":3,\"type\":\"SCALAR\""))
-        );
+        assert!(parts(&written).0.contains(&format!(
+            "\"componentType\":{kind},\"count\":3,\"type\":\"SCALAR\""
+        )));
         assert_eq!(triangles_of(&written, 0, 0)[0][2][0], vertices as f32 - 1.0);
     }
 }
@@ -87,16 +121,41 @@ fn short_indices_end_at_65535_vertices() {
 #[test]
 fn geometry_that_does_not_fit_is_refused() {
     let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
-    let mut refused =
-        |geometry: &Geometry<'_>| asset.replace(0, 0, geometry).expect_err("a flaw").to_string();
+    let mut refused = |geometry: &Geometry<'_>| {
+        asset
+            .replace(0, 0, geometry)
+            .expect_err("a flaw")
+            .to_string()
+    };
     let good = geometry();
     assert!(
-        refused(&Geometry { triangles: &[[0, 1, 4]], ..good })
-            .contains("a triangle names vertex 4, but there are 4")
+        refused(&Geometry {
+            triangles: &[[0, 1, 4]],
+            ..good
+        })
+        .contains("a triangle names vertex 4, but there are 4")
     );
-    assert!(refused(&Geometry { triangles: &[], ..good }).contains("a primitive needs triangles"));
-    assert!(refused(&Geometry { positions: &[[1e39, 0.0, 0.0]; 4], ..good }).contains("32-bit floats"));
-    assert!(refused(&Geometry { normals: Some(&[]), ..good }).contains("0 normals"));
+    assert!(
+        refused(&Geometry {
+            triangles: &[],
+            ..good
+        })
+        .contains("a primitive needs triangles")
+    );
+    assert!(
+        refused(&Geometry {
+            positions: &[[1e39, 0.0, 0.0]; 4],
+            ..good
+        })
+        .contains("32-bit floats")
+    );
+    assert!(
+        refused(&Geometry {
+            normals: Some(&[]),
+            ..good
+        })
+        .contains("0 normals")
+    );
 }
 
 #[test]
@@ -105,10 +164,15 @@ fn text_documents_get_a_file_of_bytes_and_copies_of_what_they_name() {
     let (from, to) = (folder.path().join("from"), folder.path().join("to"));
     fs::create_dir_all(from.join("pictures")).unwrap();
     fs::create_dir(&to).unwrap();
-    let text = odd().replace(r#""byteLength":36, "name":"b""#, r#""byteLength":36,"uri":"out.bin""#).replace(
-        r#""materials":[{}]"#,
-        r#""materials":[{}],"images":[{"uri":"pictures/a%20b.png"},{"uri":"gone.png"}]"#,
-    );
+    let text = odd()
+        .replace(
+            r#""byteLength":36, "name":"b""#,
+            r#""byteLength":36,"uri":"out.bin""#,
+        )
+        .replace(
+            r#""materials":[{}]"#,
+            r#""materials":[{}],"images":[{"uri":"pictures/a%20b.png"},{"uri":"gone.png"}]"#,
+        );
     fs::write(from.join("in.gltf"), &text).unwrap();
     fs::write(from.join("out.bin"), floats(&[0.0; 9])).unwrap();
     fs::write(from.join("pictures/a b.png"), b"a picture").unwrap();
@@ -129,12 +193,21 @@ fn text_documents_get_a_file_of_bytes_and_copies_of_what_they_name() {
     // And back to text, out of the GLB.
     let apart = folder.path().join("apart");
     fs::create_dir(&apart).unwrap();
-    Asset::open(&to.join("out.glb")).unwrap().write(&apart.join("x.gltf"), Format::Gltf).unwrap();
+    Asset::open(&to.join("out.glb"))
+        .unwrap()
+        .write(&apart.join("x.gltf"), Format::Gltf)
+        .unwrap();
     assert_eq!(fs::read(apart.join("x.bin")).unwrap(), bin);
     // Another file that is there already is not replaced.
     fs::write(to.join("pictures/a b.png"), b"another").unwrap();
-    let refused = asset.write(&to.join("out.gltf"), Format::Gltf).expect_err("another file").to_string();
-    assert!(refused.contains("it is there already, and not the same"), "{refused}");
+    let refused = asset
+        .write(&to.join("out.gltf"), Format::Gltf)
+        .expect_err("another file")
+        .to_string();
+    assert!(
+        refused.contains("it is there already, and not the same"),
+        "{refused}"
+    );
     assert_eq!(fs::read(to.join("pictures/a b.png")).unwrap(), b"another");
 }
 
@@ -149,21 +222,42 @@ fn links_do_not_lead_out_of_the_folder() {
         std::os::unix::fs::symlink(folder.path().join("secret.bin"), inside.join("b.bin")).unwrap();
         let text = odd().replace(r#""name":"b""#, r#""uri":"b.bin""#);
         fs::write(inside.join("in.gltf"), text).unwrap();
-        let error =
-            Asset::open(&inside.join("in.gltf")).unwrap().scene_soup().expect_err("a link").to_string();
-        assert!(error.contains("it leads out of the document's folder"), "{error}");
+        let error = Asset::open(&inside.join("in.gltf"))
+            .unwrap()
+            .scene_soup()
+            .expect_err("a link")
+            .to_string();
+        assert!(
+            error.contains("it leads out of the document's folder"),
+            "{error}"
+        );
     }
 }
 
 #[test]
 fn triangles_from_elsewhere_become_a_document() {
-    let surface = Triangles { positions: &SQUARE, triangles: &HALVES };
+    let surface = Triangles {
+        positions: &SQUARE,
+        triangles: &HALVES,
+    };
     for format in [Format::Glb, Format::Gltf] {
         let mut bytes = Vec::new();
-        write_to(&mut bytes, format, &Output::new(surface), &WriteOptions::default()).unwrap();
+        write_to(
+            &mut bytes,
+            format,
+            &Output::new(surface),
+            &WriteOptions::default(),
+        )
+        .unwrap();
         let soup = read_bytes(&bytes, format).unwrap();
-        assert_eq!(soup.positions, SQUARE.map(|p| p.map(|x| f64::from(x as f32))));
-        assert_eq!(soup.faces.iter().collect::<Vec<_>>(), HALVES.each_ref().map(|t| &t[..]));
+        assert_eq!(
+            soup.positions,
+            SQUARE.map(|p| p.map(|x| f64::from(x as f32)))
+        );
+        assert_eq!(
+            soup.faces.iter().collect::<Vec<_>>(),
+            HALVES.each_ref().map(|t| &t[..])
+        );
     }
 }
 
@@ -180,10 +274,25 @@ fn morph_targets_are_replaced_and_counted() {
         values: (0..4 * width).map(|i| i as f64 - 2.5).collect(),
         is_integer: false,
     };
-    let targets = [vec![added("POSITION", 3), added("TEXCOORD_0", 2)], vec![added("NORMAL", 3)]];
-    asset.replace(0, 0, &Geometry { targets: &targets, ..geometry() }).unwrap();
+    let targets = [
+        vec![added("POSITION", 3), added("TEXCOORD_0", 2)],
+        vec![added("NORMAL", 3)],
+    ];
+    asset
+        .replace(
+            0,
+            0,
+            &Geometry {
+                targets: &targets,
+                ..geometry()
+            },
+        )
+        .unwrap();
     let (new, bin) = parts(&asset.to_bytes(Format::Glb).unwrap());
-    assert!(new.contains(r#""targets":[{"POSITION":3,"TEXCOORD_0":4},{"NORMAL":5}]"#), "{new}");
+    assert!(
+        new.contains(r#""targets":[{"POSITION":3,"TEXCOORD_0":4},{"NORMAL":5}]"#),
+        "{new}"
+    );
     let json: serde_json::Value = serde_json::from_str(&new).unwrap();
     let accessor = &json["accessors"][3];
     assert_eq!(accessor["min"], serde_json::json!([-2.5, -1.5, -0.5]));
@@ -193,10 +302,26 @@ fn morph_targets_are_replaced_and_counted() {
     assert_eq!(bin[start..start + 8], floats(&[-2.5, -1.5]));
     let refused = |targets: &[Vec<VertexAttribute>]| {
         let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
-        asset.replace(0, 0, &Geometry { targets, ..geometry() }).expect_err("a flaw").to_string()
+        asset
+            .replace(
+                0,
+                0,
+                &Geometry {
+                    targets,
+                    ..geometry()
+                },
+            )
+            .expect_err("a flaw")
+            .to_string()
     };
-    assert!(refused(&[vec![]]).contains("meshes[0].primitives[0].targets[0]: the target has no attribute"));
-    let short = VertexAttribute { values: vec![0.0; 9], ..added("POSITION", 3) };
+    assert!(
+        refused(&[vec![]])
+            .contains("meshes[0].primitives[0].targets[0]: the target has no attribute")
+    );
+    let short = VertexAttribute {
+        values: vec![0.0; 9],
+        ..added("POSITION", 3)
+    };
     assert!(refused(&[vec![short]]).contains(
         "meshes[0].primitives[0].targets[0].POSITION: expected 3 numbers for each vertex, found 9"
     ));

@@ -119,9 +119,14 @@ fn indices_and_numbers_out_of_range() {
 fn nodes_form_trees() {
     let refused = |nodes: &str| {
         let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":{nodes}}}"#);
-        Asset::from_bytes(json.as_bytes(), None).expect_err("a flaw").to_string()
+        Asset::from_bytes(json.as_bytes(), None)
+            .expect_err("a flaw")
+            .to_string()
     };
-    assert_eq!(refused(r#"[{"children":[1]},{"children":[0]}]"#), "glTF nodes[0]: the node is below itself");
+    assert_eq!(
+        refused(r#"[{"children":[1]},{"children":[0]}]"#),
+        "glTF nodes[0]: the node is below itself"
+    );
     assert_eq!(
         refused(r#"[{"children":[2]},{"children":[2]},{}]"#),
         "glTF nodes[1].children[0]: expected a node that is no child of another, found 2"
@@ -135,14 +140,23 @@ fn nodes_form_trees() {
         "glTF nodes[0].scale: expected 3 numbers, found an array of 2"
     );
     // A chain as deep as it is long is none of the stack's business.
-    let chain: Vec<String> = (1..100_000).map(|child| format!(r#"{{"children":[{child}]}}"#)).collect();
-    let json = format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{},{{}}]}}"#, chain.join(","));
+    let chain: Vec<String> = (1..100_000)
+        .map(|child| format!(r#"{{"children":[{child}]}}"#))
+        .collect();
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{},{{}}]}}"#,
+        chain.join(",")
+    );
     assert!(Asset::from_bytes(json.as_bytes(), None).is_ok());
 }
 
 #[test]
 fn containers() {
-    let refused = |bytes: &[u8]| Asset::from_bytes(bytes, None).expect_err("a flaw").to_string();
+    let refused = |bytes: &[u8]| {
+        Asset::from_bytes(bytes, None)
+            .expect_err("a flaw")
+            .to_string()
+    };
     let sound = glb(r#"{"asset":{"version":"2.0"}}"#, &[1, 2, 3, 4]);
     assert!(Asset::from_bytes(&sound, None).is_ok());
     let changed = |at: usize, word: u32| {
@@ -150,7 +164,10 @@ fn containers() {
         bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
         refused(&bytes)
     };
-    assert_eq!(changed(4, 1), "glTF the GLB header: expected version 2, found 1");
+    assert_eq!(
+        changed(4, 1),
+        "glTF the GLB header: expected version 2, found 1"
+    );
     assert_eq!(
         changed(8, 4_000_000_000),
         format!(
@@ -166,10 +183,19 @@ fn containers() {
         changed(16, 7),
         "glTF chunk 0 of the GLB, at byte 12: expected JSON in the first chunk, found the kind 0x00000007"
     );
-    assert_eq!(refused(b"glTF"), "glTF the GLB: expected at least 12 bytes, found 4");
-    assert_eq!(refused(b"[]"), "glTF the document: expected an object, found an array of 0");
+    assert_eq!(
+        refused(b"glTF"),
+        "glTF the GLB: expected at least 12 bytes, found 4"
+    );
+    assert_eq!(
+        refused(b"[]"),
+        "glTF the document: expected an object, found an array of 0"
+    );
     assert_eq!(refused(b"{}"), "glTF the document: 'asset' is missing");
-    assert!(refused(b"{\"asset\":").starts_with("glTF the JSON text: it cannot be read: EOF while parsing"));
+    assert!(
+        refused(b"{\"asset\":")
+            .starts_with("glTF the JSON text: it cannot be read: EOF while parsing")
+    );
     let deep = "[".repeat(100_000);
     assert!(refused(deep.as_bytes()).contains("recursion limit"));
 }

@@ -15,14 +15,21 @@ struct Builder {
 
 impl Builder {
     fn new() -> Self {
-        Self { bin: Vec::new(), views: Vec::new(), accessors: Vec::new(), primitives: Vec::new() }
+        Self {
+            bin: Vec::new(),
+            views: Vec::new(),
+            accessors: Vec::new(),
+            primitives: Vec::new(),
+        }
     }
 
     fn accessor(&mut self, bytes: Vec<u8>, count: usize, kind: &str, component: u32) -> usize {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let (start, length) = (self.bin.len(), bytes.len());
         self.bin.extend(bytes);
-        self.views.push(format!(r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#));
+        self.views.push(format!(
+            r#"{{"buffer":0,"byteOffset":{start},"byteLength":{length}}}"#
+        ));
         let view = self.views.len() - 1;
         self.accessors.push(format!(
             r#"{{"bufferView":{view},"count":{count},"type":"{kind}","componentType":{component}}}"#
@@ -52,14 +59,22 @@ impl Builder {
 }
 
 /// Two triangles over a common edge from (0, 0, 0) to (1, 0, 0), each with vertices of its own.
-const APART: [[f32; 3]; 6] =
-    [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-0.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
+const APART: [[f32; 3]; 6] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [-0.0, 0.0, 0.0],
+    [0.0, -1.0, 0.0],
+];
 
 #[test]
 fn what_stands_together_is_one() {
     let mut builder = Builder::new();
     let points = builder.points(&APART);
-    builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    builder
+        .primitives
+        .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     assert_eq!(builder.read(Joining::Together).soup.positions.len(), 4);
     assert_eq!(builder.read(Joining::Never).soup.positions.len(), 6);
 }
@@ -77,11 +92,28 @@ fn what_morphs_apart_stays_apart() {
     ));
     let found = builder.read(Joining::Together);
     assert!(found.has_targets());
-    assert_eq!((found.soup.positions.len(), found.kept_apart.moving, found.kept_apart.touching), (5, 1, 0));
-    assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (0, 1));
+    assert_eq!(
+        (
+            found.soup.positions.len(),
+            found.kept_apart.moving,
+            found.kept_apart.touching
+        ),
+        (5, 1, 0)
+    );
+    assert_eq!(
+        (found.kept_apart.by_skins, found.kept_apart.by_morphs),
+        (0, 1)
+    );
     // Joined all the same, they move as the first does.
-    let found = builder.read(Joining::Ignoring { skins: false, morphs: true, distance: 0.0 });
-    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
+    let found = builder.read(Joining::Ignoring {
+        skins: false,
+        morphs: true,
+        distance: 0.0,
+    });
+    assert_eq!(
+        (found.soup.positions.len(), found.kept_apart.moving),
+        (4, 0)
+    );
     let table = &found.attributes[0];
     assert_eq!(
         (table.name.as_str(), table.plain_name(), table.target),
@@ -89,8 +121,15 @@ fn what_morphs_apart_stays_apart() {
     );
     for (face, corners) in found.soup.faces.iter().zip(&table.corners) {
         for (&v, &value) in face.iter().zip(corners) {
-            let expected = if found.soup.positions[v as usize] == [1.0, 0.0, 0.0] { 1.0 } else { 0.0 };
-            assert_eq!(table.values[3 * value as usize..][..3], [0.0, 0.0, expected]);
+            let expected = if found.soup.positions[v as usize] == [1.0, 0.0, 0.0] {
+                1.0
+            } else {
+                0.0
+            };
+            assert_eq!(
+                table.values[3 * value as usize..][..3],
+                [0.0, 0.0, expected]
+            );
         }
     }
 }
@@ -100,7 +139,14 @@ fn what_joints_move_apart_stays_apart() {
     let mut builder = Builder::new();
     let points = builder.points(&APART);
     // The same joints in another order and with weights of 0 between are the same; another weight is another.
-    let joints = [[1u8, 2, 0, 0], [1, 2, 0, 0], [1, 0, 0, 0], [2, 7, 1, 0], [1, 2, 0, 0], [1, 0, 0, 0]];
+    let joints = [
+        [1u8, 2, 0, 0],
+        [1, 2, 0, 0],
+        [1, 0, 0, 0],
+        [2, 7, 1, 0],
+        [1, 2, 0, 0],
+        [1, 0, 0, 0],
+    ];
     let weights = [
         [0.75f32, 0.25, 0.0, 0.0],
         [0.5, 0.5, 0.0, 0.0],
@@ -115,10 +161,23 @@ fn what_joints_move_apart_stays_apart() {
         r#"{{"attributes":{{"POSITION":{points},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}"#
     ));
     let found = builder.read(Joining::Together);
-    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (5, 1));
-    assert_eq!((found.kept_apart.by_skins, found.kept_apart.by_morphs), (1, 0));
-    let found = builder.read(Joining::Ignoring { skins: true, morphs: false, distance: 0.0 });
-    assert_eq!((found.soup.positions.len(), found.kept_apart.moving), (4, 0));
+    assert_eq!(
+        (found.soup.positions.len(), found.kept_apart.moving),
+        (5, 1)
+    );
+    assert_eq!(
+        (found.kept_apart.by_skins, found.kept_apart.by_morphs),
+        (1, 0)
+    );
+    let found = builder.read(Joining::Ignoring {
+        skins: true,
+        morphs: false,
+        distance: 0.0,
+    });
+    assert_eq!(
+        (found.soup.positions.len(), found.kept_apart.moving),
+        (4, 0)
+    );
 }
 
 #[test]
@@ -126,11 +185,20 @@ fn primitives_are_joined_along_edges_that_match() {
     let mut builder = Builder::new();
     for half in [0..3, 3..6] {
         let points = builder.points(&APART[half]);
-        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        builder
+            .primitives
+            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     }
     let found = builder.read(Joining::Together);
-    assert_eq!((found.soup.positions.len(), found.kept_apart.touching), (4, 0));
-    let faces: Vec<_> = found.parts.iter().map(|part| (part.primitive, part.faces.clone())).collect();
+    assert_eq!(
+        (found.soup.positions.len(), found.kept_apart.touching),
+        (4, 0)
+    );
+    let faces: Vec<_> = found
+        .parts
+        .iter()
+        .map(|part| (part.primitive, part.faces.clone()))
+        .collect();
     assert_eq!(faces, [(0, 0..1), (1, 1..2)]);
 }
 
@@ -143,10 +211,15 @@ fn primitives_that_touch_are_not_joined() {
         let mut builder = Builder::new();
         for points in [[APART[0], APART[1], APART[2]], other] {
             let points = builder.points(&points);
-            builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+            builder
+                .primitives
+                .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
         }
         let found = builder.read(Joining::Together);
-        assert_eq!((found.soup.positions.len(), found.kept_apart.touching), (6, touching));
+        assert_eq!(
+            (found.soup.positions.len(), found.kept_apart.touching),
+            (6, touching)
+        );
     }
     // An edge that three primitives share is nobody's.
     let mut builder = Builder::new();
@@ -156,7 +229,9 @@ fn primitives_that_touch_are_not_joined() {
         } else {
             [APART[1], APART[0], third]
         });
-        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        builder
+            .primitives
+            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     }
     assert_eq!(builder.read(Joining::Together).soup.positions.len(), 9);
 }
@@ -165,11 +240,14 @@ fn primitives_that_touch_are_not_joined() {
 fn triangle(corners: [[f32; 3]; 3], targets: &[[[f32; 3]; 3]]) -> Builder {
     let mut builder = Builder::new();
     let points = builder.points(&corners);
-    let targets: Vec<String> =
-        targets.iter().map(|moved| format!(r#"{{"POSITION":{}}}"#, builder.points(moved))).collect();
-    builder
-        .primitives
-        .push(format!(r#"{{"attributes":{{"POSITION":{points}}},"targets":[{}]}}"#, targets.join(",")));
+    let targets: Vec<String> = targets
+        .iter()
+        .map(|moved| format!(r#"{{"POSITION":{}}}"#, builder.points(moved)))
+        .collect();
+    builder.primitives.push(format!(
+        r#"{{"attributes":{{"POSITION":{points}}},"targets":[{}]}}"#,
+        targets.join(",")
+    ));
     builder
 }
 
@@ -179,14 +257,21 @@ fn faces_without_area_count_where_something_opens_them() {
     const NOWHERE: [f32; 3] = [0.0; 3];
     const NONE: [u32; 0] = [];
     let lid = [NOWHERE, [0.0, 0.0, 1.0], NOWHERE];
-    let opening = |corners, targets: &[_]| triangle(corners, targets).read(Joining::Never).soup.opening;
+    let opening =
+        |corners, targets: &[_]| triangle(corners, targets).read(Joining::Never).soup.opening;
     assert_eq!(opening(LINE, &[]), NONE);
     assert_eq!(opening(LINE, &[[NOWHERE; 3], lid]), [0]);
     // Twice as large it is a line still, and a triangle with area counts by itself.
     assert_eq!(opening(LINE, &[LINE]), NONE);
-    assert_eq!(opening([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[lid]), NONE);
+    assert_eq!(
+        opening([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[lid]),
+        NONE
+    );
     // Two corners leave a point in two directions: only together they make an area.
-    let apart = [[NOWHERE, [1.0, 0.0, 0.0], NOWHERE], [NOWHERE, NOWHERE, [0.0, 1.0, 0.0]]];
+    let apart = [
+        [NOWHERE, [1.0, 0.0, 0.0], NOWHERE],
+        [NOWHERE, NOWHERE, [0.0, 1.0, 0.0]],
+    ];
     assert_eq!(opening([NOWHERE; 3], &apart), [0]);
     assert_eq!(opening([NOWHERE; 3], &apart[..1]), NONE);
     // Joints open what they do not move as one.
@@ -194,7 +279,10 @@ fn faces_without_area_count_where_something_opens_them() {
         let mut builder = Builder::new();
         let points = builder.points(&LINE);
         let joints = builder.accessor([0u8, 1, 0, 0].repeat(3), 3, "VEC4", 5121);
-        let weights: Vec<f32> = weights.iter().flat_map(|&own| [own, 1.0 - own, 0.0, 0.0]).collect();
+        let weights: Vec<f32> = weights
+            .iter()
+            .flat_map(|&own| [own, 1.0 - own, 0.0, 0.0])
+            .collect();
         let weights = builder.accessor(floats(&weights), 3, "VEC4", 5126);
         builder.primitives.push(format!(
             r#"{{"attributes":{{"POSITION":{points},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}"#
@@ -210,16 +298,32 @@ fn a_distance_joins_what_rounding_tells_apart() {
     let read = |distance| {
         let mut builder = Builder::new();
         let points = builder.points(&points);
-        builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
-        builder.read(Joining::Ignoring { skins: false, morphs: false, distance }).soup.positions.len()
+        builder
+            .primitives
+            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        builder
+            .read(Joining::Ignoring {
+                skins: false,
+                morphs: false,
+                distance,
+            })
+            .soup
+            .positions
+            .len()
     };
     assert_eq!([0.0, 1e-7, 1e-5].map(read), [5, 5, 4]);
     let mut builder = Builder::new();
     let points = builder.points(&APART);
-    builder.primitives.push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    builder
+        .primitives
+        .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     let asset = builder.asset();
     for distance in [-1.0, f64::NAN, f64::INFINITY] {
-        let joining = Joining::Ignoring { skins: false, morphs: false, distance };
+        let joining = Joining::Ignoring {
+            skins: false,
+            morphs: false,
+            distance,
+        };
         let error = asset.mesh(0, joining).expect_err("no distance").to_string();
         assert!(error.contains("at least 0"), "{error}");
     }

@@ -11,12 +11,20 @@ use serde_json::{Value, json};
 use super::support::{floats, glb, parts};
 
 /// A square of two triangles; its first is the coarser level's place of all.
-const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+const SQUARE: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+];
 const FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 const UP: [[f64; 3]; 4] = [[0.0, 0.0, 1.0]; 4];
 
 fn square() -> Output<'static> {
-    Output::new(Triangles { positions: &SQUARE, triangles: &FACES })
+    Output::new(Triangles {
+        positions: &SQUARE,
+        triangles: &FACES,
+    })
 }
 
 fn written(
@@ -31,7 +39,9 @@ fn written(
 #[track_caller]
 fn complaint(level: DetailLevel<'_>) -> String {
     let levels = [DetailLevel::new(square()), level];
-    written(&levels, None).expect_err("levels that do not fit together").to_string()
+    written(&levels, None)
+        .expect_err("levels that do not fit together")
+        .to_string()
 }
 
 fn document(path: &Path) -> Value {
@@ -40,18 +50,35 @@ fn document(path: &Path) -> Value {
 
 #[test]
 fn what_does_not_fit_together_is_refused() {
-    let beyond = Output::new(Triangles { positions: &SQUARE, triangles: &[[0, 1, 4]] });
-    assert_eq!(complaint(DetailLevel::new(beyond)), "triangle 0 names vertex 4, but there are 4 vertices");
+    let beyond = Output::new(Triangles {
+        positions: &SQUARE,
+        triangles: &[[0, 1, 4]],
+    });
+    assert_eq!(
+        complaint(DetailLevel::new(beyond)),
+        "triangle 0 names vertex 4, but there are 4 vertices"
+    );
     assert!(
         complaint(DetailLevel::new(square().normals(&UP[1..])))
             .starts_with("there are 3 normals for 4 vertices")
     );
     let places = complaint(DetailLevel::new(square()).coarser(&SQUARE[1..], &UP));
-    assert!(places.starts_with("there are 3 places on the coarser level for 4 vertices"), "{places}");
+    assert!(
+        places.starts_with("there are 3 places on the coarser level for 4 vertices"),
+        "{places}"
+    );
     let normals = complaint(DetailLevel::new(square().normals(&UP)).coarser(&SQUARE, &UP[..2]));
-    assert!(normals.starts_with("there are 2 normals on the coarser level for 4 vertices"), "{normals}");
-    let mut heat = Channel::new("heat", Semantic::Other, Domain::Vertex, 1).with(vec![0.5], vec![0; 3]);
-    let of = |heat: &Channel| complaint(DetailLevel::new(square().channels(std::slice::from_ref(heat))));
+    assert!(
+        normals.starts_with("there are 2 normals on the coarser level for 4 vertices"),
+        "{normals}"
+    );
+    let mut heat =
+        Channel::new("heat", Semantic::Other, Domain::Vertex, 1).with(vec![0.5], vec![0; 3]);
+    let of = |heat: &Channel| {
+        complaint(DetailLevel::new(
+            square().channels(std::slice::from_ref(heat)),
+        ))
+    };
     assert!(of(&heat).contains("heat"), "{}", of(&heat));
     heat.indices = vec![0, 0, 0, 7];
     assert!(of(&heat).contains("heat"), "{}", of(&heat));
@@ -64,7 +91,8 @@ fn what_does_not_fit_together_is_refused() {
 #[test]
 fn normals_of_corners_are_left_out() {
     let normals = [[0.0, 0.0, 1.0]];
-    let level = DetailLevel::new(square().normals_of_corners(&normals, &[[0; 3]; 2])).coarser(&SQUARE, &UP);
+    let level =
+        DetailLevel::new(square().normals_of_corners(&normals, &[[0; 3]; 2])).coarser(&SQUARE, &UP);
     let (_folder, path) = written(&[level], None).expect("written");
     let primitive = &document(&path)["meshes"][0]["primitives"][0];
     assert!(primitive["attributes"]["NORMAL"].is_null(), "{primitive}");
@@ -131,23 +159,48 @@ fn an_assets_materials_come_along_and_nothing_that_names_its_nodes() {
     assert_eq!(document["materials"][1]["name"], "skin");
     assert_eq!(document["materials"].as_array().map(Vec::len), Some(2));
     for mesh in document["meshes"].as_array().expect("meshes") {
-        let of: Vec<_> = mesh["primitives"].as_array().expect("primitives").iter().collect();
-        assert_eq!([&of[0]["material"], &of[1]["material"]], [1, 0], "in the order of the triangles");
+        let of: Vec<_> = mesh["primitives"]
+            .as_array()
+            .expect("primitives")
+            .iter()
+            .collect();
+        assert_eq!(
+            [&of[0]["material"], &of[1]["material"]],
+            [1, 0],
+            "in the order of the triangles"
+        );
     }
     assert_eq!(document["nodes"].as_array().map(Vec::len), Some(2));
     for gone in ["skins", "animations", "cameras"] {
         assert!(document[gone].is_null(), "{gone}");
     }
     // Lights are named by nodes and name nothing; an avatar names nodes.
-    assert_eq!(document["extensions"], json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}}));
-    let kept =
-        ["KHR_texture_transform", "KHR_lights_punctual", "KHR_materials_unlit", "OF_nobody_here", "MSFT_lod"];
+    assert_eq!(
+        document["extensions"],
+        json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}})
+    );
+    let kept = [
+        "KHR_texture_transform",
+        "KHR_lights_punctual",
+        "KHR_materials_unlit",
+        "OF_nobody_here",
+        "MSFT_lod",
+    ];
     assert_eq!(document["extensionsUsed"], json!(kept));
-    assert_eq!(document["extensionsRequired"], json!(["KHR_texture_transform"]));
+    assert_eq!(
+        document["extensionsRequired"],
+        json!(["KHR_texture_transform"])
+    );
     let again = read(&path).expect("a document that is read again");
     assert_eq!(again.faces.len(), 2, "the finest level alone is shown");
-    let material = again.channels.iter().find(|own| own.name == MATERIAL).expect("materials");
-    let names: Vec<&str> = [0, 1].map(|face| &*material.labels[material.value(face)[0] as usize]).to_vec();
+    let material = again
+        .channels
+        .iter()
+        .find(|own| own.name == MATERIAL)
+        .expect("materials");
+    let names: Vec<&str> = [0, 1]
+        .map(|face| &*material.labels[material.value(face)[0] as usize])
+        .to_vec();
     assert_eq!(names, ["skin", "cloth"]);
 }
 
@@ -168,12 +221,25 @@ fn materials_need_no_names() {
     });
     let asset = Asset::from_bytes(&glb(&text.to_string(), &bin), None).expect("an asset");
     let soup = asset.scene_soup().expect("two triangles");
-    let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|face| face.try_into().expect("three")).collect();
-    let surface = Triangles { positions: &soup.positions, triangles: &triangles };
+    let triangles: Vec<[u32; 3]> = soup
+        .faces
+        .iter()
+        .map(|face| face.try_into().expect("three"))
+        .collect();
+    let surface = Triangles {
+        positions: &soup.positions,
+        triangles: &triangles,
+    };
     let level = DetailLevel::new(Output::new(surface).channels(&soup.channels));
     let (_folder, path) = written(&[level], Some(&asset)).expect("written");
     let document = document(&path);
     assert_eq!(document["materials"], text["materials"]);
-    let primitives = document["meshes"][0]["primitives"].as_array().expect("primitives");
-    assert_eq!([&primitives[0]["material"], &primitives[1]["material"]], [1, 0], "{document:#}");
+    let primitives = document["meshes"][0]["primitives"]
+        .as_array()
+        .expect("primitives");
+    assert_eq!(
+        [&primitives[0]["material"], &primitives[1]["material"]],
+        [1, 0],
+        "{document:#}"
+    );
 }

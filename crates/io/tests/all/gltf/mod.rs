@@ -1,6 +1,10 @@
 //! glTF: numbers by hand, flaws by name, edits that touch nothing else.
 
-#![allow(clippy::panic, clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
 
 mod accessors;
 mod assets;

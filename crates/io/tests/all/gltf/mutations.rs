@@ -9,35 +9,64 @@ use proptest::prelude::*;
 /// How a target moves the vertices of a mesh, and nothing where it doesn't.
 fn added(own: &MeshSoup, target: usize) -> Vec<VertexAttribute> {
     let mut values = vec![0.0; 3 * own.soup.positions.len()];
-    let tables =
-        own.attributes.iter().filter(|table| table.target == Some(target) && table.is_displacement());
+    let tables = own
+        .attributes
+        .iter()
+        .filter(|table| table.target == Some(target) && table.is_displacement());
     for table in tables {
         for (face, corners) in own.soup.faces.iter().zip(&table.corners) {
             for (&v, &value) in face.iter().zip(corners) {
-                values[3 * v as usize..][..3].copy_from_slice(&table.values[3 * value as usize..][..3]);
+                values[3 * v as usize..][..3]
+                    .copy_from_slice(&table.values[3 * value as usize..][..3]);
             }
         }
     }
-    vec![VertexAttribute { name: "POSITION".to_owned(), width: 3, values, is_integer: false }]
+    vec![VertexAttribute {
+        name: "POSITION".to_owned(),
+        width: 3,
+        values,
+        is_integer: false,
+    }]
 }
 
 fn exercise(bytes: &[u8]) {
-    let Ok(mut asset) = Asset::from_bytes(bytes, None) else { return };
+    let Ok(mut asset) = Asset::from_bytes(bytes, None) else {
+        return;
+    };
     let _ = asset.contents();
     let _ = asset.scene_soup();
     for mesh in 0..asset.mesh_count().min(4) {
         let _ = asset.mesh(mesh, Joining::Never);
-        let _ = asset.mesh(mesh, Joining::Ignoring { skins: true, morphs: true, distance: 0.0 });
-        let Ok(own) = asset.mesh(mesh, Joining::Together) else { continue };
+        let _ = asset.mesh(
+            mesh,
+            Joining::Ignoring {
+                skins: true,
+                morphs: true,
+                distance: 0.0,
+            },
+        );
+        let Ok(own) = asset.mesh(mesh, Joining::Together) else {
+            continue;
+        };
         let stretch = asset.stretch(mesh);
         assert!(stretch > 0.0 && stretch.is_finite());
         let vertices = own.soup.positions.len();
-        assert!(own.soup.faces.iter().flatten().all(|&v| (v as usize) < vertices));
+        assert!(
+            own.soup
+                .faces
+                .iter()
+                .flatten()
+                .all(|&v| (v as usize) < vertices)
+        );
         for part in &own.parts {
-            let triangles: Vec<[u32; 3]> =
-                part.faces.clone().filter_map(|face| own.soup.faces.get(face).try_into().ok()).collect();
-            let targets: Vec<Vec<VertexAttribute>> =
-                (0..part.targets.len()).map(|target| added(&own, target)).collect();
+            let triangles: Vec<[u32; 3]> = part
+                .faces
+                .clone()
+                .filter_map(|face| own.soup.faces.get(face).try_into().ok())
+                .collect();
+            let targets: Vec<Vec<VertexAttribute>> = (0..part.targets.len())
+                .map(|target| added(&own, target))
+                .collect();
             let geometry = Geometry {
                 positions: &own.soup.positions,
                 normals: None,
@@ -50,7 +79,10 @@ fn exercise(bytes: &[u8]) {
     }
     for format in [Format::Glb, Format::Gltf] {
         if let Ok(written) = asset.to_bytes(format) {
-            assert!(Asset::from_bytes(&written, None).is_ok(), "what was written cannot be read");
+            assert!(
+                Asset::from_bytes(&written, None).is_ok(),
+                "what was written cannot be read"
+            );
         }
     }
 }
@@ -74,14 +106,19 @@ fn seed() -> Vec<u8> {
     let primitive = r#""attributes":{"POSITION":0,"JOINTS_0":3,"WEIGHTS_0":3},"indices":1,"targets":[{"POSITION":2},{"POSITION":6,"COLOR_0":6}]"#;
     let mut bin = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
     bin.extend([0, 1, 2, 0, 2, 3, 0, 0]);
-    bin.extend(floats(&[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]));
+    bin.extend(floats(&[
+        1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
+    ]));
     glb(&document(top, primitive), &bin)
 }
 
 #[test]
 fn the_seed_is_sound() {
     let asset = Asset::from_bytes(&seed(), None).unwrap();
-    assert_eq!(asset.mesh(0, Joining::Together).unwrap().soup.faces.len(), 2);
+    assert_eq!(
+        asset.mesh(0, Joining::Together).unwrap().soup.faces.len(),
+        2
+    );
     assert_eq!(asset.scene_soup().unwrap().faces.len(), 6);
 }
 
@@ -119,7 +156,13 @@ proptest! {
 
 #[test]
 fn small_files_of_others_with_bytes_flipped() {
-    let names = ["BoxMeshopt.glb", "TwoCubes.glb", "quad_skin.glb", "fuzz.glb", "BoxInterleaved.glb"];
+    let names = [
+        "BoxMeshopt.glb",
+        "TwoCubes.glb",
+        "quad_skin.glb",
+        "fuzz.glb",
+        "BoxInterleaved.glb",
+    ];
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     let mut random = |below: usize| {
         state ^= state << 13;

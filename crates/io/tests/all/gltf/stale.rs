@@ -7,7 +7,10 @@ use serde_json::{Value, json};
 
 /// The document after these primitives got another triangle, and what is told of it.
 fn edited(document: &Value, primitives: &[(usize, usize)]) -> (Value, Vec<String>) {
-    let bytes = glb(&document.to_string(), &floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]));
+    let bytes = glb(
+        &document.to_string(),
+        &floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
+    );
     let mut asset = Asset::from_bytes(&bytes, None).unwrap();
     for &(mesh, primitive) in primitives {
         let geometry = Geometry {
@@ -20,14 +23,18 @@ fn edited(document: &Value, primitives: &[(usize, usize)]) -> (Value, Vec<String
         asset.replace(mesh, primitive, &geometry).unwrap();
     }
     let told = asset.left_out();
-    (serde_json::from_str(&parts(&asset.to_bytes(Format::Glb).unwrap()).0).unwrap(), told)
+    (
+        serde_json::from_str(&parts(&asset.to_bytes(Format::Glb).unwrap()).0).unwrap(),
+        told,
+    )
 }
 
 /// Two meshes of two primitives each, with these members of meshes and primitives.
 fn document(mesh: [Value; 2], primitive: [Value; 2], used: &[&str]) -> Value {
     let of = |own: &Value, more: &[(&str, Value)]| {
         let mut own = own.clone();
-        more.iter().for_each(|(key, value)| own[*key] = value.clone());
+        more.iter()
+            .for_each(|(key, value)| own[*key] = value.clone());
         own
     };
     let primitives = primitive.map(|own| of(&own, &[("attributes", json!({"POSITION": 0}))]));
@@ -50,13 +57,22 @@ fn document(mesh: [Value; 2], primitive: [Value; 2], used: &[&str]) -> Value {
 
 #[test]
 fn what_names_vertices_of_a_primitive_goes_with_them() {
-    for name in ["CESIUM_primitive_outline", "EXT_mesh_primitive_edge_visibility", "EXT_mesh_polygon"] {
+    for name in [
+        "CESIUM_primitive_outline",
+        "EXT_mesh_primitive_edge_visibility",
+        "EXT_mesh_polygon",
+    ] {
         let own = json!({"extensions": {(name): {"indices": 1}, "ODD_thing": {"indices": 1}}, "extras": 7});
-        let document = document([json!({}), json!({})], [own.clone(), own], &["ODD_thing", name]);
+        let document = document(
+            [json!({}), json!({})],
+            [own.clone(), own],
+            &["ODD_thing", name],
+        );
         let (new, told) = edited(&document, &[(0, 0), (1, 1)]);
         assert_eq!(told, [name, "FB_geometry_metadata"]);
         // Those of others stay, and with them the name in the document's lists.
-        for (mesh, primitive, is_new) in [(0, 0, true), (0, 1, false), (1, 0, false), (1, 1, true)] {
+        for (mesh, primitive, is_new) in [(0, 0, true), (0, 1, false), (1, 0, false), (1, 1, true)]
+        {
             let own = &new["meshes"][mesh]["primitives"][primitive];
             assert_eq!(own["extensions"].get(name).is_none(), is_new, "{own}");
             assert_eq!(
@@ -79,18 +95,27 @@ fn what_names_vertices_of_a_primitive_goes_with_them() {
 
 #[test]
 fn what_names_vertices_of_a_mesh_goes_with_its_first_primitive() {
-    let manifold =
-        json!({"manifoldPrimitive": {"indices": 1, "mode": 4}, "mergeIndices": 1, "mergeValues": 1});
+    let manifold = json!({"manifoldPrimitive": {"indices": 1, "mode": 4}, "mergeIndices": 1, "mergeValues": 1});
     let own = json!({"name": "solid", "extensions": {"EXT_mesh_manifold": manifold}});
-    let document = document([own.clone(), own], [json!({}), json!({})], &["EXT_mesh_manifold"]);
+    let document = document(
+        [own.clone(), own],
+        [json!({}), json!({})],
+        &["EXT_mesh_manifold"],
+    );
     let (new, told) = edited(&document, &[(1, 1)]);
     assert_eq!(told, ["EXT_mesh_manifold", "FB_geometry_metadata"]);
     assert_eq!(new["meshes"][0], document["meshes"][0]);
     assert_eq!(new["extensionsRequired"], json!(["EXT_mesh_manifold"]));
-    assert!(new["meshes"][1].get("extensions").is_none() && new["meshes"][1]["name"] == "solid", "{new}");
+    assert!(
+        new["meshes"][1].get("extensions").is_none() && new["meshes"][1]["name"] == "solid",
+        "{new}"
+    );
     let (new, _) = edited(&document, &[(0, 0), (1, 1)]);
     assert!(!new.to_string().contains("manifold"), "{new}");
-    assert!(new.get("extensionsUsed").is_none() && new.get("extensionsRequired").is_none(), "{new}");
+    assert!(
+        new.get("extensionsUsed").is_none() && new.get("extensionsRequired").is_none(),
+        "{new}"
+    );
 }
 
 #[test]
@@ -112,22 +137,39 @@ fn groups_of_primitives_and_links_of_meshes_stay_where_they_hold() {
     ] {
         let (new, told) = edited(&document, &primitives);
         assert_eq!(has(&new), expected, "{primitives:?}: {new}");
-        assert_eq!(told.iter().any(|name| name == "EXT_mesh_primitive_restart"), !expected[0]);
-        assert_eq!(told.iter().any(|name| name == "MPEG_mesh_linking"), !expected[1]);
+        assert_eq!(
+            told.iter().any(|name| name == "EXT_mesh_primitive_restart"),
+            !expected[0]
+        );
+        assert_eq!(
+            told.iter().any(|name| name == "MPEG_mesh_linking"),
+            !expected[1]
+        );
     }
 }
 
 #[test]
 fn features_by_vertex_number_go_and_others_stay() {
-    let sets = [json!({"featureCount": 3}), json!({"featureCount": 2, "attribute": 0, "label": "a\u{e4}"})];
-    let features =
-        |sets: &[Value]| json!({"extensions": {"EXT_mesh_features": {"featureIds": sets, "extras": 1.5}}});
-    let document =
-        document([json!({}), json!({})], [features(&sets), features(&sets[..1])], &["EXT_mesh_features"]);
+    let sets = [
+        json!({"featureCount": 3}),
+        json!({"featureCount": 2, "attribute": 0, "label": "a\u{e4}"}),
+    ];
+    let features = |sets: &[Value]| json!({"extensions": {"EXT_mesh_features": {"featureIds": sets, "extras": 1.5}}});
+    let document = document(
+        [json!({}), json!({})],
+        [features(&sets), features(&sets[..1])],
+        &["EXT_mesh_features"],
+    );
     let (new, told) = edited(&document, &[(0, 0), (0, 1), (1, 1)]);
-    assert_eq!(told, ["EXT_mesh_features by vertex number", "FB_geometry_metadata"]);
+    assert_eq!(
+        told,
+        ["EXT_mesh_features by vertex number", "FB_geometry_metadata"]
+    );
     let primitives = |mesh: usize| new["meshes"][mesh]["primitives"].as_array().unwrap();
-    assert_eq!(primitives(0)[0]["extensions"], features(&sets[1..])["extensions"]);
+    assert_eq!(
+        primitives(0)[0]["extensions"],
+        features(&sets[1..])["extensions"]
+    );
     assert!(primitives(0)[1].get("extensions").is_none(), "{new}");
     assert_eq!(primitives(1)[0], document["meshes"][1]["primitives"][0]);
     assert_eq!(new["extensionsUsed"], json!(["EXT_mesh_features"]));

@@ -28,13 +28,19 @@ pub(crate) fn parts(glb: &[u8]) -> (String, Vec<u8>) {
     assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
     let text = String::from_utf8(glb[20..20 + word(12)].to_vec()).unwrap();
     let bin = 20 + word(12);
-    let bytes = if bin < glb.len() { glb[bin + 8..bin + 8 + word(bin)].to_vec() } else { Vec::new() };
+    let bytes = if bin < glb.len() {
+        glb[bin + 8..bin + 8 + word(bin)].to_vec()
+    } else {
+        Vec::new()
+    };
     (text, bytes)
 }
 
 /// A document with one primitive: members of the document beside meshes, and of the primitive.
 pub(crate) fn document(top: &str, primitive: &str) -> String {
-    format!(r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{{{primitive}}}]}}],{top}}}"#)
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{{{primitive}}}]}}],{top}}}"#
+    )
 }
 
 /// Little-endian bytes of 32-bit floats.
@@ -43,7 +49,10 @@ pub(crate) fn floats(values: &[f32]) -> Vec<u8> {
 }
 
 pub(crate) fn mesh(bytes: &[u8]) -> MeshSoup {
-    Asset::from_bytes(bytes, None).unwrap().mesh(0, Joining::Together).unwrap()
+    Asset::from_bytes(bytes, None)
+        .unwrap()
+        .mesh(0, Joining::Together)
+        .unwrap()
 }
 
 /// What is said of a mesh, or of the document.
@@ -66,22 +75,40 @@ pub(crate) fn triangles_of(glb: &[u8], mesh: usize, primitive: usize) -> Vec<[[f
         let start = view["byteOffset"].as_u64().unwrap() as usize;
         bin[start..start + view["byteLength"].as_u64().unwrap() as usize].to_vec()
     };
-    let position = &json["accessors"][primitive["attributes"]["POSITION"].as_u64().unwrap() as usize];
-    assert_eq!((&position["componentType"], &position["type"]), (&Value::from(5126), &Value::from("VEC3")));
-    let numbers: Vec<f32> =
-        bytes(position).chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
-    let points: Vec<[f32; 3]> = numbers.chunks_exact(3).map(|p| p.try_into().unwrap()).collect();
+    let position =
+        &json["accessors"][primitive["attributes"]["POSITION"].as_u64().unwrap() as usize];
+    assert_eq!(
+        (&position["componentType"], &position["type"]),
+        (&Value::from(5126), &Value::from("VEC3"))
+    );
+    let numbers: Vec<f32> = bytes(position)
+        .chunks_exact(4)
+        .map(|b| f32::from_le_bytes(b.try_into().unwrap()))
+        .collect();
+    let points: Vec<[f32; 3]> = numbers
+        .chunks_exact(3)
+        .map(|p| p.try_into().unwrap())
+        .collect();
     assert_eq!(position["count"], points.len());
     for axis in 0..3 {
         let all = || points.iter().map(|p| f64::from(p[axis]));
-        assert_eq!(position["min"][axis].as_f64(), all().reduce(f64::min), "exact bounds");
-        assert_eq!(position["max"][axis].as_f64(), all().reduce(f64::max), "exact bounds");
+        assert_eq!(
+            position["min"][axis].as_f64(),
+            all().reduce(f64::min),
+            "exact bounds"
+        );
+        assert_eq!(
+            position["max"][axis].as_f64(),
+            all().reduce(f64::max),
+            "exact bounds"
+        );
     }
     let indices = &json["accessors"][primitive["indices"].as_u64().unwrap() as usize];
     let corners: Vec<usize> = match indices["componentType"].as_u64() {
-        Some(5123) => {
-            bytes(indices).chunks_exact(2).map(|b| usize::from(b[0]) + 256 * usize::from(b[1])).collect()
-        }
+        Some(5123) => bytes(indices)
+            .chunks_exact(2)
+            .map(|b| usize::from(b[0]) + 256 * usize::from(b[1]))
+            .collect(),
         Some(5125) => bytes(indices)
             .chunks_exact(4)
             .map(|b| u32::from_le_bytes(b.try_into().unwrap()) as usize)
@@ -89,7 +116,10 @@ pub(crate) fn triangles_of(glb: &[u8], mesh: usize, primitive: usize) -> Vec<[[f
         other => panic!("{other:?}"),
     };
     assert_eq!(indices["count"], corners.len());
-    corners.chunks_exact(3).map(|c| [points[c[0]], points[c[1]], points[c[2]]]).collect()
+    corners
+        .chunks_exact(3)
+        .map(|c| [points[c[0]], points[c[1]], points[c[2]]])
+        .collect()
 }
 
 /// A file of the shared models, if they are there.

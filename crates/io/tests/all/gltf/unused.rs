@@ -31,7 +31,9 @@ fn edited(bytes: &[u8], is_replaced: impl Fn(usize, usize) -> bool) -> (Value, V
 }
 
 fn number(object: &Value, key: &str) -> usize {
-    object.get(key).map_or(0, |own| own.as_u64().unwrap() as usize)
+    object
+        .get(key)
+        .map_or(0, |own| own.as_u64().unwrap() as usize)
 }
 
 fn view<'a>(document: &Value, bin: &'a [u8], number_of: usize) -> &'a [u8] {
@@ -81,13 +83,23 @@ fn bytes_that_nothing_names_are_gone_and_others_are_where_they_are_said_to_be() 
     let file = glb(&old.to_string(), &old_bin);
     let (new, bin) = edited(&file, |_, primitive| primitive == 0);
     for kept in [1, 3, 4, 5] {
-        assert_eq!(view(&new, &bin, kept), view(&old, &old_bin, kept), "view {kept}");
+        assert_eq!(
+            view(&new, &bin, kept),
+            view(&old, &old_bin, kept),
+            "view {kept}"
+        );
         assert_eq!(number(&new["bufferViews"][kept], "byteOffset") % 4, 0);
-        assert_eq!(new["bufferViews"][kept]["name"], old["bufferViews"][kept]["name"]);
+        assert_eq!(
+            new["bufferViews"][kept]["name"],
+            old["bufferViews"][kept]["name"]
+        );
     }
     // Numbers stay, and what is not needed is as small as can be.
     assert_eq!(
-        (new["accessors"].as_array().unwrap().len(), new["bufferViews"].as_array().unwrap().len()),
+        (
+            new["accessors"].as_array().unwrap().len(),
+            new["bufferViews"].as_array().unwrap().len()
+        ),
         (7, 8)
     );
     for (gone, accessor) in [(0, 0), (2, 1)] {
@@ -99,13 +111,20 @@ fn bytes_that_nothing_names_are_gone_and_others_are_where_they_are_said_to_be() 
             assert!(new["accessors"][accessor].get(key).is_none(), "{new}");
         }
     }
-    assert_eq!(new["accessors"].as_array().unwrap()[2..5], old["accessors"].as_array().unwrap()[2..]);
+    assert_eq!(
+        new["accessors"].as_array().unwrap()[2..5],
+        old["accessors"].as_array().unwrap()[2..]
+    );
     // All of the first view; of the other what alignment leaves.
     let saved = old_bin.len() + NEW - bin.len();
     assert!((716..=724).contains(&saved), "{saved}");
     let (new, bin) = edited(&file, |_, _| true);
     for kept in [1, 5] {
-        assert_eq!(view(&new, &bin, kept), view(&old, &old_bin, kept), "view {kept}");
+        assert_eq!(
+            view(&new, &bin, kept),
+            view(&old, &old_bin, kept),
+            "view {kept}"
+        );
     }
     assert_eq!(edited(&file, |_, _| false), (old, old_bin));
 }
@@ -121,10 +140,12 @@ fn what_something_unknown_may_name_stays() {
         (new, old_bin.len() + NEW - bin.len())
     };
     // An accessor by its number, and with it its view.
-    let (new, saved) =
-        length(&|document| document["nodes"] = json!([{"extensions": {"ODD_thing": {"of": [[0]]}}}]));
+    let (new, saved) = length(&|document| {
+        document["nodes"] = json!([{"extensions": {"ODD_thing": {"of": [[0]]}}}])
+    });
     assert!(
-        new["accessors"][0] == old["accessors"][0] && new["bufferViews"][0] == old["bufferViews"][0],
+        new["accessors"][0] == old["accessors"][0]
+            && new["bufferViews"][0] == old["bufferViews"][0],
         "{new}"
     );
     assert!((64..100).contains(&saved), "{saved}");
@@ -133,7 +154,10 @@ fn what_something_unknown_may_name_stays() {
         ("extras", json!({"view": 0, "other": 2})),
         ("extras", json!({"0": true, "2": true})),
         ("extensions", json!({"ODD_thing": {"at": "/accessors/0"}})),
-        ("extensions", json!({"ODD_thing": {"buffer": 0, "byteOffset": 4}})),
+        (
+            "extensions",
+            json!({"ODD_thing": {"buffer": 0, "byteOffset": 4}}),
+        ),
     ];
     for (key, value) in all {
         let (new, saved) = length(&|document| document[key] = value.clone());
@@ -145,7 +169,10 @@ fn what_something_unknown_may_name_stays() {
     assert!(length(&|document| document["materials"] = material.clone()).1 > 700);
     // Another accessor that has a part of the same bytes.
     let (new, saved) = length(&|document| document["accessors"][2]["bufferView"] = json!(0));
-    assert!(saved < 100 && new["accessors"][0] == old["accessors"][0], "{saved}: {new}");
+    assert!(
+        saved < 100 && new["accessors"][0] == old["accessors"][0],
+        "{saved}: {new}"
+    );
 }
 
 #[test]
@@ -163,17 +190,33 @@ fn real_assets_keep_what_they_use() {
         let (text, old_bin) = parts(&file);
         let old: Value = serde_json::from_str(&text).unwrap();
         let (new, bin) = edited(&file, |_, _| true);
-        let images = new.get("images").and_then(Value::as_array).into_iter().flatten();
+        let images = new
+            .get("images")
+            .and_then(Value::as_array)
+            .into_iter()
+            .flatten();
         let mut used = 0;
         for image in images.filter(|image| image.get("bufferView").is_some()) {
             let at = number(image, "bufferView");
             assert_eq!(view(&new, &bin, at), view(&old, &old_bin, at), "{name}");
             used += view(&new, &bin, at).len();
         }
-        for view in new["bufferViews"].as_array().unwrap().iter().filter(|view| view["buffer"] == 0) {
-            assert!(number(view, "byteOffset") + number(view, "byteLength") <= bin.len(), "{name}: {view}");
+        for view in new["bufferViews"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|view| view["buffer"] == 0)
+        {
+            assert!(
+                number(view, "byteOffset") + number(view, "byteLength") <= bin.len(),
+                "{name}: {view}"
+            );
         }
-        println!("{name}: {} bytes became {}, {used} in use", old_bin.len(), bin.len());
+        println!(
+            "{name}: {} bytes became {}, {used} in use",
+            old_bin.len(),
+            bin.len()
+        );
         if name == "duck.glb" {
             assert!(bin.len() < used + NEW + 64, "{} bytes", bin.len());
         }

@@ -22,14 +22,23 @@ impl Part {
         let across = along.cross(random.vector()).normalize();
         let second = first + along;
         let third = first + random.signed() * along + thin * (0.6 + 0.5 * random.signed()) * across;
-        let corners = if case.is_multiple_of(2) { [first, second, third] } else { [second, third, first] };
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        let corners = if case.is_multiple_of(2) {
+            [first, second, third]
+        } else {
+            [second, third, first]
+        };
+        let normal = (corners[1] - corners[0])
+            .cross(corners[2] - corners[0])
+            .normalize();
         let edges = [0, 1, 2].map(|edge| corners[(edge + 1) % 3] - corners[edge]);
         // By a quadratic form within the plane, one of whose directions may bend next to nothing.
         let size = size * thin;
         let less = [1.0, -0.5, 1e-3, 1e-5, 1e-7, 1e-9, 0.0][case % 7] * random.signed();
         let turn = (3.0 * random.signed()).sin_cos();
-        let directions = [along * turn.0 + across * turn.1, across * turn.0 - along * turn.1];
+        let directions = [
+            along * turn.0 + across * turn.1,
+            across * turn.0 - along * turn.1,
+        ];
         let aside = 3.0 * random.vector().reject_from_normalized(normal);
         let bends = edges.map(|edge| {
             let [x, y] = directions.map(|direction| direction.dot(edge));
@@ -37,15 +46,31 @@ impl Part {
         });
         let tilt = 0.05 * random.signed();
         let normals = [0; 3].map(|_| (normal + tilt * random.vector()).normalize());
-        Self { corners, normals, bends }
+        Self {
+            corners,
+            normals,
+            bends,
+        }
     }
 }
 
 /// The rows of some parts.
 fn rows(parts: &[Part], is_turned: bool) -> [[[f32; WIDTH]; 3]; 8] {
     let mut rows = [[[0.0; WIDTH]; 3]; 8];
-    for (i, Part { corners: [a, b, c], normals, bends }) in parts.iter().enumerate() {
-        let edges = if is_turned { [a - b, a - c] } else { [b - a, c - a] };
+    for (
+        i,
+        Part {
+            corners: [a, b, c],
+            normals,
+            bends,
+        },
+    ) in parts.iter().enumerate()
+    {
+        let edges = if is_turned {
+            [a - b, a - c]
+        } else {
+            [b - a, c - a]
+        };
         let all = edges.into_iter().chain(*normals).chain(*bends);
         for (row, vector) in rows.iter_mut().zip(all) {
             (0..3).for_each(|axis| row[axis][i] = vector[axis] as f32);
@@ -61,7 +86,9 @@ fn single_precision_is_on_the_safe_side() {
     for round in 0..3000 {
         // Parts of a row are much alike.
         let size = 10f64.powf(-3.0 + 2.0 * random.signed());
-        let parts: Vec<Part> = (0..8).map(|i| Part::random(&mut random, 35 * i + round, size)).collect();
+        let parts: Vec<Part> = (0..8)
+            .map(|i| Part::random(&mut random, 35 * i + round, size))
+            .collect();
         let rows = rows(&parts, round % 2 == 1);
         let slices = |row: usize| rows[row].each_ref().map(|axis| &axis[..]);
         let input = Parts {
@@ -70,18 +97,43 @@ fn single_precision_is_on_the_safe_side() {
             normals: [slices(2), slices(3), slices(4)],
             bends: [slices(5), slices(6), slices(7)],
             size: above(
-                parts.iter().flat_map(|part| part.bends).map(|w| w.abs().element_sum()).fold(0.0, f64::max),
+                parts
+                    .iter()
+                    .flat_map(|part| part.bends)
+                    .map(|w| w.abs().element_sum())
+                    .fold(0.0, f64::max),
             ),
         };
-        let rest = Remainder { height: 1e-6, curve: 2e-7, steep: 1e-6, first: 3e-6 };
-        let target =
-            RowTarget { distance: 1.0, range_share: 0.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let rest = Remainder {
+            height: 1e-6,
+            curve: 2e-7,
+            steep: 1e-6,
+            first: 3e-6,
+        };
+        let target = RowTarget {
+            distance: 1.0,
+            range_share: 0.0,
+            tilt: 0.1,
+            slope: f64::INFINITY,
+            drift_share: 0.41,
+        };
         let mut found = Found::default();
         measure(8, &input, &rest, &target, &mut found);
-        for (i, Part { corners, normals, bends }) in parts.iter().enumerate() {
+        for (
+            i,
+            Part {
+                corners,
+                normals,
+                bends,
+            },
+        ) in parts.iter().enumerate()
+        {
             let frame = TriangleFrame::new(*corners);
             let height = quadratic_height(bends.map(|bend| bend.dot(frame.normal())));
-            let tilt = normals.iter().map(|n| n.distance(frame.normal())).fold(0.0, f64::max);
+            let tilt = normals
+                .iter()
+                .map(|n| n.distance(frame.normal()))
+                .fold(0.0, f64::max);
             let (mut drift, mut drift_slope, mut reach) = (0.0f64, 0.0f64, 0.0f64);
             for (edge, bend) in bends.iter().enumerate() {
                 let out = -bend.dot(frame.outward(edge));
@@ -90,7 +142,11 @@ fn single_precision_is_on_the_safe_side() {
                 let room = frame.length(edge) - 0.5 * along - steep;
                 drift = drift.max(0.125 * out);
                 reach = reach.max(0.125 * out * frame.length(edge));
-                let slope = if room > 0.0 { (0.5 * out.abs() + steep) / room } else { f64::INFINITY };
+                let slope = if room > 0.0 {
+                    (0.5 * out.abs() + steep) / room
+                } else {
+                    f64::INFINITY
+                };
                 drift_slope = drift_slope.max(slope);
             }
             let chord = tilt + target.tilt;
@@ -98,16 +154,27 @@ fn single_precision_is_on_the_safe_side() {
                 (height + f64::from(rest.height)) * (1.0 + 0.5 * chord * chord)
                     + chord * (drift + f64::from(rest.curve))
             };
-            let shortest = (0..3).map(|edge| frame.length(edge)).fold(f64::INFINITY, f64::min);
+            let shortest = (0..3)
+                .map(|edge| frame.length(edge))
+                .fold(f64::INFINITY, f64::min);
             let bound = f64::from(found.bound[i]);
             if bound == f64::INFINITY {
                 continue;
             }
             compared += 1;
             let least = value(drift);
-            assert!(bound >= least, "round {round}, {i}: {bound:e}, not {least:e}");
-            assert!(f64::from(found.tilt[i]) >= tilt && f64::from(found.slope[i]) <= frame.least_slope());
-            assert!(f64::from(found.drift_slope[i]) >= drift_slope, "round {round}, {i}");
+            assert!(
+                bound >= least,
+                "round {round}, {i}: {bound:e}, not {least:e}"
+            );
+            assert!(
+                f64::from(found.tilt[i]) >= tilt
+                    && f64::from(found.slope[i]) <= frame.least_slope()
+            );
+            assert!(
+                f64::from(found.drift_slope[i]) >= drift_slope,
+                "round {round}, {i}"
+            );
             // And not far off.
             if round % 5 == 0 {
                 round_ones += 1;
@@ -118,7 +185,10 @@ fn single_precision_is_on_the_safe_side() {
             }
         }
     }
-    assert!(compared > 10_000 && tight > round_ones * 9 / 10, "{compared}, {tight} of {round_ones}");
+    assert!(
+        compared > 10_000 && tight > round_ones * 9 / 10,
+        "{compared}, {tight} of {round_ones}"
+    );
 }
 
 /// The greatest height of a quadratic, by the places where it can be and none other, is never above what is told.
@@ -135,7 +205,10 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
         let (low, high) = heights(bends.map(f32x4::splat));
         let [low, high] = [low, high].map(|height| f64::from(height.to_array()[0]));
         assert!(high >= expected, "{bends:?}: {high:e}, not {expected:e}");
-        assert!(low <= expected * 1.001 && high <= expected * 1.02, "{bends:?} {low} {high} {expected}");
+        assert!(
+            low <= expected * 1.001 && high <= expected * 1.02,
+            "{bends:?} {low} {high} {expected}"
+        );
     }
 }
 
@@ -143,8 +216,13 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
 #[test]
 fn what_has_no_bound_is_within_nothing() {
     for distance in [1.0, f64::MAX, f64::INFINITY] {
-        let target =
-            RowTarget { distance, range_share: 0.0, tilt: 0.1, slope: f64::INFINITY, drift_share: 0.41 };
+        let target = RowTarget {
+            distance,
+            range_share: 0.0,
+            tilt: 0.1,
+            slope: f64::INFINITY,
+            drift_share: 0.41,
+        };
         let mut found = Found::default();
         (found.bound[0], found.bound[1]) = (f32::INFINITY, f32::NAN);
         let (mut extent, mut marks) = (RowExtent::NONE, [Mark::Passes; 3]);

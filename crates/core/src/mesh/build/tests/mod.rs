@@ -27,12 +27,19 @@ fn build_soup(soup: &PolygonSoup) -> (Mesh, Diagnosis) {
 }
 
 fn finding(places: &[u32]) -> Finding {
-    Finding { count: places.len(), first: places.to_vec() }
+    Finding {
+        count: places.len(),
+        first: places.to_vec(),
+    }
 }
 
 /// The non-empty findings.
 fn found(diagnosis: &Diagnosis) -> Vec<(&'static str, Finding)> {
-    diagnosis.findings().filter(|(_, f)| !f.is_empty()).map(|(name, f)| (name, f.clone())).collect()
+    diagnosis
+        .findings()
+        .filter(|(_, f)| !f.is_empty())
+        .map(|(name, f)| (name, f.clone()))
+        .collect()
 }
 
 /// Checks all that every built mesh promises.
@@ -69,7 +76,10 @@ fn check_junctions_hold(mesh: &Mesh) {
                 [0, 1, 2].map(|i| 0.75 * p[v.index()][i] + 0.125 * ends[0][i] + 0.125 * ends[1][i])
             })
             .collect();
-        assert!(moved.iter().all(|q| *q == moved[0]), "copies {group:?} part: {moved:?}");
+        assert!(
+            moved.iter().all(|q| *q == moved[0]),
+            "copies {group:?} part: {moved:?}"
+        );
     }
     let mut seen = HashSet::new();
     for group in mesh.junctions().edges.iter() {
@@ -86,7 +96,8 @@ fn edges_by_place(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> HashMap<[[u
     let mut edges = HashMap::new();
     for t in triangles {
         for i in 0..3 {
-            let mut ends = [t[i], t[(i + 1) % 3]].map(|v| positions[v as usize].map(|x| (x + 0.0).to_bits()));
+            let mut ends =
+                [t[i], t[(i + 1) % 3]].map(|v| positions[v as usize].map(|x| (x + 0.0).to_bits()));
             ends.sort_unstable();
             *edges.entry(ends).or_insert(0) += 1;
         }

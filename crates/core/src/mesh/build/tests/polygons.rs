@@ -21,7 +21,10 @@ fn normal_form(mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
 
 fn flat(points: &[[f64; 2]]) -> Vec<[f64; 3]> {
     // A plane that no axis is perpendicular to.
-    points.iter().map(|&[x, y]| [x + y, y - 2.0 * x, x + 3.0]).collect()
+    points
+        .iter()
+        .map(|&[x, y]| [x + y, y - 2.0 * x, x + 3.0])
+        .collect()
 }
 
 fn area(p: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
@@ -32,7 +35,10 @@ fn area(p: &[[f64; 2]], [a, b, c]: [u32; 3]) -> f64 {
 /// The shoelace formula.
 fn polygon_area(p: &[[f64; 2]]) -> f64 {
     let n = p.len();
-    (0..n).map(|i| p[i][0] * p[(i + 1) % n][1] - p[(i + 1) % n][0] * p[i][1]).sum::<f64>() / 2.0
+    (0..n)
+        .map(|i| p[i][0] * p[(i + 1) % n][1] - p[(i + 1) % n][0] * p[i][1])
+        .sum::<f64>()
+        / 2.0
 }
 
 /// Triangles of non-negative area that add up to the polygon, each side once and each diagonal twice.
@@ -45,11 +51,21 @@ fn assert_tiles(p: &[[f64; 2]], triangles: &[[u32; 3]]) {
     let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
     for t in triangles {
         for i in 0..3 {
-            assert_eq!(*edges.entry([t[i], t[(i + 1) % 3]]).and_modify(|c| *c += 1).or_insert(1), 1);
+            assert_eq!(
+                *edges
+                    .entry([t[i], t[(i + 1) % 3]])
+                    .and_modify(|c| *c += 1)
+                    .or_insert(1),
+                1
+            );
         }
     }
     for &[a, b] in edges.keys() {
-        assert_eq!(edges.contains_key(&[b, a]), (a + 1) % n != b, "edge {a} {b}");
+        assert_eq!(
+            edges.contains_key(&[b, a]),
+            (a + 1) % n != b,
+            "edge {a} {b}"
+        );
     }
     assert!((0..n).all(|i| edges.contains_key(&[i, (i + 1) % n])));
 }
@@ -60,17 +76,40 @@ fn quads_take_the_diagonal_inside_or_the_shorter_one() {
     let along_02 = vec![[0, 1, 2], [0, 2, 3]];
     let along_13 = vec![[0, 1, 3], [1, 2, 3]];
     // Concave at corner 2, then at corner 1; the outside diagonal would be the shorter one.
-    assert_eq!(cut(&[[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]]), along_02);
-    assert_eq!(cut(&[[0.0, 4.0], [1.0, 1.0], [4.0, 0.0], [5.0, 5.0]]), along_13);
+    assert_eq!(
+        cut(&[[0.0, 0.0], [4.0, 0.0], [1.0, 1.0], [0.0, 4.0]]),
+        along_02
+    );
+    assert_eq!(
+        cut(&[[0.0, 4.0], [1.0, 1.0], [4.0, 0.0], [5.0, 5.0]]),
+        along_13
+    );
     // A corner on the side between its neighbours.
-    assert_eq!(cut(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 3.0]]), along_13);
-    let p = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [3.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    assert_eq!(
+        cut(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 3.0]]),
+        along_13
+    );
+    let p = [
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [3.0, 1.0, 0.0],
+        [1.0, 1.0, 0.0],
+    ];
     assert_eq!(normal_form(triangles_of(&p, &[&[0, 1, 2, 3]])), along_13);
-    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let square = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
     for start in 0..4 {
         let mut face = [0, 1, 2, 3];
         face.rotate_left(start);
-        assert_eq!(normal_form(triangles_of(&square, &[&face])), along_02, "a tie goes to the lowest index");
+        assert_eq!(
+            normal_form(triangles_of(&square, &[&face])),
+            along_02,
+            "a tie goes to the lowest index"
+        );
     }
 }
 
@@ -78,7 +117,14 @@ fn quads_take_the_diagonal_inside_or_the_shorter_one() {
 fn concave_polygons_are_tiled() {
     // An L, a comb with straight corners, an arrow with its tip at the origin.
     let shapes: [&[[f64; 2]]; 3] = [
-        &[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]],
+        &[
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [0.0, 2.0],
+        ],
         &[
             [0.0, 0.0],
             [1.0, 0.0],
@@ -127,7 +173,12 @@ fn a_straight_corner_stays_joined_to_the_neighbour() {
 
 #[test]
 fn repeated_corners_and_spikes_are_cleaned() {
-    let p = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [5.0, 5.0, 5.0]];
+    let p = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [5.0, 5.0, 5.0],
+    ];
     for face in [
         &[0u32, 0, 1, 1, 2][..],
         &[0, 1, 2, 0],
@@ -137,10 +188,20 @@ fn repeated_corners_and_spikes_are_cleaned() {
         &[2, 3, 3, 2, 0, 1],
     ] {
         let (mesh, diagnosis) = build_soup(&soup(&p, &[face]));
-        assert_eq!(normal_form(mesh.triangles().to_vec()), [[0, 1, 2]], "{face:?}");
+        assert_eq!(
+            normal_form(mesh.triangles().to_vec()),
+            [[0, 1, 2]],
+            "{face:?}"
+        );
         assert!(diagnosis.collapsed_faces.is_empty());
     }
-    for face in [&[0u32, 1][..], &[0, 1, 0, 1], &[0, 1, 2, 1], &[], &[0, 0, 0]] {
+    for face in [
+        &[0u32, 1][..],
+        &[0, 1, 0, 1],
+        &[0, 1, 2, 1],
+        &[],
+        &[0, 0, 0],
+    ] {
         let (_, diagnosis) = build_soup(&soup(&p, &[&[0, 1, 2], face]));
         assert_eq!(diagnosis.collapsed_faces, finding(&[1]), "{face:?}");
     }
@@ -149,9 +210,16 @@ fn repeated_corners_and_spikes_are_cleaned() {
 #[test]
 fn twisted_polygons_are_bridged_and_told() {
     // A planar bow-tie quad, and a pentagram.
-    let quad = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.1]];
-    let star: Vec<[f64; 3]> =
-        (0..5).map(|i| f64::from(i) * 0.8 * core::f64::consts::PI).map(|t| [t.cos(), t.sin(), 0.0]).collect();
+    let quad = [
+        [0.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.1],
+    ];
+    let star: Vec<[f64; 3]> = (0..5)
+        .map(|i| f64::from(i) * 0.8 * core::f64::consts::PI)
+        .map(|t| [t.cos(), t.sin(), 0.0])
+        .collect();
     for positions in [&quad[..], &star] {
         let face: Vec<u32> = (0..positions.len() as u32).collect();
         let (mesh, diagnosis) = build_soup(&soup(positions, &[&face]));
@@ -164,7 +232,14 @@ fn twisted_polygons_are_bridged_and_told() {
 
 #[test]
 fn polygons_far_from_unit_size_are_tiled() {
-    let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+    let points = [
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.0, 1.0],
+        [1.0, 1.0],
+        [1.0, 2.0],
+        [0.0, 2.0],
+    ];
     for scale in [1e-140, 1e-20, 1e20, 1e150] {
         let p: Vec<[f64; 3]> = flat(&points).iter().map(|p| p.map(|x| x * scale)).collect();
         let (mesh, diagnosis) = build_soup(&soup(&p, &[&[0, 1, 2, 3, 4, 5]]));
@@ -176,20 +251,26 @@ fn polygons_far_from_unit_size_are_tiled() {
 /// Points of a small grid, sorted by angle about a point between them: a simple polygon with many straight and
 /// level corners.
 fn simple_polygons() -> impl Strategy<Value = Vec<[f64; 2]>> {
-    prop::collection::vec((-6..=6i32, -6..=6i32), 5..60).prop_filter_map("too few directions", |points| {
-        let mut points: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [f64::from(x), f64::from(y)]).collect();
-        let centre = [0.25, 0.25];
-        let angle = |p: &[f64; 2]| (p[1] - centre[1]).atan2(p[0] - centre[0]);
-        points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
-        points.dedup_by(|a, b| (angle(a) - angle(b)).abs() < 1e-9);
-        // The centre must be inside.
-        let n = points.len();
-        let turns = (0..n).all(|i| {
-            let step = angle(&points[(i + 1) % n]) - angle(&points[i]);
-            step.rem_euclid(core::f64::consts::TAU) < 3.1
-        });
-        (n >= 5 && turns).then_some(points)
-    })
+    prop::collection::vec((-6..=6i32, -6..=6i32), 5..60).prop_filter_map(
+        "too few directions",
+        |points| {
+            let mut points: Vec<[f64; 2]> = points
+                .iter()
+                .map(|&(x, y)| [f64::from(x), f64::from(y)])
+                .collect();
+            let centre = [0.25, 0.25];
+            let angle = |p: &[f64; 2]| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+            points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+            points.dedup_by(|a, b| (angle(a) - angle(b)).abs() < 1e-9);
+            // The centre must be inside.
+            let n = points.len();
+            let turns = (0..n).all(|i| {
+                let step = angle(&points[(i + 1) % n]) - angle(&points[i]);
+                step.rem_euclid(core::f64::consts::TAU) < 3.1
+            });
+            (n >= 5 && turns).then_some(points)
+        },
+    )
 }
 
 proptest! {
@@ -246,7 +327,16 @@ fn corners_on_one_line_in_a_tilted_plane_are_no_twist() {
 #[test]
 fn many_corners_take_little_time() {
     let n = 50_000u32;
-    let comb = |i: u32| [f64::from(i), if i.is_multiple_of(2) { 0.0 } else { 1000.0 + f64::from(i % 7) }];
+    let comb = |i: u32| {
+        [
+            f64::from(i),
+            if i.is_multiple_of(2) {
+                0.0
+            } else {
+                1000.0 + f64::from(i % 7)
+            },
+        ]
+    };
     let mut points: Vec<[f64; 2]> = (0..n).map(comb).collect();
     points.extend([[f64::from(n), -1.0], [-1.0, -1.0]]);
     points.reverse();
@@ -285,7 +375,11 @@ fn polygons_with_slits_are_no_twists() {
     face.reverse();
     assert!(face.len() > 64);
     let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
-    assert!(diagnosis.twisted_polygons.is_empty(), "{:?}", found(&diagnosis));
+    assert!(
+        diagnosis.twisted_polygons.is_empty(),
+        "{:?}",
+        found(&diagnosis)
+    );
     assert_eq!(mesh.triangles().len(), face.len() - 2);
 }
 
@@ -308,9 +402,17 @@ fn thousands_of_slits_to_one_corner_are_no_twist() {
     // Clockwise so far.
     face.reverse();
     let (mesh, diagnosis) = build_soup(&soup(&flat(&points), &[&face]));
-    assert!(diagnosis.twisted_polygons.is_empty(), "{:?}", found(&diagnosis));
+    assert!(
+        diagnosis.twisted_polygons.is_empty(),
+        "{:?}",
+        found(&diagnosis)
+    );
     assert_eq!(mesh.triangles().len(), face.len() - 2);
-    let areas: Vec<f64> = mesh.triangles().iter().map(|&triangle| area(&points, triangle)).collect();
+    let areas: Vec<f64> = mesh
+        .triangles()
+        .iter()
+        .map(|&triangle| area(&points, triangle))
+        .collect();
     assert!(areas.iter().all(|&area| area > 0.0));
     assert!((areas.iter().sum::<f64>() - (81.0 - holes)).abs() < 1e-9);
 }
@@ -321,7 +423,9 @@ fn a_long_spiral_is_tiled() {
     let arm = |far: f64| (0..10_000).map(move |i| (0.1 * f64::from(i), far + 0.02 * f64::from(i)));
     let points = arm(1.0).map(|(turn, far)| [far * turn.cos(), far * turn.sin()]);
     let back = arm(1.05).map(|(turn, far)| [far * turn.cos(), far * turn.sin()]);
-    let mut points: Vec<[f64; 2]> = points.chain(back.collect::<Vec<_>>().into_iter().rev()).collect();
+    let mut points: Vec<[f64; 2]> = points
+        .chain(back.collect::<Vec<_>>().into_iter().rev())
+        .collect();
     points.reverse();
     if polygon_area(&points) < 0.0 {
         points.reverse();

@@ -12,14 +12,23 @@ fn soups() -> impl Strategy<Value = PolygonSoup> {
     let tags = prop::collection::vec((any::<u32>(), any::<u32>(), 0.0..12.0f64), 0..6);
     (positions, faces, tags).prop_map(|(positions, faces, tags)| {
         let n = positions.len() as u32;
-        let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
+        let mut soup = PolygonSoup {
+            positions,
+            ..PolygonSoup::default()
+        };
         for mut face in faces {
             face.iter_mut().for_each(|v| *v %= n);
             soup.faces.push(&face);
         }
         for (a, b, sharpness) in tags {
-            soup.creases.push(CreaseTag { vertices: [a % (n + 1), b % (n + 1)], sharpness });
-            soup.corners.push(CornerTag { vertex: b % (n + 1), sharpness });
+            soup.creases.push(CreaseTag {
+                vertices: [a % (n + 1), b % (n + 1)],
+                sharpness,
+            });
+            soup.corners.push(CornerTag {
+                vertex: b % (n + 1),
+                sharpness,
+            });
         }
         soup
     })
@@ -28,7 +37,10 @@ fn soups() -> impl Strategy<Value = PolygonSoup> {
 /// Triangles over few vertices: repetitions, edges with many faces, bow-ties, one-sided components.
 fn triangle_soups() -> impl Strategy<Value = PolygonSoup> {
     // Vertices on the moment curve: no three on a line, none coincide.
-    let positions: Vec<[f64; 3]> = (1..=9).map(f64::from).map(|t| [t, t * t, t * t * t]).collect();
+    let positions: Vec<[f64; 3]> = (1..=9)
+        .map(f64::from)
+        .map(|t| [t, t * t, t * t * t])
+        .collect();
     prop::collection::vec([0..9u32, 0..9u32, 0..9u32], 1..40).prop_map(move |faces| {
         let faces: Vec<&[u32]> = faces.iter().map(|f| f.as_slice()).collect();
         soup(&positions, &faces)
@@ -36,7 +48,12 @@ fn triangle_soups() -> impl Strategy<Value = PolygonSoup> {
 }
 
 fn welds() -> impl Strategy<Value = Weld> {
-    prop_oneof![Just(Weld::Never), Just(Weld::Exact), Just(Weld::Within(0.0)), Just(Weld::Within(1.0))]
+    prop_oneof![
+        Just(Weld::Never),
+        Just(Weld::Exact),
+        Just(Weld::Within(0.0)),
+        Just(Weld::Within(1.0))
+    ]
 }
 
 proptest! {
@@ -119,8 +136,17 @@ proptest! {
 
 /// A closed surface some of whose edges were split on one side only, the slit filled by a face of zero area.
 fn closed_soups_with_flat_faces() -> impl Strategy<Value = PolygonSoup> {
-    prop::collection::vec((any::<prop::sample::Index>(), 1..4u32, any::<bool>()), 0..40).prop_map(|splits| {
-        let mut positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    prop::collection::vec(
+        (any::<prop::sample::Index>(), 1..4u32, any::<bool>()),
+        0..40,
+    )
+    .prop_map(|splits| {
+        let mut positions = vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ];
         let mut faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         for (half_edge, quarters, twice) in splits {
             let h = half_edge.index(3 * faces.len());
@@ -140,8 +166,9 @@ fn closed_soups_with_flat_faces() -> impl Strategy<Value = PolygonSoup> {
             faces.push([v, b, c]);
             if twice {
                 // Both sides of the edge are split: no flat face is needed.
-                if let Some(other) =
-                    faces.iter().position(|f| (0..3).any(|i| f[i] == b && f[(i + 1) % 3] == a))
+                if let Some(other) = faces
+                    .iter()
+                    .position(|f| (0..3).any(|i| f[i] == b && f[(i + 1) % 3] == a))
                 {
                     let i = (0..3).find(|&i| faces[other][i] == b).unwrap_or(0);
                     let d = faces[other][(i + 2) % 3];

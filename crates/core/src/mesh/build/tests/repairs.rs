@@ -3,7 +3,12 @@
 use super::*;
 use crate::random::Random;
 
-const TETRAHEDRON: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+const TETRAHEDRON: [[f64; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+];
 const SIDES: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];
 
 #[test]
@@ -19,31 +24,49 @@ fn a_clean_mesh_is_left_as_it_is() {
 
 #[test]
 fn bad_input_is_named() {
-    let error = |soup: &PolygonSoup, options: BuildOptions| Mesh::from_soup(soup, &options).unwrap_err();
+    let error =
+        |soup: &PolygonSoup, options: BuildOptions| Mesh::from_soup(soup, &options).unwrap_err();
     let plain = BuildOptions::default();
     let mut faces = SIDES;
     faces[2] = &[1, 9, 3];
     assert_eq!(
         error(&soup(&TETRAHEDRON, &faces), plain),
-        MeshError::VertexOutOfRange { face: 2, vertex: 9, count: 4 }
+        MeshError::VertexOutOfRange {
+            face: 2,
+            vertex: 9,
+            count: 4
+        }
     );
     for bad in [f64::INFINITY, f64::NEG_INFINITY] {
         let mut positions = TETRAHEDRON.to_vec();
         positions.push([0.0, 0.0, bad]);
-        let expected = MeshError::NotFinite { vertex: 4, axis: 2, value: bad };
+        let expected = MeshError::NotFinite {
+            vertex: 4,
+            axis: 2,
+            value: bad,
+        };
         assert_eq!(error(&soup(&positions, &SIDES), plain), expected);
     }
     let mut positions = TETRAHEDRON;
     positions[1][1] = f64::NAN;
     let text = error(&soup(&positions, &SIDES), plain).to_string();
-    assert_eq!(text, "coordinate y of vertex 1 is NaN, which is no finite number");
+    assert_eq!(
+        text,
+        "coordinate y of vertex 1 is NaN, which is no finite number"
+    );
     let text = error(&PolygonSoup::default(), plain).to_string();
     assert_eq!(text, "no face is left: the input has none");
     let text = error(&soup(&TETRAHEDRON, &[&[0, 1], &[2, 2, 3]]), plain).to_string();
-    assert!(text.contains("2 faces with fewer than three different corners (face 0, 1)"), "{text}");
+    assert!(
+        text.contains("2 faces with fewer than three different corners (face 0, 1)"),
+        "{text}"
+    );
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
         let options = plain.weld(Weld::Within(bad));
-        assert!(matches!(error(&soup(&TETRAHEDRON, &SIDES), options), MeshError::BadOption { .. }));
+        assert!(matches!(
+            error(&soup(&TETRAHEDRON, &SIDES), options),
+            MeshError::BadOption { .. }
+        ));
     }
 }
 
@@ -52,7 +75,9 @@ fn faces_that_open_elsewhere_are_kept() {
     // An octahedron whose top vertex stands twice, as lips do, with two faces without area between.
     let mut positions: Vec<[f64; 3]> = Vec::new();
     for axis in 0..3 {
-        positions.extend([1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == axis { sign } else { 0.0 })));
+        positions.extend(
+            [1.0, -1.0].map(|sign| std::array::from_fn(|i| if i == axis { sign } else { 0.0 })),
+        );
     }
     positions.push([0.0, 0.0, 1.0]);
     let faces: [&[u32]; 10] = [
@@ -69,10 +94,17 @@ fn faces_that_open_elsewhere_are_kept() {
     ];
     let options = BuildOptions::default().weld(Weld::Never);
     let built = |opening: &[u32]| {
-        let soup = PolygonSoup { opening: opening.to_vec(), ..soup(&positions, &faces) };
+        let soup = PolygonSoup {
+            opening: opening.to_vec(),
+            ..soup(&positions, &faces)
+        };
         let (mesh, diagnosis) = Mesh::from_soup(&soup, &options).unwrap();
         check_mesh(&mesh);
-        (mesh.face_count(), mesh.topology().boundary_edge_count(), diagnosis.zero_area_faces)
+        (
+            mesh.face_count(),
+            mesh.topology().boundary_edge_count(),
+            diagnosis.zero_area_faces,
+        )
     };
     assert_eq!(built(&[8, 9]), (10, 0, Finding::default()));
     // One of them goes where nothing opens it.
@@ -104,7 +136,13 @@ fn strict_refuses_defects_and_nothing_else() {
     let quads = soup(&p, &[&[0, 1, 2, 3], &[4, 5, 6, 7]]);
     let (mesh, diagnosis) = Mesh::from_soup(&quads, &strict).unwrap();
     assert_eq!(mesh.vertex_count(), 6);
-    assert_eq!(found(&diagnosis), [("polygons", finding(&[0, 1])), ("welded_vertices", finding(&[4, 7]))]);
+    assert_eq!(
+        found(&diagnosis),
+        [
+            ("polygons", finding(&[0, 1])),
+            ("welded_vertices", finding(&[4, 7]))
+        ]
+    );
     assert_eq!(
         diagnosis.to_string(),
         "2 faces with more than three corners: cut into triangles (face 0, 1)\n\
@@ -151,7 +189,9 @@ fn welding_finds_what_comparing_all_pairs_finds() {
     let used = vec![true; positions.len()];
     for distance in [1e-300, 0.01, 0.03, 0.05, 0.08, 0.2, 3.0, 1e300] {
         let near = |a: usize, b: usize| {
-            let d: f64 = (0..3).map(|i| (positions[a][i] - positions[b][i]).powi(2)).sum();
+            let d: f64 = (0..3)
+                .map(|i| (positions[a][i] - positions[b][i]).powi(2))
+                .sum();
             d.sqrt() <= distance
         };
         let mut expected = vec![u32::MAX; positions.len()];
@@ -163,11 +203,17 @@ fn welding_finds_what_comparing_all_pairs_finds() {
             while let Some(u) = left.pop() {
                 if expected[u] == u32::MAX {
                     expected[u] = v as u32;
-                    left.extend((0..positions.len()).filter(|&w| expected[w] == u32::MAX && near(u, w)));
+                    left.extend(
+                        (0..positions.len()).filter(|&w| expected[w] == u32::MAX && near(u, w)),
+                    );
                 }
             }
         }
-        assert_eq!(weld::within(&positions, &used, distance).unwrap(), expected, "within {distance}");
+        assert_eq!(
+            weld::within(&positions, &used, distance).unwrap(),
+            expected,
+            "within {distance}"
+        );
     }
 }
 
@@ -177,14 +223,20 @@ fn isolated_vertices_are_those_of_the_input() {
     p.insert(0, [9.0, 9.0, 9.0]);
     // A duplicate of a used vertex without a face, a vertex that only a collapsed face uses.
     p.extend([TETRAHEDRON[0], [7.0, 7.0, 7.0]]);
-    let mut faces: Vec<Vec<u32>> = SIDES.iter().map(|f| f.iter().map(|v| v + 1).collect()).collect();
+    let mut faces: Vec<Vec<u32>> = SIDES
+        .iter()
+        .map(|f| f.iter().map(|v| v + 1).collect())
+        .collect();
     faces.push(vec![6, 6, 6]);
     let faces: Vec<&[u32]> = faces.iter().map(Vec::as_slice).collect();
     let (mesh, diagnosis) = build_soup(&soup(&p, &faces));
     assert_eq!(mesh.positions(), TETRAHEDRON);
     assert_eq!(
         found(&diagnosis),
-        [("collapsed_faces", finding(&[4])), ("isolated_vertices", finding(&[0, 5]))]
+        [
+            ("collapsed_faces", finding(&[4])),
+            ("isolated_vertices", finding(&[0, 5]))
+        ]
     );
 }
 
@@ -203,27 +255,52 @@ fn zero_area_faces_go_without_a_slit() {
     // 1 and 2 fill the slit between them and face 0's side.
     let mut p = TETRAHEDRON.to_vec();
     p.extend([[0.25, 0.0, 0.0], [0.5, 0.0, 0.0]]);
-    let faces: [&[u32]; 8] =
-        [&[0, 2, 1], &[0, 1, 5], &[0, 5, 4], &[0, 4, 3], &[4, 5, 3], &[5, 1, 3], &[1, 2, 3], &[2, 0, 3]];
+    let faces: [&[u32]; 8] = [
+        &[0, 2, 1],
+        &[0, 1, 5],
+        &[0, 5, 4],
+        &[0, 4, 3],
+        &[4, 5, 3],
+        &[5, 1, 3],
+        &[1, 2, 3],
+        &[2, 0, 3],
+    ];
     let (mesh, diagnosis) = build_soup(&soup(&p, &faces));
     assert_eq!(found(&diagnosis), [("zero_area_faces", finding(&[1, 2]))]);
     assert_eq!(mesh.topology().boundary_edge_count(), 0);
     assert_eq!(mesh.topology().euler_characteristic(), 2);
     assert_eq!(mesh.vertex_count(), 6);
     assert_eq!(mesh.face_count(), 8);
-    let twice_area = |face| mesh.face_normal(crate::FaceId(face)).iter().map(|x| x * x).sum::<f64>().sqrt();
+    let twice_area = |face| {
+        mesh.face_normal(crate::FaceId(face))
+            .iter()
+            .map(|x| x * x)
+            .sum::<f64>()
+            .sqrt()
+    };
     let least = (0..8).map(twice_area).fold(1.0, f64::min);
     assert!(least > 1e-3, "a flat face is left");
 }
 
 #[test]
 fn a_zero_area_face_on_a_boundary_is_dropped() {
-    let p = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 1.0, 0.0]];
+    let p = [
+        [0.0, 0.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [2.0, 1.0, 0.0],
+    ];
     let (mesh, diagnosis) = build_soup(&soup(&p, &[&[0, 1, 2], &[0, 2, 3], &[2, 1, 4]]));
     assert_eq!(diagnosis.zero_area_faces, finding(&[0]));
     assert_eq!(mesh.face_count(), 2);
     // Points on a line in a direction whose coordinates are not exact.
-    let p = [[0.1, 0.2, 0.3], [0.4, 0.8, 1.2], [0.2, 0.4, 0.6], [1.0, 0.0, 0.0]];
+    let p = [
+        [0.1, 0.2, 0.3],
+        [0.4, 0.8, 1.2],
+        [0.2, 0.4, 0.6],
+        [1.0, 0.0, 0.0],
+    ];
     let (_, diagnosis) = build_soup(&soup(&p, &[&[0, 1, 2], &[0, 2, 3]]));
     assert_eq!(diagnosis.zero_area_faces, finding(&[0]));
     // Thin but real: one part in 10¹².
@@ -269,7 +346,10 @@ fn the_smaller_part_is_turned() {
     // The lowest face is in the smaller part.
     let mut faces = SIDES;
     faces[0] = &[0, 1, 2];
-    assert_eq!(build_soup(&soup(&TETRAHEDRON, &faces)).1.flipped_faces, finding(&[0]));
+    assert_eq!(
+        build_soup(&soup(&TETRAHEDRON, &faces)).1.flipped_faces,
+        finding(&[0])
+    );
     // Two against two: the part with the lowest face stays, which is inside out here.
     let faces: [&[u32]; 4] = [&[0, 1, 2], &[0, 3, 1], &[1, 2, 3], &[2, 0, 3]];
     let (mesh, diagnosis) = build_soup(&soup(&TETRAHEDRON, &faces));
@@ -292,7 +372,10 @@ fn tags_follow_their_vertices() {
         [1.0, 1.0, 0.0],
     ];
     let mut quads = soup(&p, &[&[0, 1, 2, 3], &[4, 5, 6, 7]]);
-    let crease = |a, b, sharpness| CreaseTag { vertices: [a, b], sharpness };
+    let crease = |a, b, sharpness| CreaseTag {
+        vertices: [a, b],
+        sharpness,
+    };
     let corner = |vertex, sharpness| CornerTag { vertex, sharpness };
     quads.creases = vec![
         crease(5, 6, 2.0),
@@ -303,7 +386,13 @@ fn tags_follow_their_vertices() {
         crease(1, 99, 1.0),
         crease(0, 1, f64::NAN),
     ];
-    quads.corners = vec![corner(4, 1.0), corner(1, 5.0), corner(0, 10.0), corner(50, 1.0), corner(3, -1.0)];
+    quads.corners = vec![
+        corner(4, 1.0),
+        corner(1, 5.0),
+        corner(0, 10.0),
+        corner(50, 1.0),
+        corner(3, -1.0),
+    ];
     let (mesh, diagnosis) = build_soup(&quads);
     assert_eq!(diagnosis.dropped_tags, finding(&[3, 4, 5, 6, 10, 11]));
     let ends = |tag: &CreaseTag| {
@@ -322,7 +411,11 @@ fn tiny_and_huge_faces_have_an_area() {
     for size in [1e-305, 1e-300, 1e-160, 1e-120, 1.0, 1e120, 1e160, 1e300] {
         let positions = TETRAHEDRON.map(|p| p.map(|x| x * size));
         let (mesh, diagnosis) = build_soup(&soup(&positions, &SIDES));
-        assert!(diagnosis.is_clean() && mesh.triangles().len() == 4, "{size}: {:?}", found(&diagnosis));
+        assert!(
+            diagnosis.is_clean() && mesh.triangles().len() == 4,
+            "{size}: {:?}",
+            found(&diagnosis)
+        );
         // The middle of an edge takes nothing from that: it is on one line with the ends.
         let mut positions = positions.to_vec();
         positions.push([0.5 * size, 0.0, 0.0]);
@@ -334,9 +427,16 @@ fn tiny_and_huge_faces_have_an_area() {
 
 #[test]
 fn faces_know_which_of_the_input_they_are_from() {
-    let trace = |soup: &PolygonSoup| Mesh::from_soup_traced(soup, &BuildOptions::default()).unwrap();
+    let trace =
+        |soup: &PolygonSoup| Mesh::from_soup_traced(soup, &BuildOptions::default()).unwrap();
     // A line, a square, a face that is turned round, one that repeats it.
-    let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]];
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [2.0, 0.0, 0.0],
+    ];
     let faces: [&[u32]; 4] = [&[0, 0, 1], &[0, 1, 2, 3], &[1, 2, 4], &[4, 2, 1]];
     assert_eq!(trace(&soup(&positions, &faces)).2.faces, [1, 1, 2]);
     // Three sheets along an edge, closed so that the edge lies inside each: cut, and split in its middle.
@@ -356,11 +456,20 @@ fn faces_know_which_of_the_input_they_are_from() {
     assert_eq!(inputs.len(), mesh.face_count());
     for (face, &input) in inputs.iter().enumerate() {
         // Each corner, or for the middle of an edge its ends, are corners of the input's face.
-        let corners: Vec<[f64; 3]> = faces[input as usize].iter().map(|&v| positions[v as usize]).collect();
+        let corners: Vec<[f64; 3]> = faces[input as usize]
+            .iter()
+            .map(|&v| positions[v as usize])
+            .collect();
         let plane = |p: [f64; 3]| {
             let [a, b, c] = [0, 1, 2].map(|i| vector(corners[i]));
             (vector(p) - a).dot((b - a).cross(c - a))
         };
-        assert!(mesh.as_triangles().corners(face).iter().all(|&p| plane(p).abs() < 1e-12), "{face}");
+        assert!(
+            mesh.as_triangles()
+                .corners(face)
+                .iter()
+                .all(|&p| plane(p).abs() < 1e-12),
+            "{face}"
+        );
     }
 }

@@ -51,20 +51,31 @@ pub(super) struct Profile {
 impl Profile {
     pub(super) fn of(engine: &Engine<'_>) -> Result<Self, RefineError> {
         let mut heights: Vec<(f64, u32)> = heights(engine)?.into_iter().zip(0..).collect();
-        let highest_first = |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
+        let highest_first =
+            |a: &(f64, u32), b: &(f64, u32)| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1));
         parallel::sort_polled(&mut heights, &mut |_| engine.watch.poll(), highest_first)?;
-        Ok(Self { heights, for_one: FOR_ONE })
+        Ok(Self {
+            heights,
+            for_one: FOR_ONE,
+        })
     }
 
     /// The distance within which so many triangles are expected; `None` where all is flat, or where there are as many faces.
-    pub(super) fn expected(&mut self, engine: &Engine<'_>, wanted: f64) -> Result<Option<f64>, RefineError> {
+    pub(super) fn expected(
+        &mut self,
+        engine: &Engine<'_>,
+        wanted: f64,
+    ) -> Result<Option<f64>, RefineError> {
         let mut distance = self.distance(wanted);
         let count = SAMPLED.min(self.heights.len() / SAMPLED_OF);
         for _ in 0..if count > 0 { ROUNDS } else { 0 } {
             let Some(within) = distance else { break };
             self.sample(engine, count, within)?;
             let known = distance.replace(self.distance(wanted).unwrap_or(within));
-            if known.zip(distance).is_some_and(|(known, now)| (known / now).ln().abs() < SAME) {
+            if known
+                .zip(distance)
+                .is_some_and(|(known, now)| (known / now).ln().abs() < SAME)
+            {
                 break;
             }
         }
@@ -85,7 +96,10 @@ impl Profile {
         for (at, &(height, _)) in self.heights.iter().enumerate() {
             (sum, others) = (sum + self.for_one * height, others - 1.0);
             let distance = sum / (wanted - others);
-            let next = self.heights.get(at + 1).map_or(0.0, |next| self.for_one * next.0);
+            let next = self
+                .heights
+                .get(at + 1)
+                .map_or(0.0, |next| self.for_one * next.0);
             if wanted > others && distance >= next {
                 return Some(distance).filter(|distance| *distance > 0.0 && distance.is_finite());
             }
@@ -94,8 +108,15 @@ impl Profile {
     }
 
     /// Divides so many faces within a distance, more of those that have more triangles, to learn what they take.
-    fn sample(&mut self, engine: &Engine<'_>, count: usize, distance: f64) -> Result<(), RefineError> {
-        let divided = self.heights.partition_point(|&(height, _)| self.for_one * height > distance);
+    fn sample(
+        &mut self,
+        engine: &Engine<'_>,
+        count: usize,
+        distance: f64,
+    ) -> Result<(), RefineError> {
+        let divided = self
+            .heights
+            .partition_point(|&(height, _)| self.for_one * height > distance);
         let expected = |&(height, _): &(f64, u32)| self.for_one * height / distance;
         let all: f64 = self.heights[..divided].iter().map(expected).sum();
         let (mut faces, mut shares, mut before) = (Vec::new(), Vec::new(), 0.0);
@@ -105,15 +126,21 @@ impl Profile {
             let after = before + expected(face);
             let share = part(after) - part(before);
             if share > 0.0 {
-                faces.push((face.1, COUNTED_FEWEST + (COUNTED_TIMES * expected(face)) as usize));
+                faces.push((
+                    face.1,
+                    COUNTED_FEWEST + (COUNTED_TIMES * expected(face)) as usize,
+                ));
                 shares.push((share, expected(face)));
             }
             before = after;
         }
         let found = leaves_of(engine, &Goal::Within(distance), &faces)?;
-        let ratios =
-            found.iter().zip(&shares).map(|(&leaves, (share, expected))| share * leaves as f64 / expected);
-        let times = CLOSED * ratios.sum::<f64>() / shares.iter().map(|(share, _)| share).sum::<f64>();
+        let ratios = found
+            .iter()
+            .zip(&shares)
+            .map(|(&leaves, (share, expected))| share * leaves as f64 / expected);
+        let times =
+            CLOSED * ratios.sum::<f64>() / shares.iter().map(|(share, _)| share).sum::<f64>();
         if times > 0.0 {
             self.for_one = (self.for_one * times).clamp(TIMES.0 * FOR_ONE, TIMES.1 * FOR_ONE);
         }
@@ -133,7 +160,11 @@ pub(super) fn heights(engine: &Engine<'_>) -> Result<Vec<f64>, Cancelled> {
         let middles = piece.surface(control.rules).middles();
         let off = |edge: usize| {
             let middle = middles[edge].position;
-            let aside = if open[edge] { frame.outward(edge).dot(middle - corners[edge]) } else { 0.0 };
+            let aside = if open[edge] {
+                frame.outward(edge).dot(middle - corners[edge])
+            } else {
+                0.0
+            };
             hypotenuse(frame.height(middle), aside)
         };
         let height = off(0).max(off(1)).max(off(2));
@@ -155,7 +186,9 @@ mod tests {
     use crate::scheme::Loop;
 
     fn model(name: &str) -> Mesh {
-        Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default()).unwrap().0
+        Mesh::from_soup(&models::find(name).unwrap().soup(), &Default::default())
+            .unwrap()
+            .0
     }
 
     /// Counts that are expected are near those that come about.
@@ -167,9 +200,14 @@ mod tests {
             with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
                 for wanted in [10_000.0, 40_000.0] {
                     let distance = Profile::of(engine)?.expected(engine, wanted)?.unwrap();
-                    let triangles =
-                        engine.plan(Goal::Within(distance), usize::MAX)?.unwrap().triangles as f64;
-                    assert!((0.6..1.5).contains(&(triangles / wanted)), "{name}, {wanted}: {triangles}");
+                    let triangles = engine
+                        .plan(Goal::Within(distance), usize::MAX)?
+                        .unwrap()
+                        .triangles as f64;
+                    assert!(
+                        (0.6..1.5).contains(&(triangles / wanted)),
+                        "{name}, {wanted}: {triangles}"
+                    );
                 }
                 Ok(())
             })
@@ -185,11 +223,15 @@ mod tests {
             let options = (&ExactOptions::default().triangles(1), &Demands::default());
             with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
                 let goal = Goal::Within(1e-3 * mesh.diagonal());
-                let faces: Vec<(u32, usize)> =
-                    (0..mesh.face_count() as u32).map(|face| (face, usize::MAX)).collect();
+                let faces: Vec<(u32, usize)> = (0..mesh.face_count() as u32)
+                    .map(|face| (face, usize::MAX))
+                    .collect();
                 let leaves: usize = leaves_of(engine, &goal, &faces)?.iter().sum();
                 let triangles = engine.divided(goal, usize::MAX)?.unwrap().triangles;
-                assert!((leaves..leaves * 3 / 2).contains(&triangles), "{name}: {leaves}, {triangles}");
+                assert!(
+                    (leaves..leaves * 3 / 2).contains(&triangles),
+                    "{name}: {leaves}, {triangles}"
+                );
                 Ok(())
             })
             .unwrap();

@@ -28,7 +28,9 @@ pub(super) fn finer(
     if engine.is_settled_later() {
         return engine.plan(goal, most);
     }
-    let Some(mut finer) = engine.finer(coarser, goal, wanting, most)? else { return Ok(None) };
+    let Some(mut finer) = engine.finer(coarser, goal, wanting, most)? else {
+        return Ok(None);
+    };
     Ok(engine.settle(&mut finer, most)?.then_some(finer))
 }
 
@@ -41,7 +43,9 @@ pub(super) fn fill(
     most: usize,
 ) -> Result<Plan, RefineError> {
     // Triangles grow with the reciprocal of the distance.
-    filled(engine, plan, most, high / low - 1.0, |is_finer| Goal::Partly(high, low, is_finer))
+    filled(engine, plan, most, high / low - 1.0, |is_finer| {
+        Goal::Partly(high, low, is_finer)
+    })
 }
 
 /// The finest plan whose worst faces, as many as fit, are marked in the goal. A marked face has so many times its triangles more,
@@ -54,12 +58,14 @@ fn filled(
     goal: impl Fn(Vec<bool>) -> Goal,
 ) -> Result<Plan, RefineError> {
     // Undivided faces are kept also where they are more.
-    let Some(left) = most.checked_sub(coarsest.triangles) else { return Ok(coarsest) };
+    let Some(left) = most.checked_sub(coarsest.triangles) else {
+        return Ok(coarsest);
+    };
     let mut left = left as f64;
     let order = coarsest.faces_by_bound();
-    let costs = order
-        .iter()
-        .map(|&(_, face)| (gain * f64::from(coarsest.closed[face as usize].triangles)).max(LEAST_GAIN));
+    let costs = order.iter().map(|&(_, face)| {
+        (gain * f64::from(coarsest.closed[face as usize].triangles)).max(LEAST_GAIN)
+    });
     let guess = costs.take_while(|cost| {
         left -= cost;
         left >= 0.0
@@ -72,12 +78,18 @@ fn filled(
         }
         let middle = next.clamp(fits + 1, fails - 1);
         let mut is_finer = vec![false; best.closed.len()];
-        order[..middle].iter().for_each(|&(_, face)| is_finer[face as usize] = true);
+        order[..middle]
+            .iter()
+            .for_each(|&(_, face)| is_finer[face as usize] = true);
         let wanting: Vec<u32> = order[fits..middle].iter().map(|&(_, face)| face).collect();
         match finer(engine, &best, goal(is_finer), &wanting, most)? {
             Some(plan) => {
                 (best, fits) = (plan, middle);
-                next = if fails > order.len() { 2 * middle } else { fits.midpoint(fails) };
+                next = if fails > order.len() {
+                    2 * middle
+                } else {
+                    fits.midpoint(fails)
+                };
             }
             None => {
                 fails = middle;
@@ -99,7 +111,11 @@ pub(in super::super) fn even(
     let levels = levels(engine, most);
     let triangles = faces << (2 * levels);
     // With twice the triangles the worst places come first in any case; and what is tried has to be looked at all over.
-    let least = if most < EXACT { most / 2 } else { most - most / NEARLY_ALL };
+    let least = if most < EXACT {
+        most / 2
+    } else {
+        most - most / NEARLY_ALL
+    };
     if levels == 0 || triangles < least {
         return Ok(None);
     }
@@ -108,13 +124,18 @@ pub(in super::super) fn even(
     if highest > distance * 4f64.powi(levels as i32) {
         return Ok(None);
     }
-    let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else { return Ok(None) };
+    let Some(even) = engine.plan(Goal::Even(levels, vec![false; faces]), most)? else {
+        return Ok(None);
+    };
     // What is left of great budgets is too little to matter.
     if levels >= engine.max_levels || most >= EXACT {
         return Ok(Some(even));
     }
     // Four for one, and what closes the gaps.
-    filled(engine, even, most, 3.5, |is_finer| Goal::Even(levels, is_finer)).map(Some)
+    filled(engine, even, most, 3.5, |is_finer| {
+        Goal::Even(levels, is_finer)
+    })
+    .map(Some)
 }
 
 /// How often all faces can be divided.

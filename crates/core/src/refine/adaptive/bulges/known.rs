@@ -28,8 +28,14 @@ impl Key {
             SubTriangle::Quarter { edge, at_end } => 11 + 2 * edge as u8 + u8::from(at_end),
         };
         let corners = emission.triangles[emitted.number as usize];
-        let turn = corners.iter().position(|&vertex| vertex == emitted.vertices[0]).unwrap_or(0) as u8;
-        Self { leaf, part: part + PARTS * turn }
+        let turn = corners
+            .iter()
+            .position(|&vertex| vertex == emitted.vertices[0])
+            .unwrap_or(0) as u8;
+        Self {
+            leaf,
+            part: part + PARTS * turn,
+        }
     }
 
     /// The number of the triangle's corner with which its part begins.
@@ -51,12 +57,19 @@ pub(super) struct Known<'a> {
 
 impl<'a> Known<'a> {
     pub(super) fn of(before: Option<&'a Bulge>, allowed: f64) -> Self {
-        Self { before, allowed, next: 0, in_order: Vec::new() }
+        Self {
+            before,
+            allowed,
+            next: 0,
+            in_order: Vec::new(),
+        }
     }
 
     /// Takes over what is known of a triangle, whose number now is given; says whether anything is.
     pub(super) fn take_over(&mut self, key: Key, number: usize, found: &mut Bulge) -> bool {
-        let Some((before, at)) = self.before.and_then(|before| Some((before, self.find(before, key)?)))
+        let Some((before, at)) = self
+            .before
+            .and_then(|before| Some((before, self.find(before, key)?)))
         else {
             return false;
         };
@@ -84,7 +97,9 @@ impl<'a> Known<'a> {
             self.in_order.extend(0..keys.len() as u32);
             self.in_order.sort_unstable_by_key(|&at| keys[at as usize]);
         }
-        let found = self.in_order.binary_search_by_key(&key, |&at| keys[at as usize]);
+        let found = self
+            .in_order
+            .binary_search_by_key(&key, |&at| keys[at as usize]);
         found.ok().map(|at| self.in_order[at] as usize)
     }
 }

@@ -40,7 +40,9 @@ struct Part<T> {
 impl Waiting {
     /// Whether others have to be looked at before another part of a piece can wait.
     pub(super) fn is_full(&self, ground: &Ground) -> bool {
-        let is_other = self.ground.is_some_and(|known| !core::ptr::eq(known, ground));
+        let is_other = self
+            .ground
+            .is_some_and(|known| !core::ptr::eq(known, ground));
         is_other || self.even.len() == MOST || self.other.len() == MOST
     }
 
@@ -57,9 +59,17 @@ impl Waiting {
         }
         let number = emitted.number;
         if emitted.part == SubTriangle::Whole {
-            self.even.push(Part { at: spot, number, turn });
+            self.even.push(Part {
+                at: spot,
+                number,
+                turn,
+            });
         } else {
-            self.other.push(Part { at: cell, number, turn });
+            self.other.push(Part {
+                at: cell,
+                number,
+                turn,
+            });
         }
     }
 
@@ -68,13 +78,19 @@ impl Waiting {
         self.ground = None;
         let Some(jet) = self.jet.take() else { return };
         let bender = Bender::of(&jet);
-        let mut look = Look { jet: &jet, emission, first, found };
+        let mut look = Look {
+            jet: &jet,
+            emission,
+            first,
+            found,
+        };
         look.each(&self.even, |four| {
             let at = [from_fn(|l| four[l].u), from_fn(|l| four[l].v)].map(f64x4::new);
             bender.even(at, f64x4::new(from_fn(|l| four[l].size)))
         });
         look.each(&self.other, |four| {
-            let place = |corner: usize, axis: usize| f64x4::new(from_fn(|l| four[l].0[corner][axis]));
+            let place =
+                |corner: usize, axis: usize| f64x4::new(from_fn(|l| four[l].0[corner][axis]));
             bender.any([0, 1, 2].map(|corner| [place(corner, 0), place(corner, 1)]))
         });
         self.even.clear();
@@ -128,23 +144,34 @@ impl Look<'_> {
             for (l, part) in some.iter().enumerate() {
                 let number = (part.number - self.first) as usize;
                 let is_smooth = rest[l] < SMOOTH * (high[l] - low[l]);
-                self.found.ranges[number] = if is_smooth { [low[l], high[l]] } else { self.range(part) };
+                self.found.ranges[number] = if is_smooth {
+                    [low[l], high[l]]
+                } else {
+                    self.range(part)
+                };
                 self.found.parts[number / FOUR].take(number % FOUR, &kept, l, part.turn as usize);
             }
         }
     }
 
     fn corners(&self, number: u32) -> [[f64; 3]; 3] {
-        self.emission.triangles[number as usize].map(|vertex| self.emission.positions[vertex as usize])
+        self.emission.triangles[number as usize]
+            .map(|vertex| self.emission.positions[vertex as usize])
     }
 
     /// The least and the greatest height over a triangle, by the quadratic part or in a few places.
     #[cold]
     fn range<T: Place>(&self, part: &Part<T>) -> [f64; 2] {
         let [a, b, c] = self.corners(part.number).map(vector);
-        let heights = self.jet.heights(&part.at.cell(), unit_or_zero((b - a).cross(c - a)));
+        let heights = self
+            .jet
+            .heights(&part.at.cell(), unit_or_zero((b - a).cross(c - a)));
         let (low, high, rest) = heights.about();
-        let (low, high) = if rest < SMOOTH * (high - low) { (low, high) } else { heights.sampled() };
+        let (low, high) = if rest < SMOOTH * (high - low) {
+            (low, high)
+        } else {
+            heights.sampled()
+        };
         [low, high]
     }
 }

@@ -38,7 +38,11 @@ struct Known {
 impl Known {
     /// What tells it from others of its control face.
     fn key(&self) -> (u32, u64, [[u64; 3]; 3]) {
-        (self.place.level, self.place.path, self.corners.map(|corner| corner.map(f64::to_bits)))
+        (
+            self.place.level,
+            self.place.path,
+            self.corners.map(|corner| corner.map(f64::to_bits)),
+        )
     }
 }
 
@@ -51,11 +55,27 @@ struct Listing<'a> {
 
 impl Beholder for Listing<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
-        let Emitted { number, vertices, place, part, open } = *emitted;
+        let Emitted {
+            number,
+            vertices,
+            place,
+            part,
+            open,
+        } = *emitted;
         let corners = vertices.map(|vertex| self.emission.positions[vertex as usize]);
         let moves = vertices.map(|vertex| self.emission.step(vertex).to_array());
         let around = beside(self.emission, self.sharp, number);
-        self.found.push((number, Known { place, part, open, corners, moves, around }));
+        self.found.push((
+            number,
+            Known {
+                place,
+                part,
+                open,
+                corners,
+                moves,
+                around,
+            },
+        ));
     }
 }
 
@@ -63,7 +83,11 @@ impl Beholder for Listing<'_> {
 type Listed = Vec<(u32, Known)>;
 
 fn listed(sources: &Sources<'_>, sharp: &HashSet<u32>, face: u32) -> Listed {
-    let mut listing = Listing { emission: sources.emission, sharp, found: Vec::new() };
+    let mut listing = Listing {
+        emission: sources.emission,
+        sharp,
+        found: Vec::new(),
+    };
     sources.show(face, &|| false, &mut listing);
     listing.found
 }
@@ -78,7 +102,9 @@ fn divide(engine: &Engine<'_>, plan: &mut Plan, random: &mut Random) {
             let child = random.below(4);
             (word, place) = (plan.decision.trees.child(word, child), place.child(child));
         }
-        engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
+        engine
+            .split(&mut plan.decision.trees, place, &mut dirty)
+            .unwrap();
     }
     assert!(engine.carry_out(plan, dirty, usize::MAX).unwrap());
 }
@@ -90,11 +116,16 @@ fn assert_holds(found: &[Measured], anew: &[Measured], name: &str) {
         let pairs = greatest(found).into_iter().zip(greatest(anew));
         // What is kept of parts is rounded.
         assert!(
-            pairs.into_iter().all(|(found, anew)| found >= (1.0 - 1e-6) * anew),
+            pairs
+                .into_iter()
+                .all(|(found, anew)| found >= (1.0 - 1e-6) * anew),
             "{name}, {face}: {found:?} {anew:?}"
         );
         let is_known = anew.failing.iter().all(|(place, value)| {
-            found.failing.iter().any(|(known, found)| known == place && *found >= (1.0 - 1e-6) * value)
+            found
+                .failing
+                .iter()
+                .any(|(known, found)| known == place && *found >= (1.0 - 1e-6) * value)
         });
         assert!(is_known, "{name}, {face}: {found:?} {anew:?}");
     }
@@ -105,73 +136,109 @@ fn rounds(name: &str, mesh: &Mesh, (share, seed): (f64, u64), counts: &mut [usiz
     let mut random = Random::new(seed);
     let limit = share * mesh.diagonal();
     let options = ExactOptions::default().tolerance(limit).balance(true);
-    with_engine(mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-        let (goal, watch) = (Goal::Within(limit), engine.watch);
-        let mut plan = engine.plan(Goal::Within(2.0 * limit), usize::MAX)?.unwrap();
-        let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
-        let (mut bulges, mut measured) = (Bulges::default(), Vec::<Measured>::new());
-        let mut before: Option<Vec<Listed>> = None;
-        for round in 0..4 {
-            let name = format!("{name}, round {round}");
-            let touched = plan.is_touched.clone();
-            let kept = plan.emission.take();
-            let mut anew = engine.emit_some(&plan, Scope::All)?;
-            plan.emission = kept;
-            let mut emission = engine.emit_all(&mut plan)?;
-            assert_eq!((&emission.triangles, &emission.twins), (&anew.triangles, &anew.twins), "{name}");
-            assert_eq!(emission.normals, anew.normals, "{name}");
-            bulges.look(&engine.sources(&plan, &emission), watch, &marked(&touched), (limit, 0))?;
-            let mut all_bulges = Bulges::default();
-            all_bulges.look(&engine.sources(&plan, &emission), watch, &faces, (limit, 0))?;
-            for (known, anew) in bulges.0.iter().zip(&all_bulges.0) {
-                let (known, anew) = (known.ranges.as_flattened(), anew.ranges.as_flattened());
-                assert_eq!(known.len(), anew.len(), "{name}");
-                let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * limit;
-                assert!(known.iter().zip(anew).all(is_near), "{name}");
-            }
-            let moves = bulges.offsets(engine.control, &mut emission, limit, watch)?;
-            emission.shift(moves, watch)?;
-            // What was taken over lies where it would if all were moved anew.
-            anew.junctions = emission.junctions.clone();
-            join_copies(&mut anew.positions, &anew.junctions.vertices);
-            let moves = bulges.offsets(engine.control, &mut anew, limit, watch)?;
-            assert_eq!(moves.1, faces, "{name}");
-            anew.shift(moves, watch)?;
-            assert_eq!((&emission.offsets, &emission.positions), (&anew.offsets, &anew.positions), "{name}");
-            let changes = Changes::since((Some(&bulges), true), &touched, &emission, watch)?;
-            let sources = engine.sources(&plan, &emission);
-            let sharp = sharp_edges(&emission, watch)?;
-            let known: Vec<_> = faces.iter().map(|&face| listed(&sources, &sharp, face)).collect();
-            let changed = changes.faces(&emission, &engine.edges, watch)?;
-            let nothing = Vec::new();
-            for (&face, known) in faces.iter().zip(&known) {
-                let before = before.as_ref().map_or(&nothing, |before| &before[face as usize]);
-                let before: HashMap<_, _> = before.iter().map(|(_, known)| (known.key(), known)).collect();
-                for (number, known) in known {
-                    let is_concerned = changes.concern(&emission, *number);
-                    let is_same = before.get(&known.key()) == Some(&known);
-                    assert!(is_concerned || is_same, "{name}, {face}: {known:?}");
-                    assert!(!is_concerned || changed.contains(&face));
-                    counts[usize::from(is_concerned)] += 1;
+    with_engine(
+        mesh,
+        &Loop,
+        (&options, &Demands::default()),
+        &mut unobserved,
+        |engine| {
+            let (goal, watch) = (Goal::Within(limit), engine.watch);
+            let mut plan = engine.plan(Goal::Within(2.0 * limit), usize::MAX)?.unwrap();
+            let faces: Vec<u32> = (0..plan.closed.len() as u32).collect();
+            let (mut bulges, mut measured) = (Bulges::default(), Vec::<Measured>::new());
+            let mut before: Option<Vec<Listed>> = None;
+            for round in 0..4 {
+                let name = format!("{name}, round {round}");
+                let touched = plan.is_touched.clone();
+                let kept = plan.emission.take();
+                let mut anew = engine.emit_some(&plan, Scope::All)?;
+                plan.emission = kept;
+                let mut emission = engine.emit_all(&mut plan)?;
+                assert_eq!(
+                    (&emission.triangles, &emission.twins),
+                    (&anew.triangles, &anew.twins),
+                    "{name}"
+                );
+                assert_eq!(emission.normals, anew.normals, "{name}");
+                bulges.look(
+                    &engine.sources(&plan, &emission),
+                    watch,
+                    &marked(&touched),
+                    (limit, 0),
+                )?;
+                let mut all_bulges = Bulges::default();
+                all_bulges.look(&engine.sources(&plan, &emission), watch, &faces, (limit, 0))?;
+                for (known, anew) in bulges.0.iter().zip(&all_bulges.0) {
+                    let (known, anew) = (known.ranges.as_flattened(), anew.ranges.as_flattened());
+                    assert_eq!(known.len(), anew.len(), "{name}");
+                    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-9 * limit;
+                    assert!(known.iter().zip(anew).all(is_near), "{name}");
                 }
+                let moves = bulges.offsets(engine.control, &mut emission, limit, watch)?;
+                emission.shift(moves, watch)?;
+                // What was taken over lies where it would if all were moved anew.
+                anew.junctions = emission.junctions.clone();
+                join_copies(&mut anew.positions, &anew.junctions.vertices);
+                let moves = bulges.offsets(engine.control, &mut anew, limit, watch)?;
+                assert_eq!(moves.1, faces, "{name}");
+                anew.shift(moves, watch)?;
+                assert_eq!(
+                    (&emission.offsets, &emission.positions),
+                    (&anew.offsets, &anew.positions),
+                    "{name}"
+                );
+                let changes = Changes::since((Some(&bulges), true), &touched, &emission, watch)?;
+                let sources = engine.sources(&plan, &emission);
+                let sharp = sharp_edges(&emission, watch)?;
+                let known: Vec<_> = faces
+                    .iter()
+                    .map(|&face| listed(&sources, &sharp, face))
+                    .collect();
+                let changed = changes.faces(&emission, &engine.edges, watch)?;
+                let nothing = Vec::new();
+                for (&face, known) in faces.iter().zip(&known) {
+                    let before = before
+                        .as_ref()
+                        .map_or(&nothing, |before| &before[face as usize]);
+                    let before: HashMap<_, _> = before
+                        .iter()
+                        .map(|(_, known)| (known.key(), known))
+                        .collect();
+                    for (number, known) in known {
+                        let is_concerned = changes.concern(&emission, *number);
+                        let is_same = before.get(&known.key()) == Some(&known);
+                        assert!(is_concerned || is_same, "{name}, {face}: {known:?}");
+                        assert!(!is_concerned || changed.contains(&face));
+                        counts[usize::from(is_concerned)] += 1;
+                    }
+                }
+                let found = measure(
+                    &sources,
+                    watch,
+                    (&goal, f64::INFINITY),
+                    (&changed, Some(&changes), Some(&bulges)),
+                )?;
+                let anew = measure(
+                    &sources,
+                    watch,
+                    (&goal, f64::INFINITY),
+                    (&faces, None, Some(&bulges)),
+                )?;
+                if measured.is_empty() {
+                    measured = faces.iter().map(|&face| Measured::nothing(face)).collect();
+                }
+                for (&face, mut found) in changed.iter().zip(found) {
+                    let is_all = bulges.keep(face, &mut found, &emission);
+                    measured[face as usize].replace(found, is_all);
+                }
+                assert_holds(&measured, &anew, &name);
+                before = Some(known);
+                plan.emission = Some(emission);
+                divide(engine, &mut plan, &mut random);
             }
-            let found =
-                measure(&sources, watch, (&goal, f64::INFINITY), (&changed, Some(&changes), Some(&bulges)))?;
-            let anew = measure(&sources, watch, (&goal, f64::INFINITY), (&faces, None, Some(&bulges)))?;
-            if measured.is_empty() {
-                measured = faces.iter().map(|&face| Measured::nothing(face)).collect();
-            }
-            for (&face, mut found) in changed.iter().zip(found) {
-                let is_all = bulges.keep(face, &mut found, &emission);
-                measured[face as usize].replace(found, is_all);
-            }
-            assert_holds(&measured, &anew, &name);
-            before = Some(known);
-            plan.emission = Some(emission);
-            divide(engine, &mut plan, &mut random);
-        }
-        Ok(())
-    })
+            Ok(())
+        },
+    )
     .unwrap();
 }
 
@@ -201,26 +268,43 @@ fn what_is_not_measured_again_is_the_same() {
 /// What balancing, and dividing for angles, come to is what all triangles come to when they are measured in the end.
 #[test]
 fn rounds_end_with_what_is_found_anew() {
-    for (name, seed) in [("icosphere", 1), ("head", 2), ("sheet", 1), ("spike", 2), ("cup", 0)] {
+    for (name, seed) in [
+        ("icosphere", 1),
+        ("head", 2),
+        ("sheet", 1),
+        ("spike", 2),
+        ("cup", 0),
+    ] {
         let mesh = stirred(name, seed);
         let limit = 1e-3 * mesh.diagonal();
         let options = ExactOptions::default().tolerance(limit);
         for options in [options.clone().balance(true), options.clone().angle(0.2)] {
-            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-                let goal = Goal::Within(if engine.is_balanced { limit } else { 1.0 });
-                let outcome = if engine.is_balanced {
-                    engine.balanced(limit, usize::MAX)?
-                } else {
-                    let plan = engine.plan(goal.clone(), usize::MAX)?.unwrap();
-                    engine.emit_among(plan, &goal, (usize::MAX, false))?
-                };
-                let outcome = outcome.unwrap();
-                let faces: Vec<u32> = (0..outcome.plan.closed.len() as u32).collect();
-                let sources = engine.sources(&outcome.plan, &outcome.emission);
-                let anew = measure(&sources, engine.watch, (&goal, f64::INFINITY), (&faces, None, None))?;
-                assert_holds(&outcome.measured.unwrap(), &anew, name);
-                Ok(())
-            })
+            with_engine(
+                &mesh,
+                &Loop,
+                (&options, &Demands::default()),
+                &mut unobserved,
+                |engine| {
+                    let goal = Goal::Within(if engine.is_balanced { limit } else { 1.0 });
+                    let outcome = if engine.is_balanced {
+                        engine.balanced(limit, usize::MAX)?
+                    } else {
+                        let plan = engine.plan(goal.clone(), usize::MAX)?.unwrap();
+                        engine.emit_among(plan, &goal, (usize::MAX, false))?
+                    };
+                    let outcome = outcome.unwrap();
+                    let faces: Vec<u32> = (0..outcome.plan.closed.len() as u32).collect();
+                    let sources = engine.sources(&outcome.plan, &outcome.emission);
+                    let anew = measure(
+                        &sources,
+                        engine.watch,
+                        (&goal, f64::INFINITY),
+                        (&faces, None, None),
+                    )?;
+                    assert_holds(&outcome.measured.unwrap(), &anew, name);
+                    Ok(())
+                },
+            )
             .unwrap();
         }
     }

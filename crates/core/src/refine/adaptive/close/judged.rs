@@ -67,7 +67,15 @@ enum Said {
 impl Judged {
     /// A leaf of which nothing was said.
     pub(super) fn new(place: Place, split: [bool; 3], open: [bool; 3], is_strict: bool) -> Self {
-        Self { place, split, open, is_strict, from_end: false, extent: Extent::NONE, said: Said::Nothing }
+        Self {
+            place,
+            split,
+            open,
+            is_strict,
+            from_end: false,
+            extent: Extent::NONE,
+            said: Said::Nothing,
+        }
     }
 
     /// How many of its edges are split.
@@ -94,16 +102,19 @@ impl Judged {
         self.said = match verdict.outcome {
             Outcome::Passes => Said::Passes,
             Outcome::Fails => Said::Fails,
-            Outcome::Depends { deviation, tilt, slopes } => {
-                Said::Depends(Box::new((deviation, tilt, slopes)))
-            }
+            Outcome::Depends {
+                deviation,
+                tilt,
+                slopes,
+            } => Said::Depends(Box::new((deviation, tilt, slopes))),
         };
     }
 
     /// Takes over what was said of the same leaf, if the same edges were split.
     pub(super) fn recall(&mut self, known: &Self) {
         if known.split == self.split {
-            (self.from_end, self.extent, self.said) = (known.from_end, known.extent, known.said.clone());
+            (self.from_end, self.extent, self.said) =
+                (known.from_end, known.extent, known.said.clone());
         }
     }
 }
@@ -112,7 +123,10 @@ impl Judged {
 pub(super) fn recall(known: &[Judged], leaves: &mut [Judged]) {
     let mut known = known.iter().peekable();
     for leaf in leaves {
-        while known.next_if(|other| other.place.precedes(leaf.place)).is_some() {}
+        while known
+            .next_if(|other| other.place.precedes(leaf.place))
+            .is_some()
+        {}
         if let Some(other) = known.next_if(|other| other.place == leaf.place) {
             leaf.recall(other);
         }
@@ -122,10 +136,19 @@ pub(super) fn recall(known: &[Judged], leaves: &mut [Judged]) {
 impl Closed {
     /// What a face comes to with these leaves, in the order of places.
     pub(super) fn of(counts: Counts, leaves: Vec<Judged>, trees: &Trees, max_levels: u32) -> Self {
-        let Counts { vertices, triangles, leaves: count } = counts;
+        let Counts {
+            vertices,
+            triangles,
+            leaves: count,
+        } = counts;
         let is_none = leaves.is_empty();
         let judged = (!is_none).then(|| Box::new(JudgedLeaves::of(leaves, trees, max_levels)));
-        Self { vertices, triangles, leaves: count, judged }
+        Self {
+            vertices,
+            triangles,
+            leaves: count,
+            judged,
+        }
     }
 
     /// What was said of leaves.
@@ -136,14 +159,19 @@ impl Closed {
     /// Forgets what is known of the tree and its leaves: it was replaced.
     pub(in super::super) fn forget(&mut self) {
         self.leaves = 0;
-        self.judged.iter_mut().for_each(|judged| judged.leaves = Vec::new());
+        self.judged
+            .iter_mut()
+            .for_each(|judged| judged.leaves = Vec::new());
     }
 
     /// The same, but for leaves that are within a value whatever their neighbours are.
     pub(in super::super) fn forget_beyond(&mut self, limit: f64) {
         self.leaves = 0;
-        let is_within = |leaf: &Judged| matches!(leaf.said, Said::Passes) && leaf.extent.bound <= limit;
-        self.judged.iter_mut().for_each(|judged| judged.leaves.retain(is_within));
+        let is_within =
+            |leaf: &Judged| matches!(leaf.said, Said::Passes) && leaf.extent.bound <= limit;
+        self.judged
+            .iter_mut()
+            .for_each(|judged| judged.leaves.retain(is_within));
     }
 
     /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
@@ -158,12 +186,18 @@ impl Closed {
 
     /// Leaves that pass on conditions, in the order of the walk.
     pub(in super::super) fn conditions(&self) -> &[Condition] {
-        self.judged.as_ref().map_or(&[], |judged| &judged.conditions)
+        self.judged
+            .as_ref()
+            .map_or(&[], |judged| &judged.conditions)
     }
 
     /// The same face with other numbers.
     pub(in super::super) fn count(&mut self, counts: Counts) {
-        Counts { vertices: self.vertices, triangles: self.triangles, leaves: self.leaves } = counts;
+        Counts {
+            vertices: self.vertices,
+            triangles: self.triangles,
+            leaves: self.leaves,
+        } = counts;
     }
 
     /// Whether triangles and conditions are the same if the vertices along the edges are: in between leaves were only divided.
@@ -183,7 +217,10 @@ pub(super) fn in_walks_order<'l>(leaves: &'l [Judged], trees: &Trees) -> Vec<&'l
     let mut rest = &mut ordered[..];
     while let [first, ..] = rest {
         let node = trees.even_node(first.place);
-        let count = rest.iter().take_while(|leaf| node.holds(leaf.place)).count();
+        let count = rest
+            .iter()
+            .take_while(|leaf| node.holds(leaf.place))
+            .count();
         let (own, others) = core::mem::take(&mut rest).split_at_mut(count);
         own.sort_by_key(|leaf| leaf.place.row_below(node.level));
         rest = others;
@@ -200,15 +237,28 @@ impl JudgedLeaves {
             if leaf.is_said() && leaf.split_edges() == 2 {
                 judged.diagonals.push(leaf.from_end);
             }
-            let bound = if leaf.is_said() { leaf.extent.bound } else { f64::INFINITY };
-            judged.extent.add(&Extent { bound, worst: Some(place), ..leaf.extent });
+            let bound = if leaf.is_said() {
+                leaf.extent.bound
+            } else {
+                f64::INFINITY
+            };
+            judged.extent.add(&Extent {
+                bound,
+                worst: Some(place),
+                ..leaf.extent
+            });
             match &leaf.said {
                 // What nobody has judged is beyond every bound.
                 Said::Nothing | Said::Passes | Said::Fails => {}
                 Said::Depends(_) if leaf.fails(max_levels) => {}
                 Said::Depends(on) => {
                     let (deviation, tilt, slopes) = **on;
-                    judged.conditions.push(Condition { place, deviation, tilt, slopes });
+                    judged.conditions.push(Condition {
+                        place,
+                        deviation,
+                        tilt,
+                        slopes,
+                    });
                 }
             }
         }

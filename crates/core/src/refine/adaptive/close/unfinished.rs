@@ -20,14 +20,21 @@ pub(in super::super) struct Unfinished {
 impl Unfinished {
     pub(in super::super) fn of(known: &Closed) -> Self {
         let split_edges = (known.triangles as usize).saturating_sub(known.leaves);
-        Self { later: BTreeMap::new(), split_edges, piece: None }
+        Self {
+            later: BTreeMap::new(),
+            split_edges,
+            piece: None,
+        }
     }
 
     /// What is said of a leaf, of which `known` was said before.
     pub(super) fn leaf<'l>(&'l self, known: &'l [Judged], place: Place) -> Option<&'l Judged> {
         match self.later.get(&place.key(MOST_LEVELS)) {
             Some(later) => later.as_ref(),
-            None => known.binary_search_by(|leaf| leaf.place.in_order(&place)).ok().map(|at| &known[at]),
+            None => known
+                .binary_search_by(|leaf| leaf.place.in_order(&place))
+                .ok()
+                .map(|at| &known[at]),
         }
     }
 
@@ -49,7 +56,10 @@ impl Unfinished {
         trees: &Trees,
         max_levels: u32,
     ) -> (Closed, bool) {
-        let before = known.judged.as_mut().map_or(Vec::new(), |judged| core::mem::take(&mut judged.leaves));
+        let before = known
+            .judged
+            .as_mut()
+            .map_or(Vec::new(), |judged| core::mem::take(&mut judged.leaves));
         let mut leaves = Vec::with_capacity(before.len() + self.later.len());
         let mut later = self.later.into_iter().peekable();
         for leaf in before {
@@ -63,8 +73,22 @@ impl Unfinished {
             }
         }
         leaves.extend(later.filter_map(|(_, new)| new));
-        let Closed { vertices, triangles, leaves: count, .. } = known;
-        let found = Closed::of(Counts { vertices, triangles, leaves: count }, leaves, trees, max_levels);
+        let Closed {
+            vertices,
+            triangles,
+            leaves: count,
+            ..
+        } = known;
+        let found = Closed::of(
+            Counts {
+                vertices,
+                triangles,
+                leaves: count,
+            },
+            leaves,
+            trees,
+            max_levels,
+        );
         let is_same = found.is_judged_as(&known);
         (found, is_same)
     }

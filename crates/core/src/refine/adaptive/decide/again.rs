@@ -19,7 +19,8 @@ impl Before<'_> {
     /// Whether a node was split, and not for its neighbours' sake alone.
     fn is_divided(&self, word: u32) -> bool {
         is_split(word)
-            && (even_depth(word).is_some() || (0..4).any(|child| !is_unjudged(self.trees.child(word, child))))
+            && (even_depth(word).is_some()
+                || (0..4).any(|child| !is_unjudged(self.trees.child(word, child))))
     }
 
     /// Whether all leaves below a node are known to be within a value.
@@ -40,14 +41,24 @@ impl Decider<'_> {
         self.begin(face);
         // What was let pass counts on that still, and of what replaces it nothing is tilted more.
         self.allowance = found.allowance;
-        self.extent = Extent { bound: 0.0, worst: None, ..found.extent(face) };
+        self.extent = Extent {
+            bound: 0.0,
+            worst: None,
+            ..found.extent(face)
+        };
         let word = before.trees.root(face);
         let (open, place) = (self.control.open(face), Place::root(face));
         let word = if before.is_within(word, self.judge.limit) {
             self.kept(before.trees, word, place)
         } else {
             let patch = self.control.patch(face);
-            self.node_again((before, word), &patch, self.control.corners(face), open, place)
+            self.node_again(
+                (before, word),
+                &patch,
+                self.control.corners(face),
+                open,
+                place,
+            )
         };
         self.piece.roots.push(word);
         self.end(face)
@@ -57,12 +68,16 @@ impl Decider<'_> {
     fn kept(&mut self, trees: &Trees, word: u32, place: Place) -> u32 {
         if let Some(depth) = even_depth(word) {
             let bound = bound_of(word).unwrap_or(f64::INFINITY);
-            self.extent.add(&Extent { bound, worst: Some(place.leaf(depth, (0, 0), false)), ..Extent::NONE });
+            self.extent.add(&Extent {
+                bound,
+                worst: Some(place.leaf(depth, (0, 0), false)),
+                ..Extent::NONE
+            });
             self.count_leaves(1 << (2 * depth));
             return word;
         }
-        let children =
-            [0, 1, 2, 3].map(|child| self.kept(trees, trees.child(word, child), place.child(child)));
+        let children = [0, 1, 2, 3]
+            .map(|child| self.kept(trees, trees.child(word, child), place.child(child)));
         self.piece.irregular_node(children)
     }
 
@@ -93,7 +108,13 @@ impl Decider<'_> {
                 self.kept(before.trees, word, at)
             } else {
                 let corners = child_corners(corners, middles, child);
-                self.node_again((before, word), &refined.part(child), corners, child_open(open, child), at)
+                self.node_again(
+                    (before, word),
+                    &refined.part(child),
+                    corners,
+                    child_open(open, child),
+                    at,
+                )
             };
         }
         self.piece.irregular_node(children)
@@ -113,7 +134,14 @@ impl Decider<'_> {
         }
         // Where all are equally deep, and some are not good enough, most will not be.
         if even_depth(word).is_some() || !before.is_divided(word) {
-            return self.part(ground, spot, corners, open, (place, self.judge.has_rows()), false);
+            return self.part(
+                ground,
+                spot,
+                corners,
+                open,
+                (place, self.judge.has_rows()),
+                false,
+            );
         }
         let middles = ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5)));
         let mut children = [LEAF; 4];
@@ -206,7 +234,12 @@ mod tests {
             let refined = patch.refined(self.control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
             (0..4).for_each(|child| {
-                run(self, child, &refined.part(child), child_corners(corners, middles, child))
+                run(
+                    self,
+                    child,
+                    &refined.part(child),
+                    child_corners(corners, middles, child),
+                )
             });
         }
     }
@@ -215,9 +248,14 @@ mod tests {
     #[test]
     fn leaves_that_stay_are_within_their_bounds() {
         let (mut leaves, mut samples) = (0, 0);
-        for (name, seed) in
-            [("torus", 0), ("cup", 3), ("head", 0), ("icosphere", 5), ("spike", 4), ("sheet", 8)]
-        {
+        for (name, seed) in [
+            ("torus", 0),
+            ("cup", 3),
+            ("head", 0),
+            ("icosphere", 5),
+            ("spike", 4),
+            ("sheet", 8),
+        ] {
             let mesh = stirred(name, seed);
             let options = (&ExactOptions::default().triangles(1), &Demands::default());
             with_engine(&mesh, &Loop, options, &mut unobserved, |engine| {
@@ -226,10 +264,18 @@ mod tests {
                 for _ in 0..3 {
                     distance *= 0.8;
                     let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
-                    plan = engine.finer(&plan, Goal::Within(distance), &all, usize::MAX)?.unwrap();
+                    plan = engine
+                        .finer(&plan, Goal::Within(distance), &all, usize::MAX)?
+                        .unwrap();
                     assert!(engine.settle(&mut plan, usize::MAX)?);
                     let (control, trees) = (engine.control, &plan.decision.trees);
-                    let mut sampling = Sampling { control, trees, limit: distance, leaves: 0, samples: 0 };
+                    let mut sampling = Sampling {
+                        control,
+                        trees,
+                        limit: distance,
+                        leaves: 0,
+                        samples: 0,
+                    };
                     for face in all {
                         let (patch, corners) = (control.patch(face), control.corners(face));
                         sampling.node(trees.root(face), &patch, corners);
@@ -241,6 +287,9 @@ mod tests {
             })
             .unwrap();
         }
-        assert!(leaves > 10_000 && samples > 100 * leaves, "{leaves}, {samples}");
+        assert!(
+            leaves > 10_000 && samples > 100 * leaves,
+            "{leaves}, {samples}"
+        );
     }
 }

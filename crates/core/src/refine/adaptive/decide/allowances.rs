@@ -42,12 +42,21 @@ impl Decision {
             *own = if self.rounds >= MOST_ROUNDS {
                 Allowance::NOTHING
             } else {
-                Allowance { tilt: own.tilt.max(WIDER * tilt), slope: own.slope.min(slope / WIDER) }
+                Allowance {
+                    tilt: own.tilt.max(WIDER * tilt),
+                    slope: own.slope.min(slope / WIDER),
+                }
             };
         }
         self.rounds += 1;
         let faces: Vec<u32> = wanting.into_iter().map(|(face, ..)| face).collect();
-        let fits = self.divide((control, watch), goal, edges, (max_levels, most), (&faces, None))?;
+        let fits = self.divide(
+            (control, watch),
+            goal,
+            edges,
+            (max_levels, most),
+            (&faces, None),
+        )?;
         Ok(fits.then_some(faces))
     }
 
@@ -66,14 +75,24 @@ impl Decision {
         (max_levels, most): (u32, usize),
         (faces, coarser): (&[u32], Option<&Goal>),
     ) -> Result<bool, RefineError> {
-        let count = Count { leaves: AtomicUsize::new(0), most };
+        let count = Count {
+            leaves: AtomicUsize::new(0),
+            most,
+        };
         let again = watch.long_shares(faces.len(), |block, is_stopped| {
             let mut decider = Decider::new(control, edges, goal, max_levels, (&count, is_stopped));
             let again = faces[block].iter().map(|&face| {
                 let found = &self.found[face as usize];
                 let found = match coarser {
                     None => decider.face(face, Some(found.allowance)),
-                    Some(goal) => decider.again(face, Before { trees: &self.trees, goal }, found),
+                    Some(goal) => decider.again(
+                        face,
+                        Before {
+                            trees: &self.trees,
+                            goal,
+                        },
+                        found,
+                    ),
                 };
                 decider.tell();
                 (face, core::mem::take(&mut decider.piece), found)
@@ -109,9 +128,15 @@ impl Decision {
             extent
         };
         let own = all(face);
-        let mut around = Allowance { tilt: own.tilt, slope: own.slope };
+        let mut around = Allowance {
+            tilt: own.tilt,
+            slope: own.slope,
+        };
         for other in control.beside(edges, face).map(all) {
-            around = Allowance { tilt: around.tilt.max(other.tilt), slope: around.slope.min(other.slope) };
+            around = Allowance {
+                tilt: around.tilt.max(other.tilt),
+                slope: around.slope.min(other.slope),
+            };
         }
         (around, own.drift_slope)
     }

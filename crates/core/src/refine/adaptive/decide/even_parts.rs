@@ -41,22 +41,37 @@ impl Decider<'_> {
         let (least, most) = block.levels(&target);
         let fails = least > 0;
         if !fails {
-            return AtOnce::NotHere { fails, may_be_below: most > 1 };
+            return AtOnce::NotHere {
+                fails,
+                may_be_below: most > 1,
+            };
         }
         let last = most.min(least + MOST_SPREAD);
         if least > MOST_DIVISIONS || most > last || !block.is_fine(least, target.distance) {
-            return AtOnce::NotHere { fails, may_be_below: true };
+            return AtOnce::NotHere {
+                fails,
+                may_be_below: true,
+            };
         }
         let last = last.min(MOST_DIVISIONS);
         if place.level + last > self.max_levels {
-            return AtOnce::NotHere { fails, may_be_below: false };
+            return AtOnce::NotHere {
+                fails,
+                may_be_below: false,
+            };
         }
         let mut levels = core::mem::take(&mut self.marks);
         let mut extent = RowExtent::NONE;
         let mut tested = 0;
         for divisions in least..=last {
             let marks = &mut levels[tested];
-            self.cell_rows.get_or_insert_default().test(&block, divisions, &target, &mut extent, marks);
+            self.cell_rows.get_or_insert_default().test(
+                &block,
+                divisions,
+                &target,
+                &mut extent,
+                marks,
+            );
             tested += 1;
             if marks.are_all_passing() {
                 break;
@@ -68,7 +83,14 @@ impl Decider<'_> {
             bounded(LEAF + least, extent.bound)
         } else {
             let passing = bounded(LEAF, extent.bound);
-            let found = Rows { ground, place, spot, marks: &levels[..tested], first: least, passing };
+            let found = Rows {
+                ground,
+                place,
+                spot,
+                marks: &levels[..tested],
+                first: least,
+                passing,
+            };
             self.row_node(&found, (0, 0, false), 0)
         };
         self.marks = levels;
@@ -76,7 +98,12 @@ impl Decider<'_> {
     }
 
     /// A node `level` levels below the one whose rows were tested.
-    fn row_node(&mut self, rows: &Rows<'_>, (i, j, is_headlong): (usize, usize, bool), level: u32) -> u32 {
+    fn row_node(
+        &mut self,
+        rows: &Rows<'_>,
+        (i, j, is_headlong): (usize, usize, bool),
+        level: u32,
+    ) -> u32 {
         if level >= rows.first {
             let tested = (level - rows.first) as usize;
             let mark = rows.marks[tested].at(i, j, is_headlong);
@@ -90,7 +117,14 @@ impl Decider<'_> {
                 let place = rows.place.leaf(level, (i, j), is_headlong);
                 let corners = rows.ground.at(spot.corners());
                 if is_last {
-                    return self.part(rows.ground, spot, corners, [false; 3], (place, false), false);
+                    return self.part(
+                        rows.ground,
+                        spot,
+                        corners,
+                        [false; 3],
+                        (place, false),
+                        false,
+                    );
                 }
                 let at = (spot, place.level, SubTriangle::Whole);
                 let verdict = self.judge.regular(
@@ -108,9 +142,19 @@ impl Decider<'_> {
         }
         let (x, y) = (2 * i, 2 * j);
         let below = if is_headlong {
-            [(x + 1, y + 1, true), (x, y + 1, true), (x + 1, y, true), (x + 1, y + 1, false)]
+            [
+                (x + 1, y + 1, true),
+                (x, y + 1, true),
+                (x + 1, y, true),
+                (x + 1, y + 1, false),
+            ]
         } else {
-            [(x, y, false), (x + 1, y, false), (x, y + 1, false), (x, y, true)]
+            [
+                (x, y, false),
+                (x + 1, y, false),
+                (x, y + 1, false),
+                (x, y, true),
+            ]
         };
         let mut children = [LEAF; 4];
         for (word, at) in children.iter_mut().zip(below) {
@@ -121,8 +165,20 @@ impl Decider<'_> {
 
     /// Keeps what the nodes that passed in rows come to.
     fn add_rows(&mut self, place: Place, rows: &RowExtent) {
-        let RowExtent { tilt, slope, drift_slope, bound, worst } = *rows;
+        let RowExtent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            worst,
+        } = *rows;
         let worst = worst.map(|(i, j, is_headlong, depth)| place.leaf(depth, (i, j), is_headlong));
-        self.extent.add(&Extent { tilt, slope, drift_slope, bound, worst });
+        self.extent.add(&Extent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            worst,
+        });
     }
 }

@@ -43,17 +43,51 @@ impl Found {
         allowance: Allowance,
         (has_failed, conditions): (bool, Vec<Condition>),
     ) -> Self {
-        let Extent { tilt, slope, drift_slope, bound, worst } = *extent;
+        let Extent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            worst,
+        } = *extent;
         let is_plain = worst == worst_if_whole(face, bound) && !has_failed && conditions.is_empty();
-        let more = (!is_plain).then(|| Box::new(More { worst, has_failed, conditions }));
-        Self { tilt, slope, drift_slope, bound, allowance, more }
+        let more = (!is_plain).then(|| {
+            Box::new(More {
+                worst,
+                has_failed,
+                conditions,
+            })
+        });
+        Self {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            allowance,
+            more,
+        }
     }
 
     /// What the leaves of the face come to.
     pub(super) fn extent(&self, face: u32) -> Extent {
-        let Self { tilt, slope, drift_slope, bound, .. } = *self;
-        let worst = self.more.as_ref().map_or_else(|| worst_if_whole(face, bound), |more| more.worst);
-        Extent { tilt, slope, drift_slope, bound, worst }
+        let Self {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            ..
+        } = *self;
+        let worst = self
+            .more
+            .as_ref()
+            .map_or_else(|| worst_if_whole(face, bound), |more| more.worst);
+        Extent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+            worst,
+        }
     }
 
     /// The greatest bound of a leaf that passes.

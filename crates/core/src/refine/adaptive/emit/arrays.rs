@@ -51,7 +51,9 @@ impl Shifts {
         }
         match self.0.last_mut() {
             // Together with those that they follow.
-            Some(last) if last.before.end == before.start && last.now + last.before.len() == now => {
+            Some(last)
+                if last.before.end == before.start && last.now + last.before.len() == now =>
+            {
                 last.before.end = before.end;
             }
             _ => self.0.push(Shift { before, now }),
@@ -78,7 +80,8 @@ impl Arrays {
     ) -> Result<Self, Cancelled> {
         let vertices = (length.vertices, room.vertices);
         let triangles = (length.triangles, room.triangles);
-        let mut origins = limitmesh_pages::with_capacity(if has_origins { room.vertices } else { 0 });
+        let mut origins =
+            limitmesh_pages::with_capacity(if has_origins { room.vertices } else { 0 });
         if has_origins {
             extend_origins(&mut origins, length.vertices, watch)?;
         }
@@ -122,7 +125,15 @@ impl Arrays {
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let twins = triangles.times(3);
-        let Self { positions, normals, origins, triangles: corners, twins: beyond, parents, moves } = self;
+        let Self {
+            positions,
+            normals,
+            origins,
+            triangles: corners,
+            twins: beyond,
+            parents,
+            moves,
+        } = self;
         type Task<'a> = Box<dyn FnOnce(&IsStopped<'_>) + Send + 'a>;
         // Origins, which take longest, first, so that threads end together.
         let mut tasks: Vec<Task<'_>> = vec![
@@ -132,12 +143,25 @@ impl Arrays {
                     rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
                 }
             }),
-            Box::new(|is_stopped| rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)),
-            Box::new(|is_stopped| rearrange(normals, ([0.0; 3], length.vertices), vertices, is_stopped)),
-            Box::new(|is_stopped| rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)),
+            Box::new(|is_stopped| {
+                rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)
+            }),
+            Box::new(|is_stopped| {
+                rearrange(normals, ([0.0; 3], length.vertices), vertices, is_stopped)
+            }),
+            Box::new(|is_stopped| {
+                rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)
+            }),
             Box::new(|is_stopped| rearrange(beyond, (0, 3 * length.triangles), &twins, is_stopped)),
             // These are written anew.
-            Box::new(|is_stopped| rearrange(parents, (0, length.triangles), &Shifts::default(), is_stopped)),
+            Box::new(|is_stopped| {
+                rearrange(
+                    parents,
+                    (0, length.triangles),
+                    &Shifts::default(),
+                    is_stopped,
+                )
+            }),
         ];
         if !moves.offsets.is_empty() {
             let Moves { offsets, positions } = moves;
@@ -148,7 +172,9 @@ impl Arrays {
                 rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped);
             }));
         }
-        parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, is_stopped| task(is_stopped))?;
+        parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, is_stopped| {
+            task(is_stopped)
+        })?;
         Ok(())
     }
 }
@@ -159,7 +185,11 @@ fn zeros<T: Clone + Default + Send + Sync>((count, room): (usize, usize)) -> Vec
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.
-fn extend_origins(origins: &mut Vec<Origin>, count: usize, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
+fn extend_origins(
+    origins: &mut Vec<Origin>,
+    count: usize,
+    watch: &SharedWatch<'_>,
+) -> Result<(), Cancelled> {
     while origins.len() < count {
         origins.resize(count.min(origins.len() + FILLED), NOWHERE);
         watch.poll()?;
@@ -182,11 +212,21 @@ fn rearrange<T: Copy>(
         }
     }
     // The order stays: what moves up, the last first, does not meet what moves down, and that, the first first, finds its place free.
-    let (up, down) = (|one: &&Shift| one.now > one.before.start, |one: &&Shift| one.now < one.before.start);
+    let (up, down) = (
+        |one: &&Shift| one.now > one.before.start,
+        |one: &&Shift| one.now < one.before.start,
+    );
     for one in moves.0.iter().rev().filter(up) {
-        for end in (0..one.before.len()).rev().step_by(COPIED).map(|last| last + 1) {
+        for end in (0..one.before.len())
+            .rev()
+            .step_by(COPIED)
+            .map(|last| last + 1)
+        {
             let start = end.saturating_sub(COPIED);
-            array.copy_within(one.before.start + start..one.before.start + end, one.now + start);
+            array.copy_within(
+                one.before.start + start..one.before.start + end,
+                one.now + start,
+            );
             if is_stopped() {
                 return;
             }
@@ -195,7 +235,10 @@ fn rearrange<T: Copy>(
     for one in moves.0.iter().filter(down) {
         for start in (0..one.before.len()).step_by(COPIED) {
             let end = (start + COPIED).min(one.before.len());
-            array.copy_within(one.before.start + start..one.before.start + end, one.now + start);
+            array.copy_within(
+                one.before.start + start..one.before.start + end,
+                one.now + start,
+            );
             if is_stopped() {
                 return;
             }

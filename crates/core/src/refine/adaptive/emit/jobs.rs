@@ -44,13 +44,32 @@ pub(super) fn jobs<'a>(
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Job<'a>>, Cancelled> {
     let count = control.mesh.vertex_count();
-    let Emission { positions, normals, origins, triangles, twins, parents, borders, .. } = emission;
+    let Emission {
+        positions,
+        normals,
+        origins,
+        triangles,
+        twins,
+        parents,
+        borders,
+        ..
+    } = emission;
     let first = count as u32;
     let origins = origins.get_mut(count..).unwrap_or_default();
     let (positions, normals) = (&mut positions[count..], &mut normals[count..]);
-    let mut inside = Vertices { first, positions, normals, origins };
+    let mut inside = Vertices {
+        first,
+        positions,
+        normals,
+        origins,
+    };
     let mut on_edges = inside.take(chains.count());
-    let mut rest = (&mut triangles[..], &mut twins[..], &mut parents[..], &mut borders.half_edges[..]);
+    let mut rest = (
+        &mut triangles[..],
+        &mut twins[..],
+        &mut parents[..],
+        &mut borders.half_edges[..],
+    );
     let (mut jobs, mut from, mut first_triangle) = (Vec::new(), 0u32, 0u32);
     let (mut triangles, mut own, mut vertices, mut segments) = (0u32, 0usize, 0usize, 0usize);
     let (faces, extend) = (counts.closed.len() as u32, counts.extend);
@@ -146,7 +165,10 @@ pub(super) fn write(
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
         (writer.face, writer.diagonals) = (face, closed[face as usize].diagonals());
         writer.area = only.and_then(|areas| areas.0.get(&face));
-        writer.conditions = [decision.conditions(face), closed[face as usize].conditions()];
+        writer.conditions = [
+            decision.conditions(face),
+            closed[face as usize].conditions(),
+        ];
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));

@@ -59,7 +59,8 @@ impl Kept<'_> {
         let mut inside = job.inside.first;
         for face in job.faces.clone() {
             let (own, shared) = self.on_edges(face);
-            own.into_iter().for_each(|run| self.vertices(run, &mut job.on_edges, is_stopped));
+            own.into_iter()
+                .for_each(|run| self.vertices(run, &mut job.on_edges, is_stopped));
             let within = Run {
                 before: self.before.numbers.inside[face as usize],
                 count: closed[face as usize].vertices,
@@ -78,16 +79,24 @@ impl Kept<'_> {
     fn conditions(&self, face: u32, now: u32) -> impl Iterator<Item = (Condition, u32, u32)> {
         let conditions = &self.before.conditions;
         let start = conditions.partition_point(|(condition, ..)| condition.place.face < face);
-        let own = conditions[start..].iter().take_while(move |(condition, ..)| condition.place.face == face);
+        let own = conditions[start..]
+            .iter()
+            .take_while(move |(condition, ..)| condition.place.face == face);
         let before = self.before.triangles_of(face).start as u32;
-        own.map(move |&(condition, first, last)| (condition, first - before + now, last - before + now))
+        own.map(move |&(condition, first, last)| {
+            (condition, first - before + now, last - before + now)
+        })
     }
 
     /// The vertices on a face's edges: its own, and all.
     fn on_edges(&self, face: u32) -> ([Run; 3], [Run; 3]) {
         let run = |h: u32| {
             let (now, places) = self.chains.own(h);
-            Run { before: self.before.numbers.on_edges[h as usize], count: places.len() as u32, now }
+            Run {
+                before: self.before.numbers.on_edges[h as usize],
+                count: places.len() as u32,
+                now,
+            }
         };
         let edges = [0, 1, 2].map(|edge| 3 * face + edge);
         (edges.map(run), edges.map(|h| run(first_of(self.edges, h))))
@@ -98,7 +107,13 @@ impl Kept<'_> {
         if self.is_in_place {
             return;
         }
-        let Emission { positions, feet, normals, origins, .. } = self.before;
+        let Emission {
+            positions,
+            feet,
+            normals,
+            origins,
+            ..
+        } = self.before;
         let positions = if feet.is_empty() { positions } else { feet };
         let first = (run.now - to.first) as usize;
         for start in (0..run.count as usize).step_by(COPIED) {
@@ -131,13 +146,24 @@ impl Kept<'_> {
         let count = before.len();
         let renumbered = |vertex: u32| {
             let run = || runs.iter().find_map(|run| run.renumbered(vertex));
-            if vertex < corners { vertex } else { run().unwrap_or(NONE) }
+            if vertex < corners {
+                vertex
+            } else {
+                run().unwrap_or(NONE)
+            }
         };
         let own = 3 * count as u32;
         let start = 3 * before.start as u32;
         // Those of other faces are joined later.
-        let moved = |h: u32| if h.wrapping_sub(start) < own { h - start + 3 * first } else { NONE };
-        let is_same = self.is_in_place && before.start as u32 == first && runs.iter().all(Run::is_same);
+        let moved = |h: u32| {
+            if h.wrapping_sub(start) < own {
+                h - start + 3 * first
+            } else {
+                NONE
+            }
+        };
+        let is_same =
+            self.is_in_place && before.start as u32 == first && runs.iter().all(Run::is_same);
         for start in (0..count).step_by(COPIED) {
             if start > 0 && is_stopped() {
                 return count as u32;
@@ -151,7 +177,9 @@ impl Kept<'_> {
                 twins.copy_from_slice(&self.before.twins[3 * from..3 * (from + copied)]);
             }
             if !is_same {
-                triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(renumbered));
+                triangles
+                    .iter_mut()
+                    .for_each(|triangle| *triangle = triangle.map(renumbered));
             }
             twins.iter_mut().for_each(|twin| *twin = moved(*twin));
         }
@@ -159,7 +187,9 @@ impl Kept<'_> {
         for h in 3 * face..3 * face + 3 {
             let along = self.before.borders.along(h);
             let own = split_off(&mut job.borders, along.len());
-            own.iter_mut().zip(along).for_each(|(now, &h)| *now = moved(h));
+            own.iter_mut()
+                .zip(along)
+                .for_each(|(now, &h)| *now = moved(h));
         }
         count as u32
     }

@@ -31,13 +31,20 @@ pub(super) struct Vertices<'a> {
 impl<'a> Vertices<'a> {
     /// Takes the first `count` off.
     pub(super) fn take(&mut self, count: usize) -> Vertices<'a> {
-        let (positions, normals) =
-            (split_off(&mut self.positions, count), split_off(&mut self.normals, count));
+        let (positions, normals) = (
+            split_off(&mut self.positions, count),
+            split_off(&mut self.normals, count),
+        );
         let all = self.origins.len();
         let origins = split_off(&mut self.origins, count.min(all));
         let first = self.first;
         self.first += count as u32;
-        Vertices { first, positions, normals, origins }
+        Vertices {
+            first,
+            positions,
+            normals,
+            origins,
+        }
     }
 
     pub(super) fn set(&mut self, vertex: u32, point: LimitPoint, origin: Origin) {
@@ -95,7 +102,12 @@ impl Visitor for Writer<'_> {
         let mut places = core::mem::take(&mut self.places);
         places.clear();
         // The middle child's edge runs the other way.
-        places.extend(knots[1..last].iter().rev().map(|knot| 1.0 - fraction(knot.at)));
+        places.extend(
+            knots[1..last]
+                .iter()
+                .rev()
+                .map(|knot| 1.0 - fraction(knot.at)),
+        );
         middle.along(edge, &places, &mut |i, point| {
             let origin = self.origin(spot.along(edge, places[i]));
             self.inside.set(knots[last - 1 - i].vertex, point, origin);
@@ -118,14 +130,24 @@ impl Visitor for Writer<'_> {
 
 impl Writer<'_> {
     fn origin(&self, [u, v]: [f64; 2]) -> Origin {
-        Origin { face: self.face, barycentric: [1.0 - u - v, u, v] }
+        Origin {
+            face: self.face,
+            barycentric: [1.0 - u - v, u, v],
+        }
     }
 
     /// Leaves the room of a node empty.
     fn pass_over(&mut self, node: &Node<'_>, knots: &[Knot]) {
-        self.diagonals = self.diagonals.get(self.rim.diagonals(node, knots)..).unwrap_or_default();
+        self.diagonals = self
+            .diagonals
+            .get(self.rim.diagonals(node, knots)..)
+            .unwrap_or_default();
         if node.is_conditional {
-            self.found.push((Condition::unknown(node.place), self.next_triangle, self.next_triangle));
+            self.found.push((
+                Condition::unknown(node.place),
+                self.next_triangle,
+                self.next_triangle,
+            ));
         }
         self.next_triangle += node.triangles() as u32;
     }
@@ -133,7 +155,9 @@ impl Writer<'_> {
     /// The vertices inside a node, row by row.
     fn interior(&mut self, node: &Node<'_>) {
         let n = 1usize << node.depth;
-        let Surface::Regular(piece, spot) = node.surface else { return };
+        let Surface::Regular(piece, spot) = node.surface else {
+            return;
+        };
         let mut at = (node.interior - self.inside.first) as usize;
         let (step, own) = (spot.size / n as f64, node.spot);
         for j in 1..n.max(2) - 1 {
@@ -264,7 +288,8 @@ impl Writer<'_> {
                 if i == 1 && j > 0 && !has_conditions {
                     (i, left) = self.inner(node, j, left);
                 }
-                let corners = [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
+                let corners =
+                    [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
                 let right = self.upright(node, knots, (i, j), corners, left);
                 if i + j + 1 < n {
                     let far = self.vertex(node, knots, i + 1, j + 1);
@@ -289,7 +314,11 @@ impl Writer<'_> {
         let base = 3 * self.first_triangle;
         let at = (self.next_triangle - self.first_triangle) as usize;
         let (lower, upper) = (node.inside(1, j), node.inside(1, j + 1));
-        let pairs = self.triangles[at..].as_chunks_mut::<2>().0.iter_mut().take(end - 1);
+        let pairs = self.triangles[at..]
+            .as_chunks_mut::<2>()
+            .0
+            .iter_mut()
+            .take(end - 1);
         for (i, pair) in (0u32..).zip(pairs) {
             let [a, b] = [lower + i, upper + i];
             *pair = [[a, a + 1, b], [a + 1, b + 1, b]];
@@ -298,7 +327,14 @@ impl Writer<'_> {
             let first = 3 * self.next_triangle;
             let beneath = core::mem::replace(&mut self.below[i], first + 4);
             let own = (first - base) as usize;
-            self.twins[own..own + 6].copy_from_slice(&[beneath, first + 5, left, first + 8, NONE, first + 1]);
+            self.twins[own..own + 6].copy_from_slice(&[
+                beneath,
+                first + 5,
+                left,
+                first + 8,
+                NONE,
+                first + 1,
+            ]);
             self.twins[(beneath - base) as usize] = first;
             if i == 1 {
                 self.twins[(left - base) as usize] = first + 2;
@@ -321,14 +357,22 @@ impl Writer<'_> {
     ) -> u32 {
         let n = 1usize << node.depth;
         let on_side = [j == 0, i + j + 1 == n, i == 0];
-        let split = if on_side == [false; 3] { [None; 3] } else { self.rim.split(n, i, j) };
+        let split = if on_side == [false; 3] {
+            [None; 3]
+        } else {
+            self.rim.split(n, i, j)
+        };
         let bits = bits(&split);
         let mut diagonal = Diagonal::FromStart;
         if bits.count_ones() == 2
             && let [from_end, rest @ ..] = self.diagonals
         {
             self.diagonals = rest;
-            diagonal = if *from_end { Diagonal::FromEnd } else { Diagonal::FromStart };
+            diagonal = if *from_end {
+                Diagonal::FromEnd
+            } else {
+                Diagonal::FromStart
+            };
         }
         let pattern = closure(bits, diagonal);
         let [d, e, f] = split.map(|knot| knot.map_or(NONE, |knot| knots[knot].vertex));
@@ -339,13 +383,18 @@ impl Writer<'_> {
         }
         for h in 0..3 * pattern.triangles().len() {
             if let Some(twin) = pattern.twin(h) {
-                self.twins[(first + h as u32 - 3 * self.first_triangle) as usize] = first + twin as u32;
+                self.twins[(first + h as u32 - 3 * self.first_triangle) as usize] =
+                    first + twin as u32;
             }
         }
         if node.is_conditional || !self.conditions[CLOSING].is_empty() {
             let closing = node.is_unjudged || bits != 0;
             let place = node.place.leaf(node.depth, (i, j), false);
-            self.condition((place, node.is_conditional), usize::from(closing), first / 3);
+            self.condition(
+                (place, node.is_conditional),
+                usize::from(closing),
+                first / 3,
+            );
         }
         let place = [i, j, n - 1 - j];
         for edge in 0..3 {
@@ -386,7 +435,8 @@ impl Writer<'_> {
                 self.found.push((*condition, first, self.next_triangle));
             }
             _ if list == DIVISION && is_marked => {
-                self.found.push((Condition::unknown(place), first, self.next_triangle));
+                self.found
+                    .push((Condition::unknown(place), first, self.next_triangle));
             }
             _ => {}
         }
@@ -396,7 +446,10 @@ impl Writer<'_> {
     pub(super) fn end(&mut self) {
         let lost = core::mem::take(&mut self.conditions[CLOSING]);
         let at = self.next_triangle;
-        self.found.extend(lost.iter().map(|condition| (Condition::unknown(condition.place), at, at)));
+        self.found.extend(
+            lost.iter()
+                .map(|condition| (Condition::unknown(condition.place), at, at)),
+        );
     }
 
     /// Adds a triangle; gives its first half-edge.

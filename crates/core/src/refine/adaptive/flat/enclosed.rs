@@ -34,7 +34,10 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let found = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
-            let is_enclosed = |region| self.encloses(mesh, (region as u32, rounding), is_stopped).is_some();
+            let is_enclosed = |region| {
+                self.encloses(mesh, (region as u32, rounding), is_stopped)
+                    .is_some()
+            };
             block.map(is_enclosed).collect::<Vec<_>>()
         })?;
         Ok(found.concat())
@@ -42,7 +45,10 @@ impl FlatRegions {
 
     /// How often curves of so many edges are divided for that.
     pub(super) fn divisions(rim: usize) -> u32 {
-        (MOST_CHORDS / rim.max(1)).max(1).ilog2().min(MOST_DIVISIONS)
+        (MOST_CHORDS / rim.max(1))
+            .max(1)
+            .ilog2()
+            .min(MOST_DIVISIONS)
     }
 
     fn encloses(
@@ -59,7 +65,9 @@ impl FlatRegions {
         let rim: Vec<u32> = asking(self.rim((control, edges), region), is_stopped).collect();
         let levels = Self::divisions(rim.len());
         let (mut numbers, mut positions) = (HashMap::with_capacity(faces.len()), Vec::new());
-        let corners = faces.iter().flat_map(|&face| &control.mesh.triangles()[face as usize]);
+        let corners = faces
+            .iter()
+            .flat_map(|&face| &control.mesh.triangles()[face as usize]);
         for &vertex in asking(corners, is_stopped) {
             numbers.entry(vertex).or_insert_with(|| {
                 positions.push(control.positions[vertex as usize]);
@@ -96,8 +104,9 @@ impl FlatRegions {
             flat.area([vertex; 3])?;
         }
         let (_, found) = flat.triangulated(&chords, is_stopped)?;
-        let expected =
-            chords.iter().try_fold(0.0, |sum, &[from, to]| Some(sum + flat.area([0, from, to])?))?;
+        let expected = chords.iter().try_fold(0.0, |sum, &[from, to]| {
+            Some(sum + flat.area([0, from, to])?)
+        })?;
         ((found - expected).abs() <= SAME_AREA * expected.abs()).then_some(())
     }
 }
@@ -108,7 +117,10 @@ fn curve_over(control: &Control<'_>, h: u32, (levels, rounding): (u32, f64)) -> 
     let triangle = control.mesh.triangles()[h as usize / 3];
     let ends = [0, 1].map(|end| triangle[(h as usize + end) % 3] as usize);
     // Corners stay, and elsewhere the vertices beside one are on the same line, as far on either side.
-    if ends.iter().all(|&end| control.positions[end] == control.mesh.positions()[end]) {
+    if ends
+        .iter()
+        .all(|&end| control.positions[end] == control.mesh.positions()[end])
+    {
         return points;
     }
     let (piece, edge) = (control.piece(h / 3), h as usize % 3);
@@ -116,7 +128,9 @@ fn curve_over(control: &Control<'_>, h: u32, (levels, rounding): (u32, f64)) -> 
     along(piece.surface(control.rules), edge, 2, &mut points);
     let [from, to] = ends.map(|end| vector(control.positions[end]));
     let direction = unit_or_zero(to - from);
-    let is_straight = points.iter().all(|&point| direction.cross(point - from).length() <= rounding);
+    let is_straight = points
+        .iter()
+        .all(|&point| direction.cross(point - from).length() <= rounding);
     points.clear();
     if !is_straight {
         along(piece.surface(control.rules), edge, levels, &mut points);
@@ -130,7 +144,17 @@ fn along(surface: Surface<'_>, edge: usize, levels: u32, points: &mut Vec<DVec3>
         return;
     }
     let middle = surface.middles()[edge].position;
-    along(surface.child(along_edge(edge, false)), edge, levels - 1, points);
+    along(
+        surface.child(along_edge(edge, false)),
+        edge,
+        levels - 1,
+        points,
+    );
     points.push(middle);
-    along(surface.child(along_edge(edge, true)), edge, levels - 1, points);
+    along(
+        surface.child(along_edge(edge, true)),
+        edge,
+        levels - 1,
+        points,
+    );
 }

@@ -26,7 +26,15 @@ impl<'a> Flattened<'a> {
     pub(super) fn new(plane: &'a Plane, off_plane: f64, positions: &'a [[f64; 3]]) -> Self {
         let along = plane.normal.any_orthonormal_vector();
         let axes = [along, plane.normal.cross(along)];
-        Self { plane, axes, off_plane, positions, numbers: HashMap::new(), vertices: Vec::new(), size: 0.0 }
+        Self {
+            plane,
+            axes,
+            off_plane,
+            positions,
+            numbers: HashMap::new(),
+            vertices: Vec::new(),
+            size: 0.0,
+        }
     }
 
     fn offset(&self, vertex: u32) -> DVec3 {
@@ -46,7 +54,9 @@ impl<'a> Flattened<'a> {
             return None;
         }
         let [[ax, ay], [bx, by], [cx, cy]] = triangle.map(|vertex| self.at(vertex));
-        self.size = [ax, ay, bx, by, cx, cy].into_iter().fold(self.size, |size, x| size.max(x.abs()));
+        self.size = [ax, ay, bx, by, cx, cy]
+            .into_iter()
+            .fold(self.size, |size, x| size.max(x.abs()));
         Some((bx - ax) * (cy - ay) - (by - ay) * (cx - ax))
     }
 
@@ -75,16 +85,28 @@ impl<'a> Flattened<'a> {
         let mut triangles = planar::triangulated(&self.points()?, rim, is_stopped)?;
         let (mut area, mut is_used) = (0.0, vec![false; self.vertices.len()]);
         for triangle in asking(&mut triangles, is_stopped) {
-            triangle.iter().for_each(|&number| is_used[number as usize] = true);
+            triangle
+                .iter()
+                .for_each(|&number| is_used[number as usize] = true);
             *triangle = triangle.map(|number| self.vertices[number as usize]);
-            area += self.area(*triangle).filter(|&part| self.is_positive(part))?;
+            area += self
+                .area(*triangle)
+                .filter(|&part| self.is_positive(part))?;
         }
-        is_used.iter().all(|&is_used| is_used).then_some((triangles, area))
+        is_used
+            .iter()
+            .all(|&is_used| is_used)
+            .then_some((triangles, area))
     }
 
     /// All of them, no coordinate greater than one; `None` where there is no telling them apart.
     fn points(&self) -> Option<Vec<[f64; 2]>> {
         let is_sized = self.size.is_normal();
-        is_sized.then(|| self.vertices.iter().map(|&vertex| self.at(vertex).map(|x| x / self.size)).collect())
+        is_sized.then(|| {
+            self.vertices
+                .iter()
+                .map(|&vertex| self.at(vertex).map(|x| x / self.size))
+                .collect()
+        })
     }
 }

@@ -40,7 +40,11 @@ impl Gaps {
         if attempt >= MOST_ATTEMPTS {
             return demands.judge_all_by_triangles();
         }
-        let mut room = if attempt < MOST_DIVISIONS { room.min(MOST_ALONG) } else { 0 };
+        let mut room = if attempt < MOST_DIVISIONS {
+            room.min(MOST_ALONG)
+        } else {
+            0
+        };
         for (region, along) in self.0 {
             match room.checked_sub(along.len()).filter(|_| !along.is_empty()) {
                 Some(rest) => {
@@ -58,7 +62,11 @@ impl Gaps {
 impl FlatRegions {
     /// Whether some regions had gaps in what was put together so far.
     pub(in super::super) fn has_gaps(&self) -> bool {
-        !self.gaps.lock().unwrap_or_else(PoisonError::into_inner).is_empty()
+        !self
+            .gaps
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .is_empty()
     }
 
     /// These regions, at this attempt.
@@ -69,16 +77,32 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Gaps, Cancelled> {
         let mut gaps = Gaps::default();
-        for (&region, chords) in self.gaps.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+        for (&region, chords) in self
+            .gaps
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .iter()
+        {
             let along = gaps.0.entry(region).or_default();
             // In the end as far as it is known to be of use.
             let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
-            let least = if is_last { Self::divisions(self.rim((control, edges), region).count()) } else { 0 };
+            let least = if is_last {
+                Self::divisions(self.rim((control, edges), region).count())
+            } else {
+                0
+            };
             watch.each(chords, |(&face, &count)| {
                 let open = control.open(face);
                 let count_open = open.iter().filter(|&&open| open).count().max(1);
-                let levels = (count as usize).div_ceil(count_open).next_power_of_two().ilog2();
-                along_rim((Place::root(face), open), levels.max(least.saturating_sub(1)), along);
+                let levels = (count as usize)
+                    .div_ceil(count_open)
+                    .next_power_of_two()
+                    .ilog2();
+                along_rim(
+                    (Place::root(face), open),
+                    levels.max(least.saturating_sub(1)),
+                    along,
+                );
             })?;
         }
         Ok(gaps)
@@ -104,7 +128,9 @@ pub(super) fn chords(
 ) -> Result<BTreeMap<u32, u32>, Cancelled> {
     let mut chords = BTreeMap::new();
     watch.each(&region.triangles, |&triangle| {
-        let on_rim = (3 * triangle..3 * triangle + 3).filter(|&h| regions.is_rim(net, h)).count();
+        let on_rim = (3 * triangle..3 * triangle + 3)
+            .filter(|&h| regions.is_rim(net, h))
+            .count();
         *chords.entry(net.face(triangle)).or_default() += on_rim as u32;
     })?;
     Ok(chords)
@@ -117,6 +143,12 @@ fn along_rim((place, open): (Place, [bool; 3]), levels: u32, found: &mut Vec<Pla
     }
     found.push(place);
     if levels > 0 {
-        (0..4).for_each(|child| along_rim((place.child(child), child_open(open, child)), levels - 1, found));
+        (0..4).for_each(|child| {
+            along_rim(
+                (place.child(child), child_open(open, child)),
+                levels - 1,
+                found,
+            )
+        });
     }
 }

@@ -40,8 +40,9 @@ impl FlatRegions {
                         continue;
                     }
                     let off = self.height_over(mesh, (other, &plane), most);
-                    let mut is_sound =
-                        |region: u32| self.is_sound(mesh.0, (region, &plane), most, &mut left, watch);
+                    let mut is_sound = |region: u32| {
+                        self.is_sound(mesh.0, (region, &plane), most, &mut left, watch)
+                    };
                     let may_join = off.is_some() && {
                         let is_first_sound = match is_proven {
                             Some(is_proven) => is_proven,
@@ -65,11 +66,18 @@ impl FlatRegions {
     }
 
     /// The regions beyond the edges of one, each as often as there are such edges.
-    fn beyond(&self, edges: &Edges<'_>, region: u32, watch: &SharedWatch<'_>) -> Result<Vec<u32>, Cancelled> {
+    fn beyond(
+        &self,
+        edges: &Edges<'_>,
+        region: u32,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Vec<u32>, Cancelled> {
         let mut beyond = Vec::new();
         watch.each(&self.regions[region as usize].0, |&face| {
             let twins = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h));
-            let others = twins.filter_map(|twin| self.region(twin / 3)).filter(|&other| other != region);
+            let others = twins
+                .filter_map(|twin| self.region(twin / 3))
+                .filter(|&other| other != region);
             beyond.extend(others);
         })?;
         Ok(beyond)
@@ -86,7 +94,9 @@ impl FlatRegions {
         if own.normal.dot(plane.normal) <= 0.0 {
             return None;
         }
-        let mut heights = faces.iter().map(|&face| height_over(mesh, face, plane, most));
+        let mut heights = faces
+            .iter()
+            .map(|&face| height_over(mesh, face, plane, most));
         heights.try_fold(0.0, |greatest: f64, height| Some(greatest.max(height?)))
     }
 
@@ -103,7 +113,9 @@ impl FlatRegions {
             return Ok(true);
         }
         let faces = &self.regions[region as usize].0;
-        let Some(rest) = left.checked_sub(faces.len()) else { return Ok(false) };
+        let Some(rest) = left.checked_sub(faces.len()) else {
+            return Ok(false);
+        };
         *left = rest;
         for &face in faces {
             watch.poll()?;
@@ -116,14 +128,23 @@ impl FlatRegions {
 
     /// Which edges of a face of a region that is judged by its rim count, given those that are sharp or boundaries: all that have no
     /// part of the same plane beyond.
-    pub(in super::super) fn counting(&self, edges: &Edges<'_>, face: u32, open: [bool; 3]) -> [bool; 3] {
+    pub(in super::super) fn counting(
+        &self,
+        edges: &Edges<'_>,
+        face: u32,
+        open: [bool; 3],
+    ) -> [bool; 3] {
         let joined = |face: u32| {
-            let region = self.region(face).filter(|&region| self.by_rim[region as usize])?;
+            let region = self
+                .region(face)
+                .filter(|&region| self.by_rim[region as usize])?;
             Some(self.joined[region as usize])
         };
         let Some(own) = joined(face) else { return open };
         [0, 1, 2].map(|edge| {
-            let beyond = edges.twin(3 * face + edge as u32).and_then(|twin| joined(twin / 3));
+            let beyond = edges
+                .twin(3 * face + edge as u32)
+                .and_then(|twin| joined(twin / 3));
             open[edge] && beyond != Some(own)
         })
     }
@@ -150,10 +171,18 @@ mod tests {
     /// A square that a zigzag of sharp edges divides, lifted by a parabola beyond it.
     fn divided_square(bend: f64) -> Mesh {
         let inside = |i: u32, j: u32| i == SIDE / 2 && 0 < j && j < SIDE;
-        let shift = |i: u32, j: u32| if inside(i, j) { 0.3 * f64::from(j % 2) } else { 0.0 };
+        let shift = |i: u32, j: u32| {
+            if inside(i, j) {
+                0.3 * f64::from(j % 2)
+            } else {
+                0.0
+            }
+        };
         let lift = |i: u32| bend * f64::from(i.saturating_sub(SIDE / 2)).powi(2);
         let point = |i: u32, j: u32| [f64::from(i) + shift(i, j), f64::from(j), lift(i)];
-        let positions = (0..=SIDE).flat_map(|j| (0..=SIDE).map(move |i| point(i, j))).collect();
+        let positions = (0..=SIDE)
+            .flat_map(|j| (0..=SIDE).map(move |i| point(i, j)))
+            .collect();
         let squares = (0..SIDE).flat_map(|j| (0..SIDE).map(move |i| (i, j)));
         let halves = |(i, j)| {
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
@@ -161,10 +190,18 @@ mod tests {
         };
         let mesh = Mesh::from_triangles(positions, squares.flat_map(halves).collect()).unwrap();
         let corners = [at(0, 0), at(SIDE, 0), at(0, SIDE), at(SIDE, SIDE)];
-        let corners = corners.map(|vertex| CornerTag { vertex, sharpness: INFINITELY_SHARP });
-        let crease =
-            |j| CreaseTag { vertices: [at(SIDE / 2, j), at(SIDE / 2, j + 1)], sharpness: INFINITELY_SHARP };
-        let tags = Tags { creases: (0..SIDE).map(crease).collect(), corners: corners.to_vec() };
+        let corners = corners.map(|vertex| CornerTag {
+            vertex,
+            sharpness: INFINITELY_SHARP,
+        });
+        let crease = |j| CreaseTag {
+            vertices: [at(SIDE / 2, j), at(SIDE / 2, j + 1)],
+            sharpness: INFINITELY_SHARP,
+        };
+        let tags = Tags {
+            creases: (0..SIDE).map(crease).collect(),
+            corners: corners.to_vec(),
+        };
         mesh.with_tags(tags).unwrap()
     }
 
@@ -174,35 +211,54 @@ mod tests {
         for bend in [0.0, 1e-3] {
             let mesh = divided_square(bend);
             let options = ExactOptions::default().tolerance(0.3);
-            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-                let flat = &engine.control.flat;
-                assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
-                assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
-                let mut plan = engine.plan(Goal::Within(0.3), usize::MAX)?.unwrap();
-                let emission = engine.emit_all(&mut plan)?;
-                let sources = engine.sources(&plan, &emission);
-                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
-                let nothing = Goal::Within(f64::INFINITY);
-                let found = measure(&sources, engine.watch, (&nothing, 1e-12), (&faces, None, None))?;
-                let topology = mesh.topology();
-                let is_beside = |face: &u32| {
-                    let corners = topology.triangles()[*face as usize].map(VertexId);
-                    corners.iter().filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2).count() == 2
-                };
-                let worst = |face: u32| found[face as usize].worst.0;
-                let rims =
-                    faces.iter().copied().filter(|&face| flat.region(face).is_some()).filter(is_beside);
-                let (mut counted, mut planned) = (0.0f64, 0.0f64);
-                for face in rims {
-                    (counted, planned) = (counted.max(worst(face)), planned.max(plan.bound(face)));
-                }
-                assert!(planned > 0.02, "{planned}");
-                match bend == 0.0 {
-                    true => assert!(counted < 1e-9, "{counted}"),
-                    false => assert!(counted > 0.02, "{counted}"),
-                }
-                Ok(())
-            })
+            with_engine(
+                &mesh,
+                &Loop,
+                (&options, &Demands::default()),
+                &mut unobserved,
+                |engine| {
+                    let flat = &engine.control.flat;
+                    assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
+                    assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
+                    let mut plan = engine.plan(Goal::Within(0.3), usize::MAX)?.unwrap();
+                    let emission = engine.emit_all(&mut plan)?;
+                    let sources = engine.sources(&plan, &emission);
+                    let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
+                    let nothing = Goal::Within(f64::INFINITY);
+                    let found = measure(
+                        &sources,
+                        engine.watch,
+                        (&nothing, 1e-12),
+                        (&faces, None, None),
+                    )?;
+                    let topology = mesh.topology();
+                    let is_beside = |face: &u32| {
+                        let corners = topology.triangles()[*face as usize].map(VertexId);
+                        corners
+                            .iter()
+                            .filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2)
+                            .count()
+                            == 2
+                    };
+                    let worst = |face: u32| found[face as usize].worst.0;
+                    let rims = faces
+                        .iter()
+                        .copied()
+                        .filter(|&face| flat.region(face).is_some())
+                        .filter(is_beside);
+                    let (mut counted, mut planned) = (0.0f64, 0.0f64);
+                    for face in rims {
+                        (counted, planned) =
+                            (counted.max(worst(face)), planned.max(plan.bound(face)));
+                    }
+                    assert!(planned > 0.02, "{planned}");
+                    match bend == 0.0 {
+                        true => assert!(counted < 1e-9, "{counted}"),
+                        false => assert!(counted > 0.02, "{counted}"),
+                    }
+                    Ok(())
+                },
+            )
             .unwrap();
         }
     }

@@ -64,9 +64,19 @@ impl FlatRegions {
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
-        let folded = coverings.iter().flatten().filter(|covering| covering.was_folded).count();
-        let Regions { list, of_triangle, .. } = regions;
-        let merged = Merged { list: &list, of_triangle: &of_triangle, coverings: &coverings };
+        let folded = coverings
+            .iter()
+            .flatten()
+            .filter(|covering| covering.was_folded)
+            .count();
+        let Regions {
+            list, of_triangle, ..
+        } = regions;
+        let merged = Merged {
+            list: &list,
+            of_triangle: &of_triangle,
+            coverings: &coverings,
+        };
         Ok((merged.replaced(whole, starts, corners, watch)?, folded))
     }
 
@@ -84,15 +94,25 @@ impl FlatRegions {
                 block.map(fate).collect::<Vec<_>>()
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
-            let stays: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Stays)).collect();
-            let fails: Vec<bool> = fates.iter().map(|fate| matches!(fate, Fate::Fails)).collect();
+            let stays: Vec<bool> = fates
+                .iter()
+                .map(|fate| matches!(fate, Fate::Stays))
+                .collect();
+            let fails: Vec<bool> = fates
+                .iter()
+                .map(|fate| matches!(fate, Fate::Fails))
+                .collect();
             let coverings = fates.into_iter().map(Fate::covering).collect();
             let coverings = without_shared_edges(coverings, net, regions, watch)?;
             // A region that keeps its triangles keeps what is on its rim.
             let mut is_kept = false;
             watch.each(regions.list.iter().zip(&coverings), |(region, covering)| {
                 if covering.is_none() && !regions.is_dropped.is_empty() {
-                    for &vertex in region.triangles.iter().flat_map(|&at| &net.triangles[at as usize]) {
+                    for &vertex in region
+                        .triangles
+                        .iter()
+                        .flat_map(|&at| &net.triangles[at as usize])
+                    {
                         is_kept |= core::mem::take(&mut regions.is_dropped[vertex as usize]);
                     }
                 }
@@ -104,7 +124,9 @@ impl FlatRegions {
                 continue;
             }
             for (at, region) in regions.list.iter().enumerate() {
-                let Some(flat) = region.flat.filter(|_| coverings[at].is_none()) else { continue };
+                let Some(flat) = region.flat.filter(|_| coverings[at].is_none()) else {
+                    continue;
+                };
                 if fails[at] && !mesh.0.demands.judges_by_triangles(flat) {
                     self.note_gap(flat, chords(region, net, regions, watch)?);
                 } else if self.is_by_rim(region) && !stays[at] {
@@ -133,7 +155,9 @@ impl FlatRegions {
     ) -> Fate {
         let own = &regions.list[region];
         let (before, by_rim) = (&own.triangles, self.is_by_rim(own));
-        let is_divided = own.flat.is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
+        let is_divided = own
+            .flat
+            .is_none_or(|flat| before.len() > self.regions[flat as usize].0.len());
         let is_enclosed = own.flat.is_some_and(|flat| self.is_enclosed[flat as usize]);
         let may_change = is_divided || by_rim || is_enclosed && own.has_turned(net, is_stopped);
         if !may_change {
@@ -143,16 +167,20 @@ impl FlatRegions {
         let Some(outline) = Outline::of(own, net, regions, (&mut flat, is_stopped)) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
-        let has_turned =
-            outline.has_turned || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net, is_stopped);
+        let has_turned = outline.has_turned
+            || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net, is_stopped);
         // Where the surface is proven not to be turned over, coarse triangles alone are.
         let was_folded = has_turned && (is_enclosed || !by_rim);
         if !is_divided && !has_turned || was_folded && !is_enclosed {
             return Fate::Stays;
         }
         let is_wanted = by_rim || was_folded;
-        let covering =
-            Self::covering((outline, flat), (before, is_wanted, was_folded), self.off_planes, is_stopped);
+        let covering = Self::covering(
+            (outline, flat),
+            (before, is_wanted, was_folded),
+            self.off_planes,
+            is_stopped,
+        );
         match covering {
             Some(covering) => Fate::Covered(covering),
             None if is_wanted => Fate::Fails,
@@ -168,18 +196,33 @@ impl FlatRegions {
         is_stopped: &IsStopped<'_>,
     ) -> Option<Covering> {
         let (along, lines) = outline.straightened();
-        let rim: Vec<[u32; 2]> =
-            along.iter().map(|(ends, _)| ends.map(|vertex| flat.number(vertex))).collect();
+        let rim: Vec<[u32; 2]> = along
+            .iter()
+            .map(|(ends, _)| ends.map(|vertex| flat.number(vertex)))
+            .collect();
         let along: HashMap<[u32; 2], u32> = along.into_iter().collect();
         let (triangles, found) = flat.triangulated(&rim, is_stopped)?;
-        let Outline { area, length, after, .. } = outline;
-        let off = if after.is_empty() { 0.0 } else { 2.0 * off_planes * length };
-        let is_same =
-            (is_wanted || triangles.len() < before.len()) && (found - area).abs() <= SAME_AREA * area + off;
+        let Outline {
+            area,
+            length,
+            after,
+            ..
+        } = outline;
+        let off = if after.is_empty() {
+            0.0
+        } else {
+            2.0 * off_planes * length
+        };
+        let is_same = (is_wanted || triangles.len() < before.len())
+            && (found - area).abs() <= SAME_AREA * area + off;
         if !is_same {
             return None;
         }
-        Some(Covering { triangles: by_face(triangles, &along, is_stopped)?, lines, was_folded })
+        Some(Covering {
+            triangles: by_face(triangles, &along, is_stopped)?,
+            lines,
+            was_folded,
+        })
     }
 }
 
@@ -209,7 +252,13 @@ impl Outline {
         (flat, is_stopped): (&mut Flattened<'_>, &IsStopped<'_>),
     ) -> Option<Self> {
         let (rim, after) = (Vec::new(), HashMap::new());
-        let mut found = Self { rim, after, area: 0.0, length: 0.0, has_turned: false };
+        let mut found = Self {
+            rim,
+            after,
+            area: 0.0,
+            length: 0.0,
+            has_turned: false,
+        };
         for &triangle in asking(&own.triangles, is_stopped) {
             let part = flat.area(net.triangles[triangle as usize])?;
             found.area += part;
@@ -236,7 +285,9 @@ impl Outline {
         let (mut edges, mut lines) = (Vec::with_capacity(self.rim.len()), Vec::new());
         for &([from, next], face) in &self.rim {
             let after = |vertex: &u32| self.after.get(vertex).copied();
-            let to = core::iter::successors(Some(next), after).last().unwrap_or(next);
+            let to = core::iter::successors(Some(next), after)
+                .last()
+                .unwrap_or(next);
             edges.push(([from, to], face));
             lines.extend((to != next).then_some([from, to]));
         }
@@ -253,17 +304,33 @@ fn without_shared_edges(
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Option<Covering>>, Cancelled> {
     let mut is_covered = vec![false; net.positions.len()];
-    watch.each(coverings.iter().flatten().flat_map(|covering| &covering.triangles), |(triangle, _)| {
-        triangle.iter().for_each(|&vertex| is_covered[vertex as usize] = true);
-    })?;
+    watch.each(
+        coverings
+            .iter()
+            .flatten()
+            .flat_map(|covering| &covering.triangles),
+        |(triangle, _)| {
+            triangle
+                .iter()
+                .for_each(|&vertex| is_covered[vertex as usize] = true);
+        },
+    )?;
     // By its ends, the region that an edge is inside of; none where it is on rims, or elsewhere.
-    let covered: usize = coverings.iter().flatten().map(|covering| covering.triangles.len()).sum();
+    let covered: usize = coverings
+        .iter()
+        .flatten()
+        .map(|covering| covering.triangles.len())
+        .sum();
     // With room for the edges before and after: maps that grow move all that they have at once.
     let mut owners = HashMap::with_capacity(3 * covered);
     let touched = watch.pieces(net.triangles.len(), EDGES, |block| {
-        let all = block.flat_map(|number| edges(net.triangles[number]).map(|ends| (ends, number as u32)));
-        let touched = all.filter(|(ends, _)| ends.iter().all(|&vertex| is_covered[vertex as usize]));
-        touched.map(|([from, to], number)| ([from.min(to), from.max(to)], number)).collect::<Vec<_>>()
+        let all =
+            block.flat_map(|number| edges(net.triangles[number]).map(|ends| (ends, number as u32)));
+        let touched =
+            all.filter(|(ends, _)| ends.iter().all(|&vertex| is_covered[vertex as usize]));
+        touched
+            .map(|([from, to], number)| ([from.min(to), from.max(to)], number))
+            .collect::<Vec<_>>()
     })?;
     watch.each(touched.into_iter().flatten(), |(ends, number)| {
         let own = regions.of(number);
@@ -272,7 +339,12 @@ fn without_shared_edges(
     })?;
     let mut all_lines = HashSet::new();
     for (region, covering) in (0u32..).zip(&mut coverings) {
-        let Some(Covering { triangles, lines, .. }) = covering else { continue };
+        let Some(Covering {
+            triangles, lines, ..
+        }) = covering
+        else {
+            continue;
+        };
         let all = || triangles.iter().flat_map(|&(triangle, _)| edges(triangle));
         let mut directed = HashSet::with_capacity(3 * triangles.len());
         watch.each(all(), |ends| {
@@ -284,7 +356,11 @@ fn without_shared_edges(
                 inner.push([from, to]);
             }
         })?;
-        let is_others = |ends: [u32; 2]| owners.get(&ends).is_some_and(|&owner| owner != Some(region));
+        let is_others = |ends: [u32; 2]| {
+            owners
+                .get(&ends)
+                .is_some_and(|&owner| owner != Some(region))
+        };
         // A line has one region on either side: where sheets touch, two may have the same ends.
         let is_taken = |&[from, to]: &[u32; 2]| {
             all_lines.contains(&[from, to])
@@ -321,8 +397,11 @@ fn by_face(
             by_edge.insert(ends, at);
         });
     }
-    let on_rim =
-        |&triangle: &[u32; 3]| edges(triangle).into_iter().find_map(|ends| along.get(&ends).copied());
+    let on_rim = |&triangle: &[u32; 3]| {
+        edges(triangle)
+            .into_iter()
+            .find_map(|ends| along.get(&ends).copied())
+    };
     let mut faces: Vec<Option<u32>> = asking(triangles.iter(), is_stopped).map(on_rim).collect();
     if is_stopped() {
         return None;
@@ -345,5 +424,9 @@ fn by_face(
     let numbered = (0u32..).zip(faces).map(|(at, face)| Some((face?, at)));
     let mut order: Vec<(u32, u32)> = asking(numbered, is_stopped).collect::<Option<_>>()?;
     sort_asking(&mut order, is_stopped);
-    Some(asking(order, is_stopped).map(|(face, at)| (triangles[at as usize], face)).collect())
+    Some(
+        asking(order, is_stopped)
+            .map(|(face, at)| (triangles[at as usize], face))
+            .collect(),
+    )
 }

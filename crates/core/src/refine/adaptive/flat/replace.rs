@@ -34,8 +34,23 @@ impl Assembled {
         kept: &'a KeptFaces,
         corners: usize,
     ) -> Net<'a> {
-        let Self { positions, triangles, twins, parents, .. } = self;
-        Net { positions, triangles, twins, parents, starts, sharp, kept, corners }
+        let Self {
+            positions,
+            triangles,
+            twins,
+            parents,
+            ..
+        } = self;
+        Net {
+            positions,
+            triangles,
+            twins,
+            parents,
+            starts,
+            sharp,
+            kept,
+            corners,
+        }
     }
 }
 
@@ -61,7 +76,10 @@ impl Merged<'_> {
     /// The region of a triangle that gives way, and what comes in its place.
     fn covering(&self, triangle: u32) -> Option<(u32, &Covering)> {
         let region = self.of_triangle[triangle as usize];
-        self.coverings.get(region as usize)?.as_ref().map(|covering| (region, covering))
+        self.coverings
+            .get(region as usize)?
+            .as_ref()
+            .map(|covering| (region, covering))
     }
 
     /// The mesh with the coverings that there are. Arrays by triangle are changed where they stand: fresh ones as large take longer than all
@@ -81,17 +99,30 @@ impl Merged<'_> {
         })?;
         let mut twins = core::mem::take(&mut whole.twins);
         let mut junctions = core::mem::take(&mut whole.junctions);
-        let numbers = Numbers { exchange: &exchange, whole: &whole, starts, new: &new };
+        let numbers = Numbers {
+            exchange: &exchange,
+            whole: &whole,
+            starts,
+            new: &new,
+        };
         let rims = self.rims(&numbers, &twins, watch)?;
         let sides = self.sides(&numbers, watch)?;
         let renamed = self.renamed(&whole, corners, watch)?;
         let name = |vertex: u32| renamed[vertex as usize];
         numbers.renumber(&mut twins, watch)?;
         let borders = core::mem::take(&mut junctions.edges);
-        borders.iter().for_each(|group| junctions.edges.push(group.iter().map(|&h| numbers.of(h))));
+        borders
+            .iter()
+            .for_each(|group| junctions.edges.push(group.iter().map(|&h| numbers.of(h))));
         junctions.vertices.rename(name);
         let Assembled {
-            mut triangles, mut parents, mut tags, mut positions, mut normals, mut origins, ..
+            mut triangles,
+            mut parents,
+            mut tags,
+            mut positions,
+            mut normals,
+            mut origins,
+            ..
         } = whole;
         let fresh = &exchange.fresh;
         type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
@@ -101,7 +132,9 @@ impl Merged<'_> {
             Box::new(|| keep(&mut positions, &renamed)),
             Box::new(|| keep(&mut normals, &renamed)),
             Box::new(|| exchange.carry_out(&mut twins, 3, fresh.iter().flat_map(|_| [NONE; 3]))),
-            Box::new(|| exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle))),
+            Box::new(|| {
+                exchange.carry_out(&mut triangles, 1, fresh.iter().map(|fresh| fresh.triangle))
+            }),
             Box::new(|| exchange.carry_out(&mut parents, 1, fresh.iter().map(|fresh| fresh.face))),
         ];
         parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, _| task())?;
@@ -113,11 +146,27 @@ impl Merged<'_> {
         })?;
         let poll = &mut |_| watch.poll();
         parallel::for_each_chunk_polled(&mut triangles, RENAMED, poll, |_, triangles| {
-            triangles.iter_mut().for_each(|triangle| *triangle = triangle.map(name));
+            triangles
+                .iter_mut()
+                .for_each(|triangle| *triangle = triangle.map(name));
         })?;
-        tags.creases.iter_mut().for_each(|tag| tag.vertices = tag.vertices.map(name));
-        tags.corners.iter_mut().for_each(|tag| tag.vertex = name(tag.vertex));
-        Ok(Assembled { positions, normals, origins, triangles, twins, parents, tags, sides, junctions })
+        tags.creases
+            .iter_mut()
+            .for_each(|tag| tag.vertices = tag.vertices.map(name));
+        tags.corners
+            .iter_mut()
+            .for_each(|tag| tag.vertex = name(tag.vertex));
+        Ok(Assembled {
+            positions,
+            normals,
+            origins,
+            triangles,
+            twins,
+            parents,
+            tags,
+            sides,
+            junctions,
+        })
     }
 
     /// The triangles with those that come in the place of others, by control face and region, in that order.
@@ -130,21 +179,31 @@ impl Merged<'_> {
         let mut others: Vec<(u32, u32, [u32; 3])> = Vec::new();
         let mut is_changed = vec![false; starts.len() - 1];
         let covered = || (0u32..).zip(self.list.iter().zip(self.coverings));
-        let covered =
-            || covered().filter_map(|(number, (region, own))| Some((number, region, own.as_ref()?)));
-        let fresh =
-            covered().flat_map(|(number, _, own)| own.triangles.iter().map(move |&own| (number, own)));
-        watch.each(fresh, |(number, (triangle, face))| others.push((face, number, triangle)))?;
-        watch.each(covered().flat_map(|(_, region, _)| &region.triangles), |&triangle| {
-            is_changed[whole.parents[triangle as usize] as usize] = true;
+        let covered = || {
+            covered().filter_map(|(number, (region, own))| Some((number, region, own.as_ref()?)))
+        };
+        let fresh = covered()
+            .flat_map(|(number, _, own)| own.triangles.iter().map(move |&own| (number, own)));
+        watch.each(fresh, |(number, (triangle, face))| {
+            others.push((face, number, triangle))
         })?;
+        watch.each(
+            covered().flat_map(|(_, region, _)| &region.triangles),
+            |&triangle| {
+                is_changed[whole.parents[triangle as usize] as usize] = true;
+            },
+        )?;
         parallel::sort_polled(&mut others, &mut |_| watch.poll(), Ord::cmp)?;
-        others.iter().for_each(|&(face, ..)| is_changed[face as usize] = true);
+        others
+            .iter()
+            .for_each(|&(face, ..)| is_changed[face as usize] = true);
         let mut others = others.into_iter().peekable();
         let mut found = Exchange::default();
         watch.each((0u32..).zip(is_changed), |(face, is_changed)| {
             let before = starts[face as usize]..starts[face as usize + 1];
-            found.starts.push(if is_changed { NONE } else { found.count });
+            found
+                .starts
+                .push(if is_changed { NONE } else { found.count });
             if !is_changed {
                 found.keep(before);
                 return;
@@ -154,7 +213,12 @@ impl Merged<'_> {
                 found.keep(triangle..triangle + 1);
             }
             while let Some((_, region, triangle)) = others.next_if(|&(parent, ..)| parent == face) {
-                found.add(Fresh { number: found.count, triangle, face, region });
+                found.add(Fresh {
+                    number: found.count,
+                    triangle,
+                    face,
+                    region,
+                });
             }
         })?;
         Ok(found)
@@ -168,14 +232,21 @@ impl Merged<'_> {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<(u32, u32)>, Cancelled> {
         let mut rims = Vec::new();
-        let covered = self.list.iter().zip(self.coverings).filter(|(_, covering)| covering.is_some());
+        let covered = self
+            .list
+            .iter()
+            .zip(self.coverings)
+            .filter(|(_, covering)| covering.is_some());
         let triangles = covered.flat_map(|(region, _)| &region.triangles);
-        watch.each(triangles.flat_map(|&triangle| 3 * triangle..3 * triangle + 3), |h| {
-            let (now, twin) = (numbers.of(h), twins[h as usize]);
-            if now != NONE && twin != NONE {
-                rims.push((now, numbers.of(twin)));
-            }
-        })?;
+        watch.each(
+            triangles.flat_map(|&triangle| 3 * triangle..3 * triangle + 3),
+            |h| {
+                let (now, twin) = (numbers.of(h), twins[h as usize]);
+                if now != NONE && twin != NONE {
+                    rims.push((now, numbers.of(twin)));
+                }
+            },
+        )?;
         Ok(rims)
     }
 
@@ -193,13 +264,23 @@ impl Merged<'_> {
                 .zip(self.coverings)
                 .filter_map(|(region, covering)| Some((region, covering.as_ref()?)))
         };
-        watch.each(covered().flat_map(|(region, _)| &region.triangles), |&triangle| {
-            whole.triangles[triangle as usize].iter().for_each(|&vertex| is_gone[vertex as usize] = true);
-        })?;
+        watch.each(
+            covered().flat_map(|(region, _)| &region.triangles),
+            |&triangle| {
+                whole.triangles[triangle as usize]
+                    .iter()
+                    .for_each(|&vertex| is_gone[vertex as usize] = true);
+            },
+        )?;
         is_gone[..corners].fill(false);
-        watch.each(covered().flat_map(|(_, covering)| &covering.triangles), |(triangle, _)| {
-            triangle.iter().for_each(|&vertex| is_gone[vertex as usize] = false);
-        })?;
+        watch.each(
+            covered().flat_map(|(_, covering)| &covering.triangles),
+            |(triangle, _)| {
+                triangle
+                    .iter()
+                    .for_each(|&vertex| is_gone[vertex as usize] = false);
+            },
+        )?;
         let mut next = 0;
         let mut renamed = Vec::with_capacity(is_gone.len());
         watch.each(is_gone, |is_gone| {
@@ -212,9 +293,16 @@ impl Merged<'_> {
     /// Where a region was folded, gives its vertices that are not on sharp edges the normal of its plane: limit normals are turned
     /// over where the surface is.
     fn unfold_normals(&self, whole: &mut Assembled) {
-        let folded = self.list.iter().zip(self.coverings).filter_map(|(region, covering)| {
-            covering.as_ref().filter(|covering| covering.was_folded).map(|covering| (&region.plane, covering))
-        });
+        let folded = self
+            .list
+            .iter()
+            .zip(self.coverings)
+            .filter_map(|(region, covering)| {
+                covering
+                    .as_ref()
+                    .filter(|covering| covering.was_folded)
+                    .map(|covering| (&region.plane, covering))
+            });
         let mut folded = folded.peekable();
         if folded.peek().is_none() {
             return;
@@ -236,30 +324,47 @@ impl Merged<'_> {
         numbers: &Numbers<'_>,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
-        let Numbers { whole, exchange, .. } = numbers;
+        let Numbers {
+            whole, exchange, ..
+        } = numbers;
         let was_folded = |region: u32| {
-            self.coverings[region as usize].as_ref().is_some_and(|covering| covering.was_folded)
+            self.coverings[region as usize]
+                .as_ref()
+                .is_some_and(|covering| covering.was_folded)
         };
         let (mut sides, mut at_rims) = (Vec::with_capacity(whole.sides.len()), HashMap::new());
-        watch.each(&whole.sides, |&(h, normal)| match numbers.of_triangle(h / 3) {
-            None => {
-                let vertex = whole.triangles[h as usize / 3][h as usize % 3];
-                at_rims.insert((self.of_triangle[h as usize / 3], vertex), normal);
+        watch.each(&whole.sides, |&(h, normal)| {
+            match numbers.of_triangle(h / 3) {
+                None => {
+                    let vertex = whole.triangles[h as usize / 3][h as usize % 3];
+                    at_rims.insert((self.of_triangle[h as usize / 3], vertex), normal);
+                }
+                Some(now) => sides.push((3 * now + h % 3, normal)),
             }
-            Some(now) => sides.push((3 * now + h % 3, normal)),
         })?;
         if at_rims.is_empty() {
             return Ok(sides);
         }
-        watch.each(&exchange.fresh, |&Fresh { number, triangle, region, .. }| {
-            for (corner, vertex) in (0u32..).zip(triangle) {
-                let normal = at_rims.get(&(region, vertex)).map(|&normal| match was_folded(region) {
-                    true => self.list[region as usize].plane.normal.to_array(),
-                    false => normal,
-                });
-                sides.extend(normal.map(|normal| (3 * number + corner, normal)));
-            }
-        })?;
+        watch.each(
+            &exchange.fresh,
+            |&Fresh {
+                 number,
+                 triangle,
+                 region,
+                 ..
+             }| {
+                for (corner, vertex) in (0u32..).zip(triangle) {
+                    let normal =
+                        at_rims
+                            .get(&(region, vertex))
+                            .map(|&normal| match was_folded(region) {
+                                true => self.list[region as usize].plane.normal.to_array(),
+                                false => normal,
+                            });
+                    sides.extend(normal.map(|normal| (3 * number + corner, normal)));
+                }
+            },
+        )?;
         sides.sort_unstable_by_key(|&(h, _)| h);
         Ok(sides)
     }
@@ -317,7 +422,9 @@ impl Exchange {
 
     /// The half-edges of the new triangles by their ends.
     fn half_edges(&self) -> impl Iterator<Item = ([u32; 2], u32)> + '_ {
-        self.fresh.iter().flat_map(|fresh| edges(fresh.triangle).into_iter().zip(3 * fresh.number..))
+        self.fresh
+            .iter()
+            .flat_map(|fresh| edges(fresh.triangle).into_iter().zip(3 * fresh.number..))
     }
 
     /// Brings an array with so many items by triangle to what it is in the end.
@@ -357,7 +464,9 @@ impl Exchange {
                 }
                 Step::Add(count) => {
                     let new = &mut items[at..at + *count as usize * by_triangle];
-                    new.iter_mut().zip(&mut added).for_each(|(item, new)| *item = new);
+                    new.iter_mut()
+                        .zip(&mut added)
+                        .for_each(|(item, new)| *item = new);
                     at += new.len();
                 }
             }
@@ -397,24 +506,28 @@ impl Numbers<'_> {
             (faces, twins.split_off_mut(..count).unwrap_or_default())
         });
         let shares: Vec<_> = shares.collect();
-        parallel::each_long_polled(shares, &mut |_| watch.poll(), |(faces, mut twins), is_stopped| {
-            for face in faces {
-                let own = 3 * self.starts[face]..3 * self.starts[face + 1];
-                let now = self.exchange.starts[face];
-                let moved = (now != NONE).then(|| (3 * now).wrapping_sub(own.start));
-                let of_face = twins.split_off_mut(..own.len()).unwrap_or_default();
-                for twins in of_face.chunks_mut(RENAMED) {
-                    twins.iter_mut().for_each(|twin| match moved {
-                        Some(by) if own.contains(twin) => *twin = twin.wrapping_add(by),
-                        _ if *twin != NONE => *twin = self.of(*twin),
-                        _ => {}
-                    });
-                    if is_stopped() {
-                        return;
+        parallel::each_long_polled(
+            shares,
+            &mut |_| watch.poll(),
+            |(faces, mut twins), is_stopped| {
+                for face in faces {
+                    let own = 3 * self.starts[face]..3 * self.starts[face + 1];
+                    let now = self.exchange.starts[face];
+                    let moved = (now != NONE).then(|| (3 * now).wrapping_sub(own.start));
+                    let of_face = twins.split_off_mut(..own.len()).unwrap_or_default();
+                    for twins in of_face.chunks_mut(RENAMED) {
+                        twins.iter_mut().for_each(|twin| match moved {
+                            Some(by) if own.contains(twin) => *twin = twin.wrapping_add(by),
+                            _ if *twin != NONE => *twin = self.of(*twin),
+                            _ => {}
+                        });
+                        if is_stopped() {
+                            return;
+                        }
                     }
                 }
-            }
-        })?;
+            },
+        )?;
         Ok(())
     }
 
@@ -453,14 +566,20 @@ mod tests {
         let mut grown = 0;
         for _ in 0..500 {
             let before = 1 + random.below(40) as u32;
-            let (mut exchange, mut expected, mut added) = (Exchange::default(), Vec::new(), Vec::new());
+            let (mut exchange, mut expected, mut added) =
+                (Exchange::default(), Vec::new(), Vec::new());
             let mut at = 0;
             while at < before {
                 let end = (at + random.below(6) as u32).min(before);
                 exchange.keep(at..end);
                 expected.extend((2 * at..2 * end).map(f64::from));
                 for _ in 0..random.below(7) {
-                    exchange.add(Fresh { number: exchange.count, triangle: [0; 3], face: 0, region: 0 });
+                    exchange.add(Fresh {
+                        number: exchange.count,
+                        triangle: [0; 3],
+                        face: 0,
+                        region: 0,
+                    });
                     let new = [-1.0 - added.len() as f64, 0.5];
                     expected.extend(new);
                     added.extend(new);

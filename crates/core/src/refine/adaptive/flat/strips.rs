@@ -88,7 +88,10 @@ impl Net<'_> {
 
     fn plane(&self, triangle: u32) -> Plane {
         let corners = self.triangles[triangle as usize].map(|vertex| self.at(vertex));
-        Plane { point: corners[0], normal: unit_normal(corners) }
+        Plane {
+            point: corners[0],
+            normal: unit_normal(corners),
+        }
     }
 
     fn double_area(&self, triangle: u32) -> f64 {
@@ -125,7 +128,12 @@ impl Region {
         let is_new = |face: &u32| core::mem::replace(&mut last, *face) != *face;
         let triangles = asking(&self.triangles, is_stopped);
         let mut faces = triangles.map(|&triangle| net.face(triangle)).filter(is_new);
-        faces.any(|face| control.corners(face).iter().any(|at| at.normal.dot(self.plane.normal) < 0.0))
+        faces.any(|face| {
+            control
+                .corners(face)
+                .iter()
+                .any(|at| at.normal.dot(self.plane.normal) < 0.0)
+        })
     }
 }
 
@@ -140,16 +148,23 @@ pub(super) struct Regions {
 
 impl Regions {
     pub(super) fn of(&self, triangle: u32) -> Option<u32> {
-        self.of_triangle.get(triangle as usize).copied().filter(|&region| region != NONE)
+        self.of_triangle
+            .get(triangle as usize)
+            .copied()
+            .filter(|&region| region != NONE)
     }
 
     pub(super) fn drops(&self, vertex: u32) -> bool {
-        self.is_dropped.get(vertex as usize).copied().unwrap_or(false)
+        self.is_dropped
+            .get(vertex as usize)
+            .copied()
+            .unwrap_or(false)
     }
 
     /// Whether a half-edge of a region is on its rim.
     pub(super) fn is_rim(&self, net: &Net<'_>, h: u32) -> bool {
-        net.beyond(h).is_none_or(|twin| self.of(twin / 3) != self.of(h / 3))
+        net.beyond(h)
+            .is_none_or(|twin| self.of(twin / 3) != self.of(h / 3))
     }
 }
 
@@ -161,14 +176,22 @@ pub(super) fn straight_faces(
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<u32>, Cancelled> {
     let mesh = control.mesh;
-    let is_flat = |face: u32| flat.get(face as usize).is_some_and(|&region| region != NONE);
+    let is_flat = |face: u32| {
+        flat.get(face as usize)
+            .is_some_and(|&region| region != NONE)
+    };
     let is_beside_its_like = |face: u32| {
         let first = mesh.triangles()[face as usize][0];
-        let plane = Plane { point: vector(mesh.positions()[first as usize]), normal: normals[face as usize] };
+        let plane = Plane {
+            point: vector(mesh.positions()[first as usize]),
+            normal: normals[face as usize],
+        };
         !is_flat(face)
             && plane.normal != DVec3::ZERO
             && (3 * face..3 * face + 3).any(|h| {
-                let twin = edges.twin(h).filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
+                let twin = edges
+                    .twin(h)
+                    .filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
                 twin.is_some_and(|twin| {
                     !is_flat(twin / 3)
                         && plane.height(control.opposite(twin)).abs() <= most
@@ -179,7 +202,9 @@ pub(super) fn straight_faces(
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
         let faces = block.map(|face| face as u32);
         faces
-            .filter(|&face| is_beside_its_like(face) && may_have_direction((control, edges), face, most))
+            .filter(|&face| {
+                is_beside_its_like(face) && may_have_direction((control, edges), face, most)
+            })
             .filter(|&face| has_direction(control, face, most))
             .collect::<Vec<u32>>()
     })?;
@@ -188,13 +213,20 @@ pub(super) fn straight_faces(
 
 /// Whether the surface over a face may be straight in a direction, as far as the vertices beside it tell ([`BENT`]).
 fn may_have_direction((control, edges): (&Control<'_>, &Edges<'_>), face: u32, most: f64) -> bool {
-    let Control { mesh, sharpness, .. } = *control;
+    let Control {
+        mesh, sharpness, ..
+    } = *control;
     let corners = mesh.triangles()[face as usize];
-    let is_edged = |vertex: VertexId| sharpness.is_tagged(vertex) || mesh.topology().is_boundary(vertex);
+    let is_edged =
+        |vertex: VertexId| sharpness.is_tagged(vertex) || mesh.topology().is_boundary(vertex);
     if corners.iter().any(|&vertex| is_edged(VertexId(vertex))) {
         return true;
     }
-    let beside = [0, 1, 2].map(|edge| edges.twin(3 * face + edge).map(|twin| control.opposite(twin)));
+    let beside = [0, 1, 2].map(|edge| {
+        edges
+            .twin(3 * face + edge)
+            .map(|twin| control.opposite(twin))
+    });
     (0..3).any(|edge| {
         let (Some(before), Some(after)) = (beside[(edge + 1) % 3], beside[(edge + 2) % 3]) else {
             return true;
@@ -220,16 +252,31 @@ fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
 
 impl FlatRegions {
     /// The flat regions and the strips of what was emitted.
-    pub(super) fn regions(&self, net: &Net<'_>, watch: &SharedWatch<'_>) -> Result<Regions, Cancelled> {
+    pub(super) fn regions(
+        &self,
+        net: &Net<'_>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Regions, Cancelled> {
         let of_triangle = filled(NONE, net.triangles.len());
-        let mut regions = Regions { list: Vec::new(), of_triangle, is_dropped: Vec::new() };
+        let mut regions = Regions {
+            list: Vec::new(),
+            of_triangle,
+            is_dropped: Vec::new(),
+        };
         for (number, (faces, plane)) in (0u32..).zip(&self.regions) {
             let mut triangles = Vec::new();
-            watch.each(faces.iter().flat_map(|&face| net.of_face(face)), |triangle| {
-                regions.of_triangle[triangle as usize] = number;
-                triangles.push(triangle);
-            })?;
-            regions.list.push(Region { triangles, plane: *plane, flat: Some(number) });
+            watch.each(
+                faces.iter().flat_map(|&face| net.of_face(face)),
+                |triangle| {
+                    regions.of_triangle[triangle as usize] = number;
+                    triangles.push(triangle);
+                },
+            )?;
+            regions.list.push(Region {
+                triangles,
+                plane: *plane,
+                flat: Some(number),
+            });
         }
         if self.straight.is_empty() {
             return Ok(regions);
@@ -242,7 +289,11 @@ impl FlatRegions {
     }
 
     /// Triangles that these come to once they are put together, less than there are.
-    pub(in super::super) fn saved(&self, net: &Net<'_>, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
+    pub(in super::super) fn saved(
+        &self,
+        net: &Net<'_>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<usize, Cancelled> {
         let regions = self.regions(net, watch)?;
         let mut saved = 0;
         watch.each(&regions.list, |region| {
@@ -263,7 +314,10 @@ impl FlatRegions {
             }
             // By Euler's formula, with the vertices that stay.
             let before = region.triangles.len();
-            let stay = vertices.iter().filter(|&v| (*v as usize) < net.corners || on_rim.contains(v)).count();
+            let stay = vertices
+                .iter()
+                .filter(|&v| (*v as usize) < net.corners || on_rim.contains(v))
+                .count();
             let twice_euler = (2 * vertices.len() + 2 * before) as i64 - (3 * before + rim) as i64;
             let after = (2 * stay) as i64 - (rim + dropped) as i64 - twice_euler;
             saved += before.saturating_sub(after.max(1) as usize);
@@ -280,21 +334,29 @@ impl FlatRegions {
     ) -> Result<(), Cancelled> {
         let is_like = |triangle: u32| {
             let plane = net.plane(triangle);
-            (3 * triangle..3 * triangle + 3).filter_map(|h| net.beyond(h)).any(|twin| {
-                let opposite = net.triangles[twin as usize / 3][(twin as usize + 2) % 3];
-                plane.height(net.at(opposite)).abs() <= NEARLY * self.off_planes
-            })
+            (3 * triangle..3 * triangle + 3)
+                .filter_map(|h| net.beyond(h))
+                .any(|twin| {
+                    let opposite = net.triangles[twin as usize / 3][(twin as usize + 2) % 3];
+                    plane.height(net.at(opposite)).abs() <= NEARLY * self.off_planes
+                })
         };
         let found = watch.pieces(self.straight.len(), BLOCK, |block| {
-            let triangles = self.straight[block].iter().flat_map(|&face| net.of_face(face));
+            let triangles = self.straight[block]
+                .iter()
+                .flat_map(|&face| net.of_face(face));
             let found = triangles.filter(|&triangle| is_like(triangle));
-            found.map(|triangle| (net.double_area(triangle), triangle)).collect::<Vec<_>>()
+            found
+                .map(|triangle| (net.double_area(triangle), triangle))
+                .collect::<Vec<_>>()
         })?;
         let mut seeds = found.concat();
         // The largest know their planes best.
         seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut is_left = vec![false; net.triangles.len()];
-        seeds.iter().for_each(|&(_, triangle)| is_left[triangle as usize] = true);
+        seeds
+            .iter()
+            .for_each(|&(_, triangle)| is_left[triangle as usize] = true);
         watch.each(seeds, |(_, seed)| {
             if !core::mem::replace(&mut is_left[seed as usize], false) {
                 return;
@@ -303,7 +365,9 @@ impl FlatRegions {
             let is_in_plane = |triangle: u32| {
                 let corners = net.triangles[triangle as usize].map(|vertex| net.at(vertex));
                 let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-                corners.iter().all(|&corner| plane.height(corner).abs() <= self.off_planes)
+                corners
+                    .iter()
+                    .all(|&corner| plane.height(corner).abs() <= self.off_planes)
                     && normal.dot(plane.normal) > 0.0
             };
             let mut triangles = vec![seed];
@@ -320,8 +384,14 @@ impl FlatRegions {
             if triangles.len() >= FEWEST {
                 let number = regions.list.len() as u32;
                 triangles.sort_unstable();
-                triangles.iter().for_each(|&triangle| regions.of_triangle[triangle as usize] = number);
-                regions.list.push(Region { triangles, plane, flat: None });
+                triangles
+                    .iter()
+                    .for_each(|&triangle| regions.of_triangle[triangle as usize] = number);
+                regions.list.push(Region {
+                    triangles,
+                    plane,
+                    flat: None,
+                });
             }
         })
     }
@@ -337,7 +407,11 @@ impl FlatRegions {
         let mut between: HashMap<u32, Between> = HashMap::new();
         let mut starts = Vec::new();
         watch.each(&regions.list, |region| {
-            for h in region.triangles.iter().flat_map(|&triangle| 3 * triangle..3 * triangle + 3) {
+            for h in region
+                .triangles
+                .iter()
+                .flat_map(|&triangle| 3 * triangle..3 * triangle + 3)
+            {
                 if !regions.is_rim(net, h) {
                     continue;
                 }
@@ -356,7 +430,9 @@ impl FlatRegions {
             }
         })?;
         let inside = |vertex: u32| {
-            between.get(&vertex).filter(|own| vertex as usize >= net.corners && own.is_inside())
+            between
+                .get(&vertex)
+                .filter(|own| vertex as usize >= net.corners && own.is_inside())
         };
         let mut is_dropped = vec![false; net.positions.len()];
         watch.each(starts, |(region, from, to)| {
@@ -378,14 +454,24 @@ impl FlatRegions {
     fn straighten(&self, net: &Net<'_>, line: &[u32], is_dropped: &mut [bool]) {
         let mut pending = vec![line];
         while let Some(line) = pending.pop() {
-            let [first, inner @ .., last] = line else { continue };
+            let [first, inner @ .., last] = line else {
+                continue;
+            };
             let [from, to] = [first, last].map(|&vertex| net.at(vertex));
             let along = unit_or_zero(to - from);
-            let off = |vertex: u32| (net.at(vertex) - from).reject_from_normalized(along).length();
+            let off = |vertex: u32| {
+                (net.at(vertex) - from)
+                    .reject_from_normalized(along)
+                    .length()
+            };
             let farthest = (1..).zip(inner).map(|(at, &vertex)| (off(vertex), at));
-            let Some((most, at)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let Some((most, at)) = farthest.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+                continue;
+            };
             if along != DVec3::ZERO && most <= self.off_planes {
-                inner.iter().for_each(|&vertex| is_dropped[vertex as usize] = true);
+                inner
+                    .iter()
+                    .for_each(|&vertex| is_dropped[vertex as usize] = true);
             } else {
                 pending.push(&line[..=at]);
                 pending.push(&line[at..]);
@@ -406,7 +492,11 @@ struct Between {
 
 impl Default for Between {
     fn default() -> Self {
-        Self { regions: [NONE; 2], next: [NONE; 2], stays: false }
+        Self {
+            regions: [NONE; 2],
+            next: [NONE; 2],
+            stays: false,
+        }
     }
 }
 
@@ -414,7 +504,9 @@ impl Between {
     /// A region's rim goes on from here.
     fn goes_on(&mut self, region: u32, to: u32) {
         match self.regions.iter().position(|&own| own == NONE) {
-            Some(at) if !self.regions.contains(&region) => (self.regions[at], self.next[at]) = (region, to),
+            Some(at) if !self.regions.contains(&region) => {
+                (self.regions[at], self.next[at]) = (region, to)
+            }
             // A third region, or a rim that comes twice.
             _ => self.stays = true,
         }

@@ -49,7 +49,9 @@ fn is_piece_unfolded(
 
 fn is_net_unfolded(net: &BezierTriangle, plane: &Plane, halvings: usize) -> bool {
     let across = cross_products(&tangents(net)).map(|normal| normal.dot(plane.normal));
-    let greatest = across.iter().fold(0.0f64, |greatest, part| greatest.max(part.abs()));
+    let greatest = across
+        .iter()
+        .fold(0.0f64, |greatest, part| greatest.max(part.abs()));
     let has_area = greatest > 0.0 && greatest.is_finite();
     if has_area && across.iter().all(|&part| part >= -ROUNDING * greatest) {
         return true;
@@ -59,8 +61,19 @@ fn is_net_unfolded(net: &BezierTriangle, plane: &Plane, halvings: usize) -> bool
         return false;
     }
     let [a, b, c] = net.corners();
-    let lengths = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
-    let longest =
-        (1..3).fold(0, |longest, edge| if lengths[edge] > lengths[longest] { edge } else { longest });
-    net.halves(longest).iter().all(|half| is_net_unfolded(half, plane, halvings - 1))
+    let lengths = [
+        a.distance_squared(b),
+        b.distance_squared(c),
+        c.distance_squared(a),
+    ];
+    let longest = (1..3).fold(0, |longest, edge| {
+        if lengths[edge] > lengths[longest] {
+            edge
+        } else {
+            longest
+        }
+    });
+    net.halves(longest)
+        .iter()
+        .all(|half| is_net_unfolded(half, plane, halvings - 1))
 }

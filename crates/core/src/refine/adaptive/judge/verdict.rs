@@ -27,8 +27,13 @@ impl Default for Extent {
 }
 
 impl Extent {
-    pub(in super::super) const NONE: Self =
-        Self { tilt: 0.0, slope: f64::INFINITY, drift_slope: 0.0, bound: 0.0, worst: None };
+    pub(in super::super) const NONE: Self = Self {
+        tilt: 0.0,
+        slope: f64::INFINITY,
+        drift_slope: 0.0,
+        bound: 0.0,
+        worst: None,
+    };
 
     pub(in super::super) fn add(&mut self, other: &Self) {
         self.tilt = self.tilt.larger(other.tilt);
@@ -71,12 +76,20 @@ pub(in super::super) struct Condition {
 impl Condition {
     /// That of a leaf of which nothing is known any more: it never holds.
     pub(in super::super) fn unknown(place: Place) -> Self {
-        Self { place, deviation: Deviation::alone(f64::INFINITY), tilt: ANY_TILT, slopes: [0.0; 3] }
+        Self {
+            place,
+            deviation: Deviation::alone(f64::INFINITY),
+            tilt: ANY_TILT,
+            slopes: [0.0; 3],
+        }
     }
 
     /// What it comes to beside triangles like itself.
     pub(in super::super) fn expected(&self) -> f64 {
-        self.bound(&Allowance { tilt: self.tilt, slope: f64::INFINITY })
+        self.bound(&Allowance {
+            tilt: self.tilt,
+            slope: f64::INFINITY,
+        })
     }
 
     /// What it comes to beside triangles of these tilts and angles at most.
@@ -95,7 +108,10 @@ pub(in super::super) struct Verdict {
 
 impl Verdict {
     /// That of no triangle.
-    pub(in super::super) const NONE: Self = Self { outcome: Outcome::Passes, extent: Extent::NONE };
+    pub(in super::super) const NONE: Self = Self {
+        outcome: Outcome::Passes,
+        extent: Extent::NONE,
+    };
 
     pub(in super::super) fn passes(&self) -> bool {
         matches!(self.outcome, Outcome::Passes)
@@ -113,8 +129,16 @@ impl Verdict {
             (Outcome::Passes, other) => other,
             (own, Outcome::Passes) => own,
             (
-                Outcome::Depends { deviation, tilt, slopes },
-                Outcome::Depends { deviation: second, tilt: other, slopes: least },
+                Outcome::Depends {
+                    deviation,
+                    tilt,
+                    slopes,
+                },
+                Outcome::Depends {
+                    deviation: second,
+                    tilt: other,
+                    slopes: least,
+                },
             ) => Outcome::Depends {
                 deviation: deviation.max(second),
                 tilt: tilt.max(other),
@@ -126,7 +150,10 @@ impl Verdict {
 
     /// The same where nobody knows which edge is which any more.
     pub(in super::super) fn spread(mut self) -> Self {
-        if let Outcome::Depends { deviation, slopes, .. } = &mut self.outcome {
+        if let Outcome::Depends {
+            deviation, slopes, ..
+        } = &mut self.outcome
+        {
             deviation.slopes = [deviation.steepest(); 3];
             *slopes = [slopes.iter().copied().fold(f64::INFINITY, f64::min); 3];
         }

@@ -13,12 +13,15 @@ impl Measuring<'_> {
         let triangles = self.emission.triangles_of(face);
         let mut is_left = vec![false; triangles.len()];
         let mut four = MovedFour::default();
-        for (number, (parts, is_left)) in
-            triangles.clone().step_by(FOUR).zip(bulge.parts.iter().zip(is_left.chunks_mut(FOUR)))
+        for (number, (parts, is_left)) in triangles
+            .clone()
+            .step_by(FOUR)
+            .zip(bulge.parts.iter().zip(is_left.chunks_mut(FOUR)))
         {
             let is_wanted = |at: usize| {
                 let triangle = (number + at) as u32;
-                self.changes.is_none_or(|changes| changes.concern(self.emission, triangle))
+                self.changes
+                    .is_none_or(|changes| changes.concern(self.emission, triangle))
             };
             let mut wanted = [false; FOUR];
             wanted
@@ -29,8 +32,11 @@ impl Measuring<'_> {
             if wanted == [false; FOUR] {
                 continue;
             }
-            for (at, (is_left, _)) in
-                is_left.iter_mut().zip(wanted).enumerate().filter(|(_, (_, wanted))| *wanted)
+            for (at, (is_left, _)) in is_left
+                .iter_mut()
+                .zip(wanted)
+                .enumerate()
+                .filter(|(_, (_, wanted))| *wanted)
             {
                 *is_left = !self.gather(number + at, at, &mut four);
             }
@@ -56,7 +62,12 @@ impl Measuring<'_> {
     #[inline]
     fn keep(&mut self, number: usize, [bound, value, height]: [f64; 3]) {
         let offsets = self.emission.offsets_of(number);
-        self.found.each[number - self.first as usize] = FoundLast { offsets, bound, value, height };
+        self.found.each[number - self.first as usize] = FoundLast {
+            offsets,
+            bound,
+            value,
+            height,
+        };
     }
 
     /// Puts a triangle and those beside it at a place among four; `false` if it has an edge without a neighbour.
@@ -71,8 +82,10 @@ impl Measuring<'_> {
                 return false;
             }
             let opposite = emission.triangles[twin as usize / 3][(twin as usize + 2) % 3];
-            let (position, opposite) =
-                (emission.positions[vertex as usize], emission.positions[opposite as usize]);
+            let (position, opposite) = (
+                emission.positions[vertex as usize],
+                emission.positions[opposite as usize],
+            );
             let step = emission.step(vertex);
             for axis in 0..3 {
                 four.corners[corner][axis][at] = position[axis];

@@ -30,7 +30,9 @@ pub(super) fn farthest(
     (face, leaf): (u32, Option<Place>),
     is_stopped: &IsStopped<'_>,
 ) -> Vec<DVec3> {
-    let Sources { control, emission, .. } = *sources;
+    let Sources {
+        control, emission, ..
+    } = *sources;
     let is_moved = !emission.offsets.is_empty();
     let (place, triangles) = match leaf {
         Some(place) if is_moved => (place, Vec::new()),
@@ -40,9 +42,18 @@ pub(super) fn farthest(
                 None => Wanted::LeafOf(most_bent(emission, face, is_stopped)),
             };
             let place = Place::root(face);
-            let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
+            let mut found = Finder {
+                wanted,
+                is_found: false,
+                place,
+                triangles: Vec::new(),
+            };
             sources.show(face, is_stopped, &mut found);
-            if found.is_found { (found.place, found.triangles) } else { (place, Vec::new()) }
+            if found.is_found {
+                (found.place, found.triangles)
+            } else {
+                (place, Vec::new())
+            }
         }
     };
     let piece = control.piece(face);
@@ -63,11 +74,15 @@ pub(super) fn farthest(
     if is_moved {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         let by_height = |a: &&DVec3, b: &&DVec3| frame.height(**a).total_cmp(&frame.height(**b));
-        let ends = [points.iter().max_by(by_height), points.iter().min_by(by_height)];
+        let ends = [
+            points.iter().max_by(by_height),
+            points.iter().min_by(by_height),
+        ];
         let corners = corners.map(|corner| corner.position);
         return ends.into_iter().flatten().copied().chain(corners).collect();
     }
-    let corners = |triangle: [u32; 3]| triangle.map(|vertex| vector(emission.positions[vertex as usize]));
+    let corners =
+        |triangle: [u32; 3]| triangle.map(|vertex| vector(emission.positions[vertex as usize]));
     let triangles: Vec<[DVec3; 3]> = triangles.into_iter().map(corners).collect();
     let mut farthest: Option<(f64, DVec3)> = None;
     for point in points {
@@ -101,19 +116,37 @@ fn sample_rim(surface: Surface<'_>, open: [bool; 3], levels: usize, points: &mut
         return;
     }
     let middles = surface.middles();
-    points.extend((0..3).filter(|&edge| open[edge]).map(|edge| middles[edge].position));
-    (0..4).for_each(|child| sample_rim(surface.child(child), child_open(open, child), levels - 1, points));
+    points.extend(
+        (0..3)
+            .filter(|&edge| open[edge])
+            .map(|edge| middles[edge].position),
+    );
+    (0..4).for_each(|child| {
+        sample_rim(
+            surface.child(child),
+            child_open(open, child),
+            levels - 1,
+            points,
+        )
+    });
 }
 
 /// The triangle of a control face over which the surface bends most, as far as the normals at its corners tell.
 fn most_bent(emission: &Emission, face: u32, is_stopped: &IsStopped<'_>) -> u32 {
-    let Emission { positions, normals, triangles, .. } = emission;
+    let Emission {
+        positions,
+        normals,
+        triangles,
+        ..
+    } = emission;
     let (mut number, mut greatest) = (0, -1.0);
     for triangle in emission.triangles_of(face) {
         if triangle % LOOKED_AT == LOOKED_AT - 1 && is_stopped() {
             break;
         }
-        let at = |list: &[[f64; 3]], corner: usize| vector(list[triangles[triangle][corner % 3] as usize]);
+        let at = |list: &[[f64; 3]], corner: usize| {
+            vector(list[triangles[triangle][corner % 3] as usize])
+        };
         let bend = |edge: usize| {
             let along = at(positions, edge + 1) - at(positions, edge);
             (at(normals, edge + 1) - at(normals, edge)).dot(along).abs()
@@ -191,39 +224,57 @@ mod tests {
     #[test]
     fn the_leaf_of_a_triangle_is_found_with_all_of_its_triangles() {
         let mut found_in_parts = 0;
-        for (name, seed) in [("icosphere", 3), ("torus", 6), ("spike", 2), ("head", 1), ("cup", 5)] {
+        for (name, seed) in [
+            ("icosphere", 3),
+            ("torus", 6),
+            ("spike", 2),
+            ("head", 1),
+            ("cup", 5),
+        ] {
             let mesh = stirred(name, seed);
             let tolerance = 3e-4 * mesh.diagonal();
             let options = ExactOptions::default().tolerance(tolerance);
-            with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-                let mut plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
-                let emission = engine.emit_all(&mut plan)?;
-                let sources = engine.sources(&plan, &emission);
-                for face in (0..mesh.face_count() as u32).step_by(3) {
-                    let mut all = Listing(Vec::new());
-                    sources.show(face, &|| false, &mut all);
-                    for &(number, leaf) in all.0.iter().step_by(7) {
-                        let expected = all.0.iter().filter(|&&(_, place)| place == leaf);
-                        let mut expected: Vec<[u32; 3]> =
-                            expected.map(|&(number, _)| emission.triangles[number as usize]).collect();
-                        for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
-                            let place = Place::root(face);
-                            let mut found = Finder { wanted, is_found: false, place, triangles: Vec::new() };
-                            sources.show(face, &|| false, &mut found);
-                            assert!(found.is_found && found.place == leaf, "{name}, {leaf:?}");
-                            // They may begin at other corners.
-                            let mut triangles = found.triangles;
-                            let sorted = |triangle: &mut [u32; 3]| triangle.sort_unstable();
-                            expected.iter_mut().chain(&mut triangles).for_each(sorted);
-                            expected.sort_unstable();
-                            triangles.sort_unstable();
-                            assert_eq!(triangles, expected, "{name}, {leaf:?}");
-                            found_in_parts += usize::from(triangles.len() > 1);
+            with_engine(
+                &mesh,
+                &Loop,
+                (&options, &Demands::default()),
+                &mut unobserved,
+                |engine| {
+                    let mut plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
+                    let emission = engine.emit_all(&mut plan)?;
+                    let sources = engine.sources(&plan, &emission);
+                    for face in (0..mesh.face_count() as u32).step_by(3) {
+                        let mut all = Listing(Vec::new());
+                        sources.show(face, &|| false, &mut all);
+                        for &(number, leaf) in all.0.iter().step_by(7) {
+                            let expected = all.0.iter().filter(|&&(_, place)| place == leaf);
+                            let mut expected: Vec<[u32; 3]> = expected
+                                .map(|&(number, _)| emission.triangles[number as usize])
+                                .collect();
+                            for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
+                                let place = Place::root(face);
+                                let mut found = Finder {
+                                    wanted,
+                                    is_found: false,
+                                    place,
+                                    triangles: Vec::new(),
+                                };
+                                sources.show(face, &|| false, &mut found);
+                                assert!(found.is_found && found.place == leaf, "{name}, {leaf:?}");
+                                // They may begin at other corners.
+                                let mut triangles = found.triangles;
+                                let sorted = |triangle: &mut [u32; 3]| triangle.sort_unstable();
+                                expected.iter_mut().chain(&mut triangles).for_each(sorted);
+                                expected.sort_unstable();
+                                triangles.sort_unstable();
+                                assert_eq!(triangles, expected, "{name}, {leaf:?}");
+                                found_in_parts += usize::from(triangles.len() > 1);
+                            }
                         }
                     }
-                }
-                Ok(())
-            })
+                    Ok(())
+                },
+            )
             .unwrap();
         }
         assert!(found_in_parts > 100, "{found_in_parts}");

@@ -57,9 +57,13 @@ pub(super) fn anew(
     (known, lower): (&ErrorBounds, f64),
 ) -> Result<Option<ErrorBounds>, RefineError> {
     let (control, watch) = (engine.control, engine.watch);
-    let count: usize = faces.iter().map(|&face| emission.triangles_of(face).len()).sum();
+    let count: usize = faces
+        .iter()
+        .map(|&face| emission.triangles_of(face).len())
+        .sum();
     let most = (IN_ANY_CASE + emission.triangles.len() / FOR_SO_MANY).min(MOST);
-    let is_worth_while = count <= most && control.criteria.is_none() && known.upper <= NEEDLES * lower;
+    let is_worth_while =
+        count <= most && control.criteria.is_none() && known.upper <= NEEDLES * lower;
     let first = faces.first().filter(|_| is_worth_while);
     let Some(&first) = first else { return Ok(None) };
     // Of what gives way to triangulations of rims nothing but these is known. All around that is sharp, so nobody counts on it.
@@ -68,10 +72,13 @@ pub(super) fn anew(
         return Ok(None);
     }
     let mut is_around = around(engine, faces);
-    (0..).zip(&mut is_around).for_each(|(face, is_around)| *is_around = *is_around && !is_within_rim(&face));
+    (0..)
+        .zip(&mut is_around)
+        .for_each(|(face, is_around)| *is_around = *is_around && !is_within_rim(&face));
     let is_wanted = |face: &u32| is_around[*face as usize];
     let wanted: Vec<u32> = (0..is_around.len() as u32).filter(is_wanted).collect();
-    let Some(close) = NearerMesh::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)? else {
+    let Some(close) = NearerMesh::of(engine, plan, (&wanted, &is_around), emission, SHARE * lower)?
+    else {
         return Ok(None);
     };
     let off = close.off;
@@ -82,7 +89,12 @@ pub(super) fn anew(
     let mut distance = |from: Vec<usize>, of: &Emission, to: Vec<usize>, other: &Emission| {
         let parts = [Part::of(of, &from), Part::of(other, &to)];
         let trees = [parts[0].tree(&mut observer)?, parts[1].tree(&mut observer)?];
-        certified_from_known([&trees[0], &trees[1]], lower - off, GAP * lower, &mut observer)
+        certified_from_known(
+            [&trees[0], &trees[1]],
+            lower - off,
+            GAP * lower,
+            &mut observer,
+        )
     };
     let nearer = &close.emission;
     let is_known = |face: &u32| is_wanted(face) || is_within_rim(face);
@@ -91,21 +103,33 @@ pub(super) fn anew(
     let bounded = over(nearer, &wanted).filter(is_bounded).collect();
     let measured = |emission: &Emission| {
         let found = with_beside(emission, faces).into_iter();
-        found.filter(|&triangle| !is_within_rim(&emission.parents[triangle])).collect()
+        found
+            .filter(|&triangle| !is_within_rim(&emission.parents[triangle]))
+            .collect()
     };
     let forward = distance(measured(emission), emission, bounded, nearer)?;
     let over_wanted = over(emission, &wanted).collect();
     let backward = distance(measured(nearer), nearer, over_wanted, emission)?;
-    let mut found = ErrorBounds { upper: (forward.upper.max(backward.upper) + off).next_up(), ..*known };
+    let mut found = ErrorBounds {
+        upper: (forward.upper.max(backward.upper) + off).next_up(),
+        ..*known
+    };
     // The point is that far from the surface, at most.
     let point = vector(backward.at);
-    let distance = engine.watch.long_pieces(1, 1, |_, is_stopped| mesh.distance(point, first, is_stopped))?;
+    let distance = engine.watch.long_pieces(1, 1, |_, is_stopped| {
+        mesh.distance(point, first, is_stopped)
+    })?;
     let from_surface = distance.into_iter().fold(0.0, f64::max) - off;
     if from_surface > found.lower {
         (found.lower, found.at) = (from_surface, backward.at);
     }
     if forward.lower - off > found.lower && !control.flat.has_rims_alone() {
-        let from_mesh = to_surface(forward.at, (&close, emission), (&is_around, known.upper), watch)?;
+        let from_mesh = to_surface(
+            forward.at,
+            (&close, emission),
+            (&is_around, known.upper),
+            watch,
+        )?;
         if from_mesh > found.lower {
             (found.lower, found.at) = (from_mesh, forward.at);
         }
@@ -147,10 +171,15 @@ impl NearerMesh {
         near: f64,
     ) -> Result<Option<Self>, RefineError> {
         let (engine, watch) = (&engine.without_strips(), engine.watch);
-        let count: usize = wanted.iter().map(|&face| emission.triangles_of(face).len()).sum();
+        let count: usize = wanted
+            .iter()
+            .map(|&face| emission.triangles_of(face).len())
+            .sum();
         let most = engine.triangles_at_most(plan) + NEARER_IN_ANY_CASE + NEARER_FOR_EACH * count;
         let goal = Goal::Partly(f64::INFINITY, near, is_wanted.to_vec());
-        let Some(mut finer) = engine.finer(plan, goal, wanted, most)? else { return Ok(None) };
+        let Some(mut finer) = engine.finer(plan, goal, wanted, most)? else {
+            return Ok(None);
+        };
         // Nobody asks what others come to.
         let others = (0..).zip(is_wanted).filter(|(_, is_wanted)| !**is_wanted);
         watch.each(others, |(face, _)| finer.settled.settle(face))?;
@@ -159,7 +188,9 @@ impl NearerMesh {
         }
         let mut areas = Areas::default();
         for &face in wanted {
-            let beyond = (3 * face..3 * face + 3).filter_map(|h| engine.edges.twin(h)).map(|twin| twin / 3);
+            let beyond = (3 * face..3 * face + 3)
+                .filter_map(|h| engine.edges.twin(h))
+                .map(|twin| twin / 3);
             for face in beyond.chain([face]) {
                 areas.0.entry(face).or_default();
             }
@@ -177,9 +208,14 @@ impl NearerMesh {
 fn around(engine: &Engine<'_>, faces: &[u32]) -> Vec<bool> {
     let mesh = engine.control.mesh;
     let mut is_corner = vec![false; mesh.vertex_count()];
-    let corners = faces.iter().flat_map(|&face| mesh.triangles()[face as usize]);
+    let corners = faces
+        .iter()
+        .flat_map(|&face| mesh.triangles()[face as usize]);
     corners.for_each(|corner| is_corner[corner as usize] = true);
-    mesh.triangles().iter().map(|face| face.iter().any(|&corner| is_corner[corner as usize])).collect()
+    mesh.triangles()
+        .iter()
+        .map(|face| face.iter().any(|&corner| is_corner[corner as usize]))
+        .collect()
 }
 
 /// The triangles over control faces.
@@ -189,7 +225,9 @@ fn over<'a>(emission: &'a Emission, faces: &'a [u32]) -> impl Iterator<Item = us
 
 /// The triangles beyond a triangle's edges.
 fn beside(emission: &Emission, triangle: usize) -> impl Iterator<Item = usize> + '_ {
-    let twins = emission.twins[3 * triangle..3 * triangle + 3].iter().filter(|&&twin| twin != NONE);
+    let twins = emission.twins[3 * triangle..3 * triangle + 3]
+        .iter()
+        .filter(|&&twin| twin != NONE);
     twins.map(|&twin| twin as usize / 3)
 }
 
@@ -212,7 +250,10 @@ fn least_distance(
     let (point, mut least) = (vector(point), f64::INFINITY);
     watch.each(triangles, |triangle| {
         let corners = emission.triangles[triangle];
-        least = nearer(least, corners.map(|vertex| vector(emission.positions[vertex as usize]) - point));
+        least = nearer(
+            least,
+            corners.map(|vertex| vector(emission.positions[vertex as usize]) - point),
+        );
     })?;
     Ok(least.sqrt())
 }
@@ -232,13 +273,24 @@ impl Part {
                 positions.len() as u32 - 1
             })
         };
-        let triangles = triangles.iter().map(|&triangle| emission.triangles[triangle].map(&mut number));
+        let triangles = triangles
+            .iter()
+            .map(|&triangle| emission.triangles[triangle].map(&mut number));
         let triangles = triangles.collect();
-        Self { positions, triangles }
+        Self {
+            positions,
+            triangles,
+        }
     }
 
     fn tree(&self, observer: &mut Observer<'_>) -> Result<Bvh<'_>, MeasureError> {
-        Bvh::new_observed(Triangles { positions: &self.positions, triangles: &self.triangles }, observer)
+        Bvh::new_observed(
+            Triangles {
+                positions: &self.positions,
+                triangles: &self.triangles,
+            },
+            observer,
+        )
     }
 }
 

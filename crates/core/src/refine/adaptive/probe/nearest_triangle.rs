@@ -38,12 +38,19 @@ impl<'a> Nearest<'a> {
             let boxes = group.map(|face| bounds(&sources, face as u32));
             if is_kept {
                 let boxes: Box<[Bounds]> = boxes.collect();
-                return (boxes.iter().copied().fold(NO_BOUNDS, joined), OnceLock::from(boxes));
+                return (
+                    boxes.iter().copied().fold(NO_BOUNDS, joined),
+                    OnceLock::from(boxes),
+                );
             }
             (boxes.fold(NO_BOUNDS, joined), OnceLock::new())
         })?;
         let (groups, boxes) = found.into_iter().unzip();
-        Ok(Self { sources, groups, boxes })
+        Ok(Self {
+            sources,
+            groups,
+            boxes,
+        })
     }
 
     /// The distance of a point to the mesh, or more where nobody needs it any more; `face` is likely to be nearest.
@@ -69,7 +76,9 @@ impl<'a> Nearest<'a> {
     fn boxes_of(&self, group: usize) -> &[Bounds] {
         self.boxes[group].get_or_init(|| {
             let faces = (GROUP * group..self.sources.closed.len()).take(GROUP);
-            faces.map(|face| bounds(&self.sources, face as u32)).collect()
+            faces
+                .map(|face| bounds(&self.sources, face as u32))
+                .collect()
         })
     }
 
@@ -80,7 +89,8 @@ impl<'a> Nearest<'a> {
             if i.is_multiple_of(LOOKED_AT) && is_stopped() {
                 return;
             }
-            let corners = triangle.map(|vertex| vector(emission.positions[vertex as usize]) - point);
+            let corners =
+                triangle.map(|vertex| vector(emission.positions[vertex as usize]) - point);
             *least = nearer(*least, corners);
         }
     }
@@ -90,8 +100,16 @@ impl<'a> Nearest<'a> {
 fn bounds(sources: &Sources<'_>, face: u32) -> Bounds {
     let positions = &sources.emission.positions;
     let corners = sources.control.mesh.triangles()[face as usize];
-    let bounds = corners.into_iter().map(|vertex| vector(positions[vertex as usize])).fold(NO_BOUNDS, grown);
+    let bounds = corners
+        .into_iter()
+        .map(|vertex| vector(positions[vertex as usize]))
+        .fold(NO_BOUNDS, grown);
     let runs = (3 * face..3 * face + 3).map(|h| sources.chains.vertices(sources.edges, h));
     let runs = runs.chain([sources.emission.vertices_inside(face)]);
-    runs.fold(bounds, |bounds, run| positions[run].iter().map(|&point| vector(point)).fold(bounds, grown))
+    runs.fold(bounds, |bounds, run| {
+        positions[run]
+            .iter()
+            .map(|&point| vector(point))
+            .fold(bounds, grown)
+    })
 }

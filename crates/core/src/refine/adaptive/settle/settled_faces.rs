@@ -21,7 +21,10 @@ pub(in super::super) struct SettledFaces {
 impl SettledFaces {
     /// No face has been looked at.
     pub(in super::super) fn none(faces: usize) -> Self {
-        Self { numbers: limitmesh_pages::defaults(faces), worst: Vec::new() }
+        Self {
+            numbers: limitmesh_pages::defaults(faces),
+            worst: Vec::new(),
+        }
     }
 
     /// How many control faces there are.

@@ -21,11 +21,17 @@ fn with_plans(models: &[(&str, u64)], mut run: impl FnMut(&Engine<'_>, Plan, &st
         let mesh = stirred(name, seed);
         let tolerance = 10f64.powf(-0.5 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
         let options = ExactOptions::default().tolerance(tolerance);
-        with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-            let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
-            run(engine, plan, &format!("{name}, seed {seed}"));
-            Ok(())
-        })
+        with_engine(
+            &mesh,
+            &Loop,
+            (&options, &Demands::default()),
+            &mut unobserved,
+            |engine| {
+                let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
+                run(engine, plan, &format!("{name}, seed {seed}"));
+                Ok(())
+            },
+        )
         .unwrap();
     }
 }
@@ -50,23 +56,43 @@ fn looked_at_all(engine: &Engine<'_>, plan: &mut Plan) -> (Vec<(Place, f64)>, Kn
 
 /// Runs on the plans of some stirred models before any condition was looked at.
 fn with_unsettled(count: u64, mut run: impl FnMut(&Engine<'_>, Plan, &str)) {
-    let names = ["icosphere", "torus", "sheet", "bumpy", "spike", "head", "cup", "shoe"];
+    let names = [
+        "icosphere",
+        "torus",
+        "sheet",
+        "bumpy",
+        "spike",
+        "head",
+        "cup",
+        "shoe",
+    ];
     for seed in 0..count {
         let (name, seed) = (names[seed as usize % names.len()], 7 * seed);
         let mesh = stirred(name, seed);
         let tolerance = 10f64.powf(-2.0 - 0.13 * (seed % 20) as f64) * mesh.diagonal();
         let options = ExactOptions::default().tolerance(tolerance);
-        with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-            let (goal, control) = (Goal::Within(tolerance), (engine.control, engine.watch));
-            let decision =
-                super::super::decide::decide(control, &goal, &engine.edges, engine.max_levels, usize::MAX)?;
-            let faces = mesh.face_count();
-            let mut plan = Plan::of(goal, decision.unwrap(), faces);
-            engine.carry_out(&mut plan, Dirty::all(faces), usize::MAX)?;
-            plan.settled = SettledFaces::none(faces);
-            run(engine, plan, &format!("{name}, seed {seed}"));
-            Ok(())
-        })
+        with_engine(
+            &mesh,
+            &Loop,
+            (&options, &Demands::default()),
+            &mut unobserved,
+            |engine| {
+                let (goal, control) = (Goal::Within(tolerance), (engine.control, engine.watch));
+                let decision = super::super::decide::decide(
+                    control,
+                    &goal,
+                    &engine.edges,
+                    engine.max_levels,
+                    usize::MAX,
+                )?;
+                let faces = mesh.face_count();
+                let mut plan = Plan::of(goal, decision.unwrap(), faces);
+                engine.carry_out(&mut plan, Dirty::all(faces), usize::MAX)?;
+                plan.settled = SettledFaces::none(faces);
+                run(engine, plan, &format!("{name}, seed {seed}"));
+                Ok(())
+            },
+        )
         .unwrap();
     }
 }
@@ -87,12 +113,22 @@ fn areas_tell_what_all_triangles_tell() {
         let expected = looked_at_all(engine, &mut plan);
         plans += usize::from(!areas.0.is_empty());
         failed += expected.0.len();
-        assert!(expected.0.iter().all(|(_, bound)| bound.is_finite()), "{name}");
+        assert!(
+            expected.0.iter().all(|(_, bound)| bound.is_finite()),
+            "{name}"
+        );
         assert_eq!((&found, &in_faces), (&expected, &expected), "{name}");
-        looked_at += part.triangles.iter().filter(|&&triangle| triangle != [0; 3]).count();
+        looked_at += part
+            .triangles
+            .iter()
+            .filter(|&&triangle| triangle != [0; 3])
+            .count();
         all += plan.triangles;
     });
-    assert!(plans > 30 && failed > 100 && looked_at < all, "{plans}, {failed}, {looked_at} of {all}");
+    assert!(
+        plans > 30 && failed > 100 && looked_at < all,
+        "{plans}, {failed}, {looked_at} of {all}"
+    );
 }
 
 /// A half-edge beyond which nothing was emitted has no twin that is known, and is not open either.
@@ -116,7 +152,10 @@ fn triangles_that_lack_a_neighbour_are_told() {
         };
         let nobody = HashSet::new();
         for part in [&in_areas, &in_faces, &kept] {
-            let conditions = part.conditions.iter().filter(|(_, first, last)| first < last);
+            let conditions = part
+                .conditions
+                .iter()
+                .filter(|(_, first, last)| first < last);
             for h in conditions.flat_map(|&(_, first, last)| 3 * first..3 * last) {
                 let (face, own) = local(part, h);
                 let whole = 3 * full.starts[face] + own;
@@ -128,8 +167,16 @@ fn triangles_that_lack_a_neighbour_are_told() {
                     }
                     Some(twin) if part.is_known(h, twin) => {
                         let expected = expected.unwrap();
-                        assert_eq!(local(part, twin), local(full, expected), "{name}, face {face}");
-                        assert_eq!(corners(part, twin / 3), corners(full, expected / 3), "{name}");
+                        assert_eq!(
+                            local(part, twin),
+                            local(full, expected),
+                            "{name}, face {face}"
+                        );
+                        assert_eq!(
+                            corners(part, twin / 3),
+                            corners(full, expected / 3),
+                            "{name}"
+                        );
                         known += 1;
                     }
                     Some(_) => {
@@ -140,7 +187,10 @@ fn triangles_that_lack_a_neighbour_are_told() {
             }
         }
     });
-    assert!(known > 1000 && told > 100 && open > 10, "{known}, {told}, {open}");
+    assert!(
+        known > 1000 && told > 100 && open > 10,
+        "{known}, {told}, {open}"
+    );
 }
 
 /// What is known of conditions is what they come to in the end: divisions change the triangles beside closing ones too,
@@ -163,7 +213,10 @@ fn what_is_settled_holds_among_the_triangles_that_are_emitted() {
         let (failing, found) = looked_at_all(engine, &mut plan);
         assert!(failing.is_empty(), "{name}: {failing:?}");
         for (face, found) in (0..).zip(found) {
-            let (found, known) = (found.flatten().map_or(0.0, |(bound, _)| bound), plan.settled.bound(face));
+            let (found, known) = (
+                found.flatten().map_or(0.0, |(bound, _)| bound),
+                plan.settled.bound(face),
+            );
             assert!(found <= known, "{name}: {found} is settled as {known}");
             counted += usize::from(found > 0.0);
         }
@@ -183,17 +236,27 @@ fn assert_holds(engine: &Engine<'_>, plan: &mut Plan, name: &str) {
         if allowance == Allowance::NOTHING {
             continue;
         }
-        let closing = plan.closed[face as usize].extent().copied().unwrap_or(Extent::NONE);
+        let closing = plan.closed[face as usize]
+            .extent()
+            .copied()
+            .unwrap_or(Extent::NONE);
         let counted = extent.drift_slope.max(closing.drift_slope);
         for triangle in emission.triangles_of(face) {
             let corners = emission.triangles[triangle].map(|vertex| {
                 let at = |list: &[[f64; 3]]| vector(list[vertex as usize]);
-                LimitPoint { position: at(&emission.positions), normal: at(&emission.normals) }
+                LimitPoint {
+                    position: at(&emission.positions),
+                    normal: at(&emission.normals),
+                }
             });
             let seen = Seen::of(&corners, 0);
             let (squared, slopes) = beside(&emission, &sharp, triangle as u32);
             let chord = seen.tilt + allowance.tilt + 1e-9;
-            assert!(squared.sqrt() <= chord, "{name}, face {face}: {} {chord}", squared.sqrt());
+            assert!(
+                squared.sqrt() <= chord,
+                "{name}, face {face}: {} {chord}",
+                squared.sqrt()
+            );
             for (slope, own) in slopes.into_iter().zip(seen.own_slopes()) {
                 let least = own.min(counted) * (1.0 - 1e-9);
                 assert!(slope >= least, "{name}, face {face}: {slope} {least}");
@@ -209,19 +272,29 @@ fn what_triangles_count_on_is_there() {
     let models = ["torus", "sphere", "cup", "head", "bumpy", "icosphere"].map(|name| (name, 0));
     let stirred = [("head", 5), ("cup", 9), ("icosphere", 10), ("torus", 6)];
     with_plans(&[&models[..], &stirred].concat(), |engine, _, name| {
-        let mut last = engine.plan(Goal::Within(f64::INFINITY), usize::MAX).unwrap().unwrap();
+        let mut last = engine
+            .plan(Goal::Within(f64::INFINITY), usize::MAX)
+            .unwrap()
+            .unwrap();
         for share in [1e-2, 2e-3, 1.7e-3, 2e-4] {
             let goal = || Goal::Within(share * engine.control.mesh.diagonal());
             let faces = 0..last.closed.len() as u32;
             let wanting = faces.filter(|&face| last.expected(face) > goal().allowed(face));
             let wanting: Vec<u32> = wanting.collect();
-            let mut finer = engine.finer(&last, goal(), &wanting, usize::MAX).unwrap().unwrap();
+            let mut finer = engine
+                .finer(&last, goal(), &wanting, usize::MAX)
+                .unwrap()
+                .unwrap();
             assert!(engine.settle(&mut finer, usize::MAX).unwrap());
             let mut at_once = engine.plan(goal(), usize::MAX).unwrap().unwrap();
             assert_holds(engine, &mut finer, name);
             assert_holds(engine, &mut at_once, name);
             let most = 1.05 * at_once.triangles as f64 + 20.0;
-            assert!(finer.triangles as f64 <= most, "{name}, {share}: {}", finer.triangles);
+            assert!(
+                finer.triangles as f64 <= most,
+                "{name}, {share}: {}",
+                finer.triangles
+            );
             last = finer;
         }
     });
@@ -230,7 +303,13 @@ fn what_triangles_count_on_is_there() {
 /// What is taken over from an emission to the next is what would be written anew.
 #[test]
 fn what_is_taken_over_is_what_would_be_written() {
-    let models = [("icosphere", 5), ("torus", 6), ("sheet", 8), ("head", 9), ("spike", 10)];
+    let models = [
+        ("icosphere", 5),
+        ("torus", 6),
+        ("sheet", 8),
+        ("head", 9),
+        ("spike", 10),
+    ];
     let mut counted = 0;
     with_plans(&models, |engine, mut plan, name| {
         for face in [0, plan.closed.len() as u32 / 2] {
@@ -241,30 +320,54 @@ fn what_is_taken_over_is_what_would_be_written() {
                 (word, place) = (plan.decision.trees.child(word, 1), place.child(1));
             }
             let mut dirty = Dirty::none(plan.closed.len());
-            engine.split(&mut plan.decision.trees, place, &mut dirty).unwrap();
+            engine
+                .split(&mut plan.decision.trees, place, &mut dirty)
+                .unwrap();
             assert!(engine.carry_out(&mut plan, dirty, usize::MAX).unwrap());
-            let all = Inserted { anew: (0..3 * plan.closed.len() as u32).collect(), at: Vec::new() };
+            let all = Inserted {
+                anew: (0..3 * plan.closed.len() as u32).collect(),
+                at: Vec::new(),
+            };
             let (edges, trees) = (&engine.edges, &plan.decision.trees);
             let known = (&Chains::default(), &all);
-            let expected = Chains::of(engine.control.mesh, edges, trees, known, engine.watch).unwrap();
+            let expected =
+                Chains::of(engine.control.mesh, edges, trees, known, engine.watch).unwrap();
             assert_eq!(plan.chains, expected, "{name}");
-            counted += plan.is_touched.iter().filter(|&&is_touched| !is_touched).count();
+            counted += plan
+                .is_touched
+                .iter()
+                .filter(|&&is_touched| !is_touched)
+                .count();
             let again = engine.emit_all(&mut plan).unwrap();
             plan.emission = None;
             let anew = engine.emit_all(&mut plan).unwrap();
             let connections = |emission: &Emission| {
-                (emission.triangles.clone(), emission.twins.clone(), emission.parents.clone())
+                (
+                    emission.triangles.clone(),
+                    emission.twins.clone(),
+                    emission.parents.clone(),
+                )
             };
             assert_eq!(connections(&again), connections(&anew), "{name}");
-            assert_eq!((&again.positions, &again.normals), (&anew.positions, &anew.normals), "{name}");
+            assert_eq!(
+                (&again.positions, &again.normals),
+                (&anew.positions, &anew.normals),
+                "{name}"
+            );
             assert_eq!(again.origins, anew.origins, "{name}");
             let conditions = |emission: &Emission| {
                 let conditions = emission.conditions.iter();
-                conditions.map(|(own, first, last)| (own.place, *first, *last)).collect::<Vec<_>>()
+                conditions
+                    .map(|(own, first, last)| (own.place, *first, *last))
+                    .collect::<Vec<_>>()
             };
             assert_eq!(conditions(&again), conditions(&anew), "{name}");
             for h in 0..3 * plan.closed.len() as u32 {
-                assert_eq!(again.borders.along(h), anew.borders.along(h), "{name}, edge {h}");
+                assert_eq!(
+                    again.borders.along(h),
+                    anew.borders.along(h),
+                    "{name}, edge {h}"
+                );
             }
         }
     });
@@ -275,27 +378,48 @@ fn what_is_taken_over_is_what_would_be_written() {
 #[test]
 fn conditions_do_not_get_lost() {
     let mut counted = 0;
-    with_plans(&[("icosphere", 0), ("sheet", 4), ("spike", 8), ("head", 12)], |engine, mut plan, name| {
-        let place = Place { face: 0, level: 20, path: 3 };
-        let condition = Condition { place, deviation: Deviation::alone(0.0), tilt: 0.0, slopes: [1.0; 3] };
-        plan.closed[0].judged.get_or_insert_default().conditions.insert(0, condition);
-        let mut lost = vec![0];
-        let is_whole = |face: &usize| {
-            plan.closed[*face].triangles == 1 && plan.decision.conditions(*face as u32).is_empty()
-        };
-        if let Some(face) = (1..plan.closed.len()).find(is_whole) {
-            let marked = Piece { roots: vec![LEAF | CONDITIONAL], words: Vec::new() };
-            assert!(plan.decision.trees.replace(face as u32, &marked));
-            lost.push(face);
-            counted += 1;
-        }
-        let (failing, found) = looked_at_all(engine, &mut plan);
-        for face in lost {
-            assert_eq!(found[face], None, "{name}");
-            let is_told =
-                |&(place, bound): &(Place, f64)| place.face == face as u32 && bound == f64::INFINITY;
-            assert!(failing.iter().any(is_told), "{name}: {failing:?}");
-        }
-    });
+    with_plans(
+        &[("icosphere", 0), ("sheet", 4), ("spike", 8), ("head", 12)],
+        |engine, mut plan, name| {
+            let place = Place {
+                face: 0,
+                level: 20,
+                path: 3,
+            };
+            let condition = Condition {
+                place,
+                deviation: Deviation::alone(0.0),
+                tilt: 0.0,
+                slopes: [1.0; 3],
+            };
+            plan.closed[0]
+                .judged
+                .get_or_insert_default()
+                .conditions
+                .insert(0, condition);
+            let mut lost = vec![0];
+            let is_whole = |face: &usize| {
+                plan.closed[*face].triangles == 1
+                    && plan.decision.conditions(*face as u32).is_empty()
+            };
+            if let Some(face) = (1..plan.closed.len()).find(is_whole) {
+                let marked = Piece {
+                    roots: vec![LEAF | CONDITIONAL],
+                    words: Vec::new(),
+                };
+                assert!(plan.decision.trees.replace(face as u32, &marked));
+                lost.push(face);
+                counted += 1;
+            }
+            let (failing, found) = looked_at_all(engine, &mut plan);
+            for face in lost {
+                assert_eq!(found[face], None, "{name}");
+                let is_told = |&(place, bound): &(Place, f64)| {
+                    place.face == face as u32 && bound == f64::INFINITY
+                };
+                assert!(failing.iter().any(is_told), "{name}: {failing:?}");
+            }
+        },
+    );
     assert!(counted > 0);
 }

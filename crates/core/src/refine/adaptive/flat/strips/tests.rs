@@ -13,30 +13,50 @@ use crate::scheme::Loop;
 #[test]
 fn what_has_a_direction_may_have_one() {
     let (mut regular, mut told) = (0, 0);
-    for (name, seed) in [("torus", 1), ("torus", 2), ("sheet", 3), ("head", 4), ("cup", 5), ("shoe", 6)] {
+    for (name, seed) in [
+        ("torus", 1),
+        ("torus", 2),
+        ("sheet", 3),
+        ("head", 4),
+        ("cup", 5),
+        ("shoe", 6),
+    ] {
         let mesh = stirred(name, seed);
         let options = ExactOptions::default().tolerance(1e-2);
-        with_engine(&mesh, &Loop, (&options, &Demands::default()), &mut unobserved, |engine| {
-            let (control, size) = (engine.control, mesh.diagonal());
-            for face in 0..mesh.face_count() as u32 {
-                if !matches!(control.patch(face), Patch::Regular(_)) {
-                    continue;
-                }
-                let (mut low, mut high) = (0.0, size);
-                assert!(has_direction(control, face, high), "{name}, face {face}");
-                for _ in 0..50 {
-                    let middle = 0.5 * (low + high);
-                    match has_direction(control, face, middle) {
-                        true => high = middle,
-                        false => low = middle,
+        with_engine(
+            &mesh,
+            &Loop,
+            (&options, &Demands::default()),
+            &mut unobserved,
+            |engine| {
+                let (control, size) = (engine.control, mesh.diagonal());
+                for face in 0..mesh.face_count() as u32 {
+                    if !matches!(control.patch(face), Patch::Regular(_)) {
+                        continue;
                     }
+                    let (mut low, mut high) = (0.0, size);
+                    assert!(has_direction(control, face, high), "{name}, face {face}");
+                    for _ in 0..50 {
+                        let middle = 0.5 * (low + high);
+                        match has_direction(control, face, middle) {
+                            true => high = middle,
+                            false => low = middle,
+                        }
+                    }
+                    assert!(
+                        may_have_direction((control, &engine.edges), face, high),
+                        "{name}, face {face}"
+                    );
+                    regular += 1;
+                    told += usize::from(!may_have_direction(
+                        (control, &engine.edges),
+                        face,
+                        0.01 * high,
+                    ));
                 }
-                assert!(may_have_direction((control, &engine.edges), face, high), "{name}, face {face}");
-                regular += 1;
-                told += usize::from(!may_have_direction((control, &engine.edges), face, 0.01 * high));
-            }
-            Ok(())
-        })
+                Ok(())
+            },
+        )
         .unwrap();
     }
     assert!(regular > 500 && told > regular / 2, "{told} of {regular}");

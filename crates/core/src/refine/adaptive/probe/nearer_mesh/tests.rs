@@ -23,7 +23,10 @@ fn spread(corners: [DVec3; 3]) -> impl Iterator<Item = DVec3> {
 
 /// The greatest distance of points to a mesh.
 fn greatest(points: &[[f64; 3]], mesh: &Mesh) -> f64 {
-    distances_to(points, mesh.as_triangles()).unwrap().into_iter().fold(0.0, f64::max)
+    distances_to(points, mesh.as_triangles())
+        .unwrap()
+        .into_iter()
+        .fold(0.0, f64::max)
 }
 
 /// A mesh that stands for a limit surface, off by no more than `most`, and by how much. Of two levels the coarser one is off by that, as the
@@ -52,50 +55,84 @@ fn holds(
     first: usize,
 ) -> bool {
     let tolerance = options.tolerance.unwrap();
-    with_engine(mesh, &Loop, (options, &Demands::default()), &mut unobserved, |engine| {
-        let outcome = match engine.is_balanced {
-            true => engine.balanced(tolerance, usize::MAX)?.unwrap(),
-            false => {
-                let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
-                engine.emit(plan, usize::MAX, false)?.unwrap()
+    with_engine(
+        mesh,
+        &Loop,
+        (options, &Demands::default()),
+        &mut unobserved,
+        |engine| {
+            let outcome = match engine.is_balanced {
+                true => engine.balanced(tolerance, usize::MAX)?.unwrap(),
+                false => {
+                    let plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
+                    engine.emit(plan, usize::MAX, false)?.unwrap()
+                }
+            };
+            let (plan, emission) = (&outcome.plan, &outcome.emission);
+            let nearest = Nearest::of(engine.sources(plan, emission), engine.watch)?;
+            let faces: Vec<u32> = (first..mesh.face_count())
+                .step_by(7)
+                .map(|face| face as u32)
+                .collect();
+            let known = ErrorBounds {
+                lower: 0.0,
+                upper: 2.0 * tolerance,
+                at: [0.0; 3],
+                certified: true,
+            };
+            let known = (&known, 0.5 * tolerance);
+            let Some(found) = anew(engine, (plan, emission, &nearest), &faces, known)? else {
+                return Ok(false);
+            };
+            let (mut over_faces, mut most) = (Vec::new(), known.1);
+            for &face in &faces {
+                let mut points = Vec::new();
+                sample(
+                    engine.control.piece(face).surface(engine.control.rules),
+                    6,
+                    &mut points,
+                );
+                for point in points {
+                    let distance = nearest.distance(point, face, &|| false);
+                    assert!(
+                        distance <= found.upper,
+                        "{name}: {distance} from the surface, {}",
+                        found.upper
+                    );
+                    most = most.max(distance);
+                }
             }
-        };
-        let (plan, emission) = (&outcome.plan, &outcome.emission);
-        let nearest = Nearest::of(engine.sources(plan, emission), engine.watch)?;
-        let faces: Vec<u32> = (first..mesh.face_count()).step_by(7).map(|face| face as u32).collect();
-        let known = ErrorBounds { lower: 0.0, upper: 2.0 * tolerance, at: [0.0; 3], certified: true };
-        let known = (&known, 0.5 * tolerance);
-        let Some(found) = anew(engine, (plan, emission, &nearest), &faces, known)? else { return Ok(false) };
-        let (mut over_faces, mut most) = (Vec::new(), known.1);
-        for &face in &faces {
-            let mut points = Vec::new();
-            sample(engine.control.piece(face).surface(engine.control.rules), 6, &mut points);
-            for point in points {
-                let distance = nearest.distance(point, face, &|| false);
-                assert!(distance <= found.upper, "{name}: {distance} from the surface, {}", found.upper);
-                most = most.max(distance);
+            for triangle in with_beside(emission, &faces) {
+                let at = |vertex: u32| vector(emission.positions[vertex as usize]);
+                let points = spread(emission.triangles[triangle].map(at));
+                over_faces.extend(points.map(|point| point.to_array()));
             }
-        }
-        for triangle in with_beside(emission, &faces) {
-            let at = |vertex: u32| vector(emission.positions[vertex as usize]);
-            let points = spread(emission.triangles[triangle].map(at));
-            over_faces.extend(points.map(|point| point.to_array()));
-        }
-        let distance = greatest(&over_faces, reference);
-        assert!(distance <= found.upper + off, "{name}: {distance} from the mesh, {}", found.upper);
-        let tight = 1.05 * most.max(distance) + 0.3 * known.1;
-        assert!(
-            found.upper <= tight,
-            "{name}: {distance} from the mesh, {most} from the surface, {}",
-            found.upper
-        );
-        if found.lower > 0.0 {
-            let at = vector(found.at);
-            let distance = nearest.distance(at, faces[0], &|| false).max(greatest(&[found.at], reference));
-            assert!(distance + off >= found.lower, "{name}: {distance} at {at:?}, {}", found.lower);
-        }
-        Ok(true)
-    })
+            let distance = greatest(&over_faces, reference);
+            assert!(
+                distance <= found.upper + off,
+                "{name}: {distance} from the mesh, {}",
+                found.upper
+            );
+            let tight = 1.05 * most.max(distance) + 0.3 * known.1;
+            assert!(
+                found.upper <= tight,
+                "{name}: {distance} from the mesh, {most} from the surface, {}",
+                found.upper
+            );
+            if found.lower > 0.0 {
+                let at = vector(found.at);
+                let distance = nearest
+                    .distance(at, faces[0], &|| false)
+                    .max(greatest(&[found.at], reference));
+                assert!(
+                    distance + off >= found.lower,
+                    "{name}: {distance} at {at:?}, {}",
+                    found.lower
+                );
+            }
+            Ok(true)
+        },
+    )
     .unwrap()
 }
 
