@@ -70,44 +70,6 @@ impl Place {
         place
     }
 
-    /// The row and the place in it ([`Self::leaf`]) below the node of a level that holds this one.
-    pub(crate) fn row_below(self, level: u32) -> (usize, usize) {
-        let (mut i, mut j) = (0, 0);
-        for below in (level..self.level).rev() {
-            let half = 1 << (self.level - 1 - below);
-            match self.digit(below) {
-                0 => {}
-                1 => i += half,
-                2 => j += half,
-                _ => (i, j) = (half - 1 - i, half - 1 - j),
-            }
-        }
-        (j, i)
-    }
-
-    /// Whether a walk over the face comes to this node before the other, or to one that holds it.
-    pub(crate) fn precedes(self, other: Self) -> bool {
-        Self {
-            face: other.face,
-            ..self
-        }
-        .in_order(&other)
-        .is_lt()
-    }
-
-    /// The order of faces, and in each that of a walk over leaves.
-    pub(crate) fn in_order(&self, other: &Self) -> core::cmp::Ordering {
-        let most = self.level.max(other.level);
-        self.face
-            .cmp(&other.face)
-            .then_with(|| self.key(most).cmp(&other.key(most)))
-    }
-
-    /// What stands in that order for nodes of a face down to a level.
-    pub(crate) fn key(&self, most: u32) -> (u64, u32) {
-        (self.path << (2 * (most - self.level)), self.level)
-    }
-
     /// Whether another is this node or one below it.
     pub(crate) fn holds(self, other: Self) -> bool {
         other.face == self.face
@@ -305,27 +267,6 @@ mod tests {
             };
         }
         at
-    }
-
-    #[test]
-    fn rows_tell_where_leaves_stand() {
-        let node = Place {
-            face: 3,
-            level: 2,
-            path: 9,
-        };
-        for depth in 0..5 {
-            let n = 1 << depth;
-            for (j, i) in (0..n).flat_map(|j| (0..n - j).map(move |i| (j, i))) {
-                for is_headlong in [false, true]
-                    .into_iter()
-                    .filter(|&is_headlong| !is_headlong || i + j + 1 < n)
-                {
-                    let leaf = node.leaf(depth, (i, j), is_headlong);
-                    assert_eq!(leaf.row_below(node.level), (j, i), "{depth}: {leaf:?}");
-                }
-            }
-        }
     }
 
     #[test]

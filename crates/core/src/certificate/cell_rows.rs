@@ -66,15 +66,13 @@ pub(crate) struct RowTarget {
     pub(crate) drift_share: f64,
 }
 
-/// What the parts that passed come to.
+/// What the parts that passed have at most.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowExtent {
     pub(crate) tilt: f64,
     pub(crate) slope: f64,
     pub(crate) drift_slope: f64,
     pub(crate) bound: f64,
-    /// The part with that bound, by column and row, whether it stands on its head, and the divisions.
-    pub(crate) worst: Option<(usize, usize, bool, u32)>,
 }
 
 impl RowExtent {
@@ -83,7 +81,6 @@ impl RowExtent {
         slope: f64::INFINITY,
         drift_slope: 0.0,
         bound: 0.0,
-        worst: None,
     };
 }
 
@@ -339,7 +336,7 @@ impl CellRows {
             few.fill(block, n, scale);
             measure(n * n, &few.parts(), &rest, target, &mut self.found);
             let mut found = [Mark::Passes; FEW];
-            let worst = self.found.mark((n * n, scale), target, extent, &mut found);
+            self.found.mark((n * n, scale), target, extent, &mut found);
             for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
                 let list = if is_headlong {
                     &mut marks.headlong
@@ -347,9 +344,6 @@ impl CellRows {
                     &mut marks.upright
                 };
                 list[j * n + i] = found[number];
-                if worst == Some(number) {
-                    extent.worst = Some((i, j, is_headlong, divisions));
-                }
             }
             return;
         }
@@ -378,9 +372,7 @@ impl CellRows {
                 }
                 measure(count, parts, &rest, target, &mut self.found);
                 let own = &mut list[j * n..j * n + count];
-                if let Some(i) = self.found.mark((count, scale), target, extent, own) {
-                    extent.worst = Some((i, j, is_headlong, divisions));
-                }
+                self.found.mark((count, scale), target, extent, own);
             }
         }
     }

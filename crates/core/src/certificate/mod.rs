@@ -28,7 +28,7 @@ pub(crate) use bent_parts::{Bender, Bent, BentFour, FOUR, MovedFour, normals};
 pub(crate) use bounds::{Pieces, at_a_glance};
 pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, RowTarget};
 pub(crate) use deviation::Deviation;
-pub(crate) use dihedral::{STEEP, around};
+pub(crate) use dihedral::around;
 pub(crate) use effort::Effort;
 pub(crate) use interpolation::Sheet;
 pub(crate) use net_part::NetPart;

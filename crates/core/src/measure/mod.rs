@@ -16,7 +16,7 @@ pub use certified::{
     Bounds, CertifiedHausdorff, CertifiedOptions, certified_hausdorff, certified_hausdorff_between,
     certified_hausdorff_between_observed, certified_hausdorff_observed,
 };
-pub(crate) use certified::{Target, Worker, certified_from_known, certified_known};
+pub(crate) use certified::{Target, Worker, certified_known};
 pub use hausdorff::{
     Hausdorff, OneSided, SamplingOptions, distances_to, distances_to_observed, hausdorff,
     hausdorff_between, hausdorff_between_observed, hausdorff_observed,

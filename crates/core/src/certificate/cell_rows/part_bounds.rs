@@ -345,18 +345,17 @@ fn by_fours([x, y, z]: Slices<'_>, count: usize) -> Fours<'_> {
 }
 
 impl Found {
-    /// Marks parts, and keeps what those that pass come to, `scale` being what their unit makes of lengths. Gives the number of one with
-    /// a greater bound than any before.
+    /// Marks parts, and adds those that pass to an extent, `scale` being what their unit makes of lengths.
     pub(super) fn mark(
         &self,
         (count, scale): (usize, f64),
         target: &RowTarget,
         extent: &mut RowExtent,
         marks: &mut [Mark],
-    ) -> Option<usize> {
+    ) {
         // What has no bound, which is infinite, must not pass, however great the target is.
-        let (most, mut worst) = ((target.distance * scale).smaller(f64::from(f32::MAX)), None);
-        let mut greatest = extent.bound * scale;
+        let most = (target.distance * scale).smaller(f64::from(f32::MAX));
+        let mut greatest = 0.0f64;
         for (i, mark) in marks.iter_mut().enumerate().take(count) {
             let bound = f64::from(self.bound[i]);
             *mark = if f64::from(self.low[i]) > most {
@@ -365,18 +364,13 @@ impl Found {
                 extent.tilt = extent.tilt.larger(f64::from(self.tilt[i]));
                 extent.slope = extent.slope.smaller(f64::from(self.slope[i]));
                 extent.drift_slope = extent.drift_slope.larger(f64::from(self.drift_slope[i]));
-                if bound > greatest {
-                    (greatest, worst) = (bound, Some(i));
-                }
+                greatest = greatest.larger(bound);
                 Mark::Passes
             } else {
                 Mark::Open
             };
         }
-        if worst.is_some() {
-            extent.bound = greatest / scale;
-        }
-        worst
+        extent.bound = extent.bound.larger(greatest / scale);
     }
 }
 

@@ -231,24 +231,6 @@ pub(crate) fn certified_known(
     })
 }
 
-/// Bounds the greatest distance from one surface to another in the same way.
-pub(crate) fn certified_from_known(
-    trees: [&Bvh<'_>; 2],
-    known: f64,
-    gap: f64,
-    observer: &mut Observer<'_>,
-) -> Result<Bounds, MeasureError> {
-    let watch = &mut Watch::new(observer, Stage::Bounding);
-    Ok(one_way(
-        trees,
-        "reference",
-        (gap, Some(known.max(0.0))),
-        &where_known(trees, gap),
-        watch,
-    )?
-    .0)
-}
-
 /// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
 const KNOWN_WORK: u64 = 20;
 

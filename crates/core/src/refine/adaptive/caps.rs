@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::demands::Demands;
 use super::judge::Goal;
-use super::{Engine, with_engine};
+use super::{Engine, budget, with_engine};
 use crate::mesh::Mesh;
 use crate::progress::Observer;
 use crate::refine::RefineError;
@@ -26,8 +26,14 @@ const OVERRUN: f64 = 1.5;
 /// That leaves no less than this part of the triangles beyond the control mesh's own that there was room for.
 const LEAST_ROOM: f64 = 0.25;
 
-/// Distances fall with about this power of the number of triangles: 1 where surfaces are curved, 2 where rims alone are.
-const FALLING: f64 = 1.5;
+/// What balancing leaves of a plain mesh's distance, at equal triangles, about.
+const BALANCED: f64 = 0.65;
+
+/// Values that are tried under a budget.
+const MOST_TRIES: usize = 8;
+
+/// Values nearer to each other than this part make no difference any more: the budget is spent but for some per cent.
+const NEAR: f64 = 0.98;
 
 /// Refines with some nodes divided in any case.
 pub(super) fn once(
@@ -95,9 +101,10 @@ fn balanced_within(
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
     with_engine(mesh, scheme, (options, demands), observer, |engine| {
-        let outcome = engine.balanced(engine.floor(options.tolerance), most)?;
-        outcome
-            .map(|outcome| outcome.finish(engine, ExactStop::Met, options))
+        let goal = Goal::Balanced(engine.floor(options.tolerance));
+        let found = engine.refined(goal, most)?;
+        found
+            .map(|found| found.finish(engine, ExactStop::Met, options))
             .transpose()
     })
 }
@@ -116,13 +123,10 @@ pub(in crate::refine) fn within(
         (options, &Demands::default()),
         observer,
         |engine| {
-            let Some(plan) = engine.plan(Goal::Within(engine.floor(options.tolerance)), most)?
-            else {
-                return Ok(None);
-            };
-            let outcome = engine.emit(plan, most, false)?;
-            let found = outcome
-                .map(|outcome| outcome.finish(engine, ExactStop::Met, options))
+            let goal = Goal::Within(engine.floor(options.tolerance));
+            let found = engine.refined(goal, most)?;
+            let found = found
+                .map(|found| found.finish(engine, ExactStop::Met, options))
                 .transpose()?;
             Ok(found.filter(|_| !engine.control.flat.has_gaps()))
         },
@@ -163,7 +167,7 @@ fn needs_more(
     with_engine(mesh, scheme, (options, demands), observer, |engine| {
         let floor = engine.floor(options.tolerance);
         let is_told = floor > 0.0 && engine.control.flat.merged_faces() == 0;
-        Ok(is_told && engine.plan(Goal::Within(floor), count)?.is_none())
+        Ok(is_told && engine.refined(Goal::Within(floor), count)?.is_none())
     })
 }
 
@@ -175,35 +179,28 @@ fn within_caps(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let most = options.budget().0.max(mesh.face_count());
-    let (mut room, mut guess) = (most, None);
+    let mut room = most;
     for _ in 0..MOST_NARROWER {
-        let found = within_room(mesh, scheme, (options, demands), (room, guess), observer)?;
+        let found = within_room(mesh, scheme, (options, demands), room, observer)?;
         let count = found.mesh.face_count();
         if !options.flat_regions || count <= most {
             return Ok(found);
         }
-        // Flat regions whose rims cross, or that share edges, keep more triangles than plans counted.
+        // Flat regions whose rims cross, or that share edges, keep more triangles than were counted.
         let over = (OVERRUN * count.saturating_sub(room) as f64) as usize;
         let least = (LEAST_ROOM * room.saturating_sub(mesh.face_count()) as f64) as usize;
         room = most.saturating_sub(over).max(mesh.face_count() + least);
-        let share = room as f64 / count as f64;
-        guess = Some(found.error.upper / share.powf(FALLING)).filter(|_| found.error.certified);
     }
-    within_room(
-        mesh,
-        scheme,
-        (&options.clone().flat_regions(false), demands),
-        (most, None),
-        observer,
-    )
+    let options = options.clone().flat_regions(false);
+    within_room(mesh, scheme, (&options, demands), most, observer)
 }
 
-/// The same with so many triangles, or more where flat regions keep some that nobody counted; with a guess for the distance, if there is one.
+/// The same with so many triangles, or more where flat regions keep some that nobody counted.
 fn within_room(
     mesh: &Mesh,
     scheme: &dyn Scheme,
     (options, demands): (&ExactOptions, &Demands),
-    (most, guess): (usize, Option<f64>),
+    most: usize,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let (_, cap) = options.budget();
@@ -213,27 +210,64 @@ fn within_room(
         ((options, demands), most),
         observer,
         |engine| {
-            let engine = &Engine {
-                guess,
-                ..engine.clone()
-            };
             let floor = engine.floor(options.tolerance);
-            if !options.balance {
-                return engine.finest(floor, (most, cap), options);
-            }
-            if floor > 0.0
-                && let Some(outcome) = engine.balanced(floor, most)?
+            if options.balance
+                && floor > 0.0
+                && let Some(found) = engine.refined(Goal::Balanced(floor), most)?
             {
-                return outcome.finish(engine, ExactStop::Met, options);
+                return found.finish(engine, ExactStop::Met, options);
             }
-            let plain = Engine {
+            let plain = &Engine {
                 is_balanced: false,
                 ..engine.clone()
+            };
+            let (found, stop) = budget::search(plain, floor, most, cap)?;
+            let found = found.finish(plain, stop, options)?;
+            if !options.balance {
+                return Ok(found);
             }
-            .finest(floor, (most, cap), options)?;
-            engine.least_balanced(plain, floor, (most, cap), options)
+            engine.least_balanced(found, floor, (most, cap), options)
         },
     )
+}
+
+impl Engine<'_> {
+    /// The balanced mesh within the least value that has no more triangles than there may be; the plain one where that does
+    /// no worse.
+    fn least_balanced(
+        &self,
+        plain: Exact,
+        floor: f64,
+        (most, stop): (usize, ExactStop),
+        options: &ExactOptions,
+    ) -> Result<Exact, RefineError> {
+        let has_criteria = self.control.criteria.is_some();
+        let mut high = if has_criteria {
+            plain.worst
+        } else {
+            plain.error.upper
+        };
+        let (mut low, mut best) = (floor, None);
+        for _ in 0..MOST_TRIES {
+            let next = (BALANCED * high).max((low * high).sqrt());
+            if !(low < next && next < high && low < NEAR * high) {
+                break;
+            }
+            match self.refined(Goal::Balanced(next), most)? {
+                Some(found) => (best, high) = (Some(found), next),
+                None => low = next,
+            }
+        }
+        let Some(found) = best else {
+            return Ok(plain);
+        };
+        let balanced = found.finish(self, stop, options)?;
+        Ok(if balanced.error.upper < plain.error.upper {
+            balanced
+        } else {
+            plain
+        })
+    }
 }
 
 /// What an engine finds where all flat regions that are judged by their rims could be triangulated from these: where they could not it is run again,

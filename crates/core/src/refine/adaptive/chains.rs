@@ -4,9 +4,8 @@
 //! them; the copies of a cut edge have the same ones, each its own.
 
 use core::ops::Range;
-use std::borrow::Cow;
 
-use super::quadtree::{Edges, FULL, Place, Trees};
+use super::quadtree::{Edges, FULL, Trees};
 use super::walk::{Knot, Side, merged, merged_all};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, SharedWatch};
@@ -25,114 +24,62 @@ pub(super) struct Chains {
     base: u32,
 }
 
-/// Where there may be other vertices than before.
-#[derive(Debug, Default)]
-pub(super) struct Inserted {
-    /// Half-edges that are looked at anew, ascending.
-    pub(super) anew: Vec<u32>,
-    /// Half-edges that keep their vertices, ascending, and places at which they have one now.
-    pub(super) at: Vec<(u32, u32)>,
-}
-
-impl Inserted {
-    /// Adds the middle of a node's edge, which lies along one of its control face.
-    pub(super) fn add(&mut self, edges: &Edges<'_>, place: Place, edge: usize) {
-        let h = 3 * place.face + edge as u32;
-        let second = |level: u32| u32::from(place.digit(level) != edge) * (FULL >> (level + 1));
-        let at = (0..place.level).map(second).sum::<u32>() + (FULL >> (place.level + 1));
-        let turned = |is_turned: bool| if is_turned { FULL - at } else { at };
-        if let Some(twin) = edges.twin(h) {
-            self.at.push((h.min(twin), turned(twin < h)));
-        } else if let Some(group) = edges.group(h) {
-            let members = edges.members(group);
-            let own = members
-                .iter()
-                .any(|&(member, is_turned)| member == h && is_turned);
-            self.at.extend(
-                members
-                    .iter()
-                    .map(|&(member, other)| (member, turned(own != other))),
-            );
-        } else {
-            self.at.push((h, at));
-        }
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.anew.is_empty() && self.at.is_empty()
-    }
-
-    /// All half-edges that this is about, ascending.
-    fn half_edges(&self) -> Cow<'_, [u32]> {
-        if self.at.is_empty() {
-            return Cow::Borrowed(&self.anew);
-        }
-        let mut all: Vec<u32> = self
-            .at
-            .iter()
-            .map(|&(h, _)| h)
-            .chain(self.anew.iter().copied())
-            .collect();
-        all.sort_unstable();
-        all.dedup();
-        Cow::Owned(all)
-    }
-
-    fn is_anew(&self, h: u32) -> bool {
-        self.anew.binary_search(&h).is_ok()
-    }
-
-    /// What is inserted on a half-edge.
-    fn on(&self, h: u32) -> &[(u32, u32)] {
-        let start = self.at.partition_point(|&(other, _)| other < h);
-        let count = self.at[start..].partition_point(|&(other, _)| other == h);
-        &self.at[start..start + count]
-    }
-}
-
 impl Chains {
-    /// Those of some trees, which have put the same vertices on their edges before but for what was inserted.
+    /// Those of some trees.
     pub(super) fn of(
         mesh: &Mesh,
         edges: &Edges<'_>,
         trees: &Trees,
-        (before, inserted): (&Chains, &Inserted),
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
         let mut groups = Vec::with_capacity(edges.group_count());
         watch.each(0..edges.group_count(), |group| {
-            let is_kept = edges
-                .members(group)
-                .iter()
-                .all(|&(h, _)| !inserted.is_anew(h));
-            groups.push(if is_kept {
-                Vec::new()
-            } else {
-                group_places(edges, trees, group)
-            });
+            groups.push(group_places(edges, trees, group))
         })?;
-        let half_edges = inserted.half_edges();
         let blocks = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let (mut counts, mut at) = (Vec::with_capacity(3 * block.len()), Vec::new());
-            let [first, end] = [block.start, block.end].map(|face| 3 * face as u32);
-            let mut kept = first;
-            let in_block = half_edges.partition_point(|&h| h < first)
-                ..half_edges.partition_point(|&h| h < end);
-            for &h in &half_edges[in_block] {
-                before.copy(kept..h, &mut counts, &mut at);
+            for h in 3 * block.start as u32..3 * block.end as u32 {
                 let start = at.len();
-                let new = inserted.on(h);
-                if new.is_empty() || inserted.is_anew(h) {
-                    places(edges, trees, &groups, h, &mut at);
-                } else {
-                    merge(before.own(h).1, new, &mut at);
-                }
+                places(edges, trees, &groups, h, &mut at);
+                counts.push((at.len() - start) as u32);
+            }
+            (counts, at)
+        })?;
+        Self::joined(mesh, blocks, watch)
+    }
+
+    /// These with others inserted: half-edges that keep vertices, ascending, and places on these.
+    pub(super) fn with_inserted(
+        &self,
+        mesh: &Mesh,
+        inserted: &[(u32, u32)],
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
+        let blocks = watch.pieces(mesh.face_count(), BLOCK, |block| {
+            let (mut counts, mut at) = (Vec::with_capacity(3 * block.len()), Vec::new());
+            let [mut kept, end] = [block.start, block.end].map(|face| 3 * face as u32);
+            let first = inserted.partition_point(|&(h, _)| h < kept);
+            let last = inserted.partition_point(|&(h, _)| h < end);
+            for new in inserted[first..last].chunk_by(|a, b| a.0 == b.0) {
+                let h = new[0].0;
+                self.copy(kept..h, &mut counts, &mut at);
+                let start = at.len();
+                merge(self.own(h).1, new, &mut at);
                 counts.push((at.len() - start) as u32);
                 kept = h + 1;
             }
-            before.copy(kept..end, &mut counts, &mut at);
+            self.copy(kept..end, &mut counts, &mut at);
             (counts, at)
         })?;
+        Self::joined(mesh, blocks, watch)
+    }
+
+    /// The vertices of consecutive control faces: how many each half-edge keeps, and their places.
+    fn joined(
+        mesh: &Mesh,
+        blocks: Vec<(Vec<u32>, Vec<u32>)>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<Self, Cancelled> {
         let mut chains = Self {
             starts: Vec::with_capacity(3 * mesh.face_count() + 1),
             at: Vec::new(),

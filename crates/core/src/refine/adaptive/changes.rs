@@ -132,6 +132,3 @@ impl Changes {
         Ok(found.concat())
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,11 +3,11 @@
 use core::ops::Range;
 
 use super::chains::Chains;
-use super::close::Closed;
 use super::control::Control;
+use super::cover::Cover;
 use super::emit::Emission;
 use super::leaf::leaf_triangles;
-use super::quadtree::{Edges, Place, Trees};
+use super::quadtree::{Edges, Place, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
 use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
@@ -58,6 +58,11 @@ pub(super) trait Beholder {
         true
     }
 
+    /// Whether triangles that are whole leaves which are marked as proven are not to be shown.
+    fn skips_proven(&self) -> bool {
+        false
+    }
+
     /// Whether one is to be shown.
     fn wants_triangle(&mut self, _emitted: &Emitted) -> bool {
         true
@@ -74,11 +79,17 @@ pub(super) struct Sources<'a> {
     pub(super) edges: &'a Edges<'a>,
     pub(super) trees: &'a Trees,
     pub(super) chains: &'a Chains,
-    pub(super) closed: &'a [Closed],
+    pub(super) covers: &'a [Cover],
     pub(super) emission: &'a Emission,
 }
 
 impl Sources<'_> {
+    /// Whether a control face is one triangle that is marked as proven.
+    pub(super) fn is_whole(&self, face: u32) -> bool {
+        let word = self.trees.root(face);
+        !is_split(word) && is_proven(word) && self.chains.are_none(self.edges, face)
+    }
+
     /// Shows the triangles of a control face, in the order in which they stand.
     pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
         let Self {
@@ -86,7 +97,7 @@ impl Sources<'_> {
             edges,
             trees,
             chains,
-            closed,
+            covers,
             emission,
         } = *self;
         let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
@@ -96,7 +107,7 @@ impl Sources<'_> {
             triangles: &emission.triangles,
             next: emission.triangles_of(face).start as u32,
             open: control.flat.counting(edges, face, control.open(face)),
-            diagonals: closed[face as usize].diagonals(),
+            diagonals: &covers[face as usize].diagonals,
             rim: Rim::default(),
             is_stopped,
             beholder,
@@ -132,7 +143,8 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
         let n = 1usize << node.depth;
         let end = self.next + node.triangles() as u32;
-        if !self.beholder.wants(node.place, self.next..end) {
+        let skips = self.skips(node) && node.is_plain();
+        if skips || !self.beholder.wants(node.place, self.next..end) {
             self.diagonals = self
                 .diagonals
                 .get(self.rim.diagonals(node, knots)..)
@@ -162,6 +174,12 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
 }
 
 impl<B: Beholder> Leaves<'_, B> {
+    /// Whether the leaves of a node that have no split edges are not shown.
+    #[inline]
+    fn skips(&self, node: &Node<'_>) -> bool {
+        node.is_proven && self.beholder.skips_proven()
+    }
+
     fn upright(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let n = 1usize << node.depth;
         let place = node.place.leaf(node.depth, (i, j), false);
@@ -174,6 +192,10 @@ impl<B: Beholder> Leaves<'_, B> {
             self.rim.split(n, i, j)
         };
         let bits = bits(&split);
+        if bits == 0 && self.skips(node) {
+            self.next += 1;
+            return;
+        }
         if bits == 0 {
             return self.whole(node, (i, j), (place, open));
         }
@@ -299,6 +321,9 @@ impl<B: Beholder> Leaves<'_, B> {
     fn headlong(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let number = self.next;
         self.next += 1;
+        if self.skips(node) {
+            return;
+        }
         let Surface::Regular(piece, spot) = node.surface else {
             return;
         };

@@ -360,11 +360,6 @@ impl FlatRegions {
         first
     }
 
-    /// Whether there is a region that is judged by its rim alone.
-    pub(super) fn has_rims_alone(&self) -> bool {
-        self.by_rim.contains(&true)
-    }
-
     /// How far what is handed out may be from what was judged, at most: triangles of a region, and vertices of a straight line, are as
     /// far off as those in whose place they come, on either side.
     pub(super) fn allowance(&self) -> f64 {
@@ -392,11 +387,6 @@ impl FlatRegions {
             .iter()
             .filter(|&&is_merged| is_merged)
             .count()
-    }
-
-    /// Triangles of which strips may be made, `own` being those of a face.
-    pub(super) fn over_strips(&self, own: impl Fn(u32) -> usize) -> usize {
-        self.straight.iter().map(|&face| own(face)).sum()
     }
 
     /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going

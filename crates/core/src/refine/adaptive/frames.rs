@@ -5,12 +5,12 @@
 //! nothing. Then each frame is replayed with that plan, and measured as it came out.
 
 use super::demands::Demands;
-use super::dirty::Dirty;
 use super::judge::Goal;
-use super::measure::measure;
+use super::measure::{Look, measure};
 use super::measured::Measured;
 use super::result::open_cones;
-use super::{Engine, Plan, with_engine};
+use super::state::State;
+use super::{Engine, with_engine};
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Stage};
 use crate::refine::exact_options::ExactOptions;
@@ -47,21 +47,21 @@ pub(in crate::refine) fn frames(
     let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
     let demands = Demands::default();
     let settings = (options, &demands);
-    let plan = with_engine(&meshes[0], scheme, settings, observer, |engine| {
+    let state = with_engine(&meshes[0], scheme, settings, observer, |engine| {
         first(engine, options)
     })?;
-    let mut plan = united(&meshes, scheme, (settings, plan), observer)?;
+    let mut state = united(&meshes, scheme, (settings, state), observer)?;
     let refined = with_engine(&meshes[0], scheme, settings, observer, |engine| {
-        let emission = engine.emit_all(&mut plan)?;
+        let emission = engine.emit_all(&state)?;
         engine.check(&emission)?;
-        engine.assemble(emission, plan.levels(engine.watch)?)
+        engine.assemble(emission, state.levels(engine.watch)?)
     })?;
     let replay = Replay::new_observed(control, scheme, &refined, observer)?;
     let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
         all.push(with_engine(mesh, scheme, settings, observer, |engine| {
-            proven(engine, &mut plan, (&refined, &frame), options)
+            proven(engine, &mut state, (&refined, &frame), options)
         })?);
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
@@ -72,7 +72,7 @@ pub(in crate::refine) fn frames(
     );
     let open_cones = open_cones.unwrap_or(0);
     let stop = match () {
-        () if plan.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
+        () if state.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
         () if open_cones > 0 => ExactStop::Cones,
         () => ExactStop::Met,
     };
@@ -93,57 +93,45 @@ pub(in crate::refine) fn frames(
     })
 }
 
-/// The plan of the first frame, of which nothing is taken for granted.
-fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<Plan, RefineError> {
+/// The state of the first frame, of which nothing is taken for granted.
+fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<State, RefineError> {
     let (most, _) = options.budget();
-    let floor = engine.floor(options.tolerance);
-    let plan = engine
-        .plan(Goal::Within(floor), most)?
+    let goal = Goal::Within(engine.floor(options.tolerance));
+    let found = engine
+        .refined(goal, most)?
         .ok_or(ReplayError::TooMany { frame: 0, most })?;
-    let faces = plan.closed.len();
-    let Plan {
-        decision,
-        has_failed,
-        ..
-    } = plan;
-    let mut plan = Plan::of(Goal::Within(f64::INFINITY), decision.unjudged(), faces);
-    plan.has_failed = has_failed;
-    match engine.carry_out(&mut plan, Dirty::all(faces), most)? {
-        true => Ok(plan),
-        false => Err(ReplayError::TooMany { frame: 0, most }.into()),
-    }
+    Ok(found.state)
 }
 
-/// The plan with all that the frames need.
+/// The state with all that the frames need.
 fn united(
     meshes: &[Mesh],
     scheme: &dyn Scheme,
-    (settings, plan): ((&ExactOptions, &Demands), Plan),
+    (settings, mut state): ((&ExactOptions, &Demands), State),
     observer: &mut Observer<'_>,
-) -> Result<Plan, RefineError> {
+) -> Result<State, RefineError> {
     let (options, _) = settings;
     let (most, _) = options.budget();
-    let mut plan = plan;
     // Frames in a row for which nothing had to be divided.
     let mut settled = 0;
     for frame in (0..meshes.len()).cycle().take(MOST_ROUNDS * meshes.len()) {
         if settled == meshes.len() {
             break;
         }
-        let triangles = plan.triangles;
-        plan = with_engine(&meshes[frame], scheme, settings, observer, |engine| {
-            plan.is_touched.fill(true);
-            let goal = Goal::Within(engine.floor(options.tolerance));
-            let outcome = engine.emit_among(plan, &goal, (most, false))?;
-            Ok(outcome.ok_or(ReplayError::TooMany { frame, most })?.plan)
+        let triangles = state.triangles;
+        state = with_engine(&meshes[frame], scheme, settings, observer, |engine| {
+            state.forget();
+            state.goal = Goal::Within(engine.floor(options.tolerance));
+            let found = engine.verified(state, most)?;
+            Ok(found.ok_or(ReplayError::TooMany { frame, most })?.state)
         })?;
-        settled = if plan.triangles == triangles {
+        settled = if state.triangles == triangles {
             settled + 1
         } else {
             1
         };
     }
-    Ok(plan)
+    Ok(state)
 }
 
 /// What is proven of a frame.
@@ -160,31 +148,29 @@ struct Proven {
 /// What is proven of a frame of what was refined.
 fn proven(
     engine: &Engine<'_>,
-    plan: &mut Plan,
+    state: &mut State,
     (refined, frame): (&Exact, &Frame),
     options: &ExactOptions,
 ) -> Result<Proven, RefineError> {
-    let mut emission = engine.emit_all(plan)?;
+    let mut emission = engine.emit_all(state)?;
     emission.positions.copy_from_slice(&frame.positions);
     engine.watch.stage(Stage::Bounding, None)?;
     let floor = engine.floor(options.tolerance);
-    let all: Vec<u32> = (0..plan.closed.len() as u32).collect();
-    let sources = engine.sources(plan, &emission);
-    let measured = measure(
-        &sources,
-        engine.watch,
-        (&Goal::Within(floor), f64::INFINITY),
-        (&all, None, None),
-    )?;
-    let greatest = |of: fn(&Measured) -> f64| measured.iter().map(of).fold(0.0, f64::max);
-    let value = greatest(|face| face.value);
+    let all: Vec<u32> = (0..state.faces()).collect();
+    let goal = Goal::Within(floor);
+    let look = Look {
+        goal: &goal,
+        length: f64::INFINITY,
+        changes: None,
+        bulges: None,
+        trusted: &[],
+    };
+    state.measured = measure(&engine.sources(state, &emission), engine.watch, &all, &look)?;
+    state.is_trusted.fill(false);
+    let greatest = |of: fn(&Measured) -> f64| state.measured.iter().map(of).fold(0.0, f64::max);
+    let (value, pixels) = (greatest(|face| face.value), greatest(|face| face.pixels));
     let is_met = options.tolerance.is_some() && value <= floor;
-    let error = probe::probe(
-        engine,
-        plan,
-        &emission,
-        (Some(&measured), is_met, options.tightens),
-    )?;
+    let error = probe::probe(engine, state, &emission, is_met)?;
     engine.check(&emission)?;
     let beyond = options
         .tolerance
@@ -202,7 +188,7 @@ fn proven(
     Ok(Proven {
         error,
         worst,
-        pixels: greatest(|face| face.pixels),
+        pixels,
         open_cones,
     })
 }

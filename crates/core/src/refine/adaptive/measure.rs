@@ -16,10 +16,10 @@ use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::judge::{DIVISIONS, Goal};
+use super::judge::{DIVISIONS, Goal, Seen};
 use super::measured::{FoundLast, Measured, Value, fail};
+use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
 use super::quadtree::Place;
-use super::settle::{Neighbours, beside, neighbours, sharp_edges};
 use super::surface::GeneralPiece;
 use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
@@ -35,20 +35,37 @@ const MOST_HALVINGS: usize = 10;
 /// What rounding leaves of a height that is just good enough.
 const ROUNDED: f64 = 1.0 - 1e-9;
 
-/// Looks at the triangles of some control faces, or those of them that changes concern. Bounds of distances below `length`, of
-/// triangles that do not fail, need not be tight. Where it is known how the surface bulges over them as they are emitted, most
-/// need nothing else.
+/// How triangles are looked at.
+#[derive(Clone, Copy)]
+pub(super) struct Look<'a> {
+    pub(super) goal: &'a Goal,
+    /// Bounds of distances below this, of triangles that do not fail, need not be tight.
+    pub(super) length: f64,
+    /// Triangles that these do not concern are not looked at.
+    pub(super) changes: Option<&'a Changes>,
+    /// How the surface bulges over the triangles as they are emitted, where that is known: most need nothing else.
+    pub(super) bulges: Option<&'a Bulges>,
+    /// By control face, whether its proven leaves are not looked at; empty if all are.
+    pub(super) trusted: &'a [bool],
+}
+
+/// Looks at the triangles of some control faces.
 pub(super) fn measure(
     sources: &Sources<'_>,
     watch: &SharedWatch<'_>,
-    (goal, length): (&Goal, f64),
-    (faces, changes, bulges): (&[u32], Option<&Changes>, Option<&Bulges>),
+    faces: &[u32],
+    look: &Look<'_>,
 ) -> Result<Vec<Measured>, Cancelled> {
     let sharp = sharp_edges(sources.emission, watch)?;
     let measured = watch.long_shares(faces.len(), |block, is_stopped| {
         let measured = faces[block].iter().map(|&face| {
-            let mut measuring = Measuring::of(sources, (face, &sharp), (goal, length), changes);
-            let bulge = bulges.filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);
+            let mut measuring = Measuring::of(sources, face, &sharp, look);
+            if measuring.is_trusted && sources.is_whole(face) {
+                return measuring.found;
+            }
+            let bulge = look
+                .bulges
+                .filter(|_| measuring.criteria.is_none() && !measuring.rim_alone);
             let bulge = bulge.map(|Bulges(bulges)| &bulges[face as usize]);
             if let Some(bulge) = bulge {
                 measuring.found.each = bulge.found_last();
@@ -75,6 +92,9 @@ struct Measuring<'a> {
     back_faces: &'a BackFaces,
     /// Whether nothing counts but the rim of a flat region.
     rim_alone: bool,
+    /// Whether proven leaves are not looked at, and somebody counts on what the others have.
+    is_trusted: bool,
+    counts_tilts: bool,
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
@@ -97,6 +117,10 @@ impl Beholder for Measuring<'_> {
             .is_none_or(|is_left| is_left[own].contains(&true))
     }
 
+    fn skips_proven(&self) -> bool {
+        self.is_trusted
+    }
+
     fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
         match &self.is_left {
             Some(is_left) => is_left[(emitted.number - self.first) as usize],
@@ -109,6 +133,11 @@ impl Beholder for Measuring<'_> {
     fn triangle<'p>(&mut self, emitted: &Emitted, mut over: Over<'_, 'p>, rules: &'p Rules<'p>) {
         if self.rim_alone {
             return self.along_rim(emitted, over, rules);
+        }
+        if self.counts_tilts {
+            let extent = Seen::of(&over.corners()).extent();
+            self.found.tilt = self.found.tilt.max(extent.tilt);
+            self.found.slope = self.found.slope.min(extent.slope);
         }
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
         if let Some(criteria) = self.criteria {
@@ -192,24 +221,21 @@ impl Beholder for Measuring<'_> {
 }
 
 impl<'a> Measuring<'a> {
-    fn of(
-        sources: &Sources<'a>,
-        (face, sharp): (u32, &'a HashSet<u32>),
-        (goal, length): (&Goal, f64),
-        changes: Option<&'a Changes>,
-    ) -> Self {
+    fn of(sources: &Sources<'a>, face: u32, sharp: &'a HashSet<u32>, look: &Look<'a>) -> Self {
         let (control, emission) = (sources.control, sources.emission);
         Self {
             emission,
             criteria: control.criteria.as_ref(),
             back_faces: &control.back_faces,
             rim_alone: control.flat.is_its_rim(face),
+            is_trusted: look.trusted.get(face as usize).copied().unwrap_or(false),
+            counts_tilts: !look.trusted.is_empty(),
             sharp,
-            changes,
+            changes: look.changes,
             first: emission.triangles_of(face).start as u32,
             is_left: None,
-            limit: goal.allowed(face),
-            length,
+            limit: look.goal.allowed(face),
+            length: look.length,
             found: Measured::nothing(face),
             failing: Vec::new(),
         }
@@ -452,11 +478,11 @@ impl Among {
             .vertices
             .map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
-        let ((squared, slopes), neighbours) =
-            match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
-                true => neighbours(emission, sharp, emitted.number),
-                false => (beside(emission, sharp, emitted.number), [None; 3]),
-            };
+        let (squared, slopes) = angles(emission, sharp, emitted.number);
+        let neighbours = match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
+            true => neighbours(emission, sharp, emitted.number),
+            false => [None; 3],
+        };
         // The emitted triangle may begin at another corner.
         let emitted_at = emission.triangles[emitted.number as usize];
         let first = emitted_at

@@ -57,6 +57,9 @@ pub(super) struct Measured {
     pub(super) value: f64,
     /// The greatest distance in the cameras' pictures, in pixels.
     pub(super) pixels: f64,
+    /// The greatest tilt of a triangle, and the least tangent of an angle.
+    pub(super) tilt: f64,
+    pub(super) slope: f64,
     /// Leaves that fail, in the order of the walk, and what they come to.
     pub(super) failing: Vec<(Place, f64)>,
     /// What each triangle came to, this time or before, where that is kept.
@@ -72,6 +75,8 @@ impl Measured {
             highest: nowhere,
             value: 0.0,
             pixels: 0.0,
+            tilt: 0.0,
+            slope: f64::INFINITY,
             failing: Vec::new(),
             each: Vec::new(),
         }
@@ -103,6 +108,7 @@ impl Measured {
             self.highest = found.highest;
         }
         (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
+        (self.tilt, self.slope) = (self.tilt.max(found.tilt), self.slope.min(found.slope));
         self.failing.extend(found.failing);
     }
 }

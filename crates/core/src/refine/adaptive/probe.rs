@@ -4,18 +4,19 @@
 //! worst leaves to the nearest triangle of the mesh, which is looked for in all control faces whose points come near.
 
 mod farthest;
-mod nearer_mesh;
 mod nearest_triangle;
 
 use core::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
+use super::Engine;
 use super::emit::Emission;
+use super::emitted::Sources;
 use super::judge::Goal;
-use super::measure::measure;
+use super::measure::{Look, measure};
 use super::measured::Measured;
 use super::quadtree::Place;
-use super::{Engine, Plan};
+use super::state::State;
 use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
 use crate::measure::Bvh;
@@ -62,9 +63,6 @@ const MET_WIDE: f64 = 1.12;
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
 
-/// So many bounds may matter in the last round, with as many as were taken again before it.
-const MOST_CANDIDATES: usize = (3 * TIGHTENED) << MOST_TIGHTENINGS;
-
 /// The share of the triangles (one in so many) that are looked at again where the tolerance is met.
 const MET_SHARE: usize = 64;
 
@@ -80,6 +78,14 @@ const MOST_TIGHTENINGS: usize = 6;
 /// Vertices that are looked at between two calls of the observer.
 const LOOKED_AT: usize = 1 << 14;
 
+/// A control face, a bound of the distance over it, and the leaf that has it, where that is known.
+#[derive(Clone, Copy)]
+struct Bound {
+    value: f64,
+    face: u32,
+    leaf: Option<Place>,
+}
+
 /// What was looked at for lower bounds.
 struct Probed {
     /// Control faces, and which known leaf of theirs.
@@ -88,27 +94,23 @@ struct Probed {
     enough: f64,
 }
 
-/// The certified interval; `measured` by control face where all triangles were looked at among their neighbours, `is_met` if a
-/// tolerance is: then nobody waits for a tighter bound. What is loose all the same is measured anew where that is asked for.
+/// The certified interval. Where a tolerance is met nobody waits for a tighter bound.
 pub(super) fn probe(
     engine: &Engine<'_>,
-    plan: &Plan,
+    state: &State,
     emission: &Emission,
-    (measured, is_met, tightens): (Option<&[Measured]>, bool, bool),
+    is_met: bool,
 ) -> Result<ErrorBounds, RefineError> {
     let watch = engine.watch;
+    let certified = engine.control.rules.is_certified();
     let mut best = ErrorBounds {
         lower: 0.0,
         upper: 0.0,
         at: [0.0; 3],
-        certified: engine.control.rules.is_certified(),
+        certified,
     };
-    let mesh = Nearest::of(engine.sources(plan, emission), watch)?;
-    // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
-    let heights = measured
-        .iter()
-        .flat_map(|all| all.iter().map(|face| face.highest));
-    let highest = greatest(heights, PROBED, watch)?;
+    let sources = engine.sources(state, emission);
+    let mesh = Nearest::of(sources, watch)?;
     let (enough, wide) = if is_met {
         (MET_NARROW, MET_WIDE)
     } else {
@@ -118,192 +120,137 @@ pub(super) fn probe(
         leaves: HashSet::new(),
         enough,
     };
-    lower(
-        engine,
-        (plan, emission),
-        &mesh,
-        (&highest, |_| true, &mut probed),
-        &mut best,
-    )?;
+    // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
+    let highest = state.measured.iter().map(Measured::highest_leaf);
+    let highest = greatest(highest, PROBED, watch)?;
+    lower(&sources, watch, &mesh, &highest, &mut probed, &mut best)?;
+    let mut bounds = Vec::with_capacity(state.covers.len());
+    watch.each(0..state.faces(), |face| bounds.push(bound_of(state, face)))?;
     let again = |length: f64, faces: &[u32]| {
         let nothing = Goal::Within(f64::INFINITY);
-        measure(
-            &engine.sources(plan, emission),
-            watch,
-            (&nothing, length),
-            (faces, None, None),
-        )
+        let look = Look {
+            goal: &nothing,
+            length,
+            changes: None,
+            bulges: None,
+            trusted: &[],
+        };
+        measure(&sources, watch, faces, &look)
     };
-    let mut worst = Worst {
-        plan,
-        measured,
-        bounded: HashMap::new(),
-    };
-    // In no round another one comes among the greatest.
-    let mut candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
     // What failed for sure has no bound yet.
-    if candidates.iter().any(|(bound, _)| bound.is_infinite()) {
-        let unbounded = worst
-            .of_all()
-            .filter(|(bound, _)| bound.is_infinite())
-            .map(|(_, place)| place.face);
-        let unbounded: Vec<u32> = unbounded.collect();
-        let found = again(f64::MAX, &unbounded)?;
-        let found = unbounded
-            .into_iter()
-            .zip(found.into_iter().map(|found| found.worst));
-        worst.bounded = found.filter(|(_, (bound, _))| bound.is_finite()).collect();
-        candidates = greatest_unsorted(worst.of_all(), MOST_CANDIDATES, watch)?;
+    let unbounded: Vec<u32> = bounds
+        .iter()
+        .filter(|bound| bound.value.is_infinite())
+        .map(|bound| bound.face)
+        .collect();
+    for (&face, found) in unbounded.iter().zip(again(f64::MAX, &unbounded)?) {
+        bounds[face as usize] = found.worst_leaf();
     }
-    // Which of them were looked at again, the lower bound for which they were, and whether that told which leaf is the worst.
-    let mut tightened: HashMap<u32, (f64, bool)> = HashMap::new();
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let mut room = if is_met {
         emission.triangles.len() / MET_SHARE + MET_AT_LEAST
     } else {
         usize::MAX
     };
+    let mut tightened: HashMap<u32, f64> = HashMap::new();
     for round in 0.. {
-        // Before this round fewer than half as many were tightened.
-        let most = PROBED.max(TIGHTENED << (round + 1));
-        let order = greatest(candidates.iter().copied(), most, watch)?;
-        best.upper = order.first().map_or(0.0, |&(bound, _)| bound);
-        let is_leaf = |place: Place| {
-            let is_tighter = tightened
-                .get(&place.face)
-                .is_some_and(|&(_, is_tighter)| is_tighter);
-            is_tighter || worst.is_leaf(place.face)
-        };
-        lower(
-            engine,
-            (plan, emission),
-            &mesh,
-            (&order, is_leaf, &mut probed),
-            &mut best,
+        let order = greatest(
+            bounds.iter().copied(),
+            PROBED.max(TIGHTENED << (round + 1)),
+            watch,
         )?;
-        if !best.certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
+        best.upper = order.first().map_or(0.0, |bound| bound.value);
+        lower(&sources, watch, &mesh, &order, &mut probed, &mut best)?;
+        if !certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
             break;
         }
-        // Bounds that are good enough for the goals need not be tight.
-        let is_loose = |&(bound, place): &(f64, Place)| {
-            bound > best.lower
-                && tightened
-                    .get(&place.face)
-                    .is_none_or(|&(known, _)| wide * known < best.lower)
+        let is_loose = |bound: &&Bound| {
+            let is_new = |&known: &f64| wide * known < best.lower;
+            bound.value > best.lower && tightened.get(&bound.face).is_none_or(is_new)
         };
         let (mut loose, mut stays) = (Vec::new(), 0.0);
-        for &(bound, place) in order
-            .iter()
-            .filter(|known| is_loose(known))
-            .take(TIGHTENED << round)
-        {
-            let count = emission.triangles_of(place.face).len();
+        for bound in order.iter().filter(is_loose).take(TIGHTENED << round) {
+            let count = emission.triangles_of(bound.face).len();
             if count > room {
-                (room, stays) = (0, bound);
+                (room, stays) = (0, bound.value);
                 break;
             }
             room -= count;
-            loose.push(place.face);
+            loose.push(bound.face);
         }
-        // Beside one that stays as it is the others are of no use.
+        // Where one stays as it is the others are of no use.
         if loose.is_empty() || stays > WORTH_WHILE * best.upper {
             break;
         }
         let found = again(NARROW * best.lower, &loose)?;
-        let heights = greatest(found.iter().map(|face| face.highest), PROBED, watch)?;
-        lower(
-            engine,
-            (plan, emission),
-            &mesh,
-            (&heights, |_| true, &mut probed),
-            &mut best,
-        )?;
-        let found: HashMap<u32, (f64, Place)> = loose
-            .into_iter()
-            .zip(found.into_iter().map(|found| found.worst))
-            .collect();
-        for known in &mut candidates {
-            let Some(found) = found.get(&known.1.face) else {
-                continue;
-            };
-            let was_tighter = tightened
-                .get(&known.1.face)
-                .is_some_and(|&(_, is_tighter)| is_tighter);
-            let is_tighter = found.0 < known.0;
-            tightened.insert(known.1.face, (best.lower, is_tighter || was_tighter));
-            if is_tighter {
-                *known = *found;
+        let heights = greatest(found.iter().map(Measured::highest_leaf), PROBED, watch)?;
+        for (&face, found) in loose.iter().zip(&found) {
+            tightened.insert(face, best.lower);
+            let known = &mut bounds[face as usize];
+            if found.worst.0 < known.value {
+                *known = found.worst_leaf();
             }
         }
+        lower(&sources, watch, &mesh, &heights, &mut probed, &mut best)?;
     }
-    if best.certified && tightens {
-        best = loose_anew(engine, (plan, emission, &mesh), &candidates, best)?;
-    }
-    if !best.certified {
-        best.upper = estimated(engine, &worst, emission, &mut best)?;
+    if !certified {
+        best.upper = estimated(engine, state, emission, &bounds, &mut best)?;
     }
     best.upper = best.upper.max(best.lower) + engine.rounding;
     best.lower = (best.lower - engine.rounding).max(0.0);
     Ok(best)
 }
 
-/// The greatest bounds of the control faces, and the leaves that have them.
-struct Worst<'a> {
-    plan: &'a Plan,
-    measured: Option<&'a [Measured]>,
-    /// What faces came to that had failed for sure.
-    bounded: HashMap<u32, (f64, Place)>,
+/// The greatest bound over a control face.
+fn bound_of(state: &State, face: u32) -> Bound {
+    let measured = state.measured[face as usize].worst_leaf();
+    let proven = state.proven_bound(face);
+    // Leaves that were proven may have been split since.
+    if proven > measured.value {
+        Bound {
+            value: proven,
+            face,
+            leaf: None,
+        }
+    } else {
+        measured
+    }
 }
 
-impl Worst<'_> {
-    fn of(&self, face: u32) -> (f64, Place) {
-        let known = match self.measured {
-            Some(measured) => measured[face as usize].worst,
-            None => self.plan.worst_of(face),
-        };
-        if known.0.is_infinite() {
-            self.bounded.get(&face).copied().unwrap_or(known)
-        } else {
-            known
+impl Measured {
+    fn worst_leaf(&self) -> Bound {
+        let (value, leaf) = self.worst;
+        Bound {
+            value,
+            face: leaf.face,
+            leaf: Some(leaf),
         }
     }
 
-    fn of_all(&self) -> impl Iterator<Item = (f64, Place)> {
-        (0..self.plan.closed.len() as u32).map(|face| self.of(face))
-    }
-
-    /// Whether the leaf of a face is one of those that were emitted: others may have been split since.
-    fn is_leaf(&self, face: u32) -> bool {
-        self.measured.is_some() || self.bounded.contains_key(&face)
+    fn highest_leaf(&self) -> Bound {
+        let (value, leaf) = self.highest;
+        Bound {
+            value,
+            face: leaf.face,
+            leaf: Some(leaf),
+        }
     }
 }
 
 /// The order of bounds, the greatest first.
-fn by_bound(a: &(f64, Place), b: &(f64, Place)) -> Ordering {
-    b.0.total_cmp(&a.0)
-        .then_with(|| (a.1.face, a.1.path).cmp(&(b.1.face, b.1.path)))
+fn by_bound(a: &Bound, b: &Bound) -> Ordering {
+    b.value.total_cmp(&a.value).then(a.face.cmp(&b.face))
 }
 
 /// So many of the greatest bounds, the greatest first.
 fn greatest(
-    bounds: impl Iterator<Item = (f64, Place)>,
+    bounds: impl Iterator<Item = Bound>,
     most: usize,
     watch: &SharedWatch<'_>,
-) -> Result<Vec<(f64, Place)>, Cancelled> {
-    let mut found = greatest_unsorted(bounds, most, watch)?;
-    found.sort_unstable_by(by_bound);
-    Ok(found)
-}
-
-/// The same in any order.
-fn greatest_unsorted(
-    bounds: impl Iterator<Item = (f64, Place)>,
-    most: usize,
-    watch: &SharedWatch<'_>,
-) -> Result<Vec<(f64, Place)>, Cancelled> {
+) -> Result<Vec<Bound>, Cancelled> {
     let mut found = Vec::new();
     // So many are at least as great as this.
-    let mut least: Option<(f64, Place)> = None;
+    let mut least: Option<Bound> = None;
     watch.each(bounds, |bound| {
         if least.is_some_and(|least| by_bound(&least, &bound).is_le()) {
             return;
@@ -314,30 +261,27 @@ fn greatest_unsorted(
             found.truncate(most);
         }
     })?;
-    if found.len() > most {
-        found.select_nth_unstable_by(most - 1, by_bound);
-        found.truncate(most);
-    }
+    found.sort_unstable_by(by_bound);
+    found.truncate(most);
     Ok(found)
 }
 
 /// Raises the lower bound by points over the first leaves of a list that promise more, but for those that were looked at. Where a
-/// place is not known to be that of a leaf with this bound, its control face is looked at.
+/// leaf is not known, its control face is looked at.
 fn lower(
-    engine: &Engine<'_>,
-    (plan, emission): (&Plan, &Emission),
+    sources: &Sources<'_>,
+    watch: &SharedWatch<'_>,
     mesh: &Nearest<'_>,
-    (order, is_leaf, probed): (&[(f64, Place)], impl Fn(Place) -> bool, &mut Probed),
+    order: &[Bound],
+    probed: &mut Probed,
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
-    let most = order.first().map_or(0.0, |&(promise, _)| promise);
-    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / plan.closed.len().max(1));
-    let leaf = |place: Place| (place.face, is_leaf(place).then_some(place));
-    let sources = engine.sources(plan, emission);
+    let most = order.first().map_or(0.0, |bound| bound.value);
+    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / sources.covers.len().max(1));
     let mut left = order
         .iter()
         .take(most_probed)
-        .map(|&(promise, place)| (promise, leaf(place)))
+        .map(|bound| (bound.value, (bound.face, bound.leaf)))
         .peekable();
     let enough = probed.enough * most;
     let is_enough = |best: &ErrorBounds| best.lower > enough;
@@ -360,9 +304,9 @@ fn lower(
         if some.is_empty() || is_enough(best) {
             return Ok(());
         }
-        let poll = &mut |_| engine.watch.poll();
+        let poll = &mut |_| watch.poll();
         let found = parallel::each_long_polled(some, poll, |(promise, leaf), is_stopped| {
-            let points = farthest(&sources, leaf, is_stopped).into_iter();
+            let points = farthest(sources, leaf, is_stopped).into_iter();
             let distances = points.map(|point| (mesh.distance(point, leaf.0, is_stopped), point));
             (promise, leaf, distances.collect::<Vec<_>>())
         })?;
@@ -381,45 +325,13 @@ fn lower(
     }
 }
 
-/// The same interval, made narrower where few control faces have bounds that are far above what was found; `greatest` are the greatest
-/// bounds, and all that may be.
-fn loose_anew(
-    engine: &Engine<'_>,
-    sources: (&Plan, &Emission, &Nearest<'_>),
-    greatest: &[(f64, Place)],
-    known: ErrorBounds,
-) -> Result<ErrorBounds, RefineError> {
-    let lower = known
-        .lower
-        .max(ErrorBounds::LEAST * engine.control.mesh.diagonal());
-    if known.upper <= ErrorBounds::TIGHT * lower {
-        return Ok(known);
-    }
-    let (loose, others): (Vec<_>, Vec<_>) = greatest
-        .iter()
-        .copied()
-        .partition(|&(bound, _)| bound > WIDE * lower);
-    let mut faces: Vec<u32> = loose.into_iter().map(|(_, place)| place.face).collect();
-    faces.sort_unstable();
-    let Some(found) = nearer_mesh::anew(engine, sources, &faces, (&known, lower))? else {
-        return Ok(known);
-    };
-    let rest = others
-        .into_iter()
-        .map(|(bound, _)| bound)
-        .fold(0.0, f64::max);
-    Ok(ErrorBounds {
-        upper: known.upper.min(found.upper.max(rest)),
-        ..found
-    })
-}
-
 /// Where nothing is certain: the greatest distance of samples over the faces that may be worse than what was found; after
 /// many of them the next estimate.
 fn estimated(
     engine: &Engine<'_>,
-    worst: &Worst<'_>,
+    state: &State,
     emission: &Emission,
+    bounds: &[Bound],
     best: &mut ErrorBounds,
 ) -> Result<f64, RefineError> {
     let control = engine.control;
@@ -429,14 +341,13 @@ fn estimated(
     };
     let tree = Bvh::new_observed(triangles, &mut engine.watch.observer())?;
     let mut count = 0;
-    let mut order: Vec<(f64, u32)> = worst.of_all().map(|(bound, _)| bound).zip(0..).collect();
-    order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    for &(bound, face) in &order {
-        if bound <= best.lower || count >= MOST_MEASURED {
-            return Ok(bound.max(best.lower));
+    let mut order = bounds.to_vec();
+    order.sort_unstable_by(by_bound);
+    for Bound { value, face, .. } in order {
+        if value <= best.lower || count >= MOST_MEASURED {
+            return Ok(value.max(best.lower));
         }
-        let trees = &worst.plan.decision.trees;
-        let levels = trees.depth(trees.root(face)) as usize + SAMPLED_LEVELS;
+        let levels = state.trees.depth(state.trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(
             control.piece(face).surface(control.rules),
@@ -467,23 +378,6 @@ impl ErrorBounds {
         if distance > self.lower {
             (self.lower, self.at) = (distance, at.to_array());
         }
-    }
-}
-
-impl Plan {
-    /// The greatest bound of a control face, and the leaf that has it.
-    fn worst_of(&self, face: u32) -> (f64, Place) {
-        let closing = self.closed[face as usize].extent().copied();
-        let extents = [Some(self.decision.extent(face)), closing]
-            .into_iter()
-            .flatten();
-        let judged = extents.filter_map(|extent| Some((extent.bound, extent.worst?)));
-        let greater = |known: (f64, Place), other: (f64, Place)| {
-            if other.0 > known.0 { other } else { known }
-        };
-        judged
-            .chain(self.settled.worst(face))
-            .fold((0.0, Place::root(face)), greater)
     }
 }
 
@@ -531,21 +425,20 @@ mod tests {
             (5000, 2500),
             (5000, 5000),
         ] {
-            let mut all: Vec<(f64, Place)> = (0..count)
-                .map(|face| {
-                    let value = random.below(count / 3 + 1) as f64;
-                    let path = random.below(4) as u64;
-                    (
-                        value,
-                        Place {
-                            path,
-                            ..Place::root(face as u32)
-                        },
-                    )
-                })
+            let mut all: Vec<(f64, u32)> = (0..count as u32)
+                .map(|face| (random.below(count / 3 + 1) as f64, face))
                 .collect();
-            let found = greatest(all.iter().copied(), most, &watch).unwrap();
-            all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.face.cmp(&b.1.face)));
+            let bounds = all.iter().map(|&(value, face)| Bound {
+                value,
+                face,
+                leaf: None,
+            });
+            let found = greatest(bounds, most, &watch).unwrap();
+            let found: Vec<_> = found
+                .iter()
+                .map(|bound| (bound.value, bound.face))
+                .collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             all.truncate(most);
             assert_eq!(found, all, "{count}, {most}");
         }

@@ -1,7 +1,7 @@
 //! Quadtrees over the control faces.
 //!
-//! A tree is a word for its root: [`LEAF`] with a depth `m` says that all leaves lie `m` levels below, and how far off they are at most
-//! ([`bounded`]); anything else is the place of four consecutive words, those of the children, which [`crate::node`] numbers.
+//! A tree is a word for its root. [`LEAF`] with a depth `m` says that all leaves lie `m` levels below, and [`PROVEN`] that their bounds are known.
+//! Anything else is the index of four consecutive words, those of the children, which [`crate::node`] numbers.
 
 use crate::mesh::MeshError;
 pub(super) use crate::node::{Along, Beyond, Edges, Place, along_edge, beyond};
@@ -11,29 +11,14 @@ use crate::refine::{RefineError, exact_options};
 /// Marks the word of a node below which all leaves are equally deep; the lowest bits are their depth below it.
 pub(super) const LEAF: u32 = 1 << 31;
 
-/// Marks a leaf that was made for its neighbours' sake and has not been judged.
-pub(super) const UNJUDGED: u32 = 1 << 30;
-
-/// Marks a leaf that passes if its neighbours turn out as expected.
-pub(super) const CONDITIONAL: u32 = 1 << 29;
-
-/// Marks a leaf that, like what it is split into, must pass whatever its neighbours are.
-pub(super) const STRICT: u32 = 1 << 28;
-
-/// The marks of leaves.
-const MARKS: u32 = UNJUDGED | CONDITIONAL | STRICT;
+/// Marks leaves that are within the limit if the triangles around them keep what was assumed of them ([`super::judge::Allowance`]).
+pub(super) const PROVEN: u32 = 1 << 30;
 
 /// The depth of leaves below a node.
 const DEPTH: u32 = (1 << 5) - 1;
 
-/// What is known of the greatest bound of leaves: the upper bits of the number, the least of them counted up; 0 where nothing is.
-const BOUND: u32 = STRICT - 1 - DEPTH;
-
-/// The bits of a number that are left out there.
-const LEFT_OUT: u32 = 40;
-
-/// Nodes whose places have room beside the marks.
-pub(super) const MOST_NODES: usize = STRICT as usize;
+/// Nodes whose indices have room beside the marks.
+pub(super) const MOST_NODES: usize = 1 << 28;
 
 /// Levels at most below a control face: paths take two bits a level, and places along an edge are counted in units of the
 /// deepest level's edges.
@@ -55,33 +40,10 @@ pub(super) fn is_split(word: u32) -> bool {
     word & LEAF == 0 || word & DEPTH != 0
 }
 
-/// Whether a control face or node is a leaf without any mark.
+/// Whether the leaves below a node, which are equally deep, are marked as proven.
 #[inline]
-pub(super) fn is_plain_leaf(word: u32) -> bool {
-    word & !BOUND == LEAF
-}
-
-/// Whether a node is a leaf that nobody has judged.
-#[inline]
-pub(super) fn is_unjudged(word: u32) -> bool {
-    even_depth(word) == Some(0) && word & UNJUDGED != 0
-}
-
-/// A leaf's word, with what its bound is at most.
-#[inline]
-pub(super) fn bounded(word: u32, bound: f64) -> u32 {
-    if !(bound >= 0.0 && bound.is_finite()) {
-        return word;
-    }
-    let upper = ((bound + 0.0).to_bits() >> LEFT_OUT) as u32 + 1;
-    word | upper << DEPTH.count_ones()
-}
-
-/// What the bounds of leaves below a node, where they are equally deep, are at most, if it is known and they have no marks.
-#[inline]
-pub(super) fn bound_of(word: u32) -> Option<f64> {
-    let is_known = word & LEAF != 0 && word & MARKS == 0 && word & BOUND != 0;
-    is_known.then(|| f64::from_bits(u64::from((word & BOUND) >> DEPTH.count_ones()) << LEFT_OUT))
+pub(super) fn is_proven(word: u32) -> bool {
+    word & (LEAF | PROVEN) == LEAF | PROVEN
 }
 
 /// The depth of the leaves below a node where they are equally deep.
@@ -185,21 +147,6 @@ impl Trees {
         Some(self.words[at])
     }
 
-    /// The node that holds the leaf at a place, and below which all leaves are equally deep.
-    pub(super) fn even_node(&self, leaf: Place) -> Place {
-        let mut word = self.root(leaf.face);
-        let mut level = 0;
-        while level < leaf.level && word & LEAF == 0 {
-            word = self.child(word, leaf.digit(level));
-            level += 1;
-        }
-        Place {
-            level,
-            path: leaf.path >> (2 * (leaf.level - level)),
-            ..leaf
-        }
-    }
-
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
     /// would be too many nodes.
     pub(super) fn ensure(&mut self, place: Place, mut fresh: impl FnMut(Place)) -> bool {
@@ -233,35 +180,9 @@ impl Trees {
         true
     }
 
-    /// Demands of the leaf at `place` that it, and what it is split into, passes whatever its neighbours are.
-    pub(super) fn make_strict(&mut self, place: Place) {
-        let mut at = place.face as usize;
-        for level in 0..place.level {
-            match even_depth(self.words[at]) {
-                None => at = self.words[at] as usize + place.digit(level),
-                Some(_) => return,
-            }
-        }
-        if !is_split(self.words[at]) {
-            self.words[at] |= STRICT;
-        }
-    }
-
     /// Splits the leaf at `place`. `false` if there would be too many nodes.
     pub(super) fn split(&mut self, place: Place, fresh: impl FnMut(Place)) -> bool {
         self.ensure(place.child(0), fresh)
-    }
-
-    /// Replaces the tree of a control face. `false` if there would be too many nodes.
-    pub(super) fn replace(&mut self, face: u32, piece: &Piece) -> bool {
-        let base = self.words.len() as u32;
-        if self.words.len() + piece.words.len() >= MOST_NODES {
-            return false;
-        }
-        self.words
-            .extend(piece.words.iter().map(|&word| rebased(word, base)));
-        self.words[face as usize] = rebased(piece.roots[0], base);
-        true
     }
 
     /// Four words for the children of a node whose leaves are equally deep.
@@ -270,12 +191,7 @@ impl Trees {
         if first + 4 >= MOST_NODES {
             return None;
         }
-        // Nodes whose leaves are equally deep have no marks.
-        let below = if is_split(word) {
-            word - 1
-        } else {
-            LEAF | UNJUDGED | word & STRICT
-        };
+        let below = if is_split(word) { word - 1 } else { LEAF };
         self.words.extend([below; 4]);
         Some(first as u32)
     }
@@ -296,17 +212,9 @@ impl Piece {
     /// The word of a node over a regular part with the given children.
     pub(super) fn node(&mut self, children: [u32; 4]) -> u32 {
         let [first, ..] = children;
-        let is_even = first & LEAF != 0 && first & MARKS == 0 && first & DEPTH < MOST_LEVELS;
-        if is_even
-            && children
-                .iter()
-                .all(|child| child & !BOUND == first & !BOUND)
-        {
-            // Of bounds the greatest, but none where one is not known.
-            let bounds = children.map(|child| child & BOUND);
-            let [least, most] =
-                [u32::min, u32::max].map(|of| bounds.into_iter().reduce(of).unwrap_or(0));
-            return (first & !BOUND | if least > 0 { most } else { 0 }) + 1;
+        let is_even = first & LEAF != 0 && first & DEPTH < MOST_LEVELS;
+        if is_even && children.iter().all(|&child| child == first) {
+            return first + 1;
         }
         self.irregular_node(children)
     }
@@ -316,85 +224,5 @@ impl Piece {
         let at = self.words.len() as u32;
         self.words.extend(children);
         at
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::random::Random;
-
-    /// Bounds that are read are those that were written, but for what rounding adds.
-    #[test]
-    fn bounds_are_kept_in_words() {
-        let mut random = Random::new(5);
-        let bounds = (0..10_000).map(|_| f64::from_bits(random.bits() >> 1));
-        let bounds = bounds.filter(|bound| bound.is_finite());
-        for bound in bounds.chain([0.0, -0.0, 1.0, f64::MIN_POSITIVE, 5e-324, f64::MAX]) {
-            for depth in [0, 1, MOST_LEVELS] {
-                let word = bounded(LEAF + depth, bound);
-                assert_eq!(
-                    (even_depth(word), is_split(word)),
-                    (Some(depth), depth > 0),
-                    "{bound}"
-                );
-                let known = bound_of(word).unwrap();
-                assert!(bound <= known, "{bound}: {known}");
-                assert!(
-                    known <= bound * (1.0 + 1.0 / 2048.0) || bound < f64::MIN_POSITIVE,
-                    "{bound}: {known}"
-                );
-            }
-        }
-        assert_eq!(bound_of(LEAF), None);
-        for bound in [f64::INFINITY, f64::NAN, -1.0] {
-            assert_eq!(bounded(LEAF, bound), LEAF);
-        }
-        assert_eq!(bound_of(bounded(LEAF | CONDITIONAL, 1.0)), None);
-        let mut piece = Piece::default();
-        let leaves = |last| [1.0, 3.0, 2.0, last].map(|bound| bounded(LEAF, bound));
-        assert_eq!(
-            bound_of(piece.node(leaves(0.5))),
-            bound_of(bounded(LEAF, 3.0))
-        );
-        assert_eq!(piece.node(leaves(f64::INFINITY)), LEAF + 1);
-        assert!(piece.words.is_empty());
-    }
-
-    #[test]
-    fn even_nodes_are_split_where_asked() {
-        let mut trees = Trees::of(
-            &[
-                Piece {
-                    roots: vec![LEAF + 2, LEAF],
-                    words: vec![],
-                },
-                Piece::default(),
-            ],
-            &mut || Ok(()),
-        )
-        .unwrap();
-        let mut fresh = Vec::new();
-        let place = Place {
-            face: 0,
-            level: 4,
-            path: 0b11_01_10_00,
-        };
-        assert!(trees.ensure(place, |place| fresh.push(place)));
-        // The first two levels were split already.
-        assert_eq!(
-            fresh
-                .iter()
-                .map(|place| (place.level, place.path))
-                .collect::<Vec<_>>(),
-            [(2, 0b11_01), (3, 0b11_01_10)]
-        );
-        assert_eq!(
-            (trees.depth(trees.root(0)), trees.depth(trees.root(1))),
-            (4, 0)
-        );
-        let middle = trees.child(trees.root(0), 3);
-        assert_eq!(even_depth(trees.child(middle, 0)), Some(0));
-        assert!(is_split(trees.child(middle, 1)));
     }
 }

@@ -3,11 +3,9 @@
 use super::backs::shows_back;
 use super::emit::Emission;
 use super::flat::Assembled;
-use super::judge::Goal;
-use super::measure::measure;
-use super::measured::Measured;
-use super::settle::sharp_edges;
-use super::{Engine, Plan, probe, sides};
+use super::neighbours::sharp_edges;
+use super::rounds::Verified;
+use super::{Engine, probe, sides};
 use crate::certificate::{TriangleFrame, exceeds};
 use crate::criterion::{Criteria, Region};
 use crate::index::{FaceId, HalfEdgeId};
@@ -22,57 +20,25 @@ use crate::vector::vector;
 /// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
 const CONE_ROUNDING: f64 = 1e-6;
 
-/// A plan that was emitted, with what its triangles come to by control face where all were looked at among their neighbours.
-pub(super) struct Outcome {
-    pub(super) plan: Plan,
-    pub(super) emission: Emission,
-    pub(super) measured: Option<Vec<Measured>>,
-}
-
-impl Outcome {
-    /// Looks at all triangles among their neighbours, if nobody has.
-    pub(super) fn looked_at(mut self, engine: &Engine<'_>) -> Result<Self, Cancelled> {
-        if self.measured.is_none() {
-            let all: Vec<u32> = (0..self.plan.closed.len() as u32).collect();
-            let sources = engine.sources(&self.plan, &self.emission);
-            let nothing = Goal::Within(f64::INFINITY);
-            self.measured = Some(measure(
-                &sources,
-                engine.watch,
-                (&nothing, f64::INFINITY),
-                (&all, None, None),
-            )?);
-        }
-        Ok(self)
-    }
-
-    /// Measures what was emitted.
+impl Verified {
+    /// Measures the mesh as a whole, and hands it out.
     pub(super) fn finish(
         self,
         engine: &Engine<'_>,
         stop: ExactStop,
         options: &ExactOptions,
     ) -> Result<Exact, RefineError> {
-        let Self {
-            plan,
-            emission,
-            measured,
-        } = self;
+        let Self { state, emission } = self;
         let (control, watch) = (engine.control, engine.watch);
         watch.stage(Stage::Bounding, None)?;
-        let stop = if stop == ExactStop::Met && plan.has_failed {
+        let stop = if stop == ExactStop::Met && state.has_failed {
             ExactStop::LevelCap
         } else {
             stop
         };
         engine.check(&emission)?;
         let is_met = stop == ExactStop::Met && options.tolerance.is_some();
-        let mut error = probe::probe(
-            engine,
-            &plan,
-            &emission,
-            (measured.as_deref(), is_met, options.tightens),
-        )?;
+        let mut error = probe::probe(engine, &state, &emission, is_met)?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
         if options.tolerance.is_none()
             && options.triangles.is_none()
@@ -89,20 +55,21 @@ impl Outcome {
             stop
         };
         let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
-        let value = match &measured {
-            None => plan.worst(),
-            Some(measured) => measured.iter().map(|face| face.value).fold(0.0, f64::max),
-        };
+        let value = state.worst();
         let worst = match (&control.criteria, options.tolerance) {
             (Some(_), _) => value.max(beyond),
             (None, Some(tolerance)) => (value / tolerance).max(beyond),
             (None, None) => 0.0,
         };
-        let pixels = options.pixels.and(measured.as_ref());
-        let pixels =
-            pixels.map(|measured| measured.iter().map(|face| face.pixels).fold(0.0, f64::max));
-        let levels = plan.levels(watch)?;
-        drop(plan);
+        let pixels = options.pixels.map(|_| {
+            state
+                .measured
+                .iter()
+                .map(|face| face.pixels)
+                .fold(0.0, f64::max)
+        });
+        let levels = state.levels(watch)?;
+        drop(state);
         let mut exact = Exact {
             error,
             pixels,

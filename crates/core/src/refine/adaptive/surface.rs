@@ -253,6 +253,20 @@ impl<'a> Surface<'a> {
         }
     }
 
+    /// The limits at the corners.
+    pub(super) fn corners(self) -> [LimitPoint; 3] {
+        match self {
+            Surface::Unknown => {
+                [LimitPoint {
+                    position: DVec3::ZERO,
+                    normal: DVec3::ZERO,
+                }; 3]
+            }
+            Surface::Regular(piece, spot) => piece.ground().at(spot.corners()),
+            Surface::General(piece, _) => piece.corners,
+        }
+    }
+
     /// The limits in the middles of the edges.
     pub(super) fn middles(self) -> [LimitPoint; 3] {
         match self {

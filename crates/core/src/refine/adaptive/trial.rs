@@ -1,14 +1,17 @@
-//! How a triangle fares by criteria that ask for more than distances: cones, pixels, and distances beside them.
+//! Whether a node may stay whole by criteria that ask for more than distances: cones, pixels, and distances besides them.
 //!
-//! Neighbours are expected to be like the triangle itself, or to look away if it does; with those that are emitted it is looked at
+//! Neighbours are expected to look away if the triangle does; with those that are emitted it is looked at
 //! again ([`super::measure`]).
 
 use super::backs::{Behind, looks_away};
-use super::judge::{DIVISIONS, Extent, HALVINGS, Outcome, Seen, Verdict};
+use super::judge::{DIVISIONS, Fate, HALVINGS, Seen};
 use super::surface::Ground;
 use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
 use crate::criterion::{Apart, Backs, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
+
+/// Slopes of drifts that neighbours are expected to have room for.
+const ANY_SLOPES: [f64; 3] = [9.0; 3];
 
 /// A triangle under test.
 pub(super) struct Trial<'a> {
@@ -31,23 +34,34 @@ impl<'a> Trial<'a> {
         corners: &[LimitPoint; 3],
         behind: &Behind<'_>,
     ) -> Self {
-        let (chord, _) = seen.expected();
         let normal = seen.frame.normal();
-        let region = Region::around(corners.map(|corner| corner.position), normal).turned(chord);
         let triangle = corners.map(|corner| corner.position);
+        let region = Region::around(triangle, normal).turned(2.0 * seen.tilt);
         let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewer, rest| {
             behind.is_back(corners, viewer, rest)
         });
         let cone =
             criteria.cone_ratio(normal, corners.map(|corner| corner.normal), &region, &backs);
-        let is_given_up = seen.level as usize >= criteria.deepest_cone();
         Self {
             criteria,
             limit,
             seen,
             region,
             backs,
-            cone: if is_given_up { cone.min(1.0) } else { cone },
+            cone,
+        }
+    }
+
+    /// The same for a node so many levels below its control face: cones are given up at last.
+    pub(super) fn at_level(self, level: u32) -> Self {
+        let is_given_up = level as usize >= self.criteria.deepest_cone();
+        Self {
+            cone: if is_given_up {
+                self.cone.min(1.0)
+            } else {
+                self.cone
+            },
+            ..self
         }
     }
 
@@ -58,42 +72,20 @@ impl<'a> Trial<'a> {
             height,
             across: 0.0,
         };
-        exceeds(self.cone, self.limit)
-            || exceeds(
-                self.criteria
-                    .distance_ratio(&least, &self.region, &self.backs),
-                self.limit,
-            )
+        let ratio = || {
+            self.criteria
+                .distance_ratio(&least, &self.region, &self.backs)
+        };
+        exceeds(self.cone, self.limit) || exceeds(ratio(), self.limit)
     }
 
-    /// What the triangle comes to with this deviation.
-    fn value(&self, deviation: &Deviation) -> f64 {
-        let (chord, slopes) = self.seen.expected();
-        let apart = deviation.apart(chord, slopes);
-        let distance =
+    /// Whether distances are within the limit with this deviation.
+    fn is_within(&self, deviation: &Deviation) -> bool {
+        let apart = deviation.apart(0.0, ANY_SLOPES);
+        let ratio =
             self.criteria
                 .distance_ratio(&apart, &self.region.grown(apart.own), &self.backs);
-        // What is not a number fails.
-        if exceeds(distance, self.cone) {
-            distance
-        } else {
-            self.cone
-        }
-    }
-
-    fn verdict(&self, value: f64) -> Verdict {
-        let outcome = if exceeds(value, self.limit) {
-            Outcome::Fails
-        } else {
-            Outcome::Passes
-        };
-        Verdict {
-            outcome,
-            extent: Extent {
-                bound: value,
-                ..self.seen.extent()
-            },
-        }
+        !exceeds(ratio, self.limit)
     }
 
     pub(super) fn regular(
@@ -103,68 +95,66 @@ impl<'a> Trial<'a> {
         cell: &Cell,
         open: [bool; 3],
         rules: &Rules<'_>,
-    ) -> Verdict {
-        if !self.criteria.has_distances() {
-            return self.verdict(self.cone);
+    ) -> Fate {
+        if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
+            return self.fate(true);
         }
         let heights = ground.jet().heights(cell, self.seen.frame.normal());
         let (low, high) = heights.range();
         if self.is_lost(low) {
-            let least = Apart {
-                own: low,
-                height: low,
-                across: 0.0,
-            };
-            return self.verdict(self.cone.max(self.criteria.distance_ratio(
-                &least,
-                &self.region,
-                &self.backs,
-            )));
+            return Fate::Fails;
         }
         let beside = ground.jet().beside(cell, &self.seen.frame, open);
-        let verdict = self.verdict(self.value(&beside.deviation(high)));
-        if !verdict.fails() {
-            return verdict;
-        }
-        if !self.verdict(self.value(&beside.deviation(low))).fails() {
-            let high = heights.refined(DIVISIONS, 0.0).min(high);
-            return self.verdict(self.value(&beside.deviation(high)));
-        }
-        let deviation = net().deviation(&self.seen.frame, rules, self.effort(open));
-        self.verdict(self.value(&deviation))
-    }
-
-    /// What is done for a bound.
-    fn effort(&self, open: [bool; 3]) -> Effort {
-        let (chord, slopes) = self.seen.expected();
-        let target = self.limit * self.criteria.allowed_length(&self.region, &self.backs);
-        Effort {
-            target,
-            halvings: HALVINGS,
-            open,
-            chord,
-            slopes,
-            rim_alone: false,
-            gives_up: false,
-            least_chord: None,
-        }
+        let is_within = self.is_within(&beside.deviation(high))
+            || match self.is_within(&beside.deviation(low)) {
+                true => {
+                    self.is_within(&beside.deviation(heights.refined(DIVISIONS, 0.0).min(high)))
+                }
+                false => {
+                    self.is_within(&net().deviation(&self.seen.frame, rules, self.effort(open)))
+                }
+            };
+        self.fate(is_within)
     }
 
     pub(super) fn general<'p>(
         &self,
         pieces: &mut Pieces<'p>,
-        part: SubTriangle,
         open: [bool; 3],
         rules: &'p Rules<'p>,
-    ) -> Verdict {
+    ) -> Fate {
         if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
-            return self.verdict(self.cone);
+            return self.fate(true);
         }
-        self.verdict(self.value(&pieces.deviation(
-            part,
+        let effort = self.effort(open);
+        self.fate(self.is_within(&pieces.deviation(
+            SubTriangle::Whole,
             &self.seen.frame,
             rules,
-            self.effort(open),
+            effort,
         )))
+    }
+
+    /// The fate of a node that is within its distances or not.
+    fn fate(&self, is_within: bool) -> Fate {
+        if is_within && !exceeds(self.cone, self.limit) {
+            Fate::Likely
+        } else {
+            Fate::Fails
+        }
+    }
+
+    /// What is done for a bound.
+    fn effort(&self, open: [bool; 3]) -> Effort {
+        Effort {
+            target: self.limit * self.criteria.allowed_length(&self.region, &self.backs),
+            halvings: HALVINGS,
+            open,
+            chord: 0.0,
+            slopes: ANY_SLOPES,
+            rim_alone: false,
+            gives_up: false,
+            least_chord: None,
+        }
     }
 }

@@ -5,9 +5,7 @@
 //! made on the way down, so vertices are numbered in the order of the walk. Each stretch between two knots also keeps the
 //! half-edge that was met there first, so that half-edges find their twins.
 
-use super::quadtree::{
-    CONDITIONAL, FULL, LEAF, Place, STRICT, Trees, UNJUDGED, along_edge, even_depth, is_split,
-};
+use super::quadtree::{FULL, LEAF, Place, Trees, along_edge, even_depth, is_proven, is_split};
 use super::surface::Surface;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
@@ -117,12 +115,8 @@ pub(super) struct Node<'a> {
     pub(super) spot: Spot,
     /// Levels from the node down to its leaves.
     pub(super) depth: u32,
-    /// Whether it was not judged before the walk.
-    pub(super) is_unjudged: bool,
-    /// Whether it must pass without conditions.
-    pub(super) is_strict: bool,
-    /// Whether it passed on conditions.
-    pub(super) is_conditional: bool,
+    /// Whether its leaves are proven as long as none of their edges is split.
+    pub(super) is_proven: bool,
     pub(super) sides: [Side; 3],
     pub(super) interior: u32,
     pub(super) surface: Surface<'a>,
@@ -210,16 +204,11 @@ impl<'a> Walk<'a> {
             let interior = self.next;
             let n = 1u32 << depth;
             self.next += if n > 2 { (n - 1) * (n - 2) / 2 } else { 0 };
-            let has = |mark: u32| even_depth(word) == Some(0) && word & mark != 0;
-            let (is_unjudged, is_conditional, is_strict) =
-                (has(UNJUDGED), has(CONDITIONAL), has(STRICT));
             let node = Node {
                 place,
                 spot,
                 depth,
-                is_unjudged,
-                is_conditional,
-                is_strict,
+                is_proven: is_proven(word),
                 sides,
                 interior,
                 surface,

@@ -71,27 +71,27 @@ impl Shifts {
 }
 
 impl Arrays {
-    /// Fresh ones, with room for so much more.
+    /// Fresh ones, one in `spare` of which is kept free.
     pub(super) fn fresh(
         length: Lengths,
-        room: Lengths,
+        spare: usize,
         has_origins: bool,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
-        let vertices = (length.vertices, room.vertices);
-        let triangles = (length.triangles, room.triangles);
+        let room = |count: usize| count + count / spare;
+        let [vertices, triangles] = [length.vertices, length.triangles];
         let mut origins =
-            limitmesh_pages::with_capacity(if has_origins { room.vertices } else { 0 });
+            limitmesh_pages::with_capacity(if has_origins { room(vertices) } else { 0 });
         if has_origins {
-            extend_origins(&mut origins, length.vertices, watch)?;
+            extend_origins(&mut origins, vertices, watch)?;
         }
         Ok(Self {
-            positions: zeros(vertices),
-            normals: zeros(vertices),
+            positions: parallel::defaults_with_room(vertices, room(vertices)),
+            normals: parallel::defaults_with_room(vertices, room(vertices)),
             origins,
-            triangles: zeros(triangles),
-            twins: zeros((3 * triangles.0, 3 * triangles.1)),
-            parents: zeros(triangles),
+            triangles: parallel::defaults_with_room(triangles, room(triangles)),
+            twins: parallel::defaults_with_room(3 * triangles, 3 * room(triangles)),
+            parents: parallel::defaults_with_room(triangles, room(triangles)),
             moves: Moves::default(),
         })
     }
@@ -99,12 +99,12 @@ impl Arrays {
     /// Those of an emission, which keeps none of them.
     pub(super) fn taken(emission: &mut Emission) -> Self {
         let take = core::mem::take::<Vec<[f64; 3]>>;
-        let (mut positions, feet) = (take(&mut emission.positions), take(&mut emission.feet));
+        let (mut positions, bases) = (take(&mut emission.positions), take(&mut emission.bases));
         let mut moves = Moves::default();
-        if !feet.is_empty() {
+        if !bases.is_empty() {
             moves.offsets = core::mem::take(&mut emission.offsets);
             // Where the vertices lay before they were moved.
-            moves.positions = core::mem::replace(&mut positions, feet);
+            moves.positions = core::mem::replace(&mut positions, bases);
         }
         Self {
             positions,
@@ -177,11 +177,6 @@ impl Arrays {
         })?;
         Ok(())
     }
-}
-
-/// So many zeros, with room for more; nobody touches what is not used.
-fn zeros<T: Clone + Default + Send + Sync>((count, room): (usize, usize)) -> Vec<T> {
-    parallel::defaults_with_room(count, room)
 }
 
 /// Adds origins of vertices that are not known yet: piece by piece, since they are no zeros, which cost nothing.

@@ -1,18 +1,12 @@
 //! The faces of an emission in shares, each with the parts of the arrays that are its own, and how a share is written.
 
-use super::super::area::Areas;
-use super::super::chains::Chains;
-use super::super::close::Closed;
-use super::super::control::Control;
-use super::super::decide::Decision;
-use super::super::judge::Condition;
-use super::super::quadtree::{Edges, Place, is_plain_leaf, is_split};
+use super::super::quadtree::{Place, is_split};
 use super::super::rim::Rim;
 use super::super::surface::Surface;
 use super::super::walk::Walk;
 use super::kept::Kept;
 use super::leaf_writer::{Vertices, Writer, split_off};
-use super::{Counts, Emission, Extend, fraction};
+use super::{Emission, Emitter, fraction};
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
@@ -24,9 +18,9 @@ const JOB: u32 = 8192;
 
 /// Consecutive control faces, and the parts of the arrays that are theirs.
 pub(super) struct Job<'a> {
-    pub(super) extend: Extend,
+    is_new: bool,
     pub(super) faces: core::ops::Range<u32>,
-    pub(super) on_edges: Vertices<'a>,
+    on_edges: Vertices<'a>,
     pub(super) inside: Vertices<'a>,
     pub(super) first_triangle: u32,
     pub(super) triangles: &'a mut [[u32; 3]],
@@ -36,14 +30,17 @@ pub(super) struct Job<'a> {
 }
 
 pub(super) fn jobs<'a>(
-    control: &Control<'_>,
-    edges: &Edges<'_>,
-    chains: &Chains,
-    counts: &Counts<'_>,
+    emitter: &Emitter<'_>,
     emission: &'a mut Emission,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Job<'a>>, Cancelled> {
-    let count = control.mesh.vertex_count();
+    let Emitter {
+        chains,
+        edges,
+        covers,
+        ..
+    } = *emitter;
+    let count = emitter.control.mesh.vertex_count();
     let Emission {
         positions,
         normals,
@@ -52,6 +49,7 @@ pub(super) fn jobs<'a>(
         twins,
         parents,
         borders,
+        is_new,
         ..
     } = emission;
     let first = count as u32;
@@ -72,74 +70,59 @@ pub(super) fn jobs<'a>(
     );
     let (mut jobs, mut from, mut first_triangle) = (Vec::new(), 0u32, 0u32);
     let (mut triangles, mut own, mut vertices, mut segments) = (0u32, 0usize, 0usize, 0usize);
-    let (faces, extend) = (counts.closed.len() as u32, counts.extend);
-    watch.each(
-        (0..).zip(counts.triangles().zip(counts.vertices())),
-        |(face, (own_triangles, own_vertices))| {
-            triangles += own_triangles;
-            vertices += own_vertices as usize;
-            for h in 3 * face..3 * face + 3 {
-                own += chains.own(h).1.len();
-                segments += chains.along(edges, h) + 1;
-            }
-            let own_extend = extend[face as usize];
-            let is_last = face + 1 == faces || own_extend != extend[face as usize + 1];
-            if triangles >= JOB || is_last {
-                let job = Job {
-                    extend: own_extend,
-                    faces: from..face + 1,
-                    on_edges: on_edges.take(own),
-                    inside: inside.take(vertices),
-                    first_triangle,
-                    triangles: split_off(&mut rest.0, triangles as usize),
-                    twins: split_off(&mut rest.1, 3 * triangles as usize),
-                    parents: split_off(&mut rest.2, triangles as usize),
-                    borders: split_off(&mut rest.3, segments),
-                };
-                if own_extend != Extend::Nothing {
-                    jobs.push(job);
-                }
-                first_triangle += triangles;
-                from = face + 1;
-                (triangles, own, vertices, segments) = (0, 0, 0, 0);
-            }
-        },
-    )?;
+    let faces = covers.len() as u32;
+    watch.each((0..).zip(covers), |(face, cover)| {
+        triangles += cover.triangles;
+        vertices += cover.vertices as usize;
+        for h in 3 * face..3 * face + 3 {
+            own += chains.own(h).1.len();
+            segments += chains.along(edges, h) + 1;
+        }
+        let own_is_new = is_new[face as usize];
+        let is_last = face + 1 == faces || own_is_new != is_new[face as usize + 1];
+        if triangles >= JOB || is_last {
+            jobs.push(Job {
+                is_new: own_is_new,
+                faces: from..face + 1,
+                on_edges: on_edges.take(own),
+                inside: inside.take(vertices),
+                first_triangle,
+                triangles: split_off(&mut rest.0, triangles as usize),
+                twins: split_off(&mut rest.1, 3 * triangles as usize),
+                parents: split_off(&mut rest.2, triangles as usize),
+                borders: split_off(&mut rest.3, segments),
+            });
+            first_triangle += triangles;
+            from = face + 1;
+            (triangles, own, vertices, segments) = (0, 0, 0, 0);
+        }
+    })?;
     Ok(jobs)
 }
 
 /// Writes the faces of a job.
 pub(super) fn write(
-    control: &Control<'_>,
-    edges: &Edges<'_>,
-    (decision, chains): (&Decision, &Chains),
-    (closed, kept, only): (&[Closed], Option<&Kept<'_>>, Option<&Areas>),
+    emitter: &Emitter<'_>,
+    kept: Option<&Kept<'_>>,
     mut job: Job<'_>,
     is_stopped: &IsStopped<'_>,
-) -> Vec<(Condition, u32, u32)> {
-    let trees = &decision.trees;
-    match (job.extend, kept) {
-        (Extend::All, _) => {}
-        (Extend::Kept, Some(kept)) => {
-            return kept.take_over(closed, job, is_stopped);
-        }
-        _ => {
-            for face in job.faces.clone() {
-                own_edges(control, chains, face, &mut job.on_edges);
-            }
-            return Vec::new();
-        }
+) {
+    let Emitter {
+        control,
+        edges,
+        trees,
+        chains,
+        covers,
+        ..
+    } = *emitter;
+    if let Some(kept) = kept.filter(|_| !job.is_new) {
+        return kept.renumber(covers, job, is_stopped);
     }
-    if only.is_none() {
-        job.twins.fill(NONE);
-    }
+    job.twins.fill(NONE);
     let mut walk = Walk::new(trees, Vec::new(), job.inside.first, is_stopped);
     let mut writer = Writer {
         face: 0,
-        area: None,
         diagonals: &[],
-        conditions: [&[], &[]],
-        found: Vec::new(),
         next_triangle: job.first_triangle,
         inside: job.inside,
         first_triangle: job.first_triangle,
@@ -153,8 +136,7 @@ pub(super) fn write(
     };
     for face in job.faces {
         let word = trees.root(face);
-        let is_whole = is_plain_leaf(word) && chains.are_none(edges, face);
-        if is_whole && only.is_none() && closed[face as usize].conditions().is_empty() {
+        if !is_split(word) && chains.are_none(edges, face) {
             let first = writer.push(control.mesh.triangles()[face as usize]);
             job.parents[(first / 3 - job.first_triangle) as usize] = face;
             let own = split_off(&mut job.borders, 3);
@@ -163,12 +145,7 @@ pub(super) fn write(
         }
         walk.knots.clear();
         let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
-        (writer.face, writer.diagonals) = (face, closed[face as usize].diagonals());
-        writer.area = only.and_then(|areas| areas.0.get(&face));
-        writer.conditions = [
-            decision.conditions(face),
-            closed[face as usize].conditions(),
-        ];
+        (writer.face, writer.diagonals) = (face, &covers[face as usize].diagonals);
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
@@ -185,33 +162,14 @@ pub(super) fn write(
             }
             walk.node(word, at, sides, surface, &mut writer);
         }
-        writer.end();
         let after = writer.next_triangle - job.first_triangle;
-        if only.is_none() {
-            job.parents[before as usize..after as usize].fill(face);
-        }
+        job.parents[before as usize..after as usize].fill(face);
         for side in sides {
             let own = split_off(&mut job.borders, side.segments());
             for (i, border) in own.iter_mut().enumerate() {
                 *border = walk.knots[side.stretch(i)].half_edge;
             }
         }
-    }
-    writer.found
-}
-
-/// Writes the vertices on the edges of a face that are its own.
-fn own_edges(control: &Control<'_>, chains: &Chains, face: u32, vertices: &mut Vertices<'_>) {
-    let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
-    if own.iter().all(|(_, places)| places.is_empty()) {
-        return;
-    }
-    let piece = control.piece(face);
-    let surface = piece.surface(control.rules);
-    for (edge, (number, places)) in own.into_iter().enumerate() {
-        on_edge(face, edge, places, surface, |i, point, origin| {
-            vertices.set(number + i as u32, point, origin);
-        });
     }
 }
 

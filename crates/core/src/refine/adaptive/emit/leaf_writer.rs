@@ -1,9 +1,6 @@
 //! Writes the leaves of control faces: the vertices inside and along chains, the triangles row by row, and which half-edges are
 //! twins.
 
-use super::super::area::Area;
-use super::super::judge::Condition;
-use super::super::quadtree::Place;
 use super::super::rim::{Rim, bits};
 use super::super::surface::Surface;
 use super::super::walk::{Knot, Node, Visitor};
@@ -16,9 +13,6 @@ use crate::refine::exact_result::Origin;
 
 /// Rows that are written between two questions whether that is still of use.
 const ROWS: usize = 64;
-
-/// Rows of vertices along the sides of a node that its leaves there and those beside them have.
-const BESIDE: usize = 2;
 
 /// A run of vertices to be written: the first's number, then positions, normals, and origins where they are asked for.
 pub(super) struct Vertices<'a> {
@@ -63,21 +57,11 @@ pub(super) fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut
     head
 }
 
-/// The lists of conditions.
-const DIVISION: usize = 0;
-const CLOSING: usize = 1;
-
 /// Writes the leaves of control faces.
 pub(super) struct Writer<'a> {
     pub(super) face: u32,
-    /// What is written of the face; all if there is none.
-    pub(super) area: Option<&'a Area>,
     /// Those of the face that have not come yet.
     pub(super) diagonals: &'a [bool],
-    /// Conditions of the face that have not come yet, in the order of the walk: those of its division, some of whose leaves were divided
-    /// since, and those of its closing, whose leaves all come.
-    pub(super) conditions: [&'a [Condition]; 2],
-    pub(super) found: Vec<(Condition, u32, u32)>,
     pub(super) next_triangle: u32,
     pub(super) inside: Vertices<'a>,
     pub(super) first_triangle: u32,
@@ -95,8 +79,7 @@ pub(super) struct Writer<'a> {
 impl Visitor for Writer<'_> {
     fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>) {
         let last = knots.len() - 1;
-        let is_wanted = |area: &Area| area.meets([0.0, 1.0].map(|t| spot.along(edge, t)));
-        if last < 2 || !self.area.is_none_or(is_wanted) {
+        if last < 2 {
             return;
         }
         let mut places = core::mem::take(&mut self.places);
@@ -116,11 +99,8 @@ impl Visitor for Writer<'_> {
     }
 
     fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
-        if !self.area.is_none_or(|area| area.meets(node.spot.corners())) {
-            return self.pass_over(node, knots);
-        }
         self.interior(node);
-        if node.is_plain() && !node.is_conditional && !node.is_unjudged {
+        if node.is_plain() {
             return self.cover_plain(node, knots);
         }
         self.rim.set(node, knots);
@@ -136,22 +116,6 @@ impl Writer<'_> {
         }
     }
 
-    /// Leaves the room of a node empty.
-    fn pass_over(&mut self, node: &Node<'_>, knots: &[Knot]) {
-        self.diagonals = self
-            .diagonals
-            .get(self.rim.diagonals(node, knots)..)
-            .unwrap_or_default();
-        if node.is_conditional {
-            self.found.push((
-                Condition::unknown(node.place),
-                self.next_triangle,
-                self.next_triangle,
-            ));
-        }
-        self.next_triangle += node.triangles() as u32;
-    }
-
     /// The vertices inside a node, row by row.
     fn interior(&mut self, node: &Node<'_>) {
         let n = 1usize << node.depth;
@@ -162,21 +126,14 @@ impl Writer<'_> {
         let (step, own) = (spot.size / n as f64, node.spot);
         for j in 1..n.max(2) - 1 {
             let count = n - 1 - j;
-            // Leaves of a node that pass on conditions are on its sides: what shares an edge with them ends a row or two from there.
-            let ends = match self.area {
-                Some(_) if j > BESIDE && count > 2 * BESIDE => [0..BESIDE, count - BESIDE..count],
-                _ => [0..count, 0..0],
-            };
-            for columns in ends.into_iter().filter(|columns| !columns.is_empty()) {
-                let row = at + columns.start..at + columns.end;
-                piece.ground().piece.points_and_normals_along(
-                    spot.v + step * j as f64,
-                    spot.u + step * (1 + columns.start) as f64,
-                    step,
-                    &mut self.inside.positions[row.clone()],
-                    &mut self.inside.normals[row],
-                );
-            }
+            let row = at..at + count;
+            piece.ground().piece.points_and_normals_along(
+                spot.v + step * j as f64,
+                spot.u + step,
+                step,
+                &mut self.inside.positions[row.clone()],
+                &mut self.inside.normals[row],
+            );
             if !self.inside.origins.is_empty() {
                 for i in 1..=count {
                     let leaf = own.leaf(node.depth, i, j);
@@ -210,7 +167,7 @@ impl Writer<'_> {
         }
     }
 
-    /// [`Self::cover`] where no leaf has split edges or conditions: what stands where, and what is beyond inner edges, follows from the numbers
+    /// [`Self::cover`] where no leaf has split edges: what stands where, and what is beyond inner edges, follows from the numbers
     /// of rows and columns.
     fn cover_plain(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
         let n = 1usize << node.depth;
@@ -281,11 +238,10 @@ impl Writer<'_> {
         let n = 1usize << node.depth;
         self.below.clear();
         self.below.resize(n, NONE);
-        let has_conditions = node.is_conditional || !self.conditions[CLOSING].is_empty();
         for j in 0..n {
             let (mut i, mut left) = (0, NONE);
             while i < n - j {
-                if i == 1 && j > 0 && !has_conditions {
+                if i == 1 && j > 0 {
                     (i, left) = self.inner(node, j, left);
                 }
                 let corners =
@@ -387,15 +343,6 @@ impl Writer<'_> {
                     first + twin as u32;
             }
         }
-        if node.is_conditional || !self.conditions[CLOSING].is_empty() {
-            let closing = node.is_unjudged || bits != 0;
-            let place = node.place.leaf(node.depth, (i, j), false);
-            self.condition(
-                (place, node.is_conditional),
-                usize::from(closing),
-                first / 3,
-            );
-        }
         let place = [i, j, n - 1 - j];
         for edge in 0..3 {
             let border = pattern.border(edge).map(|h| first + h as u32);
@@ -415,41 +362,6 @@ impl Writer<'_> {
             }
         }
         first + pattern.border(1)[0] as u32
-    }
-
-    /// Keeps the condition of a leaf, if it has one in the list; leaves that were marked for theirs and closings that are
-    /// passed over must not get lost, so they count as beyond every bound.
-    fn condition(&mut self, (place, is_marked): (Place, bool), list: usize, first: u32) {
-        let known = &mut self.conditions[list];
-        if list == DIVISION {
-            // Leaves that were divided since.
-            while let [passed, rest @ ..] = *known
-                && passed.place.precedes(place)
-            {
-                *known = rest;
-            }
-        }
-        match *known {
-            [condition, rest @ ..] if condition.place == place => {
-                *known = rest;
-                self.found.push((*condition, first, self.next_triangle));
-            }
-            _ if list == DIVISION && is_marked => {
-                self.found
-                    .push((Condition::unknown(place), first, self.next_triangle));
-            }
-            _ => {}
-        }
-    }
-
-    /// Ends a face.
-    pub(super) fn end(&mut self) {
-        let lost = core::mem::take(&mut self.conditions[CLOSING]);
-        let at = self.next_triangle;
-        self.found.extend(
-            lost.iter()
-                .map(|condition| (Condition::unknown(condition.place), at, at)),
-        );
     }
 
     /// Adds a triangle; gives its first half-edge.

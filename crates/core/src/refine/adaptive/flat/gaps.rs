@@ -11,8 +11,8 @@ use super::FlatRegions;
 use super::strips::{Net, Region, Regions};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
-use crate::refine::adaptive::decide::child_open;
 use crate::refine::adaptive::demands::Demands;
+use crate::refine::adaptive::divide::child_open;
 use crate::refine::adaptive::quadtree::{Edges, Place};
 
 /// How often rims are divided once more.

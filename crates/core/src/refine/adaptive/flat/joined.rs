@@ -154,7 +154,7 @@ impl FlatRegions {
 mod tests {
     use super::super::super::demands::Demands;
     use super::super::super::judge::Goal;
-    use super::super::super::measure::measure;
+    use super::super::super::measure::{Look, measure};
     use super::super::super::with_engine;
     use crate::index::VertexId;
     use crate::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Mesh, Tags};
@@ -220,17 +220,19 @@ mod tests {
                     let flat = &engine.control.flat;
                     assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
                     assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
-                    let mut plan = engine.plan(Goal::Within(0.3), usize::MAX)?.unwrap();
-                    let emission = engine.emit_all(&mut plan)?;
-                    let sources = engine.sources(&plan, &emission);
+                    let found = engine.refined(Goal::Within(0.3), usize::MAX)?.unwrap();
+                    let sources = engine.sources(&found.state, &found.emission);
                     let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
                     let nothing = Goal::Within(f64::INFINITY);
-                    let found = measure(
-                        &sources,
-                        engine.watch,
-                        (&nothing, 1e-12),
-                        (&faces, None, None),
-                    )?;
+                    let look = Look {
+                        goal: &nothing,
+                        length: 1e-12,
+                        changes: None,
+                        bulges: None,
+                        trusted: &[],
+                    };
+                    let planned = |face: u32| found.state.proven[face as usize].extent.bound;
+                    let measured = measure(&sources, engine.watch, &faces, &look)?;
                     let topology = mesh.topology();
                     let is_beside = |face: &u32| {
                         let corners = topology.triangles()[*face as usize].map(VertexId);
@@ -240,18 +242,17 @@ mod tests {
                             .count()
                             == 2
                     };
-                    let worst = |face: u32| found[face as usize].worst.0;
+                    let worst = |face: u32| measured[face as usize].worst.0;
                     let rims = faces
                         .iter()
                         .copied()
                         .filter(|&face| flat.region(face).is_some())
                         .filter(is_beside);
-                    let (mut counted, mut planned) = (0.0f64, 0.0f64);
+                    let (mut counted, mut assumed) = (0.0f64, 0.0f64);
                     for face in rims {
-                        (counted, planned) =
-                            (counted.max(worst(face)), planned.max(plan.bound(face)));
+                        (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));
                     }
-                    assert!(planned > 0.02, "{planned}");
+                    assert!(assumed > 0.02, "{assumed}");
                     match bend == 0.0 {
                         true => assert!(counted < 1e-9, "{counted}"),
                         false => assert!(counted > 0.02, "{counted}"),

@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use super::super::decide::child_open;
+use super::super::divide::child_open;
 use super::super::emit::Emission;
 use super::super::emitted::{Beholder, Emitted, Over, Sources};
 use super::super::quadtree::Place;
@@ -240,9 +240,11 @@ mod tests {
                 (&options, &Demands::default()),
                 &mut unobserved,
                 |engine| {
-                    let mut plan = engine.plan(Goal::Within(tolerance), usize::MAX)?.unwrap();
-                    let emission = engine.emit_all(&mut plan)?;
-                    let sources = engine.sources(&plan, &emission);
+                    let found = engine
+                        .refined(Goal::Within(tolerance), usize::MAX)?
+                        .unwrap();
+                    let emission = &found.emission;
+                    let sources = engine.sources(&found.state, emission);
                     for face in (0..mesh.face_count() as u32).step_by(3) {
                         let mut all = Listing(Vec::new());
                         sources.show(face, &|| false, &mut all);

@@ -31,7 +31,7 @@ pub(super) struct Nearest<'a> {
 
 impl<'a> Nearest<'a> {
     pub(super) fn of(sources: Sources<'a>, watch: &SharedWatch<'_>) -> Result<Self, Cancelled> {
-        let faces = sources.closed.len();
+        let faces = sources.covers.len();
         let joined = |a: Bounds, [low, high]: Bounds| grown(grown(a, low), high);
         let is_kept = sources.emission.triangles.len() >= MANY_TRIANGLES * faces;
         let found = watch.pieces(faces, GROUP, |group| {
@@ -75,7 +75,7 @@ impl<'a> Nearest<'a> {
     /// The boxes over the control faces of a group.
     fn boxes_of(&self, group: usize) -> &[Bounds] {
         self.boxes[group].get_or_init(|| {
-            let faces = (GROUP * group..self.sources.closed.len()).take(GROUP);
+            let faces = (GROUP * group..self.sources.covers.len()).take(GROUP);
             faces
                 .map(|face| bounds(&self.sources, face as u32))
                 .collect()

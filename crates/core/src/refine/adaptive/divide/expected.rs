@@ -1,11 +1,13 @@
-//! What the triangles of a control face count on of those beside them before anything is divided. [`super::decide`] checks it against
-//! what came out, and divides again the faces that counted on too much.
+//! What the triangles of a control face are expected to have before anything is divided, for those around them to count on. Where the result
+//! has less, [`super::super::measure`] looks at each triangle by itself.
 
-use super::control::Control;
-use super::judge::{Allowance, Goal, Judge, Seen};
+use super::super::Engine;
+use super::super::control::Control;
+use super::super::judge::{Allowance, Goal, Seen};
+use super::Divider;
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;
-use crate::progress::{Cancelled, SharedWatch};
+use crate::progress::Cancelled;
 use crate::vector::{DVec3, Extremes, unit_normal};
 
 /// Control faces that one call takes together.
@@ -14,7 +16,7 @@ const BLOCK: usize = 1024;
 /// The least tilt that neighbours are allowed: it costs next to nothing.
 const LEAST_TILT: f64 = 0.01;
 
-/// What a guess leaves for triangles that bend more than their control face does on the whole.
+/// Room for triangles that bend more than their control face does on the whole.
 const GENEROUS: f64 = 2.2;
 
 /// What is left of the least angle of the control faces when triangles close gaps, as tangents: they may halve it.
@@ -31,19 +33,17 @@ pub(super) struct Expected {
 
 impl Expected {
     /// That of all control faces; of none where nothing is counted on.
-    pub(super) fn of_all(
-        (control, watch): (&Control<'_>, &SharedWatch<'_>),
-        goal: &Goal,
-    ) -> Result<Vec<Self>, Cancelled> {
-        if control.criteria.is_some() || matches!(goal, Goal::Even(..)) {
+    pub(super) fn of_all(engine: &Engine<'_>, goal: &Goal) -> Result<Vec<Self>, Cancelled> {
+        let control = engine.control;
+        if control.criteria.is_some() {
             return Ok(Vec::new());
         }
-        let of = |face: usize| Self::of(control, goal, face as u32);
-        watch.map(control.mesh.face_count(), BLOCK, of)
+        engine.watch.map(control.mesh.face_count(), BLOCK, |face| {
+            Self::of(control, goal, face as u32)
+        })
     }
 
-    /// That of one.
-    pub(super) fn of(control: &Control<'_>, goal: &Goal, face: u32) -> Self {
+    fn of(control: &Control<'_>, goal: &Goal, face: u32) -> Self {
         let corners = control.corners(face);
         let slope = least_slope(corners.map(|at| at.position));
         Self {
@@ -53,25 +53,22 @@ impl Expected {
     }
 }
 
-impl Judge<'_> {
-    /// What the triangles of a control face count on of those beside them at first: the greatest tilts and the least angles that are expected
-    /// there and in the faces beside. Angles between planes shrink with the size of triangles, heights with its square; those of the face are
-    /// known at some points of its piece. Where more than distances count, triangles are looked at among their neighbours as they are
-    /// emitted, and count on nothing.
-    pub(super) fn guess(
-        &self,
-        seen: &Seen,
-        points: &[LimitPoint],
-        beside: impl Iterator<Item = Expected>,
-    ) -> Allowance {
-        if self.criteria.is_some() {
+impl Divider<'_> {
+    /// What the leaves of a control face count on: the greatest tilts and the least angles that are expected
+    /// there and in the faces adjacent to it. Angles between planes shrink with the size of triangles, heights with its square; those of the face
+    /// are known at some points of its piece. Nothing where more than distances counts.
+    pub(super) fn allowance(&self, face: u32, seen: &Seen, points: &[LimitPoint]) -> Allowance {
+        if self.judge.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let tilt = seen.tilt * shrunk(seen.highest(points), self.limit);
-        let slope = seen.frame.least_slope();
-        let (tilt, slope) = beside.fold((tilt, slope), |(tilt, slope), other| {
-            (tilt.larger(other.tilt), slope.min(other.slope))
-        });
+        let (mut tilt, mut slope) = (
+            seen.tilt * shrunk(seen.highest(points), self.judge.limit),
+            seen.frame.least_slope(),
+        );
+        for adjacent in self.control.beside(self.edges, face) {
+            let other = self.expected[adjacent as usize];
+            (tilt, slope) = (tilt.larger(other.tilt), slope.min(other.slope));
+        }
         Allowance {
             tilt: (GENEROUS * tilt).max(LEAST_TILT),
             slope: SLOPE_LEFT * slope,

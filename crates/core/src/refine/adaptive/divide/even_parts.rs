@@ -1,10 +1,10 @@
 //! Even parts of regular pieces: all nodes of a level are tested at once, and single ones only where that leaves something open.
 
-use super::super::judge::Extent;
-use super::super::quadtree::{LEAF, Place, bounded};
+use super::super::judge::{Extent, Fate};
+use super::super::quadtree::{LEAF, PROVEN, Place};
 use super::super::surface::Ground;
-use super::Decider;
-use crate::certificate::{Cell, MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent, SubTriangle};
+use super::{Divider, Part};
+use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent};
 use crate::patch::Spot;
 
 /// Levels below the first that are tested at most.
@@ -13,7 +13,7 @@ const MOST_SPREAD: u32 = 2;
 /// Levels tested at most.
 pub(super) const MOST_TESTED: usize = MOST_SPREAD as usize + 1;
 
-/// What testing all nodes of some levels below a node at once came to.
+/// The outcome of testing all nodes of some levels below a node at once.
 pub(super) enum AtOnce {
     /// The node is divided so.
     Decided(u32),
@@ -29,14 +29,12 @@ struct Rows<'a> {
     /// By level from `first` below the node on.
     marks: &'a [Marks],
     first: u32,
-    /// The word of leaves that passed.
-    passing: u32,
 }
 
-impl Decider<'_> {
+impl Divider<'_> {
     /// Divides a part of a regular piece by testing all nodes of some levels at once, where that is worth while.
     pub(super) fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> AtOnce {
-        let target = self.judge.row_target(&self.allowance);
+        let target = self.judge.row_target();
         let block = RowBlock::of(&ground.piece, ground.jet(), [spot.u, spot.v], spot.size);
         let (least, most) = block.levels(&target);
         let fails = least > 0;
@@ -77,19 +75,28 @@ impl Decider<'_> {
                 break;
             }
         }
-        self.add_rows(place, &extent);
+        let RowExtent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+        } = extent;
+        self.extent.add(&Extent {
+            tilt,
+            slope,
+            drift_slope,
+            bound,
+        });
         let word = if tested == 1 && levels[0].are_all_passing() {
             self.count_leaves(1 << (2 * least));
-            bounded(LEAF + least, extent.bound)
+            (LEAF | PROVEN) + least
         } else {
-            let passing = bounded(LEAF, extent.bound);
             let found = Rows {
                 ground,
                 place,
                 spot,
                 marks: &levels[..tested],
                 first: least,
-                passing,
             };
             self.row_node(&found, (0, 0, false), 0)
         };
@@ -101,47 +108,45 @@ impl Decider<'_> {
     fn row_node(
         &mut self,
         rows: &Rows<'_>,
-        (i, j, is_headlong): (usize, usize, bool),
+        (i, j, is_inverted): (usize, usize, bool),
         level: u32,
     ) -> u32 {
         if level >= rows.first {
             let tested = (level - rows.first) as usize;
-            let mark = rows.marks[tested].at(i, j, is_headlong);
+            let mark = rows.marks[tested].at(i, j, is_inverted);
             if mark == Mark::Passes {
                 self.count_leaves(1);
-                return rows.passing;
+                return LEAF | PROVEN;
             }
             let is_last = tested + 1 == rows.marks.len();
             if is_last || mark == Mark::Open {
-                let spot = rows.spot.row(level, i, j, is_headlong);
-                let place = rows.place.leaf(level, (i, j), is_headlong);
-                let corners = rows.ground.at(spot.corners());
+                let ground = rows.ground;
+                let spot = rows.spot.row(level, i, j, is_inverted);
+                let place = rows.place.leaf(level, (i, j), is_inverted);
+                let (corners, open) = (ground.at(spot.corners()), [false; 3]);
                 if is_last {
                     return self.part(
-                        rows.ground,
-                        spot,
-                        corners,
-                        [false; 3],
-                        (place, false),
+                        Part {
+                            ground,
+                            spot,
+                            place,
+                            corners,
+                            open,
+                            has_rows: false,
+                        },
                         false,
                     );
                 }
-                let at = (spot, place.level, SubTriangle::Whole);
-                let verdict = self.judge.regular(
-                    rows.ground,
-                    at,
-                    &Cell(spot.corners()),
-                    &corners,
-                    [false; 3],
-                    &self.allowance,
-                );
-                if !verdict.fails() {
-                    return self.leaf(place, &verdict);
+                let verdict = self
+                    .judge
+                    .regular(ground, spot, place.level, &corners, open);
+                if verdict.fate != Fate::Fails {
+                    return self.leaf(&verdict);
                 }
             }
         }
         let (x, y) = (2 * i, 2 * j);
-        let below = if is_headlong {
+        let below = if is_inverted {
             [
                 (x + 1, y + 1, true),
                 (x, y + 1, true),
@@ -161,24 +166,5 @@ impl Decider<'_> {
             *word = self.row_node(rows, at, level + 1);
         }
         self.piece.node(children)
-    }
-
-    /// Keeps what the nodes that passed in rows come to.
-    fn add_rows(&mut self, place: Place, rows: &RowExtent) {
-        let RowExtent {
-            tilt,
-            slope,
-            drift_slope,
-            bound,
-            worst,
-        } = *rows;
-        let worst = worst.map(|(i, j, is_headlong, depth)| place.leaf(depth, (i, j), is_headlong));
-        self.extent.add(&Extent {
-            tilt,
-            slope,
-            drift_slope,
-            bound,
-            worst,
-        });
     }
 }

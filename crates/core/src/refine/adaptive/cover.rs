@@ -1,0 +1,137 @@
+//! How the leaves of a control face are covered with triangles (the paper's Figure 5): how many there are, and the diagonals of leaves with two split
+//! edges.
+
+use super::chains::Chains;
+use super::control::Control;
+use super::quadtree::{Edges, Place, Trees, is_split};
+use super::rim::Rim;
+use super::surface::{Surface, SurfacePiece};
+use super::walk::{Knot, Node, Visitor, Walk};
+use crate::parallel::IsStopped;
+use crate::patch::Spot;
+
+/// The triangles over a control face.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Cover {
+    /// Vertices inside the face.
+    pub(super) vertices: u32,
+    pub(super) triangles: u32,
+    /// For each leaf with two split edges, in the order of the walk, whether its diagonal starts at the unsplit edge's end.
+    pub(super) diagonals: Box<[bool]>,
+}
+
+/// The trees of all control faces, with the vertices on their edges.
+#[derive(Clone, Copy)]
+pub(super) struct Covering<'a> {
+    pub(super) control: &'a Control<'a>,
+    pub(super) edges: &'a Edges<'a>,
+    pub(super) trees: &'a Trees,
+    pub(super) chains: &'a Chains,
+}
+
+impl Covering<'_> {
+    /// Walks over a face. The knots are room to be used again.
+    pub(super) fn cover(
+        &self,
+        face: u32,
+        knots: &mut Vec<Knot>,
+        is_stopped: &IsStopped<'_>,
+    ) -> Cover {
+        let Self {
+            control,
+            edges,
+            trees,
+            chains,
+        } = *self;
+        let word = trees.root(face);
+        if !is_split(word) && chains.are_none(edges, face) {
+            return Cover {
+                triangles: 1,
+                ..Cover::default()
+            };
+        }
+        let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
+        walk.knots.clear();
+        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let mut count = Count {
+            triangles: 0,
+            rim: Rim::default(),
+            halved: Vec::new(),
+        };
+        walk.node(
+            word,
+            (Place::root(face), Spot::WHOLE),
+            sides,
+            Surface::Unknown,
+            &mut count,
+        );
+        *knots = walk.knots;
+        let mut piece = None;
+        let diagonals = count.halved.iter().map(|&(place, unsplit)| {
+            let piece = piece.get_or_insert_with(|| control.piece(face));
+            is_shorter_from_end(self.surface(piece, place), unsplit)
+        });
+        Cover {
+            vertices: walk.next,
+            triangles: count.triangles as u32,
+            diagonals: diagonals.collect(),
+        }
+    }
+
+    /// The surface over a leaf of a face, given that over the whole face.
+    fn surface<'p>(&'p self, piece: &'p SurfacePiece, place: Place) -> Surface<'p> {
+        let levels = 0..place.level;
+        levels.fold(piece.surface(self.control.rules), |surface, level| {
+            surface.child(place.digit(level))
+        })
+    }
+}
+
+/// Whether of the two diagonals of a leaf that has one unsplit edge the one from that edge's end is the shorter one.
+fn is_shorter_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
+    let (corners, middles) = (surface.corners(), surface.middles());
+    let (end, tip) = ((unsplit + 1) % 3, (unsplit + 2) % 3);
+    let length = |corner: usize, middle: usize| {
+        corners[corner]
+            .position
+            .distance_squared(middles[middle].position)
+    };
+    length(end, tip) < length(unsplit, end)
+}
+
+/// Counts the triangles over a face, and lists the leaves with two split edges.
+struct Count {
+    triangles: usize,
+    rim: Rim,
+    /// The leaves, with their unsplit edges.
+    halved: Vec<(Place, usize)>,
+}
+
+impl Visitor for Count {
+    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
+
+    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+        self.triangles += node.triangles();
+        if node.is_plain() {
+            return;
+        }
+        self.rim.set(node, knots);
+        let n = 1 << node.depth;
+        for (i, j) in Rim::leaves(n) {
+            if let Some(unsplit) = unsplit_edge(self.rim.split(n, i, j)) {
+                self.halved
+                    .push((node.place.leaf(node.depth, (i, j), false), unsplit));
+            }
+        }
+    }
+}
+
+/// The one edge without a vertex in its middle, if the two others have one.
+fn unsplit_edge(split: [Option<usize>; 3]) -> Option<usize> {
+    match split {
+        [None, Some(_), Some(_)] => Some(0),
+        [Some(_), None, Some(_)] => Some(1),
+        [Some(_), Some(_), None] => Some(2),
+        _ => None,
+    }
+}

@@ -1,0 +1,108 @@
+//! What was not looked at again, and what was proven by assumption, holds when all triangles are measured in the end.
+
+use super::super::demands::Demands;
+use super::super::measured::Measured;
+use super::super::with_engine;
+use super::*;
+use crate::models::{book, stir, stirred};
+use crate::progress::unobserved;
+use crate::refine::ExactOptions;
+use crate::scheme::Loop;
+
+/// A leaf by its path below its control face.
+fn leaf(path: &[usize]) -> Place {
+    path.iter()
+        .fold(Place::root(0), |place, &child| place.child(child))
+}
+
+#[test]
+fn leaves_at_corners_are_distinguished_from_others() {
+    // At a corner, the next one there is a child; adjacent to it, a sibling.
+    let way = |corner: &[usize], child, is_adjacent| {
+        Some(TowardsCorner {
+            corner: leaf(corner),
+            child,
+            is_adjacent,
+        })
+    };
+    assert_eq!(towards_corner(leaf(&[2, 2])), way(&[2, 2, 2], 2, false));
+    assert_eq!(towards_corner(leaf(&[1, 1, 3])), way(&[1, 1, 1], 1, true));
+    for elsewhere in [
+        &[] as &[usize],
+        &[3],
+        &[3, 3],
+        &[0, 1],
+        &[0, 1, 1],
+        &[0, 3, 0],
+        &[2, 3, 3],
+    ] {
+        assert_eq!(towards_corner(leaf(elsewhere)), None, "{elsewhere:?}");
+    }
+}
+
+/// What was found holds what is found with all measured anew; what is kept of parts is rounded.
+fn assert_holds(state: &State, anew: &[Measured], is_trusting: bool, name: &str) {
+    for (face, anew) in (0..).zip(anew) {
+        let found = &state.measured[face as usize];
+        let greatest = |face: &Measured| [face.worst.0, face.highest.0, face.value, face.pixels];
+        let holds = |(found, anew): (f64, f64)| found >= (1.0 - 1e-6) * anew;
+        let mut pairs = greatest(found).into_iter().zip(greatest(anew));
+        assert!(
+            is_trusting || pairs.all(holds),
+            "{name}, {face}: {found:?} {anew:?}"
+        );
+        assert!(
+            !is_trusting || anew.value <= state.goal.allowed(face),
+            "{name}, {face}: {anew:?}"
+        );
+    }
+}
+
+#[test]
+fn rounds_end_with_what_is_found_anew() {
+    let sharp = |name: &str, seed| stirred(name, seed).with_creases_above(0.5).unwrap();
+    for (name, mesh) in [
+        ("icosphere", stirred("icosphere", 1)),
+        ("torus", stirred("torus", 2)),
+        ("head", stirred("head", 2)),
+        ("sheet", stirred("sheet", 1)),
+        ("spike", stirred("spike", 2)),
+        ("cup", stirred("cup", 0)),
+        ("sharp torus", sharp("torus", 1)),
+        ("sharp cube", sharp("cube", 2)),
+        ("book", stir(book(), 1)),
+    ] {
+        let limit = 1e-3 * mesh.diagonal();
+        let plain = ExactOptions::default().tolerance(limit);
+        for options in [plain.clone(), plain.clone().balance(true), plain.angle(0.2)] {
+            with_engine(
+                &mesh,
+                &Loop,
+                (&options, &Demands::default()),
+                &mut unobserved,
+                |engine| {
+                    let value = engine.floor(options.tolerance);
+                    let goal = if engine.is_balanced {
+                        Goal::Balanced(value)
+                    } else {
+                        Goal::Within(value)
+                    };
+                    let found = engine.refined(goal, usize::MAX)?.unwrap();
+                    let faces: Vec<u32> = (0..found.state.faces()).collect();
+                    let look = Look {
+                        goal: &found.state.goal,
+                        length: f64::INFINITY,
+                        changes: None,
+                        bulges: None,
+                        trusted: &[],
+                    };
+                    let sources = engine.sources(&found.state, &found.emission);
+                    let anew = measure(&sources, engine.watch, &faces, &look)?;
+                    assert_holds(&found.state, &anew, engine.trusts(), name);
+                    Ok(())
+                },
+            )
+            .unwrap();
+        }
+    }
+}

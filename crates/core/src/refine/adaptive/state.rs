@@ -1,0 +1,126 @@
+//! The one mutable state of exact refinement: the quadtrees, and all that was made of them so far.
+
+use limitmesh_pages::filled;
+
+use super::Engine;
+use super::bulges::Bulges;
+use super::chains::Chains;
+use super::cover::Cover;
+use super::divide::{Division, Proven, divide};
+use super::emit::Emission;
+use super::emitted::Sources;
+use super::judge::Goal;
+use super::measured::Measured;
+use super::quadtree::Trees;
+use crate::parallel;
+use crate::progress::{Cancelled, SharedWatch};
+use crate::refine::RefineError;
+
+/// Quadtrees over all control faces, on the way to a goal.
+pub(super) struct State {
+    pub(super) goal: Goal,
+    pub(super) trees: Trees,
+    /// By control face, its proven leaves, and whether all triangles around them keep what these assume, as far as is known.
+    pub(super) proven: Vec<Proven>,
+    pub(super) is_trusted: Vec<bool>,
+    pub(super) chains: Chains,
+    /// By control face.
+    pub(super) covers: Vec<Cover>,
+    pub(super) triangles: usize,
+    /// Whether leaves fail that must not be divided.
+    pub(super) has_failed: bool,
+    /// Control faces whose triangles may have changed since the last emission.
+    pub(super) is_changed: Vec<bool>,
+    /// What was found of the triangles of each control face.
+    pub(super) measured: Vec<Measured>,
+    pub(super) bulges: Bulges,
+}
+
+impl State {
+    /// That of a division, which nobody has covered yet.
+    pub(super) fn of(goal: Goal, division: Division) -> Self {
+        let Division { trees, proven } = division;
+        let faces = proven.len();
+        Self {
+            goal,
+            trees,
+            chains: Chains::default(),
+            covers: filled(Cover::default(), faces),
+            triangles: 0,
+            has_failed: false,
+            is_trusted: vec![true; faces],
+            is_changed: vec![true; faces],
+            measured: (0..faces as u32).map(Measured::nothing).collect(),
+            bulges: Bulges::default(),
+            proven,
+        }
+    }
+
+    /// The same trees, of whose leaves nothing is known.
+    pub(super) fn forget(&mut self) {
+        self.is_trusted.fill(false);
+        self.is_changed.fill(true);
+    }
+
+    pub(super) fn faces(&self) -> u32 {
+        self.covers.len() as u32
+    }
+
+    /// The greatest value of all triangles.
+    pub(super) fn worst(&self) -> f64 {
+        (0..self.faces())
+            .map(|face| self.worst_of(face))
+            .fold(0.0, f64::max)
+    }
+
+    /// The greatest value of a triangle of a control face.
+    pub(super) fn worst_of(&self, face: u32) -> f64 {
+        self.measured[face as usize]
+            .value
+            .max(self.proven_bound(face))
+    }
+
+    /// The greatest bound of a proven leaf of a control face; 0 where these are not trusted, or there are none.
+    pub(super) fn proven_bound(&self, face: u32) -> f64 {
+        if self.is_trusted[face as usize] {
+            self.proven[face as usize].extent.bound
+        } else {
+            0.0
+        }
+    }
+
+    /// Levels of the deepest tree.
+    pub(super) fn levels(&self, watch: &SharedWatch<'_>) -> Result<usize, Cancelled> {
+        let (trees, faces) = (&self.trees, self.covers.len());
+        let levels = watch.pieces(faces, parallel::share(faces), |block| {
+            block
+                .map(|face| trees.depth(trees.root(face as u32)) as usize)
+                .max()
+        });
+        Ok(levels?.into_iter().flatten().max().unwrap_or(0))
+    }
+}
+
+impl Engine<'_> {
+    /// Divides as asked, by guesses alone; `None` if that takes more than `most` triangles.
+    pub(super) fn divided(&self, goal: Goal, most: usize) -> Result<Option<State>, RefineError> {
+        Ok(divide(self, &goal, most)?.map(|division| State::of(goal, division)))
+    }
+
+    pub(super) fn sources<'a>(&'a self, state: &'a State, emission: &'a Emission) -> Sources<'a> {
+        let State {
+            trees,
+            chains,
+            covers,
+            ..
+        } = state;
+        Sources {
+            control: self.control,
+            edges: &self.edges,
+            trees,
+            chains,
+            covers,
+            emission,
+        }
+    }
+}
