@@ -20,8 +20,11 @@ const MOST_TRIES: usize = 16;
 const LEFT: usize = 32;
 const LEFT_AT_LEAST: usize = 12;
 
-/// Values nearer to each other than this, relative, are as good as each other: bounds are within some per cent of the truth.
-const NEAR: f64 = 0.01;
+/// Values nearer to each other than this, as a ratio, are as good as each other: bounds are within some per cent of the truth.
+const NEAR: f64 = 1.01;
+
+/// Once hardly anything is left of the budget, the value is at most so many times one that does not fit.
+const PROMISED: f64 = 1.1;
 
 /// The part of the budget that is aimed at.
 const AIM: f64 = 0.99;
@@ -144,17 +147,19 @@ impl<'e, 'a> Search<'e, 'a> {
         let enough = self.most - (self.most / LEFT).max(LEFT_AT_LEAST).min(self.most);
         let mut first = self.first()?;
         for _ in 0..MOST_TRIES {
+            let is_full = self.best.state.triangles >= enough;
+            let near = if is_full { PROMISED } else { NEAR };
             let is_near = self
                 .low
-                .is_some_and(|low| self.high.value <= low.value * (1.0 + NEAR));
-            if self.best.state.triangles >= enough || is_near || self.high.value <= self.least {
+                .is_some_and(|low| self.high.value <= low.value * near);
+            if is_near || self.high.value <= self.least {
                 return Ok(());
             }
             let value = first.take().unwrap_or_else(|| self.next());
             if !(value < self.high.value && self.low.is_none_or(|low| value > low.value)) {
                 return Ok(());
             }
-            let counted = self.most + self.most / COUNTED_BEYOND;
+            let counted = self.most.saturating_add(self.most / COUNTED_BEYOND);
             let found = self.engine.refined(Goal::Within(value), counted)?;
             let known = found
                 .as_ref()
@@ -190,7 +195,7 @@ impl<'e, 'a> Search<'e, 'a> {
         let high = self.high;
         let Some(low) = self.low else {
             let times = (wanted / self.divided(high.triangles)).powf(1.0 / self.power);
-            return high.value / times.clamp(1.0 + AWAY, MOST_APART);
+            return high.value / times.clamp(PROMISED, MOST_APART);
         };
         let (few, many) = (self.divided(high.triangles), self.divided(low.triangles));
         let span = (high.value / low.value).ln();

@@ -69,7 +69,7 @@ impl Covering<'_> {
         let mut piece = None;
         let diagonals = count.halved.iter().map(|&(place, unsplit)| {
             let piece = piece.get_or_insert_with(|| control.piece(face));
-            is_shorter_from_end(self.surface(piece, place), unsplit)
+            is_nearer_from_end(self.surface(piece, place), unsplit)
         });
         Cover {
             vertices: walk.next,
@@ -87,16 +87,15 @@ impl Covering<'_> {
     }
 }
 
-/// Whether of the two diagonals of a leaf that has one unsplit edge the one from that edge's end is the shorter one.
-fn is_shorter_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
+/// Whether of the two diagonals of a leaf that has one unsplit edge the surface is nearer to the one from that edge's end, in its middle.
+fn is_nearer_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
     let (corners, middles) = (surface.corners(), surface.middles());
     let (end, tip) = ((unsplit + 1) % 3, (unsplit + 2) % 3);
-    let length = |corner: usize, middle: usize| {
-        corners[corner]
-            .position
-            .distance_squared(middles[middle].position)
+    let off = |corner: usize, middle: usize| {
+        let over = surface.child(corner).middles()[(corner + 1) % 3].position;
+        (2.0 * over).distance_squared(corners[corner].position + middles[middle].position)
     };
-    length(end, tip) < length(unsplit, end)
+    off(end, tip) < off(unsplit, end)
 }
 
 /// Counts the triangles over a face, and lists the leaves with two split edges.

@@ -104,7 +104,12 @@ impl State {
 impl Engine<'_> {
     /// Divides as asked, by guesses alone; `None` if that takes more than `most` triangles.
     pub(super) fn divided(&self, goal: Goal, most: usize) -> Result<Option<State>, RefineError> {
-        Ok(divide(self, &goal, most)?.map(|division| State::of(goal, division)))
+        let Some(division) = divide(self, &goal, most)? else {
+            return Ok(None);
+        };
+        let mut state = State::of(goal, division);
+        state.is_trusted.fill(self.trusts());
+        Ok(Some(state))
     }
 
     pub(super) fn sources<'a>(&'a self, state: &'a State, emission: &'a Emission) -> Sources<'a> {

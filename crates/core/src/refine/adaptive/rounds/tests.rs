@@ -40,6 +40,9 @@ fn leaves_at_corners_are_distinguished_from_others() {
     }
 }
 
+/// Bounds of pieces at irregular vertices depend on when the search for them ends.
+const MEASURED_OTHERWISE: f64 = 1.05;
+
 /// What was found holds what is found with all measured anew; what is kept of parts is rounded.
 fn assert_holds(state: &State, anew: &[Measured], is_trusting: bool, name: &str) {
     for (face, anew) in (0..).zip(anew) {
@@ -52,7 +55,7 @@ fn assert_holds(state: &State, anew: &[Measured], is_trusting: bool, name: &str)
             "{name}, {face}: {found:?} {anew:?}"
         );
         assert!(
-            !is_trusting || anew.value <= state.goal.allowed(face),
+            !is_trusting || anew.value <= MEASURED_OTHERWISE * state.goal.allowed(face),
             "{name}, {face}: {anew:?}"
         );
     }
