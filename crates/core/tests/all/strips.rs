@@ -394,7 +394,7 @@ fn what_is_curved_both_ways_has_no_strips() {
     for name in ["torus", "cup", "shoe"] {
         let soup = limitmesh_models::find(name).unwrap().soup();
         let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
-        let options = within(1e-3 * mesh.diagonal());
+        let options = within(9e-4 * mesh.diagonal());
         let result = exact(&mesh, &Loop, &options).unwrap();
         let kept = exact(&mesh, &Loop, &options.flat_regions(false)).unwrap();
         assert_eq!(result.mesh.triangles(), kept.mesh.triangles(), "{name}");

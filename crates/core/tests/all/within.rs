@@ -142,7 +142,7 @@ fn greatest_distance(points: &[Point], surface: Triangles<'_>, most: f64) -> f64
 fn check_distance(mesh: &Mesh, found: &Within, most: f64) {
     let (input, output) = (mesh.as_triangles(), found.refined.mesh.as_triangles());
     let there = greatest_distance(&points(output, 3), input, most);
-    let back = greatest_distance(&points(input, 8), output, most);
+    let back = greatest_distance(&points(input, 16), output, most);
     assert!(
         there <= most && back <= most,
         "{there} and {back} of {most}"

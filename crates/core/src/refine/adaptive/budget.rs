@@ -9,6 +9,7 @@ mod heights;
 use super::Engine;
 use super::judge::Goal;
 use super::rounds::Verified;
+use super::state::State;
 use crate::mesh::MeshError;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
@@ -24,7 +25,7 @@ const LEFT_AT_LEAST: usize = 12;
 const NEAR: f64 = 1.01;
 
 /// Once hardly anything is left of the budget, the value is at most so many times one that does not fit.
-const PROMISED: f64 = 1.1;
+const PROMISED: f64 = 1.04;
 
 /// The part of the budget that is aimed at.
 const AIM: f64 = 0.99;
@@ -38,7 +39,8 @@ const UNCOUNTED: f64 = 2.0;
 /// Powers of the reciprocal of the value with which triangles grow.
 const POWERS: (f64, f64) = (0.4, 3.0);
 
-/// From one value to the next they fall by so many times at most.
+/// From one value to the next they fall by so many times at least, and at most.
+const LEAST_APART: f64 = 1.1;
 const MOST_APART: f64 = 16.0;
 
 /// Of the ends between which is looked further a guess keeps away by this part of what lies between, as a logarithm.
@@ -46,6 +48,12 @@ const AWAY: f64 = 0.1;
 
 /// What fails so many times over is as bad as any that has no number.
 const COARSEST: f64 = 1e12;
+
+/// Faces are divided evenly only where that takes all of the budget but for so many triangles (one in so many).
+const NEARLY_ALL: usize = 16;
+
+/// Values below what fits, as ratios, that are tried for small budgets.
+const EVENER: [f64; 2] = [1.16, 1.08];
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
@@ -77,6 +85,7 @@ pub(super) fn search(
     }
     let mut search = Search::new(engine, floor, most)?;
     search.narrow()?;
+    search.even_out()?;
     let Search {
         best, high, low, ..
     } = search;
@@ -92,11 +101,23 @@ pub(super) fn search(
     Ok((best, cap))
 }
 
+/// All faces divided evenly, as often as a budget allows, if that takes nearly all of it.
+pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Verified>, RefineError> {
+    let faces = engine.control.mesh.face_count();
+    let levels = ((most / faces.max(1)).max(1).ilog2() / 2).min(engine.max_levels);
+    if levels == 0 || faces << (2 * levels) < most - most / NEARLY_ALL {
+        return Ok(None);
+    }
+    let goal = Goal::Within(f64::INFINITY);
+    engine.verified(State::even(goal, faces, levels)?, most)
+}
+
 /// The narrowing of values to the least one that fits.
 struct Search<'e, 'a> {
     engine: &'e Engine<'a>,
     most: usize,
     undivided: f64,
+    floor: f64,
     /// The least value whose result fits, and that.
     high: Tried,
     best: Verified,
@@ -135,6 +156,7 @@ impl<'e, 'a> Search<'e, 'a> {
             engine,
             most,
             undivided: triangles,
+            floor,
             high: Tried { value, triangles },
             best,
             low,
@@ -178,6 +200,25 @@ impl<'e, 'a> Search<'e, 'a> {
         Ok(())
     }
 
+    /// Tries a little less than what does not fit: a finer division that is more even may have fewer triangles.
+    fn even_out(&mut self) -> Result<(), RefineError> {
+        for times in EVENER {
+            let value = self.high.value / times;
+            if self.most < EXACT
+                && value > self.floor.max(self.least)
+                && let Some(found) = self.engine.refined(Goal::Within(value), self.most)?
+            {
+                self.high = Tried {
+                    value,
+                    triangles: found.state.triangles as f64,
+                };
+                (self.best, self.low) = (found, None);
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
     /// The value that the heights of undivided faces let expect.
     fn first(&self) -> Result<Option<f64>, RefineError> {
         if self.engine.control.criteria.is_some() {
@@ -195,7 +236,7 @@ impl<'e, 'a> Search<'e, 'a> {
         let high = self.high;
         let Some(low) = self.low else {
             let times = (wanted / self.divided(high.triangles)).powf(1.0 / self.power);
-            return high.value / times.clamp(PROMISED, MOST_APART);
+            return high.value / times.clamp(LEAST_APART, MOST_APART);
         };
         let (few, many) = (self.divided(high.triangles), self.divided(low.triangles));
         let span = (high.value / low.value).ln();

@@ -26,6 +26,9 @@ const OVERRUN: f64 = 1.5;
 /// That leaves no less than this part of the triangles beyond the control mesh's own that there was room for.
 const LEAST_ROOM: f64 = 0.25;
 
+/// An even division that is nearer is taken where what is proven of it is at most so many times as far.
+const PROVEN_ALIKE: f64 = 1.25;
+
 /// What balancing leaves of a plain mesh's distance, at equal triangles, about.
 const BALANCED: f64 = 0.65;
 
@@ -222,7 +225,17 @@ fn within_room(
                 ..engine.clone()
             };
             let (found, stop) = budget::search(plain, floor, most, cap)?;
-            let found = found.finish(plain, stop, options)?;
+            let mut found = found.finish(plain, stop, options)?;
+            // Evenly curved models are best divided evenly, as long as about as much of that is proven.
+            if floor == 0.0
+                && let Some(even) = budget::even(plain, most)?
+            {
+                let even = even.finish(plain, stop, options)?;
+                let is_proven = even.error.upper <= PROVEN_ALIKE * found.error.upper;
+                if is_proven && even.error.lower < found.error.lower {
+                    found = even;
+                }
+            }
             if !options.balance {
                 return Ok(found);
             }

@@ -27,6 +27,8 @@ pub(super) struct Covering<'a> {
     pub(super) edges: &'a Edges<'a>,
     pub(super) trees: &'a Trees,
     pub(super) chains: &'a Chains,
+    /// Whether all diagonals start at the unsplit edge's start.
+    pub(super) has_fixed_diagonals: bool,
 }
 
 impl Covering<'_> {
@@ -42,6 +44,7 @@ impl Covering<'_> {
             edges,
             trees,
             chains,
+            has_fixed_diagonals,
         } = *self;
         let word = trees.root(face);
         if !is_split(word) && chains.are_none(edges, face) {
@@ -68,6 +71,9 @@ impl Covering<'_> {
         *knots = walk.knots;
         let mut piece = None;
         let diagonals = count.halved.iter().map(|&(place, unsplit)| {
+            if has_fixed_diagonals {
+                return false;
+            }
             let piece = piece.get_or_insert_with(|| control.piece(face));
             is_nearer_from_end(self.surface(piece, place), unsplit)
         });

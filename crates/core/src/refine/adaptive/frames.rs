@@ -121,6 +121,7 @@ fn united(
         let triangles = state.triangles;
         state = with_engine(&meshes[frame], scheme, settings, observer, |engine| {
             state.forget();
+            state.has_fixed_diagonals = true;
             state.goal = Goal::Within(engine.floor(options.tolerance));
             let found = engine.verified(state, most)?;
             Ok(found.ok_or(ReplayError::TooMany { frame, most })?.state)

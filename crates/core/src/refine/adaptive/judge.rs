@@ -26,6 +26,9 @@ pub(super) const HALVINGS: usize = 2;
 /// Divisions into four of the heights over a plane, to the same end.
 pub(super) const DIVISIONS: u32 = 2;
 
+/// What rounding leaves of a height that is just good enough.
+pub(super) const ROUNDED: f64 = 1.0 - 1e-9;
+
 /// Drifts over an edge are counted on up to this part of what a triangle's own angles there allow, or 1: those of the triangle beyond
 /// it may be more acute, closing triangles above all. No more than √2 − 1, so that half of what an angle α leaves of π allows it, too: its
 /// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
@@ -262,7 +265,7 @@ impl Judge<'_> {
         if exceeds(least.bound(0.0, ANY_SLOPES), self.limit) {
             return Verdict::of(Fate::Fails);
         }
-        let enough = least.height_within(self.limit, self.allowed(seen).0);
+        let enough = ROUNDED * least.height_within(self.limit, self.allowed(seen).0);
         self.decided(seen, beside.deviation(heights.refined(DIVISIONS, enough)))
     }
 
@@ -277,7 +280,7 @@ impl Judge<'_> {
     ) -> Verdict {
         let (mut deviation, _) = net.at_a_glance(&seen.frame, open);
         if open == [false; 3] {
-            let enough = deviation.height_within(self.limit, self.allowed(seen).0);
+            let enough = ROUNDED * deviation.height_within(self.limit, self.allowed(seen).0);
             deviation.height = deviation
                 .height
                 .min(high)
@@ -392,7 +395,9 @@ impl Judge<'_> {
 
     /// What is done for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
-        let (chord, slopes) = self.allowed(seen);
+        let chord = self.allowed(seen).0;
+        // A guess: neighbours have angles like the triangle's own.
+        let slopes = [0, 1, 2].map(|edge| seen.frame.slope_at(edge).min(1.0));
         Effort {
             target: self.limit,
             halvings: HALVINGS,

@@ -16,7 +16,7 @@ use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::judge::{DIVISIONS, Goal, Seen};
+use super::judge::{DIVISIONS, Goal, ROUNDED, Seen};
 use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
 use super::quadtree::Place;
@@ -31,9 +31,6 @@ use crate::vector::{DVec3, vector};
 
 /// Halvings of a net: towards a corner at which points drift too fast, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
-
-/// What rounding leaves of a height that is just good enough.
-const ROUNDED: f64 = 1.0 - 1e-9;
 
 /// How triangles are looked at.
 #[derive(Clone, Copy)]

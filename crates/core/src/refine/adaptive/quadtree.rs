@@ -219,6 +219,15 @@ impl Piece {
         self.irregular_node(children)
     }
 
+    /// The word of a node so many levels above its leaves, of which nothing is known.
+    pub(super) fn even(&mut self, levels: u32) -> u32 {
+        if levels == 0 {
+            return LEAF;
+        }
+        let children = [0; 4].map(|_| self.even(levels - 1));
+        self.irregular_node(children)
+    }
+
     /// The same where the surface is not regular: such nodes are kept one by one, so that what is kept as a whole is regular.
     pub(super) fn irregular_node(&mut self, children: [u32; 4]) -> u32 {
         let at = self.words.len() as u32;

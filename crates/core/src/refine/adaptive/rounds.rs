@@ -101,6 +101,7 @@ impl Engine<'_> {
             edges,
             trees,
             chains: &chains,
+            has_fixed_diagonals: state.has_fixed_diagonals,
         };
         let covers = watch.long_shares(faces.len(), |block, is_stopped| {
             let mut knots = Vec::new();

@@ -9,9 +9,9 @@ use super::cover::Cover;
 use super::divide::{Division, Proven, divide};
 use super::emit::Emission;
 use super::emitted::Sources;
-use super::judge::Goal;
+use super::judge::{Allowance, Extent, Goal};
 use super::measured::Measured;
-use super::quadtree::Trees;
+use super::quadtree::{Piece, Trees};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -24,6 +24,8 @@ pub(super) struct State {
     pub(super) proven: Vec<Proven>,
     pub(super) is_trusted: Vec<bool>,
     pub(super) chains: Chains,
+    /// Whether diagonals do not depend on the surface, as one state serves several.
+    pub(super) has_fixed_diagonals: bool,
     /// By control face.
     pub(super) covers: Vec<Cover>,
     pub(super) triangles: usize,
@@ -45,6 +47,7 @@ impl State {
             goal,
             trees,
             chains: Chains::default(),
+            has_fixed_diagonals: false,
             covers: filled(Cover::default(), faces),
             triangles: 0,
             has_failed: false,
@@ -54,6 +57,29 @@ impl State {
             bulges: Bulges::default(),
             proven,
         }
+    }
+
+    /// That of faces that are divided evenly, so many times.
+    pub(super) fn even(goal: Goal, faces: usize, levels: u32) -> Result<Self, RefineError> {
+        let mut piece = Piece::default();
+        for _ in 0..faces {
+            let root = piece.even(levels);
+            piece.roots.push(root);
+        }
+        let trees = Trees::of(&[piece], &mut || Ok(()))?;
+        let nothing = Proven {
+            allowance: Allowance::NOTHING,
+            extent: Extent::NONE,
+        };
+        let mut state = Self::of(
+            goal,
+            Division {
+                trees,
+                proven: vec![nothing; faces],
+            },
+        );
+        state.is_trusted.fill(false);
+        Ok(state)
     }
 
     /// The same trees, of whose leaves nothing is known.

