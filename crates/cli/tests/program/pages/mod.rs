@@ -10,9 +10,6 @@ use std::path::{Path, PathBuf};
 
 use crate::kept::root;
 
-/// Pages whose commands need files that are not in the repository.
-const MEASURED: [&str; 2] = ["docs/benchmarks.md", "docs/performance.md"];
-
 /// A page of the repository.
 struct Page {
     /// Its path below the repository's folder.
