@@ -339,7 +339,8 @@ pub(crate) fn load_keeping(
 pub(crate) fn load_for(
     path: &Path,
     build: &BuildArguments,
-    (kept, channels): (&[&str], &ChannelArguments),
+    kept: &[&str],
+    channels: &ChannelArguments,
     progress: &Progress,
 ) -> anyhow::Result<Input> {
     connect(

@@ -72,7 +72,8 @@ pub(crate) fn write_mesh(
 pub(crate) fn write_asset(
     path: &Path,
     asset: &Asset,
-    (format, are_images_linked): (Format, bool),
+    format: Format,
+    are_images_linked: bool,
 ) -> anyhow::Result<Vec<PathBuf>> {
     let write = || match are_images_linked {
         true => asset.write_linked(path, format),

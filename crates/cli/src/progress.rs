@@ -6,7 +6,6 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use crate::embedded::Host;
 use crate::format::counted;
 use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,6 +13,14 @@ use limitmesh::progress::Stage;
 
 /// How often the spinner turns.
 const TICK: Duration = Duration::from_millis(100);
+
+/// A program that runs a command, and hears how it goes on.
+pub trait Host {
+    /// Called by long functions of the library; may stop the command.
+    fn observe(&self, at: &limitmesh::progress::Progress) -> ControlFlow<()>;
+    /// A line that the program would print on standard error.
+    fn note(&self, line: &str);
+}
 
 /// The phases of an optimised refinement: a fine mesh, collapses, and what these came to.
 #[derive(Default)]
@@ -138,6 +145,11 @@ impl<'a> Progress<'a> {
             self.spinner
                 .suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
         }
+    }
+
+    /// Prints lines that stay.
+    pub(crate) fn notes(&self, lines: impl IntoIterator<Item = impl AsRef<str>>) {
+        lines.into_iter().for_each(|line| self.note(line));
     }
 
     /// A note for those who see no spinner.

@@ -5,6 +5,7 @@ use limitmesh::mesh::Weld;
 use limitmesh_io::gltf::Joining;
 
 use super::tolerances::MorphTolerance;
+use crate::failure::usage;
 
 /// The heading of these options in the help.
 const HEADING: &str = "Options of glTF assets";
@@ -80,6 +81,17 @@ impl AssetArguments {
             skins: ignores(Mover::Skin),
             morphs: ignores(Mover::Morphs),
             distance,
+        }
+    }
+
+    /// Refuses these options for what is no glTF asset.
+    ///
+    /// # Errors
+    /// One is given.
+    pub(crate) fn refuse(&self) -> anyhow::Result<()> {
+        match self.given() {
+            Some(option) => usage(format!("{option} is for glTF assets that stay glTF")),
+            None => Ok(()),
         }
     }
 

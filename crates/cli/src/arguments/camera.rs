@@ -46,7 +46,7 @@ pub(super) fn camera(text: &str) -> Result<Camera, String> {
 ///
 /// # Errors
 /// The file cannot be read, a line is no camera, or there is none.
-pub(crate) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
+pub(super) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("{} cannot be read", path.display()))?;
     let mut cameras = Vec::new();

@@ -25,7 +25,6 @@ mod values;
 
 pub(crate) use asset::{AssetArguments, RelativeTo};
 pub(crate) use batch::{BatchArguments, BatchJobArguments};
-pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use evaluate::{EvaluateArguments, Place, Places};

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, Args, ValueEnum};
+use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::scheme::Scheme;
 use limitmesh_io::{Format, WriteOptions};
 use serde::Serialize;
 
+use super::camera::cameras_in;
 use super::values;
 use super::{
     AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
@@ -131,6 +133,9 @@ pub(crate) const MOST_EXACT: usize = 30_000_000;
 const MOST_STEPWISE: usize = 50_000_000;
 /// A restricted quadtree keeps the pieces of its nodes.
 const MOST_RESTRICTED: usize = 5_000_000;
+
+/// The dilatant factor where none is given: the paper's in most of its experiments.
+const USUAL_DILATATION: f64 = 1.0;
 
 /// The heading of the options of the stepwise methods.
 const STEPWISE: &str = "Options of the other methods";
@@ -309,6 +314,42 @@ impl RefineArguments {
     /// It is not.
     pub(crate) fn scheme(&self) -> anyhow::Result<&'static dyn Scheme> {
         Ok(self.scheme.in_quarters()?.scheme())
+    }
+
+    /// The view that makes the angle depend on the viewer.
+    pub(crate) fn viewer(&self) -> Option<View> {
+        let viewpoint = self.view.map(Viewpoint::Direction);
+        Some(View {
+            viewpoint: viewpoint.or(self.eye.map(Viewpoint::Eye))?,
+            dilatation: self.dilatation.unwrap_or(USUAL_DILATATION),
+        })
+    }
+
+    /// Whether somebody looks at the mesh.
+    pub(crate) fn has_viewers(&self) -> bool {
+        let ExactArguments {
+            camera,
+            camera_path,
+            ..
+        } = &self.exact;
+        self.viewer().is_some() || !camera.is_empty() || !camera_path.is_empty()
+    }
+
+    /// The direction of sight of pictures.
+    pub(crate) fn sight(&self) -> Option<[f64; 3]> {
+        self.view
+    }
+
+    /// All cameras, those of the options first.
+    ///
+    /// # Errors
+    /// A file of cameras cannot be read.
+    pub(crate) fn cameras(&self) -> anyhow::Result<Vec<Camera>> {
+        let mut cameras = self.exact.camera.clone();
+        for path in &self.exact.camera_path {
+            cameras.extend(cameras_in(path)?);
+        }
+        Ok(cameras)
     }
 
     /// Whether flat regions are divided like all else, as proofs need it.

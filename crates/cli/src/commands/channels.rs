@@ -1,7 +1,5 @@
 //! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
-use std::path::Path;
-
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, FaceParts};
 use limitmesh::refine::Traced;
@@ -11,34 +9,9 @@ use limitmesh_io::{
     Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost,
 };
 
-use super::named_files;
-use crate::arguments::{ChannelArguments, RefineArguments};
+use super::named_files::{self, Destination};
 use crate::format::counted;
 use crate::progress::Progress;
-
-/// Where channels go, and what was asked for them.
-pub(super) struct Destination<'a> {
-    /// Nothing is written without one.
-    pub(super) format: Option<Format>,
-    /// Whether it is written as text.
-    pub(super) ascii: bool,
-    pub(super) chosen: &'a ChannelArguments,
-    /// The file that they came from, and the one that they go to.
-    pub(super) files: (&'a Path, Option<&'a Path>),
-}
-
-impl<'a> Destination<'a> {
-    /// That of a refinement.
-    pub(super) fn of(arguments: &'a RefineArguments, format: Option<Format>) -> Self {
-        let files = (arguments.input(), arguments.output.as_deref());
-        Self {
-            format,
-            ascii: arguments.ascii,
-            chosen: &arguments.channels,
-            files,
-        }
-    }
-}
 
 fn names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels
@@ -99,8 +72,7 @@ impl Channels {
     }
 
     /// Those of a mesh of an asset.
-    pub(super) fn of_asset(mut channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
-        channels.retain(|channel| !arguments.channels.drops(&channel.name));
+    pub(super) fn of_asset(channels: Vec<Channel>) -> Self {
         Self {
             channels,
             ..Self::default()

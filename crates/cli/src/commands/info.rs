@@ -144,11 +144,11 @@ fn limit_of(
         normals: normals.as_ref(),
         channels: &channels,
     };
-    let asked = (
+    let (features, none) = (
         arguments.features.or_auto(),
         InterpolationArguments::default(),
     );
-    let decided = parts::decided(asked, (mesh, &trace.faces), &hints, true);
+    let decided = parts::decided(features, none, mesh, &trace.faces, &hints, true);
     decided
         .note
         .into_iter()
@@ -162,8 +162,8 @@ fn limit_of(
         .features
         .apply(mesh.clone().with_creases(&edges))?
         .mesh;
-    let asked = (decided.interpolation, arguments.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
+    let unit = arguments.build.unit;
+    let (mesh, _) = interpolation::apply(mesh, decided.interpolation, unit, &Loop, progress)?;
     Bulk::of_limit(&mesh, &Loop)
 }
 

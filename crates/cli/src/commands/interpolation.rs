@@ -18,7 +18,8 @@ use crate::report::{InterpolationReport, percent};
 /// Some vertex has no limit, or none that is near enough.
 pub(super) fn apply(
     mesh: Mesh,
-    (arguments, unit): (InterpolationArguments, Option<Unit>),
+    arguments: InterpolationArguments,
+    unit: Option<Unit>,
     scheme: &dyn Scheme,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {

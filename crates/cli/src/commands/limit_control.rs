@@ -44,13 +44,9 @@ pub(super) fn as_asked(
     arguments: &LimitArguments,
     progress: &Progress,
 ) -> anyhow::Result<Prepared> {
-    let asked = (arguments.features, arguments.interpolation);
-    let decided = parts::decided(
-        asked,
-        (&input.mesh, &input.trace.faces),
-        &input.hints(),
-        true,
-    );
+    let (features, interpolation) = (arguments.features, arguments.interpolation);
+    let (mesh, faces) = (&input.mesh, &input.trace.faces);
+    let decided = parts::decided(features, interpolation, mesh, faces, &input.hints(), true);
     if let Some(note) = decided.note {
         progress.note(format!("{}: {note}", input.name));
     }
@@ -61,8 +57,8 @@ pub(super) fn as_asked(
     };
     let Input { mesh, trace, .. } = input.with_creases(limit.features.creases_from)?;
     let Featured { mesh, concave, .. } = limit.features.apply(mesh)?;
-    let asked = (limit.interpolation, limit.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, limit.scheme().scheme(), progress)?;
+    let (unit, scheme) = (limit.build.unit, limit.scheme().scheme());
+    let (mesh, _) = interpolation::apply(mesh, limit.interpolation, unit, scheme, progress)?;
     let input_of = |face| trace.faces[concave.parts.whole(face) as usize];
     let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
     Ok(Prepared {

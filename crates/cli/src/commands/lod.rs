@@ -11,8 +11,9 @@ use limitmesh::{Mesh, Triangles};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
 use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
 
-use super::channels::{Channels, Destination};
+use super::channels::Channels;
 use super::interpolation;
+use super::named_files::Destination;
 use super::normals::Normals;
 use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
 use crate::failure::{Outcome, usage};
@@ -88,16 +89,13 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let input = input::load_for(
         &arguments.input,
         &arguments.build,
-        (&kept, &arguments.channels),
+        &kept,
+        &arguments.channels,
         progress,
     )?;
-    let asked = (arguments.features.or_auto(), arguments.interpolation);
-    let decided = parts::decided(
-        asked,
-        (&input.mesh, &input.trace.faces),
-        &input.hints(),
-        true,
-    );
+    let (features, interpolation) = (arguments.features.or_auto(), arguments.interpolation);
+    let (mesh, faces) = (&input.mesh, &input.trace.faces);
+    let decided = parts::decided(features, interpolation, mesh, faces, &input.hints(), true);
     decided
         .note
         .into_iter()
@@ -134,8 +132,9 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
     let Featured { mesh, concave, .. } = decided.features.apply(mesh)?;
     channels.on_parts(&concave.parts, &mesh);
     let scheme = arguments.scheme.scheme();
-    let asked = (decided.interpolation, arguments.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, scheme, progress)?;
+    let unit_of_mesh = arguments.build.unit;
+    let interpolation = decided.interpolation;
+    let (mesh, _) = interpolation::apply(mesh, interpolation, unit_of_mesh, scheme, progress)?;
 
     let tolerances = tolerances(arguments, diagonal)?;
     let asked = LodOptions::new(tolerances)

@@ -9,6 +9,7 @@ use crate::arguments::Size;
 use crate::failure::usage;
 use crate::format::counted;
 use crate::output;
+use crate::progress::Progress;
 
 /// Size of pictures that are drawn beside other work.
 pub(super) const SIZE: Size = Size {
@@ -59,6 +60,28 @@ pub(super) fn draw(
     let camera = Camera::fit_tightly(surface, view, width, height)?;
     let image = render(surface, normals, None, &camera, style, width, height)?;
     output::write_file(path, &image.encode_png()?)
+}
+
+/// Draws a surface with its edges, at the usual size, and says so.
+pub(super) fn draw_edges(
+    path: &Path,
+    surface: Triangles<'_>,
+    normals: &[[f64; 3]],
+    sight: Option<[f64; 3]>,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    progress.stage(format!("drawing {}", path.display()));
+    let style = Style::default().wireframe(true);
+    draw(
+        path,
+        surface,
+        Some(normals),
+        view_direction(sight),
+        &style,
+        SIZE,
+    )?;
+    progress.note(drawn(path, surface.triangles.len()));
+    Ok(())
 }
 
 /// Draws a surface with its materials and writes the picture.

@@ -18,7 +18,6 @@ mod whole;
 pub(crate) use certified::CertifiedReport;
 pub(crate) use channel::ChannelReport;
 pub(crate) use comparison::{CertifiedErrorReport, ComparedMethod};
-pub(crate) use diagnosis::DiagnosisReport;
 pub(crate) use evaluation::EvaluationReport;
 pub(crate) use frames::{FrameReport, FramesReport, FramesSeconds};
 pub(crate) use information::{

@@ -2,9 +2,10 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
+use limitmesh::criterion::Viewpoint;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
+use limitmesh::refine::{ErrorBounds, ExactStop, InputDistance, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
@@ -332,6 +333,22 @@ pub(crate) struct ViewReport {
     pub(crate) dilatation: f64,
 }
 
+impl ViewReport {
+    /// The view that makes the angle depend on the viewer.
+    pub(crate) fn of(arguments: &RefineArguments) -> Option<Self> {
+        let view = arguments.viewer()?;
+        let (direction, eye) = match view.viewpoint {
+            Viewpoint::Direction(direction) => (Some(direction), None),
+            Viewpoint::Eye(eye) => (None, Some(eye)),
+        };
+        Some(Self {
+            direction,
+            eye,
+            dilatation: view.dilatation,
+        })
+    }
+}
+
 /// What one step did.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -499,19 +516,13 @@ impl ErrorReport {
         }
     }
 
-    /// With the distance that a proof confirms.
-    pub(crate) fn proven(self, within: Option<f64>) -> Self {
-        let proven = within.filter(|_| within != self.upper);
-        Self { proven, ..self }
-    }
-
     /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after
     /// lengths; what it is at least only where that is not far below.
-    pub(crate) fn in_words(&self, unit: &str) -> Vec<String> {
+    pub(crate) fn in_words(&self, unit: &str) -> String {
         let extent = |percent: String, length: String| {
             format!("{percent} % of the diagonal ({length}{unit})")
         };
-        vec![match (self.upper, self.upper_percent) {
+        match (self.upper, self.upper_percent) {
             (Some(upper), Some(percent)) if !self.certified => format!(
                 "about {} from the limit surface by samples, not certified",
                 extent(upper_bound(percent), upper_bound(upper))
@@ -529,19 +540,19 @@ impl ErrorReport {
                 "at least {} from the limit surface, not certified",
                 extent(lower_bound(self.lower_percent), lower_bound(self.lower))
             ),
-        }]
+        }
     }
 }
 
 impl InputDistanceReport {
     /// Of a mesh whose control mesh has that diagonal.
-    pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
-        let percent = |length: f64| percent(length, diagonal);
+    pub(crate) fn new(distance: &InputDistance, diagonal: f64) -> Self {
+        let &InputDistance { lower, upper } = distance;
         Self {
             lower,
             upper,
-            lower_percent: percent(lower),
-            upper_percent: percent(upper),
+            lower_percent: percent(lower, diagonal),
+            upper_percent: percent(upper, diagonal),
         }
     }
 

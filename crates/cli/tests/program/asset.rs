@@ -361,8 +361,8 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
         .expect(2)
         .saying(words);
     };
-    refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "stand in a scene");
-    refused("--angle 5 --view 0,0,1", "stand in a scene");
+    refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "look at one mesh");
+    refused("--angle 5 --view 0,0,1", "look at one mesh");
     refused("--provenance", "PLY");
     assert!(!output.exists());
     let broken = file(

@@ -355,7 +355,7 @@ fn what_cannot_be_followed_stays_and_is_told() {
     run("refine {} --dry-run", &[&mixed]).expect(0);
     run("refine {} -o {} --angle 5 --view 0,0,1", &[&plain, &output])
         .expect(2)
-        .saying("built many times");
+        .saying("look at one mesh");
     let unbuilt = cube(&folder, "unbuilt.3mf", &of_side, "", "");
     run("refine {} -o {}", &[&unbuilt, &output])
         .expect(1)

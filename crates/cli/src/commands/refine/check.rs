@@ -6,7 +6,8 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::{picture, proof};
+use super::super::picture;
+use super::proof;
 use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
