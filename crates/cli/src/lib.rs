@@ -20,14 +20,14 @@ mod input;
 mod interrupt;
 mod mesh_info;
 mod output;
-#[cfg(test)]
-mod pages;
 mod parts;
 mod pieces;
 mod points;
 mod progress;
 mod reference;
 mod report;
+#[cfg(test)]
+mod tests;
 mod vector;
 mod written_unit;
 

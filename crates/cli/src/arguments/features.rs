@@ -28,10 +28,10 @@ pub(crate) enum Boundary {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ConcaveCorners {
+    /// As the scheme has them, and OpenSubdiv: the surface folds over there
+    Smooth,
     /// Sharp edges inside divide them: flat faces stay flat
-    Divided,
-    /// As OpenSubdiv has them: the surface folds over there
-    AsTagged,
+    Fixed,
 }
 
 /// What in a file says that edges are sharp.
@@ -114,7 +114,7 @@ pub(crate) struct FeatureArguments {
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) boundary: Option<Boundary>,
 
-    /// What becomes of corners that take 180° or more between two sharp edges [default: as-tagged; divided with --crease-angle
+    /// What becomes of corners that take 180° or more between two sharp edges [default: smooth; fixed with --crease-angle
     /// or --creases-from, or with --boundary corners or fixed]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) concave_corners: Option<ConcaveCorners>,
@@ -185,9 +185,9 @@ impl FeatureArguments {
             || self.creases_from != CreasesFrom::None
             || self.boundary.unwrap_or_default() != Boundary::Smooth;
         let usual = if is_asked {
-            ConcaveCorners::Divided
+            ConcaveCorners::Fixed
         } else {
-            ConcaveCorners::AsTagged
+            ConcaveCorners::Smooth
         };
         self.concave_corners.unwrap_or(usual)
     }
@@ -215,8 +215,8 @@ impl FeatureArguments {
             Some(CreaseAngle::Auto | CreaseAngle::None) | None => (mesh, 0),
         };
         let (mesh, concave) = match self.concave_corners() {
-            ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,
-            ConcaveCorners::AsTagged => (mesh, Default::default()),
+            ConcaveCorners::Fixed => mesh.with_divided_concave_corners()?,
+            ConcaveCorners::Smooth => (mesh, Default::default()),
         };
         Ok(Featured {
             mesh,

@@ -51,7 +51,7 @@ pub(crate) struct MeasureArguments {
     ///
     /// Default: 5, or fewer where they would give more than 4 million triangles, but two more than the first mesh has. With
     /// --limit-of only.
-    #[arg(long, value_name = "N", value_parser = values::levels)]
+    #[arg(long, value_name = "N", value_parser = values::steps)]
     pub(crate) reference_levels: Option<usize>,
 
     /// Samples on each surface; all its vertices are among them, however many they are

@@ -8,11 +8,11 @@ use limitmesh::measure::SamplingOptions;
 use super::CreaseAngle;
 use super::quantity::{self, Length, Unit, finite};
 
-/// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
-const MAX_LEVELS: usize = 12;
+/// Levels of uniform refinement beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
+pub(crate) const MAX_STEPS: usize = 12;
 
-/// Levels of exact refinement beyond this would divide an edge by more than ten million.
-const MAX_EXACT_LEVELS: usize = 24;
+/// Levels beyond this would divide an edge by more than ten million.
+const MAX_LEVELS: usize = 24;
 
 /// More threads than any machine we know of has processors.
 const MAX_THREADS: usize = 4096;
@@ -159,14 +159,14 @@ pub(super) fn levels(text: &str) -> Result<usize, String> {
     bounded(text, 0, MAX_LEVELS, "levels")
 }
 
-/// A count from 1 to [`MAX_EXACT_LEVELS`].
-pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
-    bounded(text, 1, MAX_EXACT_LEVELS, "levels")
+/// A count from 0 to [`MAX_STEPS`].
+pub(super) fn steps(text: &str) -> Result<usize, String> {
+    bounded(text, 0, MAX_STEPS, "levels")
 }
 
-/// A count from 1 to [`MAX_LEVELS`].
+/// A count from 1 to [`MAX_STEPS`].
 pub(super) fn detail_levels(text: &str) -> Result<usize, String> {
-    bounded(text, 1, MAX_LEVELS, "levels")
+    bounded(text, 1, MAX_STEPS, "levels")
 }
 
 /// A number above 0 and below 1.

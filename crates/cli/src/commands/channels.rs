@@ -44,7 +44,7 @@ impl Channels {
         let Some(format) = to.format else {
             return Self::default();
         };
-        let is_dropped = |channel: &Channel| to.chosen.drops(&channel.name);
+        let is_dropped = |channel: &Channel| to.chosen.drops_channel(channel);
         let (dropped, channels): (Vec<Channel>, Vec<Channel>) =
             channels.into_iter().partition(is_dropped);
         if !dropped.is_empty() {

@@ -105,7 +105,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let took = start.elapsed();
         methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
     }
-    let unfolds = limit.features.concave_corners() == ConcaveCorners::Divided;
+    let unfolds = limit.features.concave_corners() == ConcaveCorners::Fixed;
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![
         ("exact", plain.clone()),

@@ -142,7 +142,7 @@ fn against_limit(
     let unfolds = report
         .limit
         .as_ref()
-        .is_some_and(|limit| limit.concave_corners == ConcaveCorners::Divided);
+        .is_some_and(|limit| limit.concave_corners == ConcaveCorners::Fixed);
     let found = certified_limit::measure(surface, (control, unfolds), arguments, progress)?;
     let limit = report.limit.map(|limit| LimitReport {
         levels: found.levels,

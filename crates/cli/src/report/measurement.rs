@@ -130,10 +130,10 @@ pub(crate) struct HausdorffReport {
     /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,
     /// From the surface to the reference.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::OneSided"))]
     pub(crate) forward_detail: OneSided,
     /// From the reference to the surface.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::OneSided"))]
     pub(crate) backward_detail: OneSided,
 }
 

@@ -181,39 +181,6 @@ fn borders_to_what_stays_do_not_open() {
 }
 
 #[test]
-fn per_cents_are_of_the_scene_or_of_the_mesh() {
-    let folder = folder();
-    let (input, output) = (asset(&folder), folder.path().join("out.glb"));
-    let tolerances = |options: &str| -> Vec<f64> {
-        let command = format!("refine {{}} -o {{}} --tolerance 1% --report - {options}");
-        let report = run(&command, &[&input, &output]).expect(0).json();
-        let meshes = report["meshes"].as_array().expect("meshes").iter();
-        meshes
-            .map(|mesh| {
-                mesh["parameters"]["exact"]["tolerance"]
-                    .as_f64()
-                    .expect("a number")
-            })
-            .collect()
-    };
-    // The box has a side of 2, the octahedron corners 10 from its middle.
-    let [cube, large] = [2.0, 20.0].map(|side: f64| 0.01 * side * 3f64.sqrt());
-    for (found, expected) in [
-        (tolerances(""), [large, large]),
-        (tolerances("--relative-to scene"), [large, large]),
-        (tolerances("--relative-to mesh"), [cube, large]),
-    ] {
-        assert!(
-            found
-                .iter()
-                .zip(expected)
-                .all(|(a, b)| (a - b).abs() < 1e-9),
-            "{found:?} {expected:?}"
-        );
-    }
-}
-
-#[test]
 fn images_are_copied_or_linked() {
     let folder = folder();
     let input = asset(&folder);

@@ -380,30 +380,6 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
     assert!(meshes(&outputs) == whole);
 }
 
-/// A process that a killed batch had begun holds its file for a moment; another batch does for as long as it runs.
-#[test]
-fn a_file_that_another_batch_holds_is_waited_for_a_little() {
-    let folder = folder();
-    let job =
-        json!({"input": "builtin:cube", "output": below(&folder, "out.ply"), "tolerance": "1%"});
-    let (list, found) = (jobs(&folder, &[job]), folder.path().join("found.jsonl"));
-    let held = std::fs::File::create(&found).expect("a file");
-    held.lock().expect("a lock");
-    let refused = run("batch {} -o {} --resume", &[&list, &found]).expect(1);
-    assert!(
-        refused.stderr.contains("is in use by another batch"),
-        "{}",
-        refused.stderr
-    );
-    let holder = std::thread::spawn(move || {
-        std::thread::sleep(Duration::from_millis(300));
-        drop(held);
-    });
-    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
-    holder.join().expect("let go");
-    assert_eq!(results(&found).len(), 1);
-}
-
 /// Whether a process has this word on its command line.
 #[cfg(target_os = "linux")]
 fn is_running(word: &str) -> bool {
@@ -441,59 +417,6 @@ fn jobs_do_not_outlive_a_batch_that_is_killed() {
     drop(running);
     wait_until(false);
     assert_eq!(names(folder.path()), ["found.jsonl", "jobs.jsonl"]);
-}
-
-/// Whether whoever started this process has it ignore a signal, where the system tells.
-#[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = line
-        .and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
-        .unwrap_or(0);
-    ignored >> (signal - 1) & 1 == 1
-}
-
-#[cfg(unix)]
-#[test]
-fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
-        // As shells have jobs in the background ignore Ctrl-C: the program heeds that, and would go on for ever.
-        if is_ignored(code - 128) {
-            eprintln!("skipped: SIG{signal} is ignored by whoever started this test");
-            continue;
-        }
-        let folder = folder();
-        let (list, outputs) = disturbed(&folder, "out");
-        let found = folder.path().join("found.jsonl");
-        // One more that takes minutes, so that there is something to cancel.
-        let long = below(&folder, "out/long.ply");
-        let long = json!({"input": "builtin:bunny", "output": long, "method": "uniform", "levels": 10, "max-triangles": "2G"});
-        let all = text(&list);
-        std::fs::write(&list, format!("{all}{long}")).expect("a job");
-        let mut running = Running::start("batch {} -o {} --jobs 2", &[&list, &found]);
-        until_results(&mut running, 2, &found);
-        running.signal(signal);
-        running
-            .end()
-            .expect(code)
-            .saying("cancelled by")
-            .saying("found.jsonl written by then");
-        let there = names(&folder.path().join("out"));
-        assert!(there.iter().all(|name| name.ends_with(".ply")), "{there:?}");
-        let lines = results(&found);
-        assert!(
-            (2..=outputs.len()).contains(&lines.len()),
-            "{}",
-            lines.len()
-        );
-        assert!(lines.iter().all(|line| line["status"] == "done"));
-        std::fs::write(&list, all).expect("jobs");
-        run("batch {} -o {} --resume", &[&list, &found])
-            .expect(0)
-            .saying("kept from before");
-        assert_eq!(results(&found).len(), outputs.len());
-    }
 }
 
 #[test]

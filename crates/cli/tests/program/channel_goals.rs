@@ -1,4 +1,4 @@
-//! `--uv-tolerance`, `--attribute-tolerance` and `--morph-tolerance`: what is reached, and what is refused.
+//! `--attribute-tolerance` and `--morph-tolerance`: what is reached, and what is refused.
 
 use std::path::PathBuf;
 
@@ -42,7 +42,7 @@ fn texture_coordinates_are_within_their_tolerance() {
     let mut triangles = Vec::new();
     for tolerance in ["0.02", "10.24@1k", "0.005"] {
         run(
-            &format!("refine {{}} -o {{}} --report {{}} --uv-tolerance {tolerance}"),
+            &format!("refine {{}} -o {{}} --report {{}} --attribute-tolerance uv={tolerance}"),
             &[&input, &output, &json],
         )
         .expect(0)
@@ -69,7 +69,7 @@ fn texture_coordinates_are_within_their_tolerance() {
     );
     assert!(triangles[1] >= triangles[0]);
     run(
-        "refine {} -o {} --uv linear --uv-tolerance 1e-6",
+        "refine {} -o {} --channel uv=linear --attribute-tolerance uv=1e-6",
         &[&input, &output],
     )
     .expect(0)
@@ -82,7 +82,7 @@ fn texture_coordinates_are_within_their_tolerance() {
     .saying("heat: within ");
     // Too much is told, and what was reached.
     run(
-        "refine {} -o {} --uv-tolerance 1e-4 --max-triangles 2000 --report {}",
+        "refine {} -o {} --attribute-tolerance uv=1e-4 --max-triangles 2000 --report {}",
         &[&input, &output, &json],
     )
     .expect(3)
@@ -101,7 +101,7 @@ fn texture_coordinates_are_within_their_tolerance() {
             > 500
     );
     run(
-        "refine {} --dry-run -o {} --uv-tolerance 0.005",
+        "refine {} --dry-run -o {} --attribute-tolerance uv=0.005",
         &[&input, &output],
     )
     .expect(0);
@@ -114,26 +114,29 @@ fn tolerances_that_nothing_can_meet_are_refused() {
     let stl = folder.path().join("out.stl");
     for (options, words) in [
         (
-            "--uv-tolerance 0.01 --optimize",
-            "--uv-tolerance divides until it is met",
+            "--attribute-tolerance uv=0.01 --optimize",
+            "--attribute-tolerance divides until it is met",
         ),
         (
-            "--uv-tolerance 0.01 --triangles 500",
+            "--attribute-tolerance uv=0.01 --triangles 500",
             "that does not go with --triangles",
         ),
         (
             "--attribute-tolerance s,t=0.01 --balance",
             "--attribute-tolerance divides until it is met",
         ),
-        ("--uv-tolerance 0.01 --method uniform", "--uv-tolerance"),
+        (
+            "--attribute-tolerance uv=0.01 --method uniform",
+            "--attribute-tolerance",
+        ),
         (
             "--attribute-tolerance cold=1",
             "has no channel 'cold'; those that come out are: s,t; heat; part",
         ),
         ("--attribute-tolerance part=1", "'part' is inherited"),
         (
-            "--uv-tolerance 0.01 --channel s,t=drop",
-            "no texture coordinates that come out",
+            "--attribute-tolerance uv=0.01 --channel s,t=drop",
+            "has no channel 'uv'; those that come out are",
         ),
         (
             "--morph-tolerance 1%",
@@ -147,10 +150,17 @@ fn tolerances_that_nothing_can_meet_are_refused() {
         .expect(2)
         .saying(words);
     }
-    run("refine {} -o {} --uv-tolerance 0.01", &[&input, &stl])
-        .expect(2)
-        .saying("that come out");
-    run("refine {} -o {} --uv-tolerance 1@0", &[&input, &output]).expect(2);
+    run(
+        "refine {} -o {} --attribute-tolerance uv=0.01",
+        &[&input, &stl],
+    )
+    .expect(2)
+    .saying("none comes out");
+    run(
+        "refine {} -o {} --attribute-tolerance uv=1@0",
+        &[&input, &output],
+    )
+    .expect(2);
 }
 
 /// A flat square, and a target that makes a wave of it.

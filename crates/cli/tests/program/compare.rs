@@ -96,43 +96,6 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     }
 }
 
-#[test]
-fn the_counts_are_those_of_refine() {
-    let folder = crate::common::folder();
-    let output = folder.path().join("out.ply");
-    let report = run(
-        "refine builtin:cup -o {} --method limit-normal --angle 6 --levels 2 --report -",
-        &[&output],
-    )
-    .expect(0)
-    .json();
-    let list = run(
-        "compare builtin:cup --angle 6 --levels 2 --json --samples 20000",
-        &[],
-    )
-    .expect(0)
-    .json();
-    assert_eq!(list[0]["triangles"], report["output"]["triangles"]);
-    let angle = list[1]["angle_degrees"].as_f64().expect("an angle");
-    let amresh =
-        format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
-    let report = run(&amresh, &[&output]).expect(0).json();
-    assert_eq!(list[1]["triangles"], report["output"]["triangles"]);
-    let count = &list[0]["triangles"];
-    for (row, method) in [
-        (7, "--method planarity --max-levels 8"),
-        (9, "--method vertex-error --max-levels 8"),
-        (10, "--scheme sqrt3"),
-    ] {
-        let words = format!("refine builtin:cup -o {{}} {method} --triangles {count} --report -");
-        let report = run(&words, &[&output]).expect(0).json();
-        assert_eq!(
-            list[row]["triangles"], report["output"]["triangles"],
-            "{method}"
-        );
-    }
-}
-
 /// What has no answer is left out with a note, and the others are compared.
 #[test]
 fn methods_without_an_answer_are_left_out() {
@@ -177,19 +140,4 @@ fn methods_without_an_answer_are_left_out() {
     .expect(0);
     assert!(!names(&said).contains(&"sqrt3".to_owned()));
     said.saying("sqrt3 left out: --interpolate");
-}
-
-#[test]
-fn the_table_is_aligned() {
-    let text = run("compare builtin:torus --samples 20000", &[])
-        .expect(0)
-        .stdout;
-    let rows: Vec<&str> = text
-        .lines()
-        .skip_while(|line| !line.starts_with("method"))
-        .take_while(|l| !l.is_empty())
-        .collect();
-    assert_eq!(rows.len(), 12, "{text}");
-    let widths: Vec<usize> = rows.iter().map(|row| row.chars().count()).collect();
-    assert!(widths.iter().all(|&width| width == widths[0]), "{text}");
 }

@@ -72,23 +72,6 @@ fn places_of_an_octahedron() {
     );
 }
 
-/// People write thirds with as many digits as they like.
-#[test]
-fn weights_with_few_digits_are_the_place_that_was_meant() {
-    let folder = folder();
-    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let places = file(&folder, "places.txt", "7 0.3333 0.3333 0.3333\n");
-    let command = "evaluate {} --at 7,0.333333,0.333333,0.333333 --at {} --json";
-    let found = run(command, &[&control, &places]).expect(0).json();
-    for place in found.as_array().expect("a list") {
-        assert_eq!(
-            place["barycentric"],
-            serde_json::json!([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0])
-        );
-        near(&place["curvature"]["gaussian"], 3.848001180091);
-    }
-}
-
 #[test]
 fn sharp_edges_have_a_normal_on_each_side() {
     // The middle of an edge of a cube, seen from both of its faces.
@@ -151,52 +134,4 @@ fn places_that_are_none_are_errors() {
         .expect(1)
         .saying("nowhere.txt");
     run("evaluate {}", &[&control]).expect(2).saying("--at");
-}
-
-#[test]
-fn polygons_are_told_to_be_triangles() {
-    let folder = folder();
-    let quad = file(
-        &folder,
-        "quad.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
-    );
-    run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad])
-        .expect(0)
-        .saying("2 triangles of the control mesh");
-    let found = run("evaluate {} --at 1,0.2,0.3,0.5 --json", &[&quad])
-        .expect(0)
-        .json();
-    assert_eq!(
-        (&found[0]["face"], &found[0]["input_face"]),
-        (&1.into(), &0.into())
-    );
-}
-
-#[test]
-fn limits_have_area_and_volume() {
-    let folder = folder();
-    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let found = run("info {} --limit --json", &[&control]).expect(0).json();
-    near(&found["limit"]["volume"], 0.303854909279);
-    assert!(
-        run("info {} --limit", &[&control])
-            .expect(0)
-            .stdout
-            .contains("volume 0.30385")
-    );
-    assert!(run("info {} --json", &[&control]).expect(0).json()["limit"].is_null());
-    // With all edges sharp it is the octahedron.
-    let found = run("info {} --limit --crease-angle 30 --json", &[&control])
-        .expect(0)
-        .json();
-    near(&found["limit"]["volume"], 4.0 / 3.0);
-    near(&found["limit"]["area"], 4.0 * 3f64.sqrt());
-    run("info {} --crease-angle 30", &[&control])
-        .expect(2)
-        .saying("--limit");
-    let sheet = run("info builtin:sheet --limit --json", &[])
-        .expect(0)
-        .json();
-    assert!(sheet["limit"]["volume"].is_null() && sheet["limit"]["area"].as_f64() > Some(0.0));
 }

@@ -132,46 +132,6 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     assert!(vertices[0] != vertices[1] && vertices[0].len() == vertices[1].len());
 }
 
-/// Where no division brings normals nearer, that is told, and how often: it is no cap that was reached.
-#[test]
-fn angles_that_no_division_closes_are_told() {
-    let (folder, out) = (folder(), crate::common::folder());
-    let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path().join(name));
-    for frame in [&first, &second] {
-        run(
-            "refine builtin:head -o {} --method uniform --levels 0",
-            &[frame],
-        )
-        .expect(0);
-    }
-    let report = folder.path().join("report.json");
-    let told = || -> serde_json::Value {
-        serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON")
-    };
-    let command = "refine {} {} -o {} --shared-topology --angle 40 --report {}";
-    let said = run(command, &[&first, &second, out.path(), &report]).expect(0);
-    let count = told()["open_cones"].as_u64().expect("a number");
-    said.saying(&format!("{count} triangles stay outside the angle"));
-    assert!(
-        count > 0 && told()["stop"] == "cones" && told()["pixels"].is_null(),
-        "{}",
-        told()
-    );
-    // As of one mesh.
-    run(
-        "refine {} -o {} --angle 40 --report {}",
-        &[&first, &out.path().join("one.ply"), &report],
-    )
-    .expect(0)
-    .saying("stay outside the angle");
-    assert_eq!(told()["stop"], "cones");
-    // Caps are those that were reached.
-    let capped = "refine {} {} -o {} --shared-topology --tolerance 0.01% --max-levels 2";
-    run(capped, &[&first, &second, out.path()])
-        .expect(3)
-        .saying("--max-levels 2 was reached");
-}
-
 #[test]
 fn frames_of_other_meshes_are_refused_by_what_differs() {
     let (folder, out) = (folder(), crate::common::folder());
@@ -215,7 +175,6 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
         "--interpolate",
         "--mesh box",
         "--material red",
-        "--relative-to mesh",
         "--link-resources",
         "--weld-ignores skin",
         "--morph-tolerance 1%",

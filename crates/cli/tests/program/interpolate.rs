@@ -1,4 +1,4 @@
-//! `--interpolate` and `--interpolate-within`: the limit surface through the vertices, in every command that has one.
+//! `--interpolate[=WITHIN]`: the limit surface through the vertices, in every command that has one.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -91,7 +91,7 @@ fn a_peg_keeps_its_radius() {
     let percent = 100.0 * number(&found["displacement"]) / 264f64.sqrt();
     assert!((number(&found["displacement_percent"]) - percent).abs() < 1e-9);
 
-    let (report, (_, most), said) = refine("--interpolate-within 0.02");
+    let (report, (_, most), said) = refine("--interpolate=0.02");
     let found = &report["interpolation"];
     assert!((4.97..4.985).contains(&most), "{most}");
     assert!(said.contains("passes within 0.02 of 32 vertices"), "{said}");
@@ -100,7 +100,7 @@ fn a_peg_keeps_its_radius() {
         number(&found["least_energy"]) <= number(&found["energy"])
             && number(&found["energy"]) < 1.0
     );
-    let (report, ..) = refine("--interpolate-within 0%");
+    let (report, ..) = refine("--interpolate=0%");
     assert_eq!(report["interpolation"]["within"], 0.0);
 }
 
@@ -147,30 +147,4 @@ fn every_command_with_a_limit_surface_has_it() {
     run("refine builtin:cup --dry-run --interpolate", &[])
         .expect(0)
         .saying("passes through");
-}
-
-#[test]
-fn what_changes_nothing_is_said() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:spike -o {} --scheme butterfly --interpolate --tolerance 2%",
-        &[&output],
-    )
-    .expect(0)
-    .saying("as it is");
-    run(
-        "refine builtin:spike -o {} --interpolate --interpolate-within 1",
-        &[&output],
-    )
-    .expect(2);
-    run(
-        "refine builtin:spike -o {} --interpolate-within -1",
-        &[&output],
-    )
-    .expect(2)
-    .saying("at least 0");
-    run("measure builtin:spike builtin:cup --interpolate", &[])
-        .expect(2)
-        .saying("--limit-of");
 }

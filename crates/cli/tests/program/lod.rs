@@ -9,7 +9,6 @@ use limitmesh_io::read;
 
 use crate::asset::{cube, first_mesh};
 use crate::common::{file, folder, has_keys, names, run};
-use crate::glb::Glb;
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -193,83 +192,6 @@ fn a_cap_that_ends_the_levels_is_named() {
 const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\n\
     f 1/1 2/2 3/3\nusemtl blue\nf 1/1 3/3 4/4\n";
 
-/// What channels lead to, what is left out and why: as `refine` says it.
-#[test]
-fn what_channels_need_comes_along() {
-    let folder = folder();
-    let input = file(&folder, "in.obj", PAINTED);
-    file(
-        &folder,
-        "paint.mtl",
-        "newmtl red\nnewmtl blue\nKd 0 0.25 1\n",
-    );
-    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
-    let output = folder.path().join("deep/out.obj");
-    let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
-    assert!(folder.path().join("deep/paint.mtl").is_file());
-    assert!(
-        !said.stderr.contains("left out: normals"),
-        "{}",
-        said.stderr
-    );
-    let mut levels = names(&folder.path().join("deep"));
-    levels.retain(|name| name.ends_with(".obj"));
-    assert!(
-        !levels.is_empty() && levels[0] == "out_LOD0.obj",
-        "{levels:?}"
-    );
-    for name in levels {
-        let text =
-            std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
-        for line in ["mtllib paint.mtl", "usemtl red", "usemtl blue"] {
-            assert!(text.lines().any(|own| own == line), "{line} in {name}");
-        }
-        assert!(text.contains("\nvt ") && text.contains("\nvn "), "{name}");
-    }
-    run(
-        "lod {} -o {} --levels 2 --channel materials=drop",
-        &[&input, &output],
-    )
-    .expect(0)
-    .saying("left out: materials (by --channel)");
-    let output = folder.path().join("out.glb");
-    run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
-    let materials = Glb::read(&output).json["materials"].clone();
-    assert_eq!(
-        materials[1]["pbrMetallicRoughness"]["baseColorFactor"],
-        serde_json::json!([0.0, 0.25, 1.0, 1.0])
-    );
-}
-
-#[test]
-fn textures_of_ply_files_come_along() {
-    let folder = folder();
-    let seamed = crate::seams::cube().replace(
-        "element vertex",
-        "comment TextureFile wood.png\nelement vertex",
-    );
-    let input = file(&folder, "in.ply", &seamed);
-    file(&folder, "wood.png", "");
-    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
-    let output = folder.path().join("deep/out.ply");
-    run("lod {} -o {} --levels 2 --ascii", &[&input, &output])
-        .expect(0)
-        .saying("vertices on seams of texture coordinates are written once for each side");
-    let text = std::fs::read_to_string(folder.path().join("deep/out_LOD0.ply")).expect("a level");
-    assert!(
-        text.contains("comment TextureFile wood.png\n"),
-        "{}",
-        &text[..400]
-    );
-    assert!(folder.path().join("deep/wood.png").is_file());
-    let other = run(
-        "lod {} -o {} --levels 2",
-        &[&input, &folder.path().join("out.obj")],
-    )
-    .expect(0);
-    other.saying("left out: wood.png (only PLY files name pictures themselves)");
-}
-
 /// Of an asset all but its nodes, skins and what names them.
 #[test]
 fn an_assets_materials_come_along() {
@@ -357,7 +279,7 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     .expect(1)
     .saying("no folder");
     for (option, value) in [
-        ("--uv-tolerance", "0.1"),
+        ("--attribute-tolerance", "uv=0.1"),
         ("--attribute-tolerance", "heat=1"),
     ] {
         run(
@@ -372,56 +294,4 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
         ["b_LOD3.obj", "rock_LOD0.obj"],
         "nothing is written"
     );
-}
-
-/// Levels that would be as coarse as the control mesh allows are told and left out, and whoever goes away meets levels in order.
-#[test]
-fn distances_grow_from_level_to_level() {
-    for words in [
-        "builtin:cup -o {}",
-        "builtin:cup -o {} --tolerances 20%,10%,1%,0.5%,0.1% --morph",
-        "builtin:head -o {} --levels 5",
-    ] {
-        let folder = folder();
-        let output = folder.path().join("out.glb");
-        let found = run(&format!("lod {words} --report -"), &[&output]).expect(0);
-        let report = found.json();
-        let levels = report["levels"].as_array().expect("a list");
-        let numbers = |key: &str| -> Vec<f64> {
-            levels
-                .iter()
-                .map(|level| level[key].as_f64().expect("a number"))
-                .collect()
-        };
-        let (triangles, distances, coverage) = (
-            numbers("triangles"),
-            numbers("switching_distance"),
-            numbers("least_coverage"),
-        );
-        assert!(
-            triangles.windows(2).all(|pair| pair[0] > pair[1]),
-            "{words}: {triangles:?}"
-        );
-        assert!(
-            distances.windows(2).all(|pair| pair[0] < pair[1]),
-            "{words}: {distances:?}"
-        );
-        assert!(
-            coverage.windows(2).all(|pair| pair[0] > pair[1]),
-            "{words}: {coverage:?}"
-        );
-        for level in levels.iter().filter(|level| !level["morph"].is_null()) {
-            assert!(
-                level["morph"]["from_distance"].as_f64() < level["morph"]["to_distance"].as_f64(),
-                "{level}"
-            );
-        }
-    }
-    let folder = folder();
-    run(
-        "lod builtin:cup -o {} --tolerances 20%,10%,1%",
-        &[&folder.path().join("out.glb")],
-    )
-    .expect(0)
-    .saying("left out: the next finer one");
 }

@@ -68,15 +68,6 @@ fn parallel_squares_are_as_far_apart_as_they_stand() {
 }
 
 #[test]
-fn a_surface_has_no_distance_to_itself() {
-    let report = measure("builtin:cup builtin:cup", &[]);
-    assert!(
-        number(&report["hausdorff"]["symmetric_percent"]) < 1e-10,
-        "{report}"
-    );
-}
-
-#[test]
 fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let folder = folder();
     let refined = folder.path().join("refined.ply");
@@ -106,100 +97,6 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     );
     assert!(number(&same["hausdorff"]["symmetric_percent"]) < 1e-10);
     assert_eq!(same["reference"]["limit"]["chosen"], false);
-}
-
-/// What is measured lies on the limit surface with its vertices alone, as the reference does: compared with itself it would be at no
-/// distance. How far it is the next levels show.
-#[test]
-fn a_mesh_of_many_levels_is_not_its_own_reference() {
-    let folder = folder();
-    let refined = folder.path().join("refined.ply");
-    run(
-        "refine builtin:tetrahedron -o {} --method uniform --limit --levels 5",
-        &[&refined],
-    )
-    .expect(0);
-    let report = measure("{} --limit-of builtin:tetrahedron", &[&refined]);
-    assert_eq!(report["reference"]["limit"]["levels"], 7);
-    let certified = run(
-        "measure {} --limit-of builtin:tetrahedron --certified --json",
-        &[&refined],
-    )
-    .expect(0)
-    .json();
-    let [lower, upper] = ["lower", "upper"].map(|end| number(&certified["hausdorff"][end]));
-    let found = number(&report["hausdorff"]["symmetric"]);
-    // Two levels finer it is a sixteenth of that off itself.
-    assert!(
-        0.9 * lower < found && found < upper,
-        "{found}, certainly from {lower} to {upper}"
-    );
-}
-
-/// Area and volume are beside what is asked for: where they are beyond what numbers hold, distances are not.
-#[test]
-fn distances_are_measured_where_areas_are_not_known() {
-    let folder = folder();
-    let octahedron = |r: &str| {
-        let corners = [[r, "0", "0"], ["0", r, "0"], ["0", "0", r]].map(|at| at.join(" "));
-        let opposite = corners.clone().map(|at| at.replace(r, &format!("-{r}")));
-        let vertices: String = corners
-            .iter()
-            .chain(&opposite)
-            .map(|at| format!("v {at}\n"))
-            .collect();
-        format!(
-            "{vertices}f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n"
-        )
-    };
-    let [near, far] = ["1", "1e110"].map(|r| file(&folder, &format!("{r}.obj"), &octahedron(r)));
-    let of = |path: &Path| measure("{} --limit-of {}", &[path, path]);
-    let (near, far) = (of(&near), of(&far));
-    let percent = |report: &Value| number(&report["hausdorff"]["symmetric_percent"]);
-    assert!(
-        (percent(&near) - percent(&far)).abs() < 1e-6,
-        "{near:#} {far:#}"
-    );
-    assert!(
-        near["reference"]["volume"].is_f64() && far["reference"]["volume"].is_null(),
-        "{far:#}"
-    );
-}
-
-#[test]
-fn the_text_says_that_samples_give_a_lower_bound() {
-    let text = run(
-        "measure builtin:icosphere --limit-of builtin:icosphere",
-        &[],
-    )
-    .expect(0)
-    .stdout;
-    for words in [
-        "lower bound",
-        "samples",
-        "% of the control mesh's diagonal",
-        "RMS",
-        "closest point",
-        "5 levels",
-    ] {
-        assert!(text.contains(words), "{words} in:\n{text}");
-    }
-}
-
-#[test]
-fn non_manifold_surfaces_can_be_measured() {
-    let folder = folder();
-    let fan = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
-    let input = file(&folder, "fan.obj", fan);
-    let report = measure("{} {}", &[&input, &input]);
-    assert!(number(&report["hausdorff"]["symmetric"]) < 1e-12);
-    assert_eq!(report["surface"]["diagnosis"]["clean"], false);
-    assert!(
-        run("measure {} {}", &[&input, &input])
-            .expect(0)
-            .stdout
-            .contains("repaired first")
-    );
 }
 
 #[test]
@@ -394,32 +291,6 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
         &[&output],
     )
     .expect(2);
-}
-
-/// Uniform refinement and a sphere: distances to the limit surface that no exact refinement had a part in.
-#[test]
-fn the_distance_of_other_meshes_to_the_limit_surface_is_certified() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    for options in [
-        "--method uniform --levels 2 --limit",
-        "--method limit-normal --angle 8",
-    ] {
-        run(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&output],
-        )
-        .expect(0);
-        let sampled = measure("{} --limit-of builtin:torus", &[&output]);
-        let h = certified("{} --limit-of builtin:torus", &[&output], 0);
-        let sampled = number(&sampled["hausdorff"]["symmetric"]);
-        let (low, high) = (number(&h["lower"]), number(&h["upper"]));
-        // The samples' own limit surface is a mesh as well: off by hundredths of this distance.
-        assert!(
-            sampled <= 1.02 * high && sampled >= 0.9 * low,
-            "{options}: {sampled} in {low}, {high}"
-        );
-    }
 }
 
 /// What `refine` proves and what `measure` finds are per cent of one diagonal, the control mesh's; its limit surface is

@@ -221,7 +221,7 @@ fn a_box_is_itself_and_says_so_first() {
         (&json!(30.0), &json!(true))
     );
     assert_eq!(parameters["interpolate_within"], 0.0);
-    assert_eq!(parameters["concave_corners"], "divided");
+    assert_eq!(parameters["concave_corners"], "fixed");
     assert_eq!(report["interpolation"]["folded_regions"], 0);
 
     let (run, found, report) = refine(&input, "--crease-angle none");
@@ -241,7 +241,7 @@ fn a_box_is_itself_and_says_so_first() {
         ),
         (&json!(40.0), &Value::Null)
     );
-    let (run, _, report) = refine(&input, "--interpolate-within 0.1");
+    let (run, _, report) = refine(&input, "--interpolate=0.1");
     assert!(
         run.stderr
             .contains("kept sharp; --crease-angle none smooths them"),
@@ -264,84 +264,6 @@ fn a_box_is_itself_and_says_so_first() {
     crate::common::run("refine {} -o {} --crease-angle 0", &[&input, &output])
         .expect(2)
         .saying("'auto' or 'none'");
-}
-
-#[test]
-fn a_peg_keeps_its_radius_and_gets_the_volume_of_a_cylinder() {
-    let folder = folder();
-    let input = Solid::peg(16, 5.0, 8.0).stl(&folder, "peg.stl");
-    let (_, found, report) = refine(&input, "--tolerance 0.01%");
-    let radii = found
-        .positions
-        .iter()
-        .map(|p| p[0].hypot(p[1]))
-        .filter(|radius| *radius > 4.5);
-    assert!(
-        radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3),
-        "{:?}",
-        radii.collect::<Vec<_>>()
-    );
-    let exact = PI * 25.0 * 8.0;
-    assert!(
-        (volume(&found) / exact - 1.0).abs() < 1e-3,
-        "{} {exact}",
-        volume(&found)
-    );
-    assert_eq!(report["output"]["inverted_triangles"], 0);
-}
-
-#[test]
-fn a_bracket_with_holes_keeps_its_volume() {
-    let folder = folder();
-    let input = Solid::bracket(24, 4.0).stl(&folder, "bracket.stl");
-    let exact = 5.0 * 20.0 * 35.0 + 5.0 * (40.0 * 20.0 - 2.0 * PI * 16.0);
-    let (run, found, report) = refine(&input, "");
-    assert!(
-        (volume(&found) / exact - 1.0).abs() < 3e-3,
-        "{} {exact}",
-        volume(&found)
-    );
-    assert!(
-        run.stderr
-            .lines()
-            .next()
-            .is_some_and(|line| line.starts_with("looks like a part: ")),
-        "{}",
-        run.stderr
-    );
-    assert_eq!(report["output"]["inverted_triangles"], 0);
-    // The rims of the holes are the circles through the input's vertices.
-    let holes = found
-        .positions
-        .iter()
-        .map(|p| (p[0] - 10.0).hypot(p[1] - 10.0))
-        .filter(|&radius| radius < 5.0);
-    assert!(
-        holes.clone().count() >= 48 && holes.clone().all(|radius| (radius - 4.0).abs() < 4e-3),
-        "{:?}",
-        holes.collect::<Vec<_>>()
-    );
-}
-
-/// Two boxes that touch along an edge, as voxels do, enclose what both do.
-#[test]
-fn solids_that_touch_along_an_edge_are_closed() {
-    let folder = folder();
-    let mut boxes = Solid::cuboid([2.0, 3.0, 5.0]);
-    let moved = boxes
-        .0
-        .iter()
-        .map(|corners| corners.map(|[x, y, z]| [x - 2.0, y - 3.0, z]))
-        .collect::<Vec<_>>();
-    boxes.0.extend(moved);
-    let input = boxes.stl(&folder, "boxes.stl");
-    let (run, found, _) = refine(&input, "");
-    assert!(
-        run.stderr.contains(", closed (") && run.stderr.contains("volume 60 to 60"),
-        "{}",
-        run.stderr
-    );
-    assert!((volume(&found) - 60.0).abs() < 1e-9);
 }
 
 /// One surface in all commands: what is refined by default is at its tolerance from the surface that others speak of by default.
@@ -540,100 +462,4 @@ fn files_with_sharpness_of_their_own_are_not_looked_at() {
     let quads = "v 0 0 0\nv 4 0 0\nv 0 2 0\nv 4 2 0\nv 0 0 1\nv 4 0 1\nv 0 2 1\nv 4 2 1\n\
         f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
     assert!(!is_part(&file(&folder, "cage.obj", quads)));
-}
-
-/// A peg shaded round between two rims, as modelling programs write it: its normals say which edges are sharp, and it keeps its radius. Where
-/// they differ along one rim only, the other is smooth.
-#[test]
-fn normals_of_parts_say_which_edges_are_sharp() {
-    let folder = folder();
-    let peg = |is_top_smooth: bool| {
-        let mut text = String::new();
-        for corners in &Solid::peg(16, 5.0, 8.0).0 {
-            let is_end = corners.iter().all(|p| p[2] == corners[0][2]);
-            for [x, y, z] in corners {
-                writeln!(text, "v {x} {y} {z}").expect("text");
-                match is_end || (is_top_smooth && *z > 0.0) {
-                    true => writeln!(text, "vn 0 0 {}", z - 4.0),
-                    false => writeln!(text, "vn {x} {y} 0"),
-                }
-                .expect("text");
-            }
-            text.push_str("f -3//-3 -2//-2 -1//-1\n");
-        }
-        file(&folder, "peg.obj", &text)
-    };
-    let (run, found, _) = refine(&peg(false), "--tolerance 0.01%");
-    assert!(
-        run.stderr
-            .contains("32 edges that have different normals on both sides kept sharp"),
-        "{}",
-        run.stderr
-    );
-    assert!(
-        (volume(&found) / (PI * 200.0) - 1.0).abs() < 1e-3,
-        "{}",
-        volume(&found)
-    );
-    let (run, _, _) = refine(&peg(true), "--tolerance 1%");
-    assert!(
-        run.stderr
-            .contains("looks like a part: 16 edges that have different normals"),
-        "{}",
-        run.stderr
-    );
-    let limit = crate::common::run("info {} --limit --json", &[&peg(false)])
-        .expect(0)
-        .json();
-    assert!(
-        (number(&limit["limit"]["volume"]) / (PI * 200.0) - 1.0).abs() < 1e-3,
-        "{limit}"
-    );
-}
-
-/// Through vertices close together, the surface would turn over; it passes by them and says where.
-#[test]
-fn where_the_surface_would_fold_it_passes_by() {
-    let folder = folder();
-    let at = |i: usize, z: f64| {
-        let (sine, cosine) = (TAU * (i % 16) as f64 / 16.0).sin_cos();
-        [5.0 * cosine, 5.0 * sine, z]
-    };
-    let mut solid = Solid::default();
-    for pair in [0.0, 3.95, 4.05, 8.0].windows(2) {
-        (0..16).for_each(|i| {
-            solid.quad([
-                at(i, pair[0]),
-                at(i + 1, pair[0]),
-                at(i + 1, pair[1]),
-                at(i, pair[1]),
-            ]);
-        });
-    }
-    for i in 1..15 {
-        solid.0.push([at(0, 0.0), at(i + 1, 0.0), at(i, 0.0)]);
-        solid.0.push([at(0, 8.0), at(i, 8.0), at(i + 1, 8.0)]);
-    }
-    let input = solid.stl(&folder, "rings.stl");
-    let (_, _, through) = refine(&input, "--crease-angle 30 --interpolate");
-    assert!(number(&through["output"]["inverted_triangles"]) > 0.0);
-    let (run, found, report) = refine(&input, "");
-    assert_eq!(report["output"]["inverted_triangles"], 0);
-    assert_eq!(report["interpolation"]["folded_regions"], 1);
-    let said = "the surface passes by 32 vertices: through them it would fold in 1 region; it has 32 faces, from (-5, -5, 3.95) to (5, 5, 4.05)";
-    assert!(run.stderr.contains(said), "{}", run.stderr);
-    // Triangles all look outwards, and the rims keep their radius.
-    assert!(
-        (volume(&found) / (PI * 200.0) - 1.0).abs() < 0.03,
-        "{}",
-        volume(&found)
-    );
-    let rims = found
-        .positions
-        .iter()
-        .filter(|p| p[2].abs() < 1e-6 || (p[2] - 8.0).abs() < 1e-6);
-    let radii = rims
-        .map(|p| p[0].hypot(p[1]))
-        .filter(|radius| *radius > 4.5);
-    assert!(radii.clone().count() >= 32 && radii.clone().all(|radius| (radius - 5.0).abs() < 1e-3));
 }

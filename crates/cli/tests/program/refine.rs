@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{Counts, claimed, counts, file, folder, has_keys, run, soup};
+use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
 
 /// The keys that users of the report may rely on.
 const CONTRACT: &str = "version input.path input.format input.vertices input.faces diagnosis.clean
@@ -94,20 +94,6 @@ fn every_built_in_model_is_refined_by_every_method() {
 }
 
 #[test]
-fn uniform_refinement_quadruples_the_faces_of_the_head() {
-    let folder = folder();
-    let report = refine(
-        "builtin:head",
-        &folder.path().join("out.off"),
-        "--method uniform",
-    );
-    assert_eq!(report["output"]["triangles"], 9088);
-    assert_eq!(report["stop"], "levels");
-    assert_eq!(report["parameters"]["angle_degrees"], Value::Null);
-    assert_eq!(report["parameters"]["seam"], Value::Null);
-}
-
-#[test]
 fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let folder = folder();
     let parameters = refine(
@@ -119,33 +105,10 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
         "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null, "within": null,
-        "creases_from": "none", "concave_corners": "as-tagged",
+        "creases_from": "none", "concave_corners": "smooth",
         "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
-}
-
-#[test]
-fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let triangles = |options: &str| {
-        let options = format!("--method limit-normal {options}");
-        refine("builtin:icosphere", &output, &options)["output"]["triangles"]
-            .as_u64()
-            .expect("a count")
-    };
-    let (wide, narrow) = (triangles("--angle 10"), triangles("--angle 3"));
-    assert!(wide < narrow, "{wide} {narrow}");
-    // Two levels, so that the outline, which is divided at any angle, cannot outweigh the back.
-    let seen = triangles("--angle 3 --levels 2 --view 0,0,-1");
-    assert!(seen < narrow, "faces that look away stay: {seen} {narrow}");
-    let from_near = triangles("--angle 3 --levels 2 --eye 0,0,3");
-    assert!(
-        from_near < seen,
-        "an eye sees less than half of a sphere: {from_near} {seen}"
-    );
-    assert!(triangles("--angle 3 --levels 2 --view 0,0,-1 --dilatation 3") < seen);
 }
 
 #[test]
@@ -185,33 +148,6 @@ fn every_format_holds_the_same_mesh() {
 }
 
 #[test]
-fn limit_positions_of_a_tetrahedron_follow_the_closed_form() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    refine(
-        "builtin:tetrahedron",
-        &output,
-        "--method uniform --levels 0 --limit",
-    );
-    let control = limitmesh_models::find("tetrahedron")
-        .expect("a model")
-        .soup();
-    let limit = soup(&output);
-    for (i, p) in limit.positions.iter().enumerate() {
-        for axis in 0..3 {
-            // Loop at valence 3: each neighbour weighs 1/5, the vertex the remaining 2/5.
-            let sum: f64 = control.positions.iter().map(|q| q[axis]).sum();
-            let expected = 0.2 * sum + 0.2 * control.positions[i][axis];
-            assert!(
-                (p[axis] - expected).abs() < 1e-14,
-                "vertex {i}: {} {expected}",
-                p[axis]
-            );
-        }
-    }
-}
-
-#[test]
 fn the_cap_stops_before_the_step_that_would_pass_it() {
     let folder = folder();
     let output = folder.path().join("out.ply");
@@ -233,46 +169,6 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
     let written = counts(&soup(&output));
     assert_eq!(written, claimed(&report["output"]));
     assert_eq!(written.triangles, 2272);
-}
-
-#[test]
-fn a_cap_below_the_input_writes_the_input() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:head -o {} --method limit-normal --max-triangles 10",
-        &[&output],
-    )
-    .expect(3)
-    .saying("stopped short");
-    assert_eq!(counts(&soup(&output)).triangles, 142);
-}
-
-#[test]
-fn flat_faces_satisfy_the_criterion_at_once() {
-    let folder = folder();
-    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-    let input = file(&folder, "square.obj", square);
-    let output = folder.path().join("out.ply");
-    let words = "refine {} -o {} --method limit-normal --report -";
-    let run = run(words, &[&input, &output])
-        .expect(0)
-        .saying("no face is divisible");
-    assert_eq!(run.json()["stop"], "satisfied");
-    assert_eq!(
-        run.json()["diagnosis"]["polygons"]["first"],
-        serde_json::json!([0])
-    );
-    assert_eq!(
-        counts(&soup(&output)),
-        Counts {
-            vertices: 4,
-            triangles: 2,
-            boundary_edges: 4,
-            non_manifold_edges: 0,
-            euler_characteristic: 1
-        }
-    );
 }
 
 #[test]
@@ -327,74 +223,6 @@ fn repairs_are_told_and_strict_refuses_them() {
 }
 
 #[test]
-fn welding_within_a_distance_closes_a_gap() {
-    let folder = folder();
-    let gap = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 0 1.001 0\nv 1 1 0.2\nf 1 2 3\nf 4 6 5\n";
-    let input = file(&folder, "gap.obj", gap);
-    let components = |options: &str| {
-        run(&format!("info {{}} --json {options}"), &[&input])
-            .expect(0)
-            .json()["mesh"]["components"]
-            .clone()
-    };
-    assert_eq!(components(""), 2);
-    assert_eq!(components("--weld 0.01"), 1);
-}
-
-#[test]
-fn ply_carries_limit_normals() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:icosphere -o {} --tolerance 5% --ascii",
-        &[&output],
-    )
-    .expect(0);
-    let text = std::fs::read_to_string(&output).expect("text");
-    let (header, body) = text.split_once("end_header\n").expect("a header");
-    let properties: Vec<&str> = header
-        .lines()
-        .filter(|line| line.starts_with("property") && !line.contains("list"))
-        .collect();
-    let names: Vec<&str> = properties
-        .iter()
-        .filter_map(|line| line.split(' ').next_back())
-        .collect();
-    assert_eq!(names, ["x", "y", "z", "nx", "ny", "nz"]);
-    let numbers: Vec<f64> = body
-        .lines()
-        .next()
-        .expect("a vertex")
-        .split(' ')
-        .map(|x| x.parse().expect("a number"))
-        .collect();
-    // A sphere's normal at a vertex of the icosahedron's symmetry points where the vertex does.
-    let dot: f64 = (0..3).map(|i| numbers[i] * numbers[i + 3]).sum();
-    let length = numbers[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
-    assert!(dot > 0.999 * length, "{numbers:?}");
-}
-
-#[test]
-fn tags_reach_the_output_where_its_format_has_them() {
-    let folder = folder();
-    let cage =
-        "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
-    let input = file(&folder, "tagged.obj", cage);
-    let output = folder.path().join("out.obj");
-    run(
-        "refine {} -o {} --method limit-normal --levels 2",
-        &[&input, &output],
-    )
-    .expect(0);
-    let soup = soup(&output);
-    assert_eq!(soup.corners.len(), 1);
-    assert_eq!(
-        soup.positions[soup.corners[0].vertex as usize],
-        [0.0, 0.0, 1.0]
-    );
-}
-
-#[test]
 fn tags_are_kept_or_the_loss_is_told() {
     let folder = folder();
     let input = folder.path().join("tagged.obj");
@@ -419,57 +247,6 @@ fn tags_are_kept_or_the_loss_is_told() {
             if kept { (4, 1) } else { (0, 0) }
         );
     }
-}
-
-#[test]
-fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
-    let folder = folder();
-    let output = folder.path().join("cube.ply");
-    let report = refine(
-        "builtin:cube",
-        &output,
-        "--method uniform --levels 3 --crease-angle 30",
-    );
-    assert_eq!(report["parameters"]["crease_angle_degrees"], 30.0);
-    let on_cube =
-        |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
-    assert!(soup(&output).positions.iter().all(on_cube));
-    let off = |options: &str| {
-        let words = format!("measure {{}} --limit-of builtin:cube --json --samples 2000 {options}");
-        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"]
-            .as_f64()
-            .expect("a number")
-    };
-    assert!(off("--crease-angle 30") < 1e-7 && off("") > 0.1);
-}
-
-#[test]
-fn boundaries_are_smooth_or_keep_their_corners_or_stay() {
-    let folder = folder();
-    let square = file(
-        &folder,
-        "square.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n",
-    );
-    let output = folder.path().join("out.obj");
-    let kept = |rule: &str| {
-        let words = format!("refine {{}} -o {{}} --method uniform --levels 2 --limit {rule}");
-        run(&words, &[&square, &output]).expect(0);
-        let corners = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [0.0, 1.0, 0.0],
-        ];
-        corners
-            .iter()
-            .filter(|corner| soup(&output).positions.contains(corner))
-            .count()
-    };
-    assert_eq!(kept(""), 0);
-    assert_eq!(kept("--boundary smooth"), 0);
-    assert_eq!(kept("--boundary corners"), 2);
-    assert_eq!(kept("--boundary fixed"), 4);
 }
 
 /// A tetrahedron whose faces name their own vertices, one of them a rounding away from the others at its place.

@@ -33,16 +33,11 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
     let output = folder.path().join("out.ply");
     for (options, word) in [
         ("--method uniform --interpolate", "--interpolate"),
-        ("--interpolate-within 0.1", "--interpolate-within"),
+        ("--interpolate=0.1", "--interpolate"),
         ("--method amresh", "--method amresh"),
         ("--method limit-normal", "--method limit-normal"),
         ("--method planarity", "--method planarity"),
         ("--method vertex-error --angle 5", "--method vertex-error"),
-        ("--no-input-distance", "--no-input-distance"),
-        (
-            "--method uniform --no-input-distance",
-            "--no-input-distance",
-        ),
         (
             "--method uniform --tolerance 1%",
             "--tolerance is for exact refinement",
@@ -58,7 +53,7 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--optimize", "--optimize"),
         ("--pixels 1", "--pixels"),
         ("--view 0,0,1 --angle 5", "--view"),
-        ("--levels 3", "--levels"),
+        ("--levels 0", "goals need 1"),
     ] {
         let run = run(
             &format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"),

@@ -49,17 +49,14 @@ fn every_command_knows_the_unit_of_a_package() {
         ("info {} --weld 0.001mm", &[&input][..]),
         ("measure {} {} --certified --gap 0.1mm", &[&input, &input]),
         (
-            "measure {} --limit-of {} --interpolate-within 0.1mm --reference-levels 2",
+            "measure {} --limit-of {} --interpolate=0.1mm --reference-levels 2",
             &[&input, &input],
         ),
         (
             "project {} --onto {} --tolerance 0.1mm -o {}",
             &[&input, &input, &output],
         ),
-        (
-            "evaluate {} --at 0,1,0,0 --interpolate-within 0.1mm",
-            &[&input],
-        ),
+        ("evaluate {} --at 0,1,0,0 --interpolate=0.1mm", &[&input]),
         (
             "lod {} -o {} --levels 2 --tolerance 1mm",
             &[&input, &levels],
@@ -150,57 +147,4 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
         .as_f64()
         .expect("a distance");
     assert!(distance < 1e-8, "{distance} m");
-}
-
-/// Area and volume of triangles.
-fn bulk(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> [f64; 2] {
-    let cross = |u: [f64; 3], v: [f64; 3]| {
-        [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3])
-    };
-    let dot = |u: [f64; 3], v: [f64; 3]| (0..3).map(|i| u[i] * v[i]).sum::<f64>();
-    triangles.fold([0.0; 2], |[area, volume], [a, b, c]| {
-        let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
-        let normal = cross(u, v);
-        [
-            area + 0.5 * dot(normal, normal).sqrt(),
-            volume + dot(a, cross(b, c)) / 6.0,
-        ]
-    })
-}
-
-#[test]
-fn areas_and_volumes_are_those_of_stretched_and_sheared_meshes() {
-    let folder = folder();
-    let check = |report: &serde_json::Value, list: &str, [area, volume]: [f64; 2]| {
-        let size = &report[list][0]["size"]["after"];
-        let [found_area, found_volume] =
-            ["area", "volume"].map(|key| size[key].as_f64().expect("a number"));
-        assert!(
-            (found_area / area - 1.0).abs() < 1e-5,
-            "{found_area} for {area}"
-        );
-        assert!(
-            (found_volume / volume - 1.0).abs() < 1e-5,
-            "{found_volume} for {volume}"
-        );
-    };
-    let (input, output) = (data("ball_stretched.glb"), folder.path().join("out.glb"));
-    let run_stretched = run("refine {} -o {} --report -", &[&input, &output]).expect(0);
-    let glb = Glb::read(&output);
-    let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
-    let shown = glb
-        .triangles(0)
-        .into_iter()
-        .map(|t| t.map(|v| points[v as usize]));
-    check(
-        &run_stretched.json(),
-        "meshes",
-        bulk(shown.map(|t| t.map(|[x, y, z]| [3.0 * x, y, z]))),
-    );
-    let (input, output) = (data("ball_sheared.3mf"), folder.path().join("out.3mf"));
-    let run_sheared = run("refine {} -o {} --report -", &[&input, &output]).expect(0);
-    let shown = package::triangles(&output)
-        .into_iter()
-        .map(|(corners, _)| corners.map(|[x, y, z]| [x, 0.5 * x + y, z]));
-    check(&run_sheared.json(), "meshes", bulk(shown));
 }

@@ -131,62 +131,6 @@ fn voxels_become_round_within_the_distance_in_every_format() {
 }
 
 #[test]
-fn assets_packages_batches_and_dry_runs_have_it_too() {
-    let folder = folder();
-    let (text, squares) = ball(5);
-    let input = file(&folder, "ball.off", &text);
-    for kind in ["glb", "3mf"] {
-        let [plain, output] =
-            ["plain", "round"].map(|name| folder.path().join(format!("{name}.{kind}")));
-        let unit = if kind == "3mf" { "--unit mm" } else { "" };
-        run(
-            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
-            &[&input, &plain],
-        )
-        .expect(0);
-        let report = run(
-            "refine {} -o {} --within 0.8 --report -",
-            &[&plain, &output],
-        )
-        .expect(0)
-        .json();
-        let found = &report["meshes"][0];
-        assert_eq!(found["parameters"]["within"], 0.8, "{kind}");
-        assert!(
-            found["input_distance"]["upper"].as_f64().expect("a number") <= 0.8,
-            "{kind}: {found}"
-        );
-        let back = folder.path().join(format!("{kind}.ply"));
-        run(
-            "refine {} -o {} --method uniform --levels 0",
-            &[&output, &back],
-        )
-        .expect(0);
-        let positions = soup(&back).positions;
-        assert!(
-            distance(&positions, &squares) <= 0.8 + 1e-6 && deviation(&positions) < 0.1,
-            "{kind}"
-        );
-    }
-    let jobs = format!(
-        "{{\"input\": {:?}, \"output\": {:?}, \"within\": 0.8}}\n",
-        input.display().to_string(),
-        folder.path().join("job.ply").display().to_string()
-    );
-    let jobs = file(&folder, "jobs.jsonl", &jobs);
-    run(
-        "batch {} -o {}",
-        &[&jobs, &folder.path().join("results.jsonl")],
-    )
-    .expect(0);
-    assert!(deviation(&soup(&folder.path().join("job.ply")).positions) < 0.1);
-    let dry = run("refine {} --dry-run --within 0.8 --report -", &[&input])
-        .expect(0)
-        .json();
-    assert_eq!(dry["parameters"]["within"], 0.8);
-}
-
-#[test]
 fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
     let folder = folder();
     let input = file(&folder, "ball.off", &ball(3).0);
@@ -232,70 +176,12 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
 }
 
 #[test]
-fn edges_are_sharp_only_where_somebody_says_so() {
-    let folder = folder();
-    let mut text = String::new();
-    for corner in 0..8 {
-        let side = |bit: u32, size: f64| if corner >> bit & 1 == 0 { 0.0 } else { size };
-        writeln!(
-            text,
-            "v {} {} {}",
-            side(0, 40.0),
-            side(1, 20.0),
-            side(2, 5.0)
-        )
-        .expect("text");
-    }
-    for [a, b, c, d] in [
-        [1, 3, 4, 2],
-        [5, 6, 8, 7],
-        [1, 2, 6, 5],
-        [3, 7, 8, 4],
-        [1, 5, 7, 3],
-        [2, 4, 8, 6],
-    ] {
-        writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").expect("text");
-    }
-    let input = file(&folder, "box.obj", &text);
-    let output = folder.path().join("out.ply");
-    let refined = |options: &str| {
-        run(
-            &format!("refine {{}} -o {{}} --within 0.5 {options}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        soup(&output).positions
-    };
-    // Rounded, a corner is left; sharp, it is there.
-    let is_there = |positions: Vec<[f64; 3]>| positions.contains(&[40.0, 20.0, 5.0]);
-    assert!(!is_there(refined("")));
-    assert!(is_there(refined("--crease-angle 30")));
-}
-
-/// A mesh has no fewer triangles than it began with, and says so.
-#[test]
-fn fewer_triangles_than_there_are_end_with_3() {
-    let folder = folder();
-    let (input, output) = (
-        file(&folder, "ball.off", &ball(4).0),
-        folder.path().join("out.ply"),
-    );
-    let said = run(
-        "refine {} -o {} --within 0.9 --triangles 100",
-        &[&input, &output],
-    )
-    .expect(3);
-    said.saying("more than --triangles 100; --optimize goes below");
-}
-
-#[test]
 fn what_does_not_go_with_it_is_refused() {
     let output = Path::new("out.ply");
     for options in [
         "--tolerance 1",
         "--interpolate",
-        "--interpolate-within 1",
-        "--no-input-distance",
+        "--interpolate=1",
         "--method uniform",
         "--method planarity",
         "--scheme sqrt3",

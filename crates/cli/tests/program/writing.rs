@@ -166,60 +166,6 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
     }
 }
 
-/// Nobody waits for the end of a large file: the temporary one is removed, and an earlier one of that name stays.
-#[cfg(unix)]
-#[test]
-fn a_signal_ends_the_writing_of_a_large_file() {
-    for (name, how) in [("out.ply", "--ascii"), ("out.obj", "")] {
-        let folder = folder();
-        let output = file(&folder, name, "precious");
-        let words = format!("refine builtin:shoe -o {{}} -q --method uniform --levels 6 {how}");
-        let mut running = Running::start(&words, &[&output]);
-        // Before the work one is made, too, to find out whether that is possible; nothing is written to it.
-        running.until("a temporary file", || {
-            let temporary = |name: &String| name.ends_with(".tmp");
-            let length =
-                |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
-            names(folder.path())
-                .into_iter()
-                .filter(temporary)
-                .any(|name| length(name) > 0)
-        });
-        running.signal("TERM");
-        running
-            .end()
-            .expect(143)
-            .saying("while writing ")
-            .saying("nothing was written");
-        assert_eq!(names(folder.path()), [name]);
-        assert_eq!(
-            std::fs::read_to_string(&output).expect("the earlier file"),
-            "precious"
-        );
-    }
-}
-
-/// A pipe that nobody reads from keeps no program from ending.
-#[cfg(unix)]
-#[test]
-fn a_signal_ends_the_writing_into_a_full_pipe() {
-    let folder = folder();
-    let pipe = pipe(&folder, "pipe.ply");
-    let mut running = Running::start(
-        "refine builtin:shoe -o {} -q --method uniform --levels 3",
-        &[&pipe],
-    );
-    // Opens when the program does, and is read from by nobody.
-    let reader = std::thread::spawn(move || std::fs::File::open(&pipe));
-    running.until("a pipe", || reader.is_finished());
-    running.signal("TERM");
-    running
-        .end()
-        .expect(143)
-        .saying("while writing ")
-        .saying("part of it may have been read");
-}
-
 /// Of files that belong together none counts as written before all are.
 #[cfg(unix)]
 #[test]
@@ -303,7 +249,7 @@ fn lines_of_results_are_short() {
         "builtin:head --angle 3",
         "builtin:head --angle 40",
         "builtin:head --triangles 3000 --optimize",
-        "builtin:head --pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080",
+        "builtin:head --pixels 0.5 --view 0,-4,2,0,0,0,0,0,1,40,1920x1080",
         "builtin:head --method uniform",
     ];
     for options in long {

@@ -8,7 +8,7 @@ use limitmesh_io::Format;
 
 use super::super::picture;
 use super::proof;
-use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
+use crate::arguments::{MAX_STEPS, Method, MorphTolerance, RefineArguments, Viewer, Way};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
 use crate::format::thousands;
@@ -29,26 +29,10 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     }
     match way {
         Way::Exact | Way::Sqrt3 => goals(arguments)?,
-        Way::Stepwise | Way::Sqrt3Steps => uniform(arguments)?,
+        Way::Stepwise | Way::Sqrt3Steps => steps(arguments)?,
         Way::Restricted => restricted(arguments)?,
     }
-    let view = arguments.view.is_some() || arguments.eye.is_some();
-    if view && !matches!(arguments.method, Method::Exact | Method::LimitNormal) {
-        return usage(
-            "--view and --eye make the angle from limit normals depend on the viewer; they need --method exact or \
-             limit-normal",
-        );
-    }
-    if view && arguments.method == Method::Exact && arguments.angle.is_none() {
-        return usage(
-            "--view and --eye make --angle depend on the viewer; with --method exact they need one",
-        );
-    }
-    if arguments.dilatation.is_some() && !view {
-        return usage(
-            "--dilatation widens the angle of faces that look at a viewer; it needs --view or --eye",
-        );
-    }
+    viewers(arguments)?;
     let format = arguments.format()?;
     if arguments.exact.provenance && format.is_some_and(|format| format != Format::Ply) {
         return usage(format!(
@@ -66,6 +50,26 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
         return usage("--dry-run gives no mesh that --picture could draw");
     }
     Ok(format)
+}
+
+/// Refuses viewers whom a method or the others do not know.
+fn viewers(arguments: &RefineArguments) -> anyhow::Result<()> {
+    let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
+    match arguments.view.iter().filter(is_one).count() {
+        0 if arguments.dilatation.is_some() => usage(
+            "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",
+        ),
+        0 => Ok(()),
+        1 if !matches!(arguments.method, Method::Exact | Method::LimitNormal) => usage(
+            "a direction or an eye in --view makes the angle from limit normals depend on the viewer; it needs --method exact or \
+             limit-normal",
+        ),
+        1 if arguments.method == Method::Exact && arguments.angle.is_none() => usage(
+            "a direction or an eye in --view makes --angle depend on the viewer; with --method exact it needs one",
+        ),
+        1 => Ok(()),
+        _ => usage("--view knows one direction or eye at a time; of cameras there may be several"),
+    }
 }
 
 /// Refuses two jobs that would write one file, and one that would replace an input of any of them.
@@ -139,57 +143,46 @@ fn unknown(arguments: &RefineArguments) -> Option<Limited> {
 }
 
 /// All of them. What depends on other options has checks of its own.
-fn limited(arguments: &RefineArguments) -> [Limited; 24] {
+fn limited(arguments: &RefineArguments) -> Vec<Limited> {
     const EXACT: &[Way] = &[Way::Exact];
     const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
     const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
     const STEPS: &[Way] = &[Way::Stepwise, Way::Sqrt3Steps];
-    let RefineArguments {
-        exact,
-        channels,
-        asset,
-        interpolation,
-        ..
-    } = arguments;
-    let option = |name, is_given, known| Limited {
+    let exact = &arguments.exact;
+    let has_tolerance = arguments.channels.given_tolerance().is_some();
+    [
+        ("--seam", arguments.seam.is_some(), STEPS),
+        ("--limit", arguments.limit, STEPS),
+        (
+            "--interpolate",
+            arguments.interpolation.given().is_some(),
+            IN_QUARTERS,
+        ),
+        ("--tolerance", exact.tolerance.is_some(), GOALS),
+        ("--triangles", exact.triangles.is_some(), GOALS),
+        ("--provenance", exact.provenance, GOALS),
+        ("--within", exact.within.is_some(), EXACT),
+        ("--pixels", exact.pixels.is_some(), EXACT),
+        ("cameras in --view", arguments.has_cameras(), EXACT),
+        ("--view", !arguments.view.is_empty(), IN_QUARTERS),
+        ("--balance", exact.balance, EXACT),
+        ("--optimize", exact.optimize, EXACT),
+        ("--divide-flat", exact.divide_flat, EXACT),
+        ("--max-memory", exact.max_memory.is_some(), EXACT),
+        ("--dry-run", exact.dry_run, EXACT),
+        ("--attribute-tolerance", has_tolerance, EXACT),
+        (
+            "--morph-tolerance",
+            arguments.asset.morph_tolerance.is_some(),
+            EXACT,
+        ),
+    ]
+    .map(|(name, is_given, known)| Limited {
         name,
         is_given,
         known,
-    };
-    [
-        option("--levels", arguments.levels.is_some(), STEPS),
-        option("--seam", arguments.seam.is_some(), STEPS),
-        option("--limit", arguments.limit, STEPS),
-        option("--view", arguments.view.is_some(), IN_QUARTERS),
-        option("--eye", arguments.eye.is_some(), IN_QUARTERS),
-        option("--interpolate", interpolation.interpolate, IN_QUARTERS),
-        option(
-            "--interpolate-within",
-            interpolation.interpolate_within.is_some(),
-            IN_QUARTERS,
-        ),
-        option("--tolerance", exact.tolerance.is_some(), GOALS),
-        option("--within", exact.within.is_some(), EXACT),
-        option("--triangles", exact.triangles.is_some(), GOALS),
-        option("--max-levels", exact.max_levels.is_some(), GOALS),
-        option("--provenance", exact.provenance, GOALS),
-        option("--pixels", exact.pixels.is_some(), EXACT),
-        option("--camera", !exact.camera.is_empty(), EXACT),
-        option("--camera-path", !exact.camera_path.is_empty(), EXACT),
-        option("--balance", exact.balance, EXACT),
-        option("--optimize", exact.optimize, EXACT),
-        option("--divide-flat", exact.divide_flat, EXACT),
-        option("--no-input-distance", exact.no_input_distance, EXACT),
-        option("--max-memory", exact.max_memory.is_some(), EXACT),
-        option("--dry-run", exact.dry_run, EXACT),
-        option("--uv-tolerance", channels.uv_tolerance.is_some(), EXACT),
-        option(
-            "--attribute-tolerance",
-            !channels.attribute_tolerance.is_empty(),
-            EXACT,
-        ),
-        option("--morph-tolerance", asset.morph_tolerance.is_some(), EXACT),
-    ]
+    })
+    .into()
 }
 
 impl Limited {
@@ -198,12 +191,10 @@ impl Limited {
         let name = self.name;
         let is_of_steps = self.known.contains(&Way::Sqrt3Steps);
         match way {
-            Way::Exact | Way::Sqrt3 if name == "--levels" => {
-                "--levels is the number of steps of the other methods; with --method exact, --max-levels is a cap"
-                    .to_owned()
-            }
             Way::Exact | Way::Sqrt3 if is_of_steps => {
-                format!("{name} has no effect with --method exact, whose vertices lie on the limit surface")
+                format!(
+                    "{name} has no effect with --method exact, whose vertices lie on the limit surface"
+                )
             }
             Way::Sqrt3 | Way::Sqrt3Steps if !self.known.contains(&Way::Sqrt3) => format!(
                 "{name} does not go with --scheme sqrt3; it knows the schemes that split triangles in four: loop, loop-warren, \
@@ -227,7 +218,10 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
             arguments.scheme()?.name()
         ));
     }
-    let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
+    if arguments.levels == Some(0) {
+        return usage("--levels 0 lets nothing be divided; goals need 1 at least");
+    }
+    let cameras = arguments.has_cameras();
     if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
         return usage(
             "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
@@ -262,43 +256,46 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
         ));
     }
     if exact.pixels.is_some() && !cameras {
-        return usage("--pixels is what cameras see; it needs --camera or --camera-path");
+        return usage("--pixels is what cameras see; it needs a camera in --view");
     }
     Ok(())
 }
 
 /// Refuses goals that the criteria of the literature do not have.
 fn restricted(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.angle.is_none() {
-        return Ok(());
-    }
-    if arguments.method == Method::VertexError {
-        return usage(
-            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance",
-        );
-    }
-    if arguments.exact.tolerance.is_some() {
-        return usage(
-            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
-        );
-    }
-    Ok(())
+    let why = match (arguments.method, arguments.angle) {
+        _ if arguments.levels == Some(0) => {
+            "--levels 0 lets nothing be divided; goals need 1 at least"
+        }
+        (_, None) => return Ok(()),
+        (Method::VertexError, _) => {
+            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance"
+        }
+        _ if arguments.exact.tolerance.is_some() => {
+            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together"
+        }
+        _ => return Ok(()),
+    };
+    usage(why)
 }
 
-/// Refuses what has no effect on uniform refinement.
-fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.method != Method::Uniform {
-        return Ok(());
+/// Refuses too many steps, and what has no effect on uniform refinement.
+fn steps(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.levels.is_some_and(|levels| levels > MAX_STEPS) {
+        return usage(format!(
+            "{MAX_STEPS} steps are the most, as each gives up to four times the triangles; --levels is a cap with --method exact alone"
+        ));
     }
-    if arguments.angle.is_some() {
-        return usage("--angle has no effect with --method uniform, which divides every face");
-    }
-    if arguments.seam.is_some() {
-        return usage(
-            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
-        );
-    }
-    Ok(())
+    let why = match arguments.method {
+        Method::Uniform if arguments.angle.is_some() => {
+            "--angle has no effect with --method uniform, which divides every face"
+        }
+        Method::Uniform if arguments.seam.is_some() => {
+            "--seam has no effect with --method uniform, where divided and undivided faces never meet"
+        }
+        _ => return Ok(()),
+    };
+    usage(why)
 }
 
 /// Checks that what is to be written can be, replaces no input, and is written once.
@@ -317,19 +314,15 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         }
         written.push(output);
     }
-    let beside_mesh = written.len();
+    let after_mesh = written.len();
     if let Some(picture) = &arguments.picture {
         picture::check_name(picture)?;
         written.push(picture);
     }
-    if let Some(proof) = &arguments.proof {
-        output::check_writable(proof)?;
-        written.push(proof);
+    for path in arguments.proof.iter().chain(&arguments.report) {
+        output::check_writable(path)?;
+        written.push(path);
     }
-    if let Some(report) = &arguments.report {
-        output::check_writable(report)?;
-        written.push(report);
-    }
-    output::check_replaced(&written[beside_mesh..], &[arguments.input()], None)?;
+    output::check_replaced(&written[after_mesh..], &[arguments.input()], None)?;
     output::check_once(&written)
 }

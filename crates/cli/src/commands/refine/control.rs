@@ -20,7 +20,7 @@ pub(super) struct Control {
     /// The input's face of each face of the mesh that was read.
     pub(super) faces: Vec<u32>,
     /// The mesh that was read, where somebody asks how far the result is from it.
-    surface: Option<(Vec<[f64; 3]>, Vec<[u32; 3]>)>,
+    surface: Option<Surface>,
     /// How far the limits of the control points are from the vertices at most, where they were moved for that.
     pub(super) residual: f64,
     /// How the mesh is shown, and the area and volume of the mesh that was read as it is shown.
@@ -29,6 +29,12 @@ pub(super) struct Control {
     pub(super) interpolation: Option<InterpolationReport>,
     /// Lengths in per cent are of this.
     pub(super) diagonal: f64,
+}
+
+/// Positions and triangles of a mesh.
+struct Surface {
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
 }
 
 /// A mesh that was read, with the input's face of each of its faces.
@@ -51,12 +57,10 @@ impl Control {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         let bulk = Bulk::as_shown(&read.mesh, &read.shown);
-        let is_compared = arguments.way() == Way::Exact && !arguments.exact.no_input_distance;
-        let surface = is_compared.then(|| {
-            (
-                read.mesh.positions().to_vec(),
-                read.mesh.triangles().to_vec(),
-            )
+        let is_compared = arguments.way() == Way::Exact && !arguments.shared_topology;
+        let surface = is_compared.then(|| Surface {
+            positions: read.mesh.positions().to_vec(),
+            triangles: read.mesh.triangles().to_vec(),
         });
         let featured = arguments.features.apply(read.mesh)?;
         let notes = [needles_in_words(&featured), corners_in_words(&featured)];
@@ -94,10 +98,10 @@ impl Control {
 
     /// The mesh that was read, where somebody asks how far the result is from it.
     pub(super) fn surface(&self) -> Option<Triangles<'_>> {
-        let (positions, triangles) = self.surface.as_ref()?;
+        let own = self.surface.as_ref()?;
         Some(Triangles {
-            positions,
-            triangles,
+            positions: &own.positions,
+            triangles: &own.triangles,
         })
     }
 }

@@ -224,7 +224,7 @@ fn outcome(found: &Exact, goals: &Goals, task: &Task<'_>) -> Outcome {
     let missed = || goals.in_words(found, arguments);
     let cap = match (found.stop, exact.max_memory) {
         (ExactStop::MemoryCap, Some(most)) => format!("--max-memory {}", bytes(most)),
-        (ExactStop::LevelCap, _) => format!("--max-levels {}", goals.options(task).max_levels),
+        (ExactStop::LevelCap, _) => format!("--levels {}", goals.options(task).max_levels),
         _ => format!("--max-triangles {}", thousands(most)),
     };
     let why = match found.stop {

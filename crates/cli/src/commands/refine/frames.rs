@@ -35,10 +35,11 @@ use crate::report::{
 /// Refines all inputs as frames of one mesh.
 pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     refuse(arguments)?;
-    // The report is about all of them, and how far results are from the inputs is not measured.
-    let mut each = arguments.clone();
-    each.report = None;
-    each.exact.no_input_distance = true;
+    // The report is about all of them.
+    let each = RefineArguments {
+        report: None,
+        ..arguments.clone()
+    };
     let jobs = jobs::planned(&each)?;
     let is_scene = |format: &Format| format.is_gltf() || *format == Format::ThreeMf;
     if let Some(format) = jobs.iter().filter_map(|job| job.1).find(is_scene) {
@@ -56,7 +57,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     if control.mesh.vertex_count() != count {
         return usage(format!(
             "{name}: corners of 180° or more are divided by where they are, which frames do not share; \
-             --concave-corners as-tagged leaves them"
+             --concave-corners smooth leaves them"
         ));
     }
     let task = Task {
@@ -132,7 +133,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         )),
         // Caps on triangles and memory are errors: there would be no mesh for all frames.
         _ => Outcome::StoppedShort(format!(
-            "--max-levels {} was reached before the goals were met for every frame",
+            "--levels {} was reached before the goals were met for every frame",
             options.max_levels
         )),
     })

@@ -88,7 +88,7 @@ impl Goals {
             !arguments.divides_flat() && !self.separates_faces && self.near.is_none();
         let is_traced = exact.provenance
             || arguments.proof.is_some()
-            || !exact.no_input_distance
+            || !arguments.shared_topology
             || self.separates_faces
             || task.is_traced;
         let mut options = ExactOptions::default()
@@ -99,7 +99,7 @@ impl Goals {
             .kept_edges(self.kept_edges.clone())
             .attributes(self.attributes.options())
             .flat_regions(has_flat_regions)
-            .unfold(arguments.features.concave_corners() == ConcaveCorners::Divided)
+            .unfold(arguments.features.concave_corners() == ConcaveCorners::Fixed)
             .origins(is_traced);
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
@@ -116,7 +116,7 @@ impl Goals {
         if let Some(count) = exact.triangles {
             options = options.triangles(count);
         }
-        if let Some(levels) = exact.max_levels {
+        if let Some(levels) = arguments.levels {
             options = options.max_levels(levels);
         }
         options

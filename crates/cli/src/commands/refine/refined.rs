@@ -133,7 +133,7 @@ pub(super) fn capped(mesh: &Mesh, stop: ExactStop, arguments: &RefineArguments) 
     }
     let cap = match stop {
         ExactStop::Met | ExactStop::Triangles => return Outcome::Done,
-        ExactStop::LevelCap => "levels (--max-levels)",
+        ExactStop::LevelCap => "levels (--levels)",
         _ => "triangles (--max-triangles)",
     };
     Outcome::StoppedShort(format!(

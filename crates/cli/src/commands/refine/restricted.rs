@@ -108,8 +108,7 @@ pub(super) fn parameters(
 }
 
 fn most_levels(arguments: &RefineArguments) -> u32 {
-    let levels = arguments.exact.max_levels;
-    levels.map_or(MOST_LEVELS, |levels| levels as u32)
+    arguments.levels.map_or(MOST_LEVELS, |levels| levels as u32)
 }
 
 /// The limit normals of the control mesh's surface at the vertices, by side where edges are sharp.

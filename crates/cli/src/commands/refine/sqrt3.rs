@@ -46,7 +46,7 @@ fn goals(arguments: &RefineArguments, diagonal: f64) -> anyhow::Result<Sqrt3Opti
         .triangles(exact.triangles)
         .max_triangles(Some(arguments.max_triangles()))
         .origins(exact.provenance);
-    Ok(match exact.max_levels {
+    Ok(match arguments.levels {
         Some(levels) => options.max_levels(levels),
         None => options,
     })

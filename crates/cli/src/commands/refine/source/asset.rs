@@ -22,9 +22,7 @@ use super::item::{Item, Source, sharpened};
 use super::put_back::{MOST_WIDE, PutBack, channel, moved_positions};
 use super::scene;
 use super::selection::Selection;
-use crate::arguments::{
-    ConcaveCorners, CreasesFrom, MorphTolerance, RefineArguments, RelativeTo, Unit, Way,
-};
+use crate::arguments::{ConcaveCorners, CreasesFrom, MorphTolerance, RefineArguments, Unit, Way};
 use crate::bulk::Shown;
 use crate::commands::channels::Channels;
 use crate::creases::Hints;
@@ -43,7 +41,7 @@ pub(crate) struct AssetSource {
     /// None for a dry run without a name.
     output: Option<Format>,
     selection: Selection,
-    diagonal: Option<f64>,
+    diagonal: f64,
     reading: Duration,
     left_out: Vec<String>,
 }
@@ -81,13 +79,8 @@ impl AssetSource {
         let Some(bounds) = asset.bounding_box()? else {
             anyhow::bail!("{name}: the scene shows no triangles that could be refined");
         };
-        let diagonal = match arguments.asset.relative_to {
-            RelativeTo::Scene => Some(scene::diagonal(bounds)),
-            RelativeTo::Mesh => None,
-        };
-        if let Some(diagonal) = diagonal {
-            scene::set_lengths(&mut arguments, diagonal)?;
-        }
+        let diagonal = scene::diagonal(bounds);
+        scene::set_lengths(&mut arguments, diagonal)?;
         let source = Self {
             selection: Selection::new(&asset, &arguments.asset)?,
             reading: start.elapsed(),
@@ -118,9 +111,8 @@ impl AssetSource {
 
     /// Keeps the names of a mesh's attributes that are lost: those that are too wide or dropped, and others.
     fn leave_out(&mut self, own: &MeshSoup, arguments: &RefineArguments, others: Vec<String>) {
-        let is_lost = |table: &&CornerAttribute| {
-            arguments.channels.drops(&table.name) || table.width > MOST_WIDE
-        };
+        let is_lost =
+            |table: &&CornerAttribute| is_dropped(table, arguments) || table.width > MOST_WIDE;
         let lost = own
             .attributes
             .iter()
@@ -143,7 +135,7 @@ impl Source for AssetSource {
     }
 
     fn diagonal(&self) -> Option<f64> {
-        self.diagonal
+        Some(self.diagonal)
     }
 
     fn item(
@@ -182,7 +174,7 @@ impl Source for AssetSource {
         let mut channels: Vec<Channel> = own.attributes.iter().map(channel).collect();
         arguments.channels.apply(&mut channels)?;
         let is_kept =
-            |own: &&Channel| own.arity <= MOST_WIDE && !arguments.channels.drops(&own.name);
+            |own: &&Channel| own.arity <= MOST_WIDE && !arguments.channels.drops_channel(own);
         let kept = channels
             .iter()
             .filter(is_kept)
@@ -331,6 +323,13 @@ fn check_channels(asset: &Asset, name: &str, arguments: &RefineArguments) -> any
     arguments.channels.check_tolerances(name, named)
 }
 
+/// Whether an attribute is to be left out.
+fn is_dropped(own: &CornerAttribute, arguments: &RefineArguments) -> bool {
+    arguments
+        .channels
+        .drops(&own.name, own.name.starts_with("TEXCOORD_"))
+}
+
 /// Lines about vertices and faces that stay apart.
 fn apart_in_words(own: &MeshSoup) -> Vec<String> {
     let KeptApart {
@@ -385,13 +384,13 @@ fn apart_in_words(own: &MeshSoup) -> Vec<String> {
 /// The arguments for a mesh with what keeps the borders of several primitives, and of values.
 fn with_kept_borders(mut arguments: RefineArguments, own: &MeshSoup) -> RefineArguments {
     // A flat region has triangles across borders, and across the faces that values belong to.
-    let is_kept = |own: &CornerAttribute| !arguments.channels.drops(&own.name);
+    let is_kept = |own: &CornerAttribute| !is_dropped(own, &arguments);
     let has_values = own.attributes.iter().any(is_kept) || !own.influences.is_empty();
     arguments.exact.divide_flat |= own.parts.len() > 1 || has_values;
     if own.borders > 0 {
         // Where they stay straight around a corner of 180° and more, the surface would fold over.
         let corners = &mut arguments.features.concave_corners;
-        corners.get_or_insert(ConcaveCorners::Divided);
+        corners.get_or_insert(ConcaveCorners::Fixed);
     }
     arguments
 }

@@ -166,7 +166,7 @@ impl Source for PackageSource {
             positions: &positions,
             triangles,
             source: &|triangle| origin(&carried, triangles, triangle),
-            keeps: &|name| !task.arguments.channels.drops(name),
+            keeps: &|name| !task.arguments.channels.drops(name, false),
         };
         let told = self.package.replace(item.number, &new)?;
         task.progress

@@ -17,7 +17,7 @@ use crate::progress::Progress;
 /// # Errors
 /// There is one.
 pub(super) fn check_viewers(arguments: &RefineArguments) -> anyhow::Result<()> {
-    match arguments.has_viewers() {
+    match !arguments.view.is_empty() {
         true => usage(
             "cameras and views look at one mesh; those of an asset or a package may appear many times, in many places",
         ),
@@ -39,7 +39,7 @@ pub(super) fn set_lengths(arguments: &mut RefineArguments, diagonal: f64) -> any
     let unit = arguments.build.unit;
     if let Some(value) = arguments.interpolation.within(diagonal, unit)? {
         let length = Length { value, unit: None };
-        arguments.interpolation.interpolate_within = Some(Extent::Length(length));
+        arguments.interpolation.interpolate = Some(Extent::Length(length));
     }
     Ok(())
 }

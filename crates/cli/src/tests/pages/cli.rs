@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::{Arg, Command, CommandFactory};
 
-use super::kept;
+use super::made;
 use crate::arguments::Arguments;
 
 const BEGINNING: &str = "\
@@ -18,7 +18,7 @@ This page is generated from the program: do not edit it.
 
 #[test]
 fn the_page_lists_the_command_line() {
-    kept::check("docs/cli.md", page().as_bytes());
+    made::check("docs/cli.md", page().as_bytes());
 }
 
 fn page() -> String {
