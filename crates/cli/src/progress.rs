@@ -100,7 +100,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Shows what a long function of the library tells of itself.
+    /// Shows what a long function of the library reports.
     pub(crate) fn observer(&self) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
         self.observer_in_phases(None)
     }
@@ -141,7 +141,7 @@ impl<'a> Progress<'a> {
             host.note(line.as_ref());
         }
         if !self.quiet {
-            // Nobody is left to tell if standard error is closed.
+            // Nobody is left to read it if standard error is closed.
             self.spinner
                 .suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
         }

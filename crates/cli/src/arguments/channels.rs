@@ -1,4 +1,4 @@
-//! Options about what a mesh carries beside its shape.
+//! Options about what a mesh carries apart from its shape.
 
 use std::str::FromStr;
 
@@ -29,7 +29,7 @@ pub(crate) struct ChannelArguments {
     /// Divide until a channel, linear on each triangle, is so near to where the surface has it; may be given several times
     ///
     /// In the channel's own units; of several numbers it is their Euclidean distance. For texture coordinates (uv for all) also in texels
-    /// of a texture so many texels wide: uv=0.5@2048. A goal beside the tolerance, for smooth channels; linear ones are exact on any
+    /// of a texture so many texels wide: uv=0.5@2048. A goal besides the tolerance, for smooth channels; linear ones are exact on any
     /// triangles. Of several for one channel the last holds. Not with --triangles, --balance or --optimize.
     #[arg(long, value_name = "NAME=E|NAME=TEXELS@SIZE")]
     pub(crate) attribute_tolerance: Vec<AttributeTolerance>,

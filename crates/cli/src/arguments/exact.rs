@@ -13,7 +13,7 @@ const HEADING: &str = "Goals and caps of --method exact, and of others where the
 pub(crate) struct ExactArguments {
     /// Greatest distance between the mesh and the limit surface, either way [default without another goal: 0.1%]
     ///
-    /// A length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of the
+    /// A length in the mesh's unit, with a unit where --unit gives the mesh's, or with % in per cent of the diagonal of the
     /// control mesh's bounding box. With --scheme sqrt3 it is kept by an estimate; with --method planarity it is how far the middles of
     /// edges are off, with vertex-error how far control points are from their limits [default for that: 0.1%].
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
@@ -22,8 +22,8 @@ pub(crate) struct ExactArguments {
     /// The smoothest mesh that is certainly within that distance of the input, either way
     ///
     /// For scans and voxels, whose vertices are no more exact than that: steps are smoothed away, and closed parts keep their volume. A
-    /// length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
-    /// place of --tolerance and --interpolate. Where no smooth surface is so near, as where faces are large beside it, edges stay sharp. The exit
+    /// length in the mesh's unit, with a unit where --unit gives the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
+    /// place of --tolerance and --interpolate. Where no smooth surface is so near, as where faces are large against it, edges stay sharp. The exit
     /// code is 3 where it cannot be kept, and with --strict where triangles are turned over.
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["tolerance", "interpolate"])]

@@ -82,7 +82,7 @@ pub(crate) struct Featured {
     pub(crate) along_needles: usize,
 }
 
-/// Where the surface is sharp, beside the tags of the file.
+/// Where the surface is sharp, apart from the tags of the file.
 #[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct FeatureArguments {
     /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180; auto or none;
@@ -156,7 +156,7 @@ impl FeatureArguments {
     /// Refuses what has no meaning for assets.
     ///
     /// # Errors
-    /// Edges are to be sharp by what only other files tell.
+    /// Edges are to be sharp by what only other files say.
     pub(crate) fn check_of_asset(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None | CreasesFrom::Normals => Ok(()),
@@ -169,7 +169,7 @@ impl FeatureArguments {
     /// Refuses what has no meaning for packages.
     ///
     /// # Errors
-    /// Edges are to be sharp by what only other files tell.
+    /// Edges are to be sharp by what only other files say.
     pub(crate) fn check_of_package(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None => Ok(()),

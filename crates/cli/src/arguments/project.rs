@@ -20,8 +20,8 @@ Examples:
 ///
 /// POINTS are the vertices of a mesh, or a text file with three coordinates a line (.xyz, .txt, .csv, .asc; .pts, whose first line may
 /// be their number), between blanks, commas or semicolons. Each is projected onto the limit surface of CONTROL itself, not onto a mesh
-/// that stands for it: no point of the surface is nearer by more than --tolerance.
-/// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
+/// that approximates it: no point of the surface is nearer by more than --tolerance.
+/// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point says.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 #[command(mut_arg("scheme", |scheme| scheme.value_parser(loop_family())))]

@@ -183,7 +183,7 @@ fn without_separators(text: &str) -> Option<String> {
     fits.then(|| groups.concat())
 }
 
-/// A number of bytes; K, M, G and T after it stand for powers of 1024, as do KiB to TiB, and KB to TB for powers of 1000.
+/// A number of bytes; K, M, G and T after it are powers of 1024, as do KiB to TiB, and KB to TB for powers of 1000.
 pub(super) fn bytes(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let upper = text.to_ascii_uppercase();

@@ -51,7 +51,7 @@ impl Method {
     }
 }
 
-/// How a mesh is refined: what method and scheme come to together.
+/// How a mesh is refined: what method and scheme mean together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// To goals that are proven.
@@ -405,7 +405,7 @@ impl RefineArguments {
         match self.to {
             Some(to) => Ok(Some(to.format())),
             None if is_standard_output(path) => {
-                usage("standard output has no name that tells its format; it needs --to")
+                usage("standard output has no name that says its format; --to FORMAT does")
             }
             None => Ok(Some(
                 Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?,

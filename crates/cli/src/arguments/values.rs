@@ -76,7 +76,7 @@ pub(crate) enum WeldDistance {
     Within(Length),
 }
 
-/// A length, absolute or beside a diagonal.
+/// A length, absolute or relative to a diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extent {
     /// As it is, perhaps with its unit.

@@ -1,4 +1,4 @@
-//! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
+//! What the input carries apart from its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, FaceParts};
@@ -34,7 +34,7 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    /// Those that reach the output; tells which do not, and why.
+    /// Those that reach the output; notes say which do not, and why.
     pub(super) fn of_input(
         channels: Vec<Channel>,
         [material_libraries, texture_files]: [Vec<String>; 2],

@@ -11,7 +11,7 @@ use crate::format::counted;
 use crate::output;
 use crate::progress::Progress;
 
-/// Size of pictures that are drawn beside other work.
+/// Size of pictures that are drawn along with other work.
 pub(super) const SIZE: Size = Size {
     width: 1200,
     height: 900,
@@ -87,7 +87,9 @@ pub(super) fn draw_edges(
 /// Draws a surface with its materials and writes the picture.
 pub(super) fn draw_covered(
     path: &Path,
-    (surface, normals, covering): (Triangles<'_>, Option<&[[f64; 3]]>, &Covering<'_>),
+    surface: Triangles<'_>,
+    normals: Option<&[[f64; 3]]>,
+    covering: &Covering<'_>,
     view: ViewDirection,
     style: &Style,
     Size { width, height }: Size,

@@ -9,7 +9,7 @@ use limitmesh_io::{Format, Output, Property, WriteOptions};
 use limitmesh_render::{ColourMap, Scale};
 
 use super::heatmap;
-use super::limit_control::{self, Prepared};
+use super::limit_control;
 use crate::arguments::ProjectArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, lower_bound, number, point, thousands};
@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     }
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
-    let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;
+    let control = input::load(&arguments.onto, &arguments.limit.build, &[], progress)?;
     let limit = arguments.limit.in_unit(control.unit);
     let arguments = &ProjectArguments {
         limit,
@@ -45,7 +45,9 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
     let scheme = arguments.limit.scheme();
-    let Prepared { mesh, .. } = limit_control::prepared(control, &arguments.limit, progress)?;
+    let mesh = limit_control::prepared(control, &arguments.limit, progress)?
+        .input
+        .mesh;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
         return usage(format!(
             "{} has no triangles to draw; -o writes .ply or .csv",
@@ -280,7 +282,9 @@ impl Found {
             path,
             surface,
             &self.signed,
-            (self.scale(), "signed distance", ""),
+            self.scale(),
+            "signed distance",
+            "",
         )
     }
 }

@@ -1,4 +1,4 @@
-//! What a mesh carries beside its shape, as reported.
+//! What a mesh carries apart from its shape, as reported.
 
 use limitmesh::mesh::{Channel, Domain, Interpolation};
 use serde::Serialize;

@@ -106,7 +106,7 @@ pub(crate) struct PackageObject {
     pub(crate) triangles: usize,
     /// How often the build has it.
     pub(crate) built: usize,
-    /// What its triangles have beside corners, by name.
+    /// What its triangles have apart from corners, by name.
     pub(crate) attributes: Vec<String>,
     /// What else its mesh has, by name.
     pub(crate) others: Vec<String>,

@@ -125,12 +125,12 @@ pub(crate) struct MethodReport {
     pub(crate) pixels: Option<f64>,
     /// Triangles outside the cone of the exact method's angle; null without one.
     pub(crate) open_cones: Option<usize>,
-    /// Goals beside the shape.
+    /// Goals apart from the shape.
     pub(crate) attributes: Vec<AttributeReport>,
 }
 
 impl MethodReport {
-    /// Of so many levels or steps that ended so; the rest as of a method that tells nothing else.
+    /// Of so many levels or steps that ended so; the rest as of a method that reports nothing else.
     pub(crate) fn new(levels: usize, stop: &'static str) -> Self {
         Self {
             steps: Vec::new(),
@@ -216,7 +216,7 @@ pub(crate) struct ParametersReport {
     pub(crate) crease_angle_degrees: Option<f64>,
     /// Whether that was found by looking at the mesh, where it looks like a part.
     pub(crate) crease_angle_auto: bool,
-    /// What in the file says that edges are sharp, beside tags.
+    /// What in the file says that edges are sharp, apart from tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
@@ -480,7 +480,7 @@ pub(crate) struct ErrorReport {
     pub(crate) proven: Option<f64>,
 }
 
-/// A lower bound is told where the upper one is at most so many times as far.
+/// A lower bound is reported where the upper one is at most so many times as far.
 const NARROW: f64 = 1.25;
 
 impl ErrorReport {

@@ -1,6 +1,5 @@
 //! What of a glTF asset is refined, and what stays: by names, by what lengths are of, and by what is linked.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -133,51 +132,6 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
     run("refine builtin:cube -o {} --material lid", &[&output])
         .expect(2)
         .saying("--material is for glTF assets");
-}
-
-#[test]
-fn borders_to_what_stays_do_not_open() {
-    let folder = folder();
-    let (input, output) = (asset(&folder), folder.path().join("out.glb"));
-    run(
-        "refine {} -o {} --tolerance 0.2% --material body",
-        &[&input, &output],
-    )
-    .expect(0)
-    .saying("4 edges where primitives meet others that stay are kept straight");
-    let glb = Glb::read(&output);
-    let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
-    // By places: where sharp edges divide the corners around the rim, vertices stand once for each side.
-    let place = |v: u32| points[v as usize].map(f64::to_bits);
-    let mut sides: HashSet<[[u64; 3]; 2]> = HashSet::new();
-    for [a, b, c] in glb
-        .triangles(0)
-        .into_iter()
-        .map(|corners| corners.map(place))
-    {
-        sides.extend([[a, b], [b, c], [c, a]]);
-    }
-    let open: Vec<[[u64; 3]; 2]> = sides
-        .iter()
-        .copied()
-        .filter(|&[a, b]| !sides.contains(&[b, a]))
-        .collect();
-    // The rim is the lid's square as it was, and surrounds it once.
-    let mut length = 0.0;
-    for end in open
-        .iter()
-        .map(|edge| edge.map(|place| place.map(f64::from_bits)))
-    {
-        for p in end {
-            assert_eq!(p[2], 1.0);
-            assert!((p[0].abs().max(p[1].abs()) - 1.0).abs() < 1e-7, "{p:?}");
-        }
-        length += (0..3)
-            .map(|i| (end[0][i] - end[1][i]).powi(2))
-            .sum::<f64>()
-            .sqrt();
-    }
-    assert!((length - 8.0).abs() < 1e-6, "{length}");
 }
 
 #[test]

@@ -161,7 +161,7 @@ fn what_cannot_be_is_told() {
     let out = folder.path().join("cup.obj");
     run("lod builtin:sphere -o {} --tolerances 3,1,2", &[&out])
         .expect(2)
-        .saying("number 3 comes to 2 in the mesh's unit, after 1");
+        .saying("number 3 is 2 in the mesh's unit, after 1");
     run("lod builtin:cup -o -", &[])
         .expect(2)
         .saying("not to standard output");

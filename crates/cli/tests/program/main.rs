@@ -4,7 +4,6 @@ mod asset;
 mod asset_cards;
 mod asset_choice;
 mod asset_morphs;
-mod asset_seams;
 mod asset_skins;
 mod asset_tangents;
 mod batch;

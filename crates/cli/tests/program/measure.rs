@@ -151,57 +151,6 @@ fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
 }
 
 #[test]
-fn certified_intervals_hold_the_distance() {
-    let folder = folder();
-    let low = file(
-        &folder,
-        "low.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
-    );
-    let high = file(
-        &folder,
-        "high.obj",
-        "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n",
-    );
-    let far = (1.0f64 + 0.0625).sqrt();
-    for (gap, widest) in [
-        ("", 0.01 * far),
-        ("--gap 1e-6", 1e-6),
-        ("--gap 0.1%", 0.001 * 5f64.sqrt()),
-        ("--gap 0", 1e-9),
-    ] {
-        let h = certified(&format!("{{}} {{}} {gap}"), &[&low, &high], 0);
-        assert_eq!(
-            (&h["kind"], &h["converged"]),
-            (&"certified interval".into(), &true.into())
-        );
-        for (direction, truth) in [(&h["forward"], 0.25), (&h["backward"], far), (&h, far)] {
-            let (lower, upper) = (number(&direction["lower"]), number(&direction["upper"]));
-            assert!(
-                lower <= truth && truth <= upper && upper - lower <= widest,
-                "{gap}: {direction}"
-            );
-        }
-        near(
-            &h["upper_percent"],
-            100.0 * number(&h["upper"]) / 5f64.sqrt(),
-        );
-    }
-    let text = run("measure {} {} --certified", &[&low, &high])
-        .expect(0)
-        .stdout;
-    for words in [
-        "certified",
-        "at least",
-        "at most",
-        "backward maximum near (2, ",
-        "% of the second mesh's diagonal",
-    ] {
-        assert!(text.contains(words), "{words} in:\n{text}");
-    }
-}
-
-#[test]
 fn a_certified_interval_that_is_cut_short_is_given_with_code_3() {
     let arguments = "builtin:head builtin:shoe --gap 0 --max-work 1";
     let short = certified(arguments, &[], 3);

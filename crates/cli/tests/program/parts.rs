@@ -64,99 +64,6 @@ impl Solid {
         solid
     }
 
-    /// A wall of 5 by 20 by 35 on a base of 40 by 20 by 5 with two round holes.
-    fn bracket(facets: usize, radius: f64) -> Self {
-        let mut solid = Self::default();
-        for x in [0.0, 20.0] {
-            solid.holed_square([x + 10.0, 10.0], facets, radius);
-            solid.quad([
-                [x, 0.0, 0.0],
-                [x + 20.0, 0.0, 0.0],
-                [x + 20.0, 0.0, 5.0],
-                [x, 0.0, 5.0],
-            ]);
-            solid.quad([
-                [x, 20.0, 0.0],
-                [x, 20.0, 5.0],
-                [x + 20.0, 20.0, 5.0],
-                [x + 20.0, 20.0, 0.0],
-            ]);
-        }
-        solid.quad([
-            [40.0, 0.0, 0.0],
-            [40.0, 20.0, 0.0],
-            [40.0, 20.0, 5.0],
-            [40.0, 0.0, 5.0],
-        ]);
-        for [low, high] in [[0.0, 5.0], [5.0, 35.0]] {
-            solid.quad([
-                [-5.0, 0.0, low],
-                [0.0, 0.0, low],
-                [0.0, 0.0, high],
-                [-5.0, 0.0, high],
-            ]);
-            solid.quad([
-                [-5.0, 20.0, low],
-                [-5.0, 20.0, high],
-                [0.0, 20.0, high],
-                [0.0, 20.0, low],
-            ]);
-            solid.quad([
-                [-5.0, 0.0, low],
-                [-5.0, 0.0, high],
-                [-5.0, 20.0, high],
-                [-5.0, 20.0, low],
-            ]);
-        }
-        solid.quad([
-            [0.0, 0.0, 5.0],
-            [0.0, 20.0, 5.0],
-            [0.0, 20.0, 35.0],
-            [0.0, 0.0, 35.0],
-        ]);
-        solid.quad([
-            [-5.0, 0.0, 35.0],
-            [0.0, 0.0, 35.0],
-            [0.0, 20.0, 35.0],
-            [-5.0, 20.0, 35.0],
-        ]);
-        solid.quad([
-            [-5.0, 0.0, 0.0],
-            [-5.0, 20.0, 0.0],
-            [0.0, 20.0, 0.0],
-            [0.0, 0.0, 0.0],
-        ]);
-        solid
-    }
-
-    /// Top and bottom of a square plate of 20 with a round hole, and the hole; as many facets as four divides.
-    fn holed_square(&mut self, [x, y]: [f64; 2], facets: usize, radius: f64) {
-        let quarter = facets / 4;
-        let rim = |i: usize, z: f64| {
-            let (sine, cosine) = (TAU * (i % facets) as f64 / facets as f64).sin_cos();
-            [x + radius * cosine, y + radius * sine, z]
-        };
-        let corner = |i: usize, z: f64| {
-            let [u, v] = [[10.0, 10.0], [-10.0, 10.0], [-10.0, -10.0], [10.0, -10.0]][i % 4];
-            [x + u, y + v, z]
-        };
-        for i in 0..facets {
-            let own = i / quarter;
-            self.0
-                .push([corner(own, 5.0), rim(i + 1, 5.0), rim(i, 5.0)]);
-            self.0
-                .push([corner(own, 0.0), rim(i, 0.0), rim(i + 1, 0.0)]);
-            self.quad([rim(i, 0.0), rim(i, 5.0), rim(i + 1, 5.0), rim(i + 1, 0.0)]);
-        }
-        for own in 0..4 {
-            let at = (own + 1) * quarter;
-            self.0
-                .push([corner(own, 5.0), corner(own + 1, 5.0), rim(at, 5.0)]);
-            self.0
-                .push([corner(own, 0.0), rim(at, 0.0), corner(own + 1, 0.0)]);
-        }
-    }
-
     fn stl(&self, folder: &TempDir, name: &str) -> PathBuf {
         let mut text = "solid part\n".to_owned();
         for corners in &self.0 {
@@ -270,7 +177,7 @@ fn a_box_is_itself_and_says_so_first() {
 #[test]
 fn all_commands_speak_of_one_surface() {
     let folder = folder();
-    let input = Solid::bracket(16, 4.0).stl(&folder, "bracket.stl");
+    let input = Solid::peg(16, 5.0, 8.0).stl(&folder, "part.stl");
     let output = folder.path().join("out.ply");
     run("refine {} -o {} --tolerance 0.02", &[&input, &output]).expect(0);
     let measured = |options: &str| {

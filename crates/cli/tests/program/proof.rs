@@ -51,26 +51,6 @@ fn proven(input: &str, options: &str, ending: &str) -> Value {
     report
 }
 
-/// What was certified is confirmed, not a little more.
-#[test]
-fn built_in_models_are_confirmed_as_they_are_certified() {
-    for model in limitmesh_models::all() {
-        for tolerance in ["0.1%", "0.01%"] {
-            let report = proven(
-                &format!("builtin:{}", model.name),
-                &format!("--tolerance {tolerance}"),
-                "ply",
-            );
-            assert!(
-                report["error"]["proven"].is_null(),
-                "{} {tolerance}: {}",
-                model.name,
-                report["error"]
-            );
-        }
-    }
-}
-
 /// Whatever else is asked for, in all formats that the checker reads.
 #[test]
 fn all_kinds_of_results_are_confirmed() {

@@ -13,42 +13,6 @@ fn parameters(options: &str) -> Value {
 }
 
 #[test]
-fn counts_and_bytes_are_read_as_people_write_them() {
-    for (text, count) in [
-        ("2k", 2000),
-        ("2,000", 2000),
-        ("2e3", 2000),
-        ("1.5K", 1500),
-        ("2_000", 2000),
-    ] {
-        assert_eq!(
-            parameters(&format!("--triangles {text}"))["exact"]["triangles"],
-            count,
-            "{text}"
-        );
-    }
-    assert_eq!(
-        parameters("--triangles 1k --max-triangles 1M")["max_triangles"],
-        1_000_000
-    );
-    for (text, bytes) in [
-        ("500MB", 500_000_000u64),
-        ("500M", 500 << 20),
-        ("1GiB", 1 << 30),
-    ] {
-        assert_eq!(
-            parameters(&format!("--max-memory {text}"))["exact"]["max_memory"],
-            bytes,
-            "{text}"
-        );
-    }
-    let measured = run("measure builtin:cube builtin:cube --samples 5k --json", &[])
-        .expect(0)
-        .json();
-    assert!(measured["hausdorff"]["samples"].as_u64() < Some(20_000));
-}
-
-#[test]
 fn lengths_may_have_a_unit_where_the_mesh_has_one() {
     let tolerance = |options: &str| {
         parameters(options)["exact"]["tolerance"]

@@ -133,18 +133,3 @@ fn each_side_of_a_rim_has_its_normals() {
         .expect(2)
         .saying("--split-normals");
 }
-
-/// Without sharp edges files have a normal for each vertex, as ever.
-#[test]
-fn smooth_meshes_have_a_normal_for_each_vertex() {
-    let folder = folder();
-    let output = folder.path().join("out.obj");
-    run(
-        "refine builtin:cube -o {} --tolerance 2% --quiet",
-        &[&output],
-    )
-    .expect(0);
-    let text = std::fs::read_to_string(&output).expect("written");
-    let count = |key: &str| text.lines().filter(|line| line.starts_with(key)).count();
-    assert_eq!(count("v "), count("vn "));
-}

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail, ensure};
 use serde::Deserialize;
 
-use super::told::Kind;
+use super::status::Kind;
 use crate::interrupt;
 use crate::output;
 

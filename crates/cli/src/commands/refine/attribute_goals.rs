@@ -1,4 +1,4 @@
-//! Goals beside the shape: values of channels, and surfaces that morph targets make.
+//! Goals apart from the shape: values of channels, and surfaces that morph targets make.
 
 use limitmesh::Mesh;
 use limitmesh::carry::goal;

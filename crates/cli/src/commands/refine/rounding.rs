@@ -24,7 +24,7 @@ pub(super) fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 
 
 /// How far the output's format rounds these positions.
 pub(super) fn rounding(arguments: &RefineArguments, positions: &[[f64; 3]]) -> f64 {
-    // Without a file nothing is rounded; a name that tells no format was refused before.
+    // Without a file nothing is rounded; a name that says no format was refused before.
     let format = arguments.format().ok().flatten();
     format.map_or(0.0, |format| {
         limitmesh_io::rounding(format, &arguments.write_options(), positions)

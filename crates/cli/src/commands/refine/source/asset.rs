@@ -268,10 +268,10 @@ impl Source for AssetSource {
             scale: item.scale,
             scheme: task.arguments.scheme.in_quarters()?,
         };
-        let told = back.put(&mut self.asset, item.number)?;
+        let put = back.put(&mut self.asset, item.number)?;
         task.progress
-            .notes(told.notes.iter().map(|note| item.line(note)));
-        self.leave_out(&item.own.soup, task.arguments, told.left_out);
+            .notes(put.notes.iter().map(|note| item.line(note)));
+        self.leave_out(&item.own.soup, task.arguments, put.left_out);
         Ok(())
     }
 

@@ -46,7 +46,8 @@ impl Source for FileSource {
     ) -> anyhow::Result<Option<(Read, Item<()>)>> {
         let kept = Normals::kept(self.format);
         let (build, channels) = (&arguments.build, &arguments.channels);
-        let input = input::load_for(arguments.input(), build, kept, channels, progress)?;
+        let read = input::read_for(arguments.input(), build, channels, progress)?;
+        let input = input::connect(read, build, kept, progress)?;
         item_of(input, arguments, self.format, progress).map(Some)
     }
 

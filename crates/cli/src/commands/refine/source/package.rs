@@ -168,9 +168,12 @@ impl Source for PackageSource {
             source: &|triangle| origin(&carried, triangles, triangle),
             keeps: &|name| !task.arguments.channels.drops(name, false),
         };
-        let told = self.package.replace(item.number, &new)?;
-        task.progress
-            .notes(inherited_in_words(&told).iter().map(|line| item.line(line)));
+        let inherited = self.package.replace(item.number, &new)?;
+        task.progress.notes(
+            inherited_in_words(&inherited)
+                .iter()
+                .map(|line| item.line(line)),
+        );
         Ok(())
     }
 
@@ -234,18 +237,18 @@ fn origin(carried: &Carried<'_>, triangles: &[[u32; 3]], triangle: usize) -> Ori
 }
 
 /// What triangles could not inherit as it was.
-fn inherited_in_words(told: &Inherited) -> Vec<String> {
+fn inherited_in_words(inherited: &Inherited) -> Vec<String> {
     let lines = [
         (
-            told.painted_at_centre,
+            inherited.painted_at_centre,
             "took paint at the centre, where the input's were painted in parts",
         ),
         (
-            told.nearest_corner,
+            inherited.nearest_corner,
             "took properties of the nearest corner, where these differ between corners",
         ),
         (
-            told.unreadable_paint,
+            inherited.unreadable_paint,
             "lost paint whose code cannot be read",
         ),
     ];

@@ -93,7 +93,7 @@ impl PutBack<'_> {
         }
         let weights = self.weights()?;
         let notes = weights.as_ref().map(Weights::notes).unwrap_or_default();
-        let mut told = PutNotes {
+        let mut notes = PutNotes {
             notes,
             left_out: Vec::new(),
         };
@@ -119,7 +119,8 @@ impl PutBack<'_> {
                 let names = &part.targets[target];
                 let has = |name: &str| names.iter().any(|own| own == name);
                 if has("NORMAL") && !has("POSITION") {
-                    told.left_out
+                    notes
+                        .left_out
                         .push("NORMAL of morph targets that move nothing".to_owned());
                 }
                 if self.has_normals(part, target) {
@@ -151,12 +152,12 @@ impl PutBack<'_> {
                 attributes: &attributes,
                 targets: &targets,
             };
-            let left_out = &mut told.left_out;
+            let left_out = &mut notes.left_out;
             let tangents = self.with_tangents(&geometry, asset, mesh, part, left_out)?;
             let geometry = tangents.as_ref().map_or(geometry, WithTangents::geometry);
             asset.replace(mesh, part.primitive, &geometry)?;
         }
-        Ok(told)
+        Ok(notes)
     }
 
     /// The geometry with tangents, for itself and for each target that had some, if the primitive had them; those that there cannot be are

@@ -146,15 +146,15 @@ fn moved_faces(mesh: &Mesh, weights: &[[f64; 3]], is_near: bool) -> Vec<bool> {
     if !is_near {
         return vec![true; mesh.face_count()];
     }
-    let mut is_beside = vec![false; has_one.len()];
+    let mut is_adjacent = vec![false; has_one.len()];
     for corners in mesh.triangles() {
         if corners.iter().any(|&v| has_one[v as usize]) {
-            corners.iter().for_each(|&v| is_beside[v as usize] = true);
+            corners.iter().for_each(|&v| is_adjacent[v as usize] = true);
         }
     }
     mesh.triangles()
         .iter()
-        .map(|corners| corners.iter().any(|&v| is_beside[v as usize]))
+        .map(|corners| corners.iter().any(|&v| is_adjacent[v as usize]))
         .collect()
 }
 
