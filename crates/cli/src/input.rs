@@ -228,7 +228,7 @@ pub(crate) fn unit_of_package(
     given: Option<Unit>,
     name: &str,
 ) -> anyhow::Result<Unit> {
-    let own = Unit::of_package(package.unit());
+    let own = Unit::of_package(package.unit())?;
     match given.filter(|&given| given != own) {
         Some(given) => usage(format!(
             "--unit {}: {name} says that it is in {}",

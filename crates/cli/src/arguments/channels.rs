@@ -6,6 +6,7 @@ use clap::Args;
 use limitmesh::mesh::{Channel, Domain, Interpolation, SeamRule, Semantic, Storage};
 
 use super::tolerances::AttributeTolerance;
+use super::values::named;
 use crate::failure::usage;
 
 /// All texture coordinates, by whatever names the file has for them.
@@ -62,12 +63,6 @@ const MODES: [(&str, Mode); 9] = [
     ("corners-plus1", Mode::Smooth(SeamRule::CornersPlus1)),
     ("corners-plus2", Mode::Smooth(SeamRule::CornersPlus2)),
 ];
-
-/// A name and what is said of it. Names may have an equals sign, what is said has none.
-pub(super) fn named<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
-    text.rsplit_once('=')
-        .ok_or_else(|| format!("'{text}' has no =; give NAME={what}"))
-}
 
 impl FromStr for Choice {
     type Err = String;

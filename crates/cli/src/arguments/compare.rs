@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::LimitArguments;
+use super::limit::LimitArguments;
 use super::values;
 
 const EXAMPLES: &str = "\

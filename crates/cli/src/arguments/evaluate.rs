@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::LimitArguments;
+use super::limit::LimitArguments;
 use super::quantity::finite;
 
 const EXAMPLES: &str = "\

@@ -73,6 +73,18 @@ impl CreaseAngle {
     }
 }
 
+/// A crease angle: one in degrees, or the words `auto` and `none`.
+pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
+    match text {
+        "auto" => Ok(CreaseAngle::Auto),
+        "none" => Ok(CreaseAngle::None),
+        _ => match values::angle(text) {
+            Ok(degrees) => Ok(CreaseAngle::Above(degrees)),
+            Err(what) => Err(format!("{what}; degrees, 'auto' or 'none' are expected")),
+        },
+    }
+}
+
 /// A control mesh with its tags.
 pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
@@ -94,7 +106,7 @@ pub(crate) struct FeatureArguments {
     /// led through the vertices where that does not fold it, unless --interpolate-within says otherwise. Files with tags or several
     /// smoothing groups have sharpness of their own, and files of quadrilaterals are cages: neither are looked at. With none all edges are
     /// smooth but those that the file tags.
-    #[arg(long, value_name = "DEG|auto|none", value_parser = values::crease_angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG|auto|none", value_parser = crease_angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<CreaseAngle>,
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::channels::ChannelArguments;
+use super::limit::LimitArguments;
+use super::shared::OverwriteArguments;
 use super::values::{self, Extent};
-use super::{ChannelArguments, LimitArguments, OverwriteArguments};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -52,6 +52,8 @@ pub(crate) use viewer::Viewer;
 
 use clap::{Args, Parser, Subcommand};
 
+use shared::GENERAL;
+
 const EXAMPLES: &str = "\
 Examples:
   limitmesh refine builtin:head -o head.ply --picture head.png
@@ -90,9 +92,6 @@ pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
 }
-
-/// The heading of options that every command has.
-const GENERAL: &str = "General options";
 
 /// Options of every command.
 #[derive(Args, Debug)]

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::limit::LimitArguments;
+use super::shared::OverwriteArguments;
 use super::shared::loop_family;
 use super::values::{self, Extent};
-use super::{LimitArguments, OverwriteArguments};
 
 const EXAMPLES: &str = "\
 Examples:

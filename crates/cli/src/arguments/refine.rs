@@ -8,12 +8,16 @@ use limitmesh::scheme::Scheme;
 use limitmesh_io::{Format, WriteOptions};
 use serde::Serialize;
 
+use super::asset::AssetArguments;
+use super::channels::ChannelArguments;
+use super::exact::ExactArguments;
+use super::features::FeatureArguments;
+use super::interpolation::InterpolationArguments;
+use super::shared::{
+    BuildArguments, FileFormat, GENERAL, OverwriteArguments, RefiningScheme, Seam,
+};
 use super::values;
 use super::viewer::{Viewer, cameras_in};
-use super::{
-    AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    GENERAL, InterpolationArguments, OverwriteArguments, RefiningScheme, Seam,
-};
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
 

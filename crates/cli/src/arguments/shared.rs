@@ -12,6 +12,9 @@ use super::quantity::Unit;
 use super::values::{self, WeldDistance};
 use crate::failure::usage;
 
+/// The heading of options that every command has.
+pub(super) const GENERAL: &str = "General options";
+
 /// Whether a result may take the place of an input.
 #[derive(Args, Debug, Clone, Copy)]
 pub(crate) struct OverwriteArguments {

@@ -2,8 +2,7 @@
 
 use std::str::FromStr;
 
-use super::channels::named;
-use super::{Extent, values};
+use super::values::{self, Extent, named};
 
 /// How far the values of a channel may be off.
 #[derive(Debug, Clone, PartialEq)]

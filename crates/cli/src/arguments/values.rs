@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use limitmesh::measure::SamplingOptions;
 
-use super::CreaseAngle;
 use super::quantity::{self, Length, Unit, finite};
 
 /// Levels of uniform refinement beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
@@ -32,16 +31,10 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A crease angle: one in degrees, or the words `auto` and `none`.
-pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
-    match text {
-        "auto" => Ok(CreaseAngle::Auto),
-        "none" => Ok(CreaseAngle::None),
-        _ => match angle(text) {
-            Ok(degrees) => Ok(CreaseAngle::Above(degrees)),
-            Err(what) => Err(format!("{what}; degrees, 'auto' or 'none' are expected")),
-        },
-    }
+/// A name and what is said of it. Names may have an equals sign, what is said has none.
+pub(super) fn named<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
+    text.rsplit_once('=')
+        .ok_or_else(|| format!("'{text}' has no =; give NAME={what}"))
 }
 
 /// A factor of at least 0.

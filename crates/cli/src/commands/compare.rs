@@ -20,7 +20,7 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, Reference, USUAL_LEVELS};
-use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport, percent};
+use crate::report::{ComparedMethod, IntervalReport, LimitReport, percent};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -252,7 +252,9 @@ impl Judge<'_> {
         let options = SamplingOptions::default().samples(self.arguments.samples);
         let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
-        let percent = |length| percent(length, self.diagonal.max(f64::MIN_POSITIVE));
+        let diagonal = self.diagonal.max(f64::MIN_POSITIVE);
+        let percent = |length| percent(length, diagonal);
+        let interval = |[lower, upper]: [f64; 2]| IntervalReport::new(lower, upper, diagonal);
         let levels = self.reference.levels;
         Ok(ComparedMethod {
             method: given.method,
@@ -263,12 +265,7 @@ impl Judge<'_> {
             symmetric_percent: percent(distance.symmetric()),
             mean_percent: percent(distance.forward.mean),
             rms_percent: percent(distance.forward.rms),
-            certified: given.certified.map(|[lower, upper]| CertifiedErrorReport {
-                lower,
-                upper,
-                lower_percent: percent(lower),
-                upper_percent: percent(upper),
-            }),
+            certified: given.certified.map(interval),
             samples: distance.forward.samples + distance.backward.samples,
             min_angle_degrees: quality.min_angle_degrees,
             mean_min_angle_degrees: quality.mean_min_angle_degrees,

@@ -65,7 +65,9 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         polygons,
         tags,
         asset: asset.map(|(_, contents)| contents.into()),
-        package: package.map(PackageInformation::from),
+        package: package
+            .zip(input.unit)
+            .map(|(own, unit)| PackageInformation::new(own, unit)),
         diagnosis: (&input.diagnosis).into(),
         mesh: mesh_info::examine(&input.mesh, &input.trace.faces),
         limit: match arguments.limit {

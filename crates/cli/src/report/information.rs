@@ -6,8 +6,8 @@ use limitmesh_io::gltf::{Contents, MeshContents, PrimitiveContents};
 use limitmesh_io::threemf::{ObjectContents, PackageContents};
 use serde::Serialize;
 
-use super::InputReport;
 use super::diagnosis::DiagnosisReport;
+use super::input::InputReport;
 use crate::arguments::Unit;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
@@ -112,15 +112,9 @@ pub(crate) struct PackageObject {
     pub(crate) others: Vec<String>,
 }
 
-impl From<PackageContents> for PackageInformation {
-    fn from(contents: PackageContents) -> Self {
-        let PackageContents {
-            objects,
-            assemblies,
-            items,
-            unit,
-            ..
-        } = contents;
+impl PackageInformation {
+    /// Of a package in this unit.
+    pub(crate) fn new(contents: PackageContents, unit: Unit) -> Self {
         let object = |found: ObjectContents| PackageObject {
             name: found.name,
             vertices: found.vertices,
@@ -129,12 +123,11 @@ impl From<PackageContents> for PackageInformation {
             attributes: found.attributes,
             others: found.others,
         };
-        let objects = objects.into_iter().map(object).collect();
         Self {
-            unit: Unit::of_package(unit).name(),
-            items,
-            assemblies,
-            objects,
+            unit: unit.name(),
+            items: contents.items,
+            assemblies: contents.assemblies,
+            objects: contents.objects.into_iter().map(object).collect(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::InputReport;
+use super::input::InputReport;
 
 /// Levels of detail, the finest first.
 #[derive(Debug, Serialize)]

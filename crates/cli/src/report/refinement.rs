@@ -5,11 +5,13 @@ use limitmesh::criterion::Camera;
 use limitmesh::criterion::Viewpoint;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{ErrorBounds, ExactStop, InputDistance, StepReport, Stop};
+use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
-use super::{InputReport, InterpolationReport, percent};
+use super::input::InputReport;
+use super::interpolation::InterpolationReport;
+use super::whole::{IntervalReport, percent};
 use crate::arguments::{
     Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme,
     Seam,
@@ -87,20 +89,6 @@ pub(crate) struct SizeReport {
     pub(crate) after: Bulk,
 }
 
-/// The distance between the mesh that was read and the one that was written, certified.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct InputDistanceReport {
-    /// The distance is at least this, in the mesh's unit.
-    pub(crate) lower: f64,
-    /// The distance is at most this.
-    pub(crate) upper: f64,
-    /// In per cent of the diagonal of the control mesh's bounding box.
-    pub(crate) lower_percent: f64,
-    /// In per cent of that diagonal.
-    pub(crate) upper_percent: f64,
-}
-
 /// What the method did.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -120,7 +108,7 @@ pub(crate) struct MethodReport {
     /// How far the mesh and the limit surface are from each other; null for the stepwise methods.
     pub(crate) error: Option<ErrorReport>,
     /// How far the mesh is from the one that was read; null where that is not known.
-    pub(crate) input_distance: Option<InputDistanceReport>,
+    pub(crate) input_distance: Option<IntervalReport>,
     /// The distance to the limit surface in the cameras' pictures, in pixels at most; null without cameras or where it is not bounded.
     pub(crate) pixels: Option<f64>,
     /// Triangles outside the cone of the exact method's angle; null without one.
@@ -541,39 +529,6 @@ impl ErrorReport {
                 extent(lower_bound(self.lower_percent), lower_bound(self.lower))
             ),
         }
-    }
-}
-
-impl InputDistanceReport {
-    /// Of a mesh whose control mesh has that diagonal.
-    pub(crate) fn new(distance: &InputDistance, diagonal: f64) -> Self {
-        let &InputDistance { lower, upper } = distance;
-        Self {
-            lower,
-            upper,
-            lower_percent: percent(lower, diagonal),
-            upper_percent: percent(upper, diagonal),
-        }
-    }
-
-    /// `within 0.8123 % of the diagonal (0.01234) of the input, certified; at least 0.7901 %`, with a unit after lengths.
-    pub(crate) fn near_in_words(&self, unit: &str) -> String {
-        format!(
-            "within {} % of the diagonal ({}{unit}) of the input, either way, certified; at least {} %",
-            upper_bound(self.upper_percent),
-            upper_bound(self.upper),
-            lower_bound(self.lower_percent)
-        )
-    }
-
-    /// `moved by 0.7901 % to 0.8123 % of the diagonal (0.01234) from the input, certified`, with a unit after lengths.
-    pub(crate) fn in_words(&self, unit: &str) -> String {
-        format!(
-            "moved by {} % to {} % of the diagonal ({}{unit}) from the input, certified",
-            lower_bound(self.lower_percent),
-            upper_bound(self.upper_percent),
-            upper_bound(self.upper)
-        )
     }
 }
 

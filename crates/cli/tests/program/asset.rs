@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{counts, file, folder, run, soup};
+use crate::common::{counts, done, file, folder, json_of, run, soup, usage_error};
 
 /// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
 /// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
@@ -85,22 +85,18 @@ fn tolerances_are_the_scenes() {
     ] {
         let input = cube(&folder, "in.gltf", nodes, "");
         // Per cent of the scene: the same mesh at every scale.
-        let report = run(
+        let report = json_of(
             "refine {} -o {} --tolerance 1% --report - --crease-angle none",
             &[&input, &output],
-        )
-        .expect(0)
-        .json();
+        );
         let mesh = &report["meshes"][0];
         triangles.push(mesh["output"]["triangles"].as_u64().expect("a number"));
         let upper = mesh["error"]["upper"].as_f64().expect("a number");
         // The file's scene as another command reads it.
-        let measured = run(
+        let measured = json_of(
             "measure {} --limit-of {} --certified --json --crease-angle none",
             &[&output, &input],
-        )
-        .expect(0)
-        .json();
+        );
         let found = measured["hausdorff"]["lower"].as_f64().expect("a number");
         let most = measured["hausdorff"]["upper"].as_f64().expect("a number");
         assert!(
@@ -123,11 +119,10 @@ fn tolerances_are_the_scenes() {
         "",
     );
     let [few, many] = [small, large].map(|input: PathBuf| {
-        run(
+        done(
             "refine {} -o {} --tolerance 0.05 --crease-angle none",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let soup = soup(&output);
         soup.faces.len()
     });
@@ -145,13 +140,12 @@ fn materials_keep_their_border_and_stay_joined() {
         ("sharp.gltf", "--tolerance 2% --crease-angle 30"),
     ] {
         let output = folder.path().join(output);
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         // Read back, joined again along the border: closed.
-        let whole = run("info {} --json", &[&output]).expect(0).json();
+        let whole = json_of("info {} --json", &[&output]);
         assert_eq!(whole["mesh"]["watertight"], true);
         let primitives = &whole["asset"]["meshes"][0]["primitives"];
         assert_eq!(
@@ -200,12 +194,11 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
     let output = folder.path().join("out.glb");
     let refused = |options: &str, words: &str| {
-        run(
+        usage_error(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
     };
     refused("--view 0,0,5,0,0,0,0,1,0,45,100x100", "look at one mesh");
     refused("--angle 5 --view 0,0,1", "look at one mesh");
@@ -234,7 +227,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
         r#"{"mesh":0,"translation":[10,0,0]}"#,
         "",
     );
-    let run_dry = run("refine {} --tolerance 1% --dry-run", &[&input]).expect(0);
+    let run_dry = done("refine {} --tolerance 1% --dry-run", &[&input]);
     assert!(
         run_dry.stdout.contains("meshes[0] 'Box': ")
             && run_dry.stdout.contains("nothing was written")
@@ -243,7 +236,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
         folder.path().join("out.gltf"),
         folder.path().join("out.png"),
     );
-    run("refine {} -o {} --picture {}", &[&input, &output, &picture]).expect(0);
+    done("refine {} -o {} --picture {}", &[&input, &output, &picture]);
     assert!(
         std::fs::read(&picture)
             .expect("a picture")
@@ -251,11 +244,11 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
     );
     // To a format without scenes: what is shown, in the scene's coordinates.
     let plain = folder.path().join("out.ply");
-    run("refine {} -o {}", &[&input, &plain]).expect(0);
+    done("refine {} -o {}", &[&input, &plain]);
     assert!(soup(&plain).positions.iter().all(|p| p[0] > 8.0));
     // And from one.
     let from = folder.path().join("from.glb");
-    run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
+    done("refine builtin:cube -o {} --tolerance 1%", &[&from]);
     let read = soup(&from);
     assert_eq!(
         (
@@ -270,7 +263,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
 /// The certified distance of a file to a limit surface is that share of its diagonal at most.
 fn measured_within(path: &Path, control: &str, share: f64) {
     let command = format!("measure {{}} --limit-of {control} --certified --json");
-    let report: Value = run(&command, &[path]).expect(0).json();
+    let report: Value = json_of(&command, &[path]);
     let percent = report["hausdorff"]["upper_percent"]
         .as_f64()
         .expect("a number");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{folder, run};
+use crate::common::{done, folder, run, usage_error};
 use crate::glb::{Builder, Glb};
 
 /// A cube of which the top has another material than the rest, and a second mesh, an octahedron ten times as large.
@@ -102,11 +102,10 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
         ("--material lid", vec![(0, 1)]),
         ("--material body --mesh Box", vec![(0, 0)]),
     ] {
-        run(
+        done(
             &format!("refine {{}} -o {{}} --tolerance 1% {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         assert_eq!(replaced(&input, &output), expected, "{options}");
     }
     let refused = |options: &str, words: &str| {
@@ -129,9 +128,11 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
         "--material lid --mesh Large",
         "no mesh that was named has a primitive of a material that was",
     );
-    run("refine builtin:cube -o {} --material lid", &[&output])
-        .expect(2)
-        .saying("--material is for glTF assets");
+    usage_error(
+        "refine builtin:cube -o {} --material lid",
+        &[&output],
+        "--material is for glTF assets",
+    );
 }
 
 #[test]
@@ -157,33 +158,30 @@ fn images_are_copied_or_linked() {
         assert_eq!(json["images"][1]["uri"], "data:image/png;base64,AAAA");
         json["images"][0]["uri"].as_str().expect("a URI").to_owned()
     };
-    run(
+    done(
         "refine {} -o {} --tolerance 5% --link-resources",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert_eq!(uri(&output), "../../from%20here/pictures/a%20b.png");
     // Buffers are read, and stay with the document.
     assert!(to.join("in.bin").exists() && !to.join("pictures").exists());
     // In the folder of the input there is nothing to say.
     let beside = from.join("out.gltf");
-    run(
+    done(
         "refine {} -o {} --tolerance 5% --link-resources",
         &[&input, &beside],
-    )
-    .expect(0);
+    );
     assert_eq!(uri(&beside), "pictures/a%20b.png");
-    run("refine {} -o {} --tolerance 5%", &[&input, &output]).expect(0);
+    done("refine {} -o {} --tolerance 5%", &[&input, &output]);
     assert_eq!(uri(&output), "pictures/a%20b.png");
     assert_eq!(
         std::fs::read(to.join("pictures/a b.png")).expect("a copy"),
         b"a picture"
     );
-    run(
+    done(
         "refine {} -o {} --tolerance 5% --link-resources",
         &[&input, &to.join("out.glb")],
-    )
-    .expect(0);
+    );
     let linked = Glb::read(&to.join("out.glb")).json;
     assert_eq!(
         linked["images"][0]["uri"],
@@ -252,7 +250,7 @@ fn nothing_but_meshes_changes_in_assets_of_others() {
     for name in names {
         let input = assets.join(name);
         let output = folder.path().join(name);
-        run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+        done("refine {} -o {} --tolerance 1%", &[&input, &output]);
         let read = |path: &Path| match path.extension().is_some_and(|end| end == "glb") {
             true => Glb::read(path),
             false => Glb::text(path),

@@ -6,7 +6,7 @@ use limitmesh::Triangles;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{folder, run};
+use crate::common::{done, folder, usage_error};
 use crate::glb::{Builder, Glb, distances, limit};
 
 type Points = Vec<[f32; 3]>;
@@ -113,11 +113,10 @@ fn blended(base: &[[f64; 3]], added: &[Vec<[f64; 3]>], weights: &[f64]) -> Vec<[
 fn refined_morphs_are_limits_of_morphs() {
     let folder = folder();
     let (input, output) = (asset(&folder, true), folder.path().join("out.glb"));
-    run(
+    done(
         "refine {} -o {} --tolerance 0.2% --crease-angle none",
         &[&input, &output],
     )
-    .expect(0)
     .saying("left out: TANGENT of morph targets");
     let glb = Glb::read(&output);
     let primitive = glb.primitive(0);
@@ -232,7 +231,7 @@ fn what_moves_apart_is_told_and_can_be_joined() {
     builder.write(&input);
     let open_edges = |options: &str, words: &str| {
         let command = format!("refine {{}} -o {{}} --tolerance 2% --report - {options}");
-        let run = run(&command, &[&input, &output]).expect(0);
+        let run = done(&command, &[&input, &output]);
         let run = if words.is_empty() {
             run
         } else {
@@ -258,7 +257,9 @@ fn what_moves_apart_is_told_and_can_be_joined() {
     );
     assert!(less < apart, "{less} and {apart}");
     assert_eq!(open_edges("--weld-ignores skin,morphs", ""), 0);
-    run("refine builtin:cube -o {} --weld-ignores skin", &[&output])
-        .expect(2)
-        .saying("glTF assets");
+    usage_error(
+        "refine builtin:cube -o {} --weld-ignores skin",
+        &[&output],
+        "glTF assets",
+    );
 }

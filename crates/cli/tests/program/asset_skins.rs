@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use serde_json::json;
 use tempfile::TempDir;
 
-use crate::common::{folder, run};
+use crate::common::{done, folder};
 use crate::glb::{Builder, Glb};
 
 const AROUND: u32 = 8;
@@ -106,11 +106,10 @@ fn weights_that_are_linear_in_space_stay_so() {
         "--boundary corners",
         "--crease-angle 95",
     ] {
-        run(
+        done(
             &format!("refine {{}} -o {{}} --tolerance 0.5% {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let glb = Glb::read(&output);
         let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
         for (p, list) in points.iter().zip(influences(&glb)) {
@@ -141,8 +140,7 @@ fn the_four_greatest_weights_are_kept() {
             .collect()
     });
     let output = folder.path().join("out.glb");
-    run("refine {} -o {} --tolerance 1%", &[&input, &output])
-        .expect(0)
+    done("refine {} -o {} --tolerance 1%", &[&input, &output])
         .saying("4 joints move a vertex at most");
     let glb = Glb::read(&output);
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::json;
 use tempfile::TempDir;
 
-use crate::common::{folder, run};
+use crate::common::{done, folder};
 use crate::glb::{Builder, Glb};
 
 /// Vertices of the grid along a side.
@@ -61,8 +61,7 @@ fn bowl(folder: &TempDir, is_mirrored: bool, has_texture: bool) -> PathBuf {
 fn tangents_without_their_texture_coordinates_are_left_out_and_told() {
     let folder = folder();
     let (input, output) = (bowl(&folder, false, false), folder.path().join("out.glb"));
-    run("refine {} -o {} --tolerance 0.2%", &[&input, &output])
-        .expect(0)
+    done("refine {} -o {} --tolerance 0.2%", &[&input, &output])
         .saying("TANGENT (there is no TEXCOORD_1 that it could follow)")
         .saying("TANGENT of morph targets");
     let glb = Glb::read(&output);
@@ -80,11 +79,10 @@ fn another_program_s_tangents_are_found_again() {
     let folder = folder();
     let input = PathBuf::from(models).join("assets").join("cubevc.glb");
     let output = folder.path().join("out.glb");
-    run(
+    done(
         "refine {} -o {} --tolerance 0.5% --crease-angle 30",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     let sides = |glb: &Glb| {
         let attributes = &glb.primitive(0)["attributes"];
         let rounded = |x: &f64| (100.0 * x).round() as i64;

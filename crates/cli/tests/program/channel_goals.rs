@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, run, usage_error};
 use crate::glb::{Builder, Glb, distances, limit};
 
 /// A flat square of 5 × 5 vertices whose texture is as wrinkled as can be, and a number for each vertex.
@@ -41,11 +41,10 @@ fn texture_coordinates_are_within_their_tolerance() {
     let json = folder.path().join("report.json");
     let mut triangles = Vec::new();
     for tolerance in ["0.02", "10.24@1k", "0.005"] {
-        run(
+        done(
             &format!("refine {{}} -o {{}} --report {{}} --attribute-tolerance uv={tolerance}"),
             &[&input, &output, &json],
         )
-        .expect(0)
         .saying("s,t: within ");
         let report = report(&folder);
         let [goal] = &report["attributes"].as_array().expect("goals")[..] else {
@@ -68,17 +67,15 @@ fn texture_coordinates_are_within_their_tolerance() {
         "{triangles:?}"
     );
     assert!(triangles[1] >= triangles[0]);
-    run(
+    done(
         "refine {} -o {} --channel uv=linear --attribute-tolerance uv=1e-6",
         &[&input, &output],
     )
-    .expect(0)
     .saying("s,t: exact, being linear on each face");
-    run(
+    done(
         "refine {} -o {} --channel heat=smooth --attribute-tolerance heat=0.01",
         &[&input, &output],
     )
-    .expect(0)
     .saying("heat: within ");
     // Too much is told, and what was reached.
     run(
@@ -100,11 +97,10 @@ fn texture_coordinates_are_within_their_tolerance() {
             .expect("a number")
             > 500
     );
-    run(
+    done(
         "refine {} --dry-run -o {} --attribute-tolerance uv=0.005",
         &[&input, &output],
-    )
-    .expect(0);
+    );
 }
 
 #[test]
@@ -143,19 +139,17 @@ fn tolerances_that_nothing_can_meet_are_refused() {
             "--morph-tolerance is for glTF assets",
         ),
     ] {
-        run(
+        usage_error(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
     }
-    run(
+    usage_error(
         "refine {} -o {} --attribute-tolerance uv=0.01",
         &[&input, &stl],
-    )
-    .expect(2)
-    .saying("none comes out");
+        "none comes out",
+    );
     run(
         "refine {} -o {} --attribute-tolerance uv=1@0",
         &[&input, &output],
@@ -212,11 +206,10 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
         .collect();
     let reference = limit(&moved, &before.triangles(0), 2e-5);
     let apart = |options: &str| {
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);

@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::asset::{cube, first_mesh};
-use crate::common::{file, folder, run, soup};
+use crate::common::{done, file, folder, json_of, soup, usage_error};
 
 /// An octahedron in PLY, whose vertices have their x as `heat` and twice that as the whole number `id`.
 fn octahedron(folder: &TempDir) -> PathBuf {
@@ -59,7 +59,7 @@ fn channels_are_carried_as_asked() {
     let output = folder.path().join("out.ply");
     let refine = |options: &str| -> Value {
         let command = format!("refine {{}} -o {{}} --tolerance 1% --report - {options}");
-        run(&command, &[&input, &output]).expect(0).json()
+        json_of(&command, &[&input, &output])
     };
     // What is smooth follows the surface as x does, whole numbers too.
     let report = refine("--channel heat=smooth --channel id=smooth");
@@ -122,11 +122,10 @@ fn channels_are_left_out_on_demand() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    let found = run(
+    let found = done(
         "refine {} -o {} --channel heat=drop --report -",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert_eq!(
         found.json()["input"]["channels"][0]["interpolation"],
         "drop"
@@ -145,11 +144,10 @@ fn channels_are_left_out_on_demand() {
                 usemtl b\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let cube = file(&folder, "cube.obj", cube);
     let output = folder.path().join("out.obj");
-    run(
+    done(
         "refine {} -o {} --crease-angle 30 --channel materials=drop",
         &[&cube, &output],
-    )
-    .expect(0);
+    );
     let written = std::fs::read_to_string(&output).expect("a file");
     assert!(!written.contains("usemtl"), "{written}");
 }
@@ -159,35 +157,44 @@ fn what_cannot_be_done_is_refused() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    run("refine {} -o {} --channel hat=drop", &[&input, &output])
-        .expect(2)
-        .saying("octahedron.ply has no channel 'hat'; there are: heat; id");
-    run("refine {} --dry-run --channel hat=drop", &[&input])
-        .expect(2)
-        .saying("no channel 'hat'");
-    run("refine builtin:cup -o {} --channel heat=drop", &[&output])
-        .expect(2)
-        .saying("there is none");
-    run("refine {} -o {} --channel heat", &[&input, &output])
-        .expect(2)
-        .saying("has no =");
-    run("refine {} -o {} --channel heat=blend", &[&input, &output])
-        .expect(2)
-        .saying("'blend' is none of");
+    usage_error(
+        "refine {} -o {} --channel hat=drop",
+        &[&input, &output],
+        "octahedron.ply has no channel 'hat'; there are: heat; id",
+    );
+    usage_error(
+        "refine {} --dry-run --channel hat=drop",
+        &[&input],
+        "no channel 'hat'",
+    );
+    usage_error(
+        "refine builtin:cup -o {} --channel heat=drop",
+        &[&output],
+        "there is none",
+    );
+    usage_error(
+        "refine {} -o {} --channel heat",
+        &[&input, &output],
+        "has no =",
+    );
+    usage_error(
+        "refine {} -o {} --channel heat=blend",
+        &[&input, &output],
+        "'blend' is none of",
+    );
     let labelled = file(
         &folder,
         "in.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n",
     );
-    run(
+    usage_error(
         "refine {} -o {} --channel materials=linear",
         &[&labelled, &output],
-    )
-    .expect(2)
-    .saying("'materials' has one value a face; it can be nearest or drop");
+        "'materials' has one value a face; it can be nearest or drop",
+    );
     // Names may have blanks.
     let blank = Path::new("texture coordinates=linear");
-    run("refine {} -o {} --channel {}", &[&labelled, &output, blank]).expect(0);
+    done("refine {} -o {} --channel {}", &[&labelled, &output, blank]);
 }
 
 #[test]
@@ -202,8 +209,7 @@ fn attributes_of_assets_are_carried_as_asked() {
     );
     let command =
         "refine {} -o {} --tolerance 1% --channel _HEAT=smooth --channel _SIDE=drop --report -";
-    let report = run(command, &[&input, &output])
-        .expect(0)
+    let report = done(command, &[&input, &output])
         .saying("left out: _SIDE")
         .json();
     assert_eq!(
@@ -231,7 +237,9 @@ fn attributes_of_assets_are_carried_as_asked() {
             );
         }
     }
-    run("refine {} -o {} --channel HEAT=drop", &[&input, &output])
-        .expect(2)
-        .saying("no channel 'HEAT'; there are: _HEAT; _SIDE");
+    usage_error(
+        "refine {} -o {} --channel HEAT=drop",
+        &[&input, &output],
+        "no channel 'HEAT'; there are: _HEAT; _SIDE",
+    );
 }

@@ -2,13 +2,11 @@
 
 use serde_json::Value;
 
-use crate::common::{has_keys, run};
+use crate::common::{has_keys, json_of};
 
 #[test]
 fn methods_stand_side_by_side_at_nearly_equal_counts() {
-    let list = run("compare builtin:head --json --samples 20000", &[])
-        .expect(0)
-        .json();
+    let list = json_of("compare builtin:head --json --samples 20000", &[]);
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list
         .iter()

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, run};
 
 /// An L of height 1: two caps of four triangles round a corner, and six sides.
 const L: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
@@ -19,11 +19,11 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     let output = folder.path().join("out.ply");
     let refine = |options: &str| {
         let words = format!("refine {{}} -o {{}} --crease-angle 30 --report - {options}");
-        let run = run(&words, &[&input, &output]).expect(0);
+        let run = done(&words, &[&input, &output]);
         (run.json(), run.stderr)
     };
     let off = || {
-        let run = run("measure {} {} --certified --json", &[&output, &input]).expect(0);
+        let run = done("measure {} {} --certified --json", &[&output, &input]);
         run.json()["hausdorff"]["upper"].as_f64().expect("a number")
     };
     let (report, told) = refine("");
@@ -76,7 +76,7 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     // It is the same limit surface for measuring.
     refine("");
     let measure = "measure {} --limit-of {} --crease-angle 30 --certified --json";
-    let measured = run(measure, &[&output, &input]).expect(0).json();
+    let measured = json_of(measure, &[&output, &input]);
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-6);
     assert_eq!(measured["reference"]["limit"]["concave_corners"], "fixed");
 }
@@ -87,12 +87,10 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
     let report = |options: &str| {
-        run(
+        json_of(
             &format!("refine {{}} -o {{}} --report - {options}"),
             &[&input, &output],
         )
-        .expect(0)
-        .json()
     };
     let tagged = report("");
     assert_eq!(tagged["parameters"]["concave_corners"], "smooth");

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
+use crate::common::{
+    claimed, counts, done, file, folder, has_keys, json_of, run, soup, usage_error,
+};
 
 const CONTRACT: &str = "parameters.method parameters.exact.tolerance parameters.exact.tolerance_percent
     parameters.exact.triangles parameters.exact.pixels parameters.exact.cameras parameters.exact.balance
@@ -68,7 +70,7 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let report = refine(0, "builtin:cup", &output, "");
-    let info = run("info builtin:cup --json", &[]).expect(0).json();
+    let info = json_of("info builtin:cup --json", &[]);
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     let expected = json!({
         "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "pixels": null,
@@ -84,7 +86,7 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     );
     assert!(number(&report["error"]["upper_percent"]) <= 0.1);
     assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"]);
-    let said = run("refine builtin:cup -o {}", &[&output]).expect(0);
+    let said = done("refine builtin:cup -o {}", &[&output]);
     assert!(
         said.stderr.contains(" % of the diagonal (")
             && said.stderr.contains("certified; at least 0.0"),
@@ -98,9 +100,7 @@ fn the_interval_holds_what_samples_find() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let report = refine(0, "builtin:head", &output, "--tolerance 0.5%");
-    let measured = run("measure {} --limit-of builtin:head --json", &[&output])
-        .expect(0)
-        .json();
+    let measured = json_of("measure {} --limit-of builtin:head --json", &[&output]);
     let sampled = number(&measured["hausdorff"]["symmetric"]);
     let (lower, upper) = (
         number(&report["error"]["lower"]),
@@ -216,9 +216,7 @@ fn cameras_see_the_detail() {
         "refine builtin:sphere -o {{}} --pixels 0.5 {}",
         camera("0,0,5")
     );
-    run(&words, &[&output])
-        .expect(0)
-        .saying("pixels as the cameras see it");
+    done(&words, &[&output]).saying("pixels as the cameras see it");
     // Most of the detail is on the side of the camera.
     let centres = soup(&output);
     let in_front = centres
@@ -255,7 +253,7 @@ fn cameras_see_the_detail() {
     let lines = "# two cameras\n0,0,5, 0,0,0, 0,1,0, 40, 800x600 # the front\n\n0,0,-5,0,0,0,0,1,0,40,800x600\n";
     let path = file(&folder, "path.txt", lines);
     let words = "refine builtin:sphere -o {} --pixels 0.5 --view {} --report -";
-    let report = run(words, &[&output, &path]).expect(0).json();
+    let report = json_of(words, &[&output, &path]);
     assert_eq!(triangles(&report), triangles(&both));
 }
 
@@ -281,9 +279,7 @@ fn cameras_that_cannot_be_used_are_refused() {
         .expect(1)
         .saying("none.txt cannot be read");
     let inside = "refine builtin:sphere -o {} --view 0,0,0.1,0,0,5,0,1,0,40,800x600";
-    run(inside, &[&output])
-        .expect(2)
-        .saying("stands inside the mesh");
+    usage_error(inside, &[&output], "stands inside the mesh");
     assert!(!output.exists());
 }
 
@@ -316,7 +312,7 @@ fn a_dry_run_predicts_and_writes_nothing() {
     let output = folder.path().join("out.ply");
     for tolerance in ["0.1%", "0.01%"] {
         let words = format!("refine builtin:cup --tolerance {tolerance} --dry-run");
-        let predicted = run(&format!("{words} --report -"), &[]).expect(0).json();
+        let predicted = json_of(&format!("{words} --report -"), &[]);
         has_keys(
             &predicted,
             "version input.path diagnosis.clean parameters.exact estimate.memory_bytes",
@@ -332,14 +328,14 @@ fn a_dry_run_predicts_and_writes_nothing() {
             (0.5..2.0).contains(&(estimate / found)),
             "{tolerance}: {estimate} {found}"
         );
-        let text = run(&words, &[]).expect(0).stdout;
+        let text = done(&words, &[]).stdout;
         assert!(
             text.contains("triangles") && text.contains("nothing was written"),
             "{text}"
         );
     }
     std::fs::remove_file(&output).expect("removable");
-    run("refine builtin:cup -o {} --dry-run", &[&output]).expect(0);
+    done("refine builtin:cup -o {} --dry-run", &[&output]);
     assert!(!output.exists());
 }
 
@@ -435,11 +431,10 @@ fn vertices_and_triangles_know_where_they_came_from() {
     // The file remains one that can be read.
     assert_eq!(soup(&output).faces.len(), faces.len());
     let plain = folder.path().join("plain.ply");
-    run(
+    done(
         "refine builtin:cube -o {} --tolerance 0.5% --provenance",
         &[&plain],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&plain).positions, soup(&output).positions);
 }
 

@@ -7,7 +7,7 @@ use limitmesh::refine::{LimitDistanceOptions, limit_distance};
 use limitmesh::scheme::Loop;
 use tempfile::TempDir;
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, run, usage_error};
 
 /// A box of four sharp edges and texture coordinates, sheared by so much.
 fn frame(shear: f64, faces: &str, tags: &str) -> String {
@@ -83,7 +83,7 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     let [a, b, c] = &inputs[..] else {
         panic!("three")
     };
-    let done = run(command, &[a, b, c, out.path(), &report]).expect(0);
+    let done = done(command, &[a, b, c, out.path(), &report]);
     assert!(
         done.stderr.contains("3 frames") && done.stderr.contains("every frame"),
         "{}",
@@ -186,18 +186,20 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     // Before anything is read: there is no such file.
     let none = folder.path().join("none.obj");
     let command = "refine {} {} -o {} --shared-topology --scheme sqrt3";
-    run(command, &[first, &none, out.path()])
-        .expect(2)
-        .saying("sqrt3");
+    usage_error(command, &[first, &none, out.path()], "sqrt3");
     let command = "refine {} {} -o {} --shared-topology --report {}";
     let before = std::fs::read(first).expect("a frame");
-    run(command, &[first, &inputs[1], out.path(), first])
-        .expect(2)
-        .saying("box_0.obj is an input");
+    usage_error(
+        command,
+        &[first, &inputs[1], out.path(), first],
+        "box_0.obj is an input",
+    );
     assert_eq!(std::fs::read(first).expect("a frame"), before);
     let own = out.path().join("box_1.obj");
-    run(command, &[first, &inputs[1], out.path(), &own])
-        .expect(2)
-        .saying("would be written twice");
+    usage_error(
+        command,
+        &[first, &inputs[1], out.path(), &own],
+        "would be written twice",
+    );
     assert!(crate::common::names(out.path()).is_empty());
 }

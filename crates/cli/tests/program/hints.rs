@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, usage_error};
 
 pub(crate) const CORNERS: [[i32; 3]; 8] = [
     [-1, -1, -1],
@@ -57,7 +57,7 @@ fn cube(folder: &TempDir, normals: bool, before: &dyn Fn(usize) -> String) -> Pa
 fn volume(input: &Path, options: &str) -> f64 {
     let output = input.with_extension("ply");
     let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
-    let report = run(&command, &[input, &output]).expect(0).json();
+    let report = json_of(&command, &[input, &output]);
     report["size"]["after"]["volume"]
         .as_f64()
         .expect("a number")
@@ -67,15 +67,14 @@ fn volume(input: &Path, options: &str) -> f64 {
 fn normals_say_where_edges_are_sharp() {
     let folder = folder();
     let input = cube(&folder, true, &|_| String::new());
-    run("refine {} -o {}", &[&input, &input.with_extension("stl")])
-        .expect(0)
+    done("refine {} -o {}", &[&input, &input.with_extension("stl")])
         .saying("12 edges have different normals on both sides; --creases-from normals");
     assert!(volume(&input, "") < 5.0);
     assert!((volume(&input, "--creases-from normals") - 8.0).abs() < 1e-9);
     // The distance is to the surface with the same edges.
     let output = input.with_extension("ply");
     let command = "measure {} --limit-of {} --creases-from normals --certified --json";
-    let measured = run(command, &[&output, &input]).expect(0).json();
+    let measured = json_of(command, &[&output, &input]);
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-9);
     assert_eq!(measured["reference"]["limit"]["creases_from"], "normals");
     // A vertex for each side, as PLY and STL have them: welded, and the normals kept apart.
@@ -102,12 +101,10 @@ fn normals_say_where_edges_are_sharp() {
     });
     let input = file(&folder, "split.ply", &text);
     let output = folder.path().join("out.obj");
-    let report = run(
+    let report = json_of(
         "refine {} -o {} --creases-from normals --report -",
         &[&input, &output],
-    )
-    .expect(0)
-    .json();
+    );
     assert!(
         (report["size"]["after"]["volume"]
             .as_f64()
@@ -154,15 +151,14 @@ fn groups_and_materials_say_so_too() {
         ("materials", "no materials"),
     ] {
         let command = format!("refine {{}} -o {{}} --creases-from {from}");
-        run(&command, &[&bare, &output]).expect(2).saying(what);
+        usage_error(&command, &[&bare, &output], what);
     }
     let package = folder.path().join("a.3mf");
-    run("refine builtin:cube -o {}", &[&package]).expect(0);
+    done("refine builtin:cube -o {}", &[&package]);
     let again = folder.path().join("b.3mf");
-    run(
+    usage_error(
         "refine {} -o {} --creases-from normals",
         &[&package, &again],
-    )
-    .expect(2)
-    .saying("is for OBJ, PLY");
+        "is for OBJ, PLY",
+    );
 }

@@ -8,7 +8,7 @@ use limitmesh::{Mesh, Triangles};
 use limitmesh_io::read;
 
 use crate::asset::{cube, first_mesh};
-use crate::common::{file, folder, has_keys, names, run};
+use crate::common::{done, file, folder, has_keys, names, run, usage_error};
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -25,11 +25,10 @@ fn files_are_within_their_tolerances_and_nested() {
         folder.path().join("torus.ply"),
         folder.path().join("torus.json"),
     );
-    run(
+    done(
         "lod builtin:torus -o {} --tolerances 2%,0.5% --report {}",
         &[&out, &report],
     )
-    .expect(0)
     .saying("LOD1");
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
@@ -77,11 +76,10 @@ fn files_are_within_their_tolerances_and_nested() {
 fn morphs_begin_on_the_coarser_level() {
     let folder = folder();
     let out = folder.path().join("cup.ply");
-    run(
+    done(
         "lod builtin:cup -o {} --levels 2 --tolerance 0.5% --morph",
         &[&out],
-    )
-    .expect(0);
+    );
     let [fine, coarse] =
         [0, 1].map(|lod| read(folder.path().join(format!("cup_LOD{lod}.ply"))).expect("a mesh"));
     let axis = |name: &str| {
@@ -116,11 +114,10 @@ fn morphs_begin_on_the_coarser_level() {
 fn one_document_has_all_levels() {
     let folder = folder();
     let out = folder.path().join("cup.gltf");
-    run(
+    done(
         "lod builtin:cup -o {} --levels 3 --tolerance 0.1% --morph",
         &[&out],
-    )
-    .expect(0);
+    );
     let text = std::fs::read_to_string(&out).expect("a document");
     let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(document["meshes"].as_array().expect("meshes").len(), 3);
@@ -159,20 +156,18 @@ fn one_document_has_all_levels() {
 fn what_cannot_be_is_told() {
     let folder = folder();
     let out = folder.path().join("cup.obj");
-    run("lod builtin:sphere -o {} --tolerances 3,1,2", &[&out])
-        .expect(2)
-        .saying("number 3 is 2 in the mesh's unit, after 1");
-    run("lod builtin:cup -o -", &[])
-        .expect(2)
-        .saying("not to standard output");
+    usage_error(
+        "lod builtin:sphere -o {} --tolerances 3,1,2",
+        &[&out],
+        "number 3 is 2 in the mesh's unit, after 1",
+    );
+    usage_error("lod builtin:cup -o -", &[], "not to standard output");
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
     run("lod builtin:none -o {}", &[&out])
         .expect(1)
         .saying("none");
     let stl = folder.path().join("cup.stl");
-    run("lod builtin:cup -o {} --morph", &[&stl])
-        .expect(2)
-        .saying("cup.stl")
+    usage_error("lod builtin:cup -o {} --morph", &[&stl], "cup.stl")
         .saying("STL files have no place");
 }
 
@@ -205,11 +200,10 @@ fn an_assets_materials_come_along() {
     );
     std::fs::write(&input, text).expect("written");
     let output = folder.path().join("out.gltf");
-    let said = run(
+    let said = done(
         "lod {} -o {} --levels 2 --crease-angle none",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     let said = said.saying("left out: joints and weights\n");
     assert!(!said.stderr.contains("place for them"), "{}", said.stderr);
     let document: serde_json::Value =
@@ -236,11 +230,10 @@ fn an_assets_materials_come_along() {
         [&materials[0]["material"], &materials[1]["material"]],
         [0, 1]
     );
-    let all = run(
+    let all = done(
         "lod {} -o {} --levels 2",
         &[&input, &folder.path().join("out.ply")],
-    )
-    .expect(0);
+    );
     all.saying("colours and textures of materials");
 }
 
@@ -250,23 +243,23 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     let folder = folder();
     let input = file(&folder, "rock_LOD0.obj", PAINTED);
     let rock = folder.path().join("rock.obj");
-    run("lod {} -o {}", &[&input, &rock])
-        .expect(2)
-        .saying("rock_LOD0.obj is an input");
+    usage_error(
+        "lod {} -o {}",
+        &[&input, &rock],
+        "rock_LOD0.obj is an input",
+    );
     assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
-    run(
+    usage_error(
         "lod {} -o {} --report {}",
         &[&input, &folder.path().join("a.glb"), &input],
-    )
-    .expect(2)
-    .saying("rock_LOD0.obj is an input");
+        "rock_LOD0.obj is an input",
+    );
     let own = folder.path().join("a_LOD1.obj");
-    run(
+    usage_error(
         "lod {} -o {} --report {}",
         &[&input, &folder.path().join("a.obj"), &own],
-    )
-    .expect(2)
-    .saying("a_LOD1.obj would be written twice");
+        "a_LOD1.obj would be written twice",
+    );
     std::fs::create_dir(folder.path().join("b_LOD3.obj")).expect("a folder");
     run("lod {} -o {}", &[&input, &folder.path().join("b.obj")])
         .expect(1)
@@ -282,12 +275,11 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
         ("--attribute-tolerance", "uv=0.1"),
         ("--attribute-tolerance", "heat=1"),
     ] {
-        run(
+        usage_error(
             &format!("lod {{}} -o {{}} {option} {value}"),
             &[&input, &folder.path().join("d.obj")],
-        )
-        .expect(2)
-        .saying(&format!("{option} is for `refine`"));
+            &format!("{option} is for `refine`"),
+        );
     }
     assert_eq!(
         names(folder.path()),

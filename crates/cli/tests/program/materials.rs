@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{file, folder, names, run};
+use crate::common::{done, file, folder, names, run};
 use crate::glb::Glb;
 
 /// The bytes that tell a PNG file, and others that make it one of its own.
@@ -74,9 +74,7 @@ fn colours_and_pictures_come_to_documents() {
     let output = folder.path().join("out.glb");
     // Once refined, once in levels of detail.
     for command in ["refine {} -o {}", "lod {} -o {} --levels 1"] {
-        run(command, &[&input, &output])
-            .expect(0)
-            .saying("odd.tga: left out: neither PNG nor JPEG");
+        done(command, &[&input, &output]).saying("odd.tga: left out: neither PNG nor JPEG");
         let glb = Glb::read(&output);
         has_materials(&glb.json);
         assert_eq!(image(&glb), ("image/png", picture(b"wood").as_slice()));
@@ -86,7 +84,7 @@ fn colours_and_pictures_come_to_documents() {
             glb.numbers(&glb.primitive(0)["indices"]).len() / 3
         );
     }
-    let piped = run("refine {} -o - --to gltf", &[&input]).expect(0);
+    let piped = done("refine {} -o - --to gltf", &[&input]);
     let json: Value = serde_json::from_str(&piped.stdout).expect("JSON");
     has_materials(&json);
     assert_eq!(
@@ -97,7 +95,7 @@ fn colours_and_pictures_come_to_documents() {
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
     let output = other.join("out.gltf");
-    run("refine {} -o {}", &[&input, &output]).expect(0);
+    done("refine {} -o {}", &[&input, &output]);
     let text = Glb::text(&output);
     has_materials(&text.json);
     assert_eq!(text.json["images"][0], json!({"uri": "skin/my%20wood.png"}));
@@ -113,7 +111,7 @@ fn libraries_and_pictures_come_to_other_folders() {
     let input = painted(&folder);
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    done("refine {} -o {}", &[&input, &other.join("out.obj")]);
     for name in ["paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"] {
         let [was, is] =
             [folder.path(), &other].map(|folder| std::fs::read(folder.join(name)).expect(name));
@@ -122,7 +120,7 @@ fn libraries_and_pictures_come_to_other_folders() {
     let text = std::fs::read_to_string(other.join("out.obj")).expect("written");
     assert!(text.contains("mtllib paint.mtl\n") && text.contains("usemtl glass\n"));
     // Twice is as well as once.
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    done("refine {} -o {}", &[&input, &other.join("out.obj")]);
 }
 
 /// Writes a library for [`OBJ`], and gives the material `wood` of the document that comes of it, and what was said.
@@ -131,7 +129,7 @@ fn wood(folder: &Path, library: &str) -> (Value, String) {
     std::fs::write(&input, OBJ).expect("written");
     std::fs::write(folder.join("paint.mtl"), library).expect("written");
     let output = folder.join("out.glb");
-    let said = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    let said = done("refine {} -o {}", &[&input, &output]).stderr;
     (
         Glb::read(&output).json["materials"][0]["pbrMetallicRoughness"].take(),
         said,
@@ -160,7 +158,7 @@ fn nothing_is_replaced() {
     };
     let before = state();
     for name in ["out.obj", "out.gltf"] {
-        run("refine {} -o {}", &[&input, &folder.path().join(name)]).expect(0);
+        done("refine {} -o {}", &[&input, &folder.path().join(name)]);
         assert_eq!(state(), before, "{name}");
     }
     // Another file in the way is kept, and then nothing is written.
@@ -185,9 +183,7 @@ fn what_is_missing_or_elsewhere_is_named() {
     let input = inside.join("in.obj");
     let output = inside.join("out.glb");
     std::fs::write(&input, OBJ).expect("written");
-    run("refine {} -o {}", &[&input, &output])
-        .expect(0)
-        .saying("paint.mtl: left out: No such file");
+    done("refine {} -o {}", &[&input, &output]).saying("paint.mtl: left out: No such file");
     let bare: Vec<Value> = ["wood", "glass", "odd"]
         .map(|name| json!({ "name": name }))
         .into();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, json_of, run, usage_error};
 
 const CONTRACT: &str = "version surface.path surface.triangles reference.path reference.triangles
     reference.limit hausdorff.kind hausdorff.symmetric hausdorff.symmetric_percent hausdorff.forward
@@ -16,9 +16,7 @@ const CONTRACT: &str = "version surface.path surface.triangles reference.path re
     seconds.prepare seconds.measure";
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
-    let report = run(&format!("measure {arguments} --json"), paths)
-        .expect(0)
-        .json();
+    let report = json_of(&format!("measure {arguments} --json"), paths);
     has_keys(&report, CONTRACT);
     report
 }
@@ -74,11 +72,10 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let mut last = f64::INFINITY;
     for levels in 0..4 {
         let options = format!("--method uniform --limit --levels {levels}");
-        run(
+        done(
             &format!("refine builtin:torus -o {{}} {options}"),
             &[&refined],
-        )
-        .expect(0);
+        );
         let report = measure("{} --limit-of builtin:torus", &[&refined]);
         let percent = number(&report["hausdorff"]["symmetric_percent"]);
         // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.
@@ -116,7 +113,7 @@ fn heat_maps_are_meshes_or_pictures() {
         folder.path().join("heat.ply"),
         folder.path().join("heat.png"),
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]).expect(0);
+    done("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]);
     let written = crate::common::soup(&mesh);
     assert_eq!(written.positions.len(), 4);
     let bytes = std::fs::read(&mesh).expect("a file");
@@ -125,15 +122,13 @@ fn heat_maps_are_meshes_or_pictures() {
         header.contains("quality") && header.contains("uchar red"),
         "{header}"
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &picture]).expect(0);
+    done("measure {} {} --heatmap {}", &[&tilted, &low, &picture]);
     assert!(
         std::fs::read(&picture)
             .expect("a file")
             .starts_with(b"\x89PNG")
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &low])
-        .expect(2)
-        .saying(".png");
+    usage_error("measure {} {} --heatmap {}", &[&tilted, &low, &low], ".png");
 }
 
 const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind hausdorff.lower hausdorff.upper
@@ -167,43 +162,32 @@ fn a_certified_interval_that_is_cut_short_is_given_with_code_3() {
 #[test]
 fn what_belongs_to_certified_distances_and_what_does_not() {
     let two = "measure builtin:cup builtin:torus";
-    run(&format!("{two} --gap 1%"), &[])
-        .expect(2)
-        .saying("--certified");
-    run(&format!("{two} --max-work 5"), &[])
-        .expect(2)
-        .saying("--certified");
-    run(&format!("{two} --certified --gap -1"), &[])
-        .expect(2)
-        .saying("at least 0");
-    run(&format!("{two} --certified --samples 9"), &[])
-        .expect(2)
-        .saying("--samples");
-    run(
+    usage_error(&format!("{two} --gap 1%"), &[], "--certified");
+    usage_error(&format!("{two} --max-work 5"), &[], "--certified");
+    usage_error(&format!("{two} --certified --gap -1"), &[], "at least 0");
+    usage_error(&format!("{two} --certified --samples 9"), &[], "--samples");
+    usage_error(
         "measure builtin:cup --limit-of builtin:cup --certified --reference-levels 3",
         &[],
-    )
-    .expect(2)
-    .saying("sampled");
+        "sampled",
+    );
 }
 
 #[test]
 fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let refined = run(
+    let refined = json_of(
         "refine builtin:cup -o {} --tolerance 0.5% --report -",
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     let (lower, upper) = (
         number(&refined["error"]["lower"]),
         number(&refined["error"]["upper"]),
     );
     for options in ["", "--gap 0.05%"] {
         let words = format!("measure {{}} --limit-of builtin:cup --certified --json {options}");
-        let report = run(&words, &[&output]).expect(0).json();
+        let report = json_of(&words, &[&output]);
         let h = &report["hausdorff"];
         let (low, high) = (number(&h["lower"]), number(&h["upper"]));
         // Two intervals for one distance overlap.
@@ -221,9 +205,7 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
         assert!(number(&limit["error"]) > 0.0 && number(&limit["error"]) <= 0.5 * wide);
         assert_eq!(h["converged"], true);
     }
-    let text = run("measure {} --limit-of builtin:cup --certified", &[&output])
-        .expect(0)
-        .stdout;
+    let text = done("measure {} --limit-of builtin:cup --certified", &[&output]).stdout;
     assert!(
         text.contains("limit surface of builtin:cup") && text.contains("certainly within"),
         "{text}"
@@ -251,25 +233,22 @@ fn refine_and_measure_speak_of_one_diagonal() {
         folder.path().join("cup.ply"),
         folder.path().join("cup.json"),
     );
-    run(
+    done(
         "refine builtin:cup -o {} --tolerance 0.2% --report {}",
         &[&mesh, &report],
-    )
-    .expect(0);
+    );
     let refined: Value =
         serde_json::from_str(&std::fs::read_to_string(&report).expect("a report")).expect("JSON");
     let error = &refined["error"];
-    let info = run("info builtin:cup --json", &[]).expect(0).json();
+    let info = json_of("info builtin:cup --json", &[]);
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     assert_eq!(number(&error["diagonal"]), diagonal);
 
     let sampled = measure("{} --limit-of builtin:cup", &[&mesh]);
-    let certified = run(
+    let certified = json_of(
         "measure {} --limit-of builtin:cup --certified --json",
         &[&mesh],
-    )
-    .expect(0)
-    .json();
+    );
     let (sampled, certified) = (&sampled["hausdorff"], &certified["hausdorff"]);
     for found in [sampled, certified] {
         assert_eq!(number(&found["diagonal"]), diagonal);

@@ -9,7 +9,7 @@ use limitmesh::PolygonSoup;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{Run, file, folder, run, soup};
+use crate::common::{Run, done, file, folder, json_of, soup, usage_error};
 
 type Point = [f64; 3];
 
@@ -89,11 +89,10 @@ fn volume(soup: &PolygonSoup) -> f64 {
 
 fn refine(input: &Path, options: &str) -> (Run, PolygonSoup, Value) {
     let output = input.with_extension("out.ply");
-    let run = run(
+    let run = done(
         &format!("refine {{}} -o {{}} --report - {options}"),
         &[input, &output],
-    )
-    .expect(0);
+    );
     let report = run.json();
     (run, soup(&output), report)
 }
@@ -168,9 +167,11 @@ fn a_box_is_itself_and_says_so_first() {
     let (_, found, _) = refine(&input, "--scheme sqrt3 --crease-angle auto --angle 20");
     assert!((volume(&found) - 4000.0).abs() < 1e-3, "{}", volume(&found));
     let output = folder.path().join("x.ply");
-    crate::common::run("refine {} -o {} --crease-angle 0", &[&input, &output])
-        .expect(2)
-        .saying("'auto' or 'none'");
+    crate::common::usage_error(
+        "refine {} -o {} --crease-angle 0",
+        &[&input, &output],
+        "'auto' or 'none'",
+    );
 }
 
 /// One surface in all commands: what is refined by default is at its tolerance from the surface that others speak of by default.
@@ -179,10 +180,10 @@ fn all_commands_speak_of_one_surface() {
     let folder = folder();
     let input = Solid::peg(16, 5.0, 8.0).stl(&folder, "part.stl");
     let output = folder.path().join("out.ply");
-    run("refine {} -o {} --tolerance 0.02", &[&input, &output]).expect(0);
+    done("refine {} -o {} --tolerance 0.02", &[&input, &output]);
     let measured = |options: &str| {
         let line = format!("measure {{}} --limit-of {{}} --json {options}");
-        let run = run(&line, &[&output, &input]).expect(0);
+        let run = done(&line, &[&output, &input]);
         (number(&run.json()["hausdorff"]["symmetric"]), run)
     };
     let (near, found) = measured("--samples 20000");
@@ -190,7 +191,7 @@ fn all_commands_speak_of_one_surface() {
     let (far, _) = measured("--samples 20000 --crease-angle none");
     assert!(near < 0.021 && far > 1.0, "{near} {far}");
     let line = "measure {} --limit-of {} --certified --json";
-    let certified = run(line, &[&output, &input]).expect(0).json();
+    let certified = json_of(line, &[&output, &input]);
     assert!(
         number(&certified["hausdorff"]["lower"]) <= 0.02,
         "{certified}"
@@ -199,8 +200,7 @@ fn all_commands_speak_of_one_surface() {
 
     let peg = Solid::peg(16, 5.0, 8.0).stl(&folder, "peg.stl");
     // The first facet's corner at (5, 0, 0).
-    let found = run("evaluate {} --at 0,1,0,0 --json", &[&peg])
-        .expect(0)
+    let found = done("evaluate {} --at 0,1,0,0 --json", &[&peg])
         .saying("looks like a part")
         .json();
     let point = [0, 1, 2].map(|i| number(&found[0]["point"][i]));
@@ -209,13 +209,11 @@ fn all_commands_speak_of_one_surface() {
         "{point:?}"
     );
     let at = file(&folder, "points.csv", "5,0,0\n0,5,8\n");
-    let found = run("project {} --onto {} --json", &[&at, &peg])
-        .expect(0)
+    let found = done("project {} --onto {} --json", &[&at, &peg])
         .saying("looks like a part")
         .json();
     assert!(number(&found["distance"]["greatest"]) < 1e-6, "{found}");
-    let limit = run("info {} --limit --json", &[&peg])
-        .expect(0)
+    let limit = done("info {} --limit --json", &[&peg])
         .saying("looks like a part")
         .json();
     assert!(
@@ -223,9 +221,7 @@ fn all_commands_speak_of_one_surface() {
         "{limit}"
     );
     let levels = folder.path().join("levels.ply");
-    run("lod {} -o {} --levels 2", &[&peg, &levels])
-        .expect(0)
-        .saying("looks like a part");
+    done("lod {} -o {} --levels 2", &[&peg, &levels]).saying("looks like a part");
     let finest = soup(&folder.path().join("levels_LOD0.ply"));
     assert!(
         (volume(&finest) / (PI * 200.0) - 1.0).abs() < 5e-3,
@@ -233,14 +229,14 @@ fn all_commands_speak_of_one_surface() {
         volume(&finest)
     );
     let picture = folder.path().join("peg.png");
-    run("render {} -o {} --exact --size 60x60", &[&peg, &picture])
-        .expect(0)
-        .saying("looks like a part");
-    run("render {} -o {} --crease-angle auto", &[&peg, &picture])
-        .expect(2)
-        .saying("--exact");
+    done("render {} -o {} --exact --size 60x60", &[&peg, &picture]).saying("looks like a part");
+    usage_error(
+        "render {} -o {} --crease-angle auto",
+        &[&peg, &picture],
+        "--exact",
+    );
     // Comparisons keep their rules.
-    let compared = run("compare {} --levels 1 --samples 1000 --json", &[&peg]).expect(0);
+    let compared = done("compare {} --levels 1 --samples 1000 --json", &[&peg]);
     assert!(
         !compared.stderr.contains("looks like"),
         "{}",
@@ -256,22 +252,19 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
     for (name, unit) in [("box.3mf", "--unit mm"), ("box.glb", "")] {
         let [plain, fine] =
             [name.to_owned(), format!("fine_{name}")].map(|name| folder.path().join(name));
-        run(
+        done(
             &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
             &[&input, &plain],
-        )
-        .expect(0);
-        run("refine {} -o {}", &[&plain, &fine])
-            .expect(0)
-            .saying("looks like a part: 12 edges");
-        let found = run("info {} --json", &[&fine]).expect(0).json();
+        );
+        done("refine {} -o {}", &[&plain, &fine]).saying("looks like a part: 12 edges");
+        let found = json_of("info {} --json", &[&fine]);
         assert!(
             (number(&found["mesh"]["volume"]) - 4000.0).abs() < 1e-2,
             "{name}: {}",
             found["mesh"]["volume"]
         );
-        run("refine {} -o {} --crease-angle none", &[&plain, &fine]).expect(0);
-        let found = run("info {} --json", &[&fine]).expect(0).json();
+        done("refine {} -o {} --crease-angle none", &[&plain, &fine]);
+        let found = json_of("info {} --json", &[&fine]);
         assert!(
             number(&found["mesh"]["volume"]) < 2000.0,
             "{name}: {}",

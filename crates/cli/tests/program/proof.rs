@@ -9,7 +9,7 @@ use limitmesh_check::proof::Proof;
 use limitmesh_check::{read, verdict};
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, usage_error};
 
 /// Triangles that are refused, the files being as they are.
 fn refused(control: Option<&Path>, result: &Path, proof: &Path, times: f64) -> usize {
@@ -29,10 +29,7 @@ fn proven(input: &str, options: &str, ending: &str) -> Value {
     let [result, proof] =
         ["result", "proof"].map(|name| folder.path().join(format!("{name}.{ending}")));
     let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
-    let report = run(&command, &[&result, &proof])
-        .expect(0)
-        .saying("proves")
-        .json();
+    let report = done(&command, &[&result, &proof]).saying("proves").json();
     let control = (!input.starts_with("builtin:")).then_some(Path::new(input));
     assert_eq!(
         refused(control, &result, &proof, 1.0),
@@ -99,31 +96,30 @@ fn what_has_no_proof_is_refused_by_name() {
         ("--scheme sqrt3", "loop"),
         ("--method uniform", "--method exact"),
     ] {
-        run(
+        usage_error(
             &format!("refine builtin:cube -o {{}} {options} --proof {{}}"),
             &[&result, &proof],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
         assert!(!proof.exists() && !result.exists(), "{options}");
     }
     for name in ["result.stl", "result.glb", "result.3mf"] {
-        run(
+        usage_error(
             "refine builtin:cube -o {} --proof {}",
             &[&folder.path().join(name), &proof],
-        )
-        .expect(2)
-        .saying(".ply");
+            ".ply",
+        );
     }
-    run(
+    usage_error(
         "refine builtin:cube -o - --to ply --ascii --proof {}",
         &[&proof],
-    )
-    .expect(2)
-    .saying("file");
-    run("refine builtin:cube -o {} --proof {}", &[&result, &result])
-        .expect(2)
-        .saying("twice");
+        "file",
+    );
+    usage_error(
+        "refine builtin:cube -o {} --proof {}",
+        &[&result, &result],
+        "twice",
+    );
 }
 
 #[test]
@@ -132,14 +128,13 @@ fn batches_and_folders_have_proofs() {
     let at = |name: &str| folder.path().join(name);
     let job = json!({"input": "builtin:cube", "output": at("a.ply"), "tolerance": "1%", "proof": at("a.proof")});
     let jobs = file(&folder, "jobs.jsonl", &format!("{job}\n"));
-    run("batch {} -o {}", &[&jobs, &at("results.jsonl")]).expect(0);
+    done("batch {} -o {}", &[&jobs, &at("results.jsonl")]);
     assert_eq!(refused(None, &at("a.ply"), &at("a.proof"), 1.0), 0);
     std::fs::create_dir(at("out")).unwrap();
-    run(
+    done(
         "refine builtin:cube builtin:cup -o {} --tolerance 1% --proof {}",
         &[&at("out"), &at("out")],
-    )
-    .expect(0);
+    );
     for name in ["cube", "cup"] {
         let [result, proof] =
             ["ply", "proof"].map(|ending| at("out").join(format!("{name}.{ending}")));
@@ -168,7 +163,7 @@ fn the_checker_in_python_agrees() {
         ),
     ] {
         let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
-        let report = run(&command, &[&result, &proof]).expect(0).json();
+        let report = json_of(&command, &[&result, &proof]);
         let check = |within: f64| {
             let files = [Path::new("-"), &result, &proof];
             let mut python = Command::new("python3");

@@ -2,14 +2,14 @@
 
 use serde_json::Value;
 
-use crate::common::{folder, run};
+use crate::common::{done, folder, json_of, usage_error};
 
 /// The parameters that a refinement was done with.
 fn parameters(options: &str) -> Value {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let words = format!("refine builtin:cube -o {{}} --report - {options}");
-    run(&words, &[&output]).expect(0).json()["parameters"].clone()
+    json_of(&words, &[&output])["parameters"].clone()
 }
 
 #[test]
@@ -38,21 +38,22 @@ fn lengths_may_have_a_unit_where_the_mesh_has_one() {
         ("--tolerance 0.05furlongs", "not a number"),
         ("--tolerance 0.05mm --unit furlong", "furlong"),
     ] {
-        run(&format!("refine builtin:cube -o out.ply {options}"), &[])
-            .expect(2)
-            .saying(words);
+        usage_error(
+            &format!("refine builtin:cube -o out.ply {options}"),
+            &[],
+            words,
+        );
     }
     let gap = "measure builtin:cube builtin:tetrahedron --certified --gap 1mm";
-    run(gap, &[]).expect(2).saying("--unit mm");
-    run(&format!("{gap} --unit m"), &[]).expect(0);
+    usage_error(gap, &[], "--unit mm");
+    done(&format!("{gap} --unit m"), &[]);
     // Results have the unit as well.
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let told = run(
+    let told = done(
         "refine builtin:cube -o {} --tolerance 0.01mm --unit mm",
         &[&output],
     )
-    .expect(0)
     .stderr;
     assert!(told.contains(" mm) of the limit surface"), "{told}");
 }
@@ -61,8 +62,10 @@ fn lengths_may_have_a_unit_where_the_mesh_has_one() {
 fn what_a_tolerance_may_be_is_told_in_one_way() {
     for bad in ["0", "-1", "0%", "-0.5%", "-1mm"] {
         let words = format!("refine builtin:cube -o out.ply --tolerance={bad}");
-        run(&words, &[])
-            .expect(2)
-            .saying(&format!("{bad} is out of range: a tolerance is above 0"));
+        usage_error(
+            &words,
+            &[],
+            &format!("{bad} is out of range: a tolerance is above 0"),
+        );
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
+use crate::common::{claimed, counts, done, file, folder, has_keys, json_of, run, soup};
 
 /// The keys that users of the report may rely on.
 const CONTRACT: &str = "version input.path input.format input.vertices input.faces diagnosis.clean
@@ -22,11 +22,10 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
 
 /// Refines and gives the report, after checking that it fits the file.
 fn refine(input: &str, output: &Path, options: &str) -> Value {
-    let run = run(
+    let run = done(
         &format!("refine {input} -o {{}} --report - {options}"),
         &[output],
-    )
-    .expect(0);
+    );
     let report = run.json();
     has_keys(&report, CONTRACT);
     assert_eq!(
@@ -75,7 +74,7 @@ fn every_built_in_model_is_refined_by_every_method() {
         ];
         for options in methods {
             let report = refine(&name, &output, options);
-            let info = run(&format!("info {name} --json"), &[]).expect(0).json();
+            let info = json_of(&format!("info {name} --json"), &[]);
             assert_eq!(
                 report["output"]["euler_characteristic"],
                 info["mesh"]["euler_characteristic"]
@@ -130,11 +129,10 @@ fn every_format_holds_the_same_mesh() {
         ("text.stl", "--ascii"),
     ] {
         let path = folder.path().join(name);
-        run(
+        done(
             &format!("refine builtin:cup -o {{}} --tolerance 0.5% {options}"),
             &[&path],
-        )
-        .expect(0);
+        );
         let mesh = welded(&path);
         if name.ends_with("stl") {
             // Single precision, and vertices in the order of the facets.
@@ -176,11 +174,10 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
     let folder = folder();
     let bytes = |threads: usize, options: &str| {
         let output = folder.path().join(format!("out{threads}.ply"));
-        run(
+        done(
             &format!("refine builtin:shoe -o {{}} --threads {threads} {options}"),
             &[&output],
-        )
-        .expect(0);
+        );
         std::fs::read(&output).expect("a file")
     };
     // Large enough that the loops do run in parallel.
@@ -207,8 +204,7 @@ fn repairs_are_told_and_strict_refuses_them() {
         "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nv 9 9 9\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
     let input = file(&folder, "fan.obj", fan);
     let output = folder.path().join("out.ply");
-    let report = run("refine {} -o {} --report -", &[&input, &output])
-        .expect(0)
+    let report = done("refine {} -o {} --report -", &[&input, &output])
         .saying("1 edge with more than two faces")
         .saying("1 vertex in no face: left out (vertex 5)")
         .json();
@@ -231,11 +227,10 @@ fn tags_are_kept_or_the_loss_is_told() {
     std::fs::write(&input, content).expect("a file");
     for name in ["out.obj", "out.ply"] {
         let output = folder.path().join(name);
-        let run = run(
+        let run = done(
             "refine {} -o {} --method limit-normal --levels 2",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let kept = name.ends_with("obj");
         let told = run
             .stderr
@@ -258,7 +253,7 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let folder = folder();
     let input = file(&folder, "nearly.obj", NEARLY_CLOSED);
     let output = folder.path().join("out.ply");
-    let first = run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+    let first = done("refine {} -o {} --tolerance 1%", &[&input, &output]);
     let told = first
         .stderr
         .split("--weld ")
@@ -267,11 +262,10 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let distance = told
         .unwrap_or_else(|| panic!("no distance in {}", first.stderr))
         .to_owned();
-    let second = run(
+    let second = done(
         &format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"),
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert!(
         !second.stderr.contains("--weld") && second.stderr.contains(", closed ("),
         "{}",
@@ -279,11 +273,10 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     );
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
-    run(
+    done(
         &format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"),
         &[&output, &input],
-    )
-    .expect(0);
+    );
 }
 
 #[test]
@@ -313,7 +306,7 @@ fn what_is_left_out_is_told() {
         file(&folder, "in.obj", content),
         folder.path().join("out.obj"),
     );
-    let told = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    let told = done("refine {} -o {}", &[&input, &output]).stderr;
     assert!(!told.contains("left out"), "{told}");
     let text = std::fs::read_to_string(&output).expect("it is there");
     assert!(
@@ -321,8 +314,8 @@ fn what_is_left_out_is_told() {
         "{text}"
     );
     let carried = "carries: texture coordinates (2 numbers a corner); materials (by face)";
-    assert!(run("info {}", &[&input]).expect(0).stdout.contains(carried));
-    let report = run("info {} --json", &[&input]).expect(0).json();
+    assert!(done("info {}", &[&input]).stdout.contains(carried));
+    let report = json_of("info {} --json", &[&input]);
     assert_eq!(report["input"]["left_out"], serde_json::json!([]));
     assert_eq!(
         report["input"]["channels"][0]["name"],
@@ -331,19 +324,16 @@ fn what_is_left_out_is_told() {
     let stl = folder.path().join("out.stl");
     let words =
         "left out: texture coordinates; materials (the output's format has no place for them)";
-    run("refine {} -o {}", &[&input, &stl])
-        .expect(0)
-        .saying(words);
+    done("refine {} -o {}", &[&input, &stl]).saying(words);
     for options in [
         "--optimize",
         "--method uniform --levels 1",
         "--method limit-normal",
     ] {
-        let told = run(
+        let told = done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
         )
-        .expect(0)
         .stderr;
         assert!(!told.contains("left out"), "{options}: {told}");
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{file, folder, names, run};
+use crate::common::{done, file, folder, names, run};
 
 const COLUMNS: &str = "model,angle_degrees,faces,shd_percent,amresh_faces,amresh_shd_percent,ratio_percent,\
                        uniform_limit_faces,uniform_limit_shd_percent,exact_faces,exact_shd_percent";
@@ -29,7 +29,7 @@ fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
     let place = folder();
     // The folder does not exist, nor does the one it is in.
     let out = place.path().join("new").join("paper");
-    run("reproduce --quick -o {}", &[&out]).expect(0);
+    done("reproduce --quick -o {}", &[&out]);
 
     let csv = read(&out, "table1.csv");
     let rows = csv_is_sound(&csv);
@@ -48,7 +48,7 @@ fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
     // Nothing but the seconds depends on the number of threads, or on what was in the folder before.
     let before = contents(&out);
     fs::write(out.join("index.html"), "x".repeat(1 << 20)).expect("writable");
-    run("reproduce --quick --threads 1 -o {}", &[&out]).expect(0);
+    done("reproduce --quick --threads 1 -o {}", &[&out]);
     assert!(before == contents(&out), "the same run gave other files");
 }
 

@@ -1,17 +1,15 @@
 //! `refine --method planarity` and `vertex-error`: criteria of the literature over a restricted quadtree.
 
-use crate::common::{folder, run};
+use crate::common::{done, folder, json_of, run, usage_error};
 
 /// Triangles and what was reached, from a report.
 fn refined(words: &str) -> (u64, serde_json::Value) {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let report = run(
+    let report = json_of(
         &format!("refine builtin:head -o {{}} --report - {words}"),
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     (
         report["output"]["triangles"].as_u64().expect("a count"),
         report,
@@ -62,21 +60,21 @@ fn what_does_not_go_together_is_said() {
         ("--method planarity --view 0,0,1", "--view"),
         ("--method planarity --scheme sqrt3", "sqrt3"),
     ] {
-        run(&format!("refine builtin:cup -o {{}} {words}"), &[&output])
-            .expect(2)
-            .saying(said);
+        usage_error(
+            &format!("refine builtin:cup -o {{}} {words}"),
+            &[&output],
+            said,
+        );
     }
     assert!(!output.exists());
     let asset = folder.path().join("out.glb");
-    run(
+    done(
         "refine builtin:cup -o {} --method vertex-error --tolerance 1%",
         &[&asset],
-    )
-    .expect(0);
-    run(
+    );
+    usage_error(
         "refine {} -o {} --method vertex-error",
         &[&asset, &folder.path().join("again.glb")],
-    )
-    .expect(2)
-    .saying("do not edit glTF");
+        "do not edit glTF",
+    );
 }

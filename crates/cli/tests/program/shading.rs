@@ -1,6 +1,6 @@
 //! Normals by side: what files hold of them, and what pictures show.
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, run, usage_error};
 
 /// A prism of twelve sides, radius 2 and height 1, in the format OBJ: its ends are polygons.
 fn prism() -> String {
@@ -67,11 +67,10 @@ fn each_side_of_a_rim_has_its_normals() {
         ["out.obj", "out.ply", "split.ply", "out.stl"].map(|name| folder.path().join(name));
     let options = "--crease-angle 40 --tolerance 0.01 --quiet --ascii";
     for method in ["", "--optimize"] {
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options} {method}"),
             &[&input, &obj],
-        )
-        .expect(0);
+        );
         let text = std::fs::read_to_string(&obj).expect("written");
         let list = |key: &str| -> Vec<Vec<f64>> {
             text.lines()
@@ -110,11 +109,10 @@ fn each_side_of_a_rim_has_its_normals() {
     let text = std::fs::read_to_string(&ply).expect("written");
     assert!(!text.contains(" nx\n"));
     let options = format!("{options} --split-normals");
-    run(
+    done(
         &format!("refine {{}} -o {{}} {options} --provenance"),
         &[&input, &split],
-    )
-    .expect(0);
+    );
     let text = std::fs::read_to_string(&split).expect("written");
     let (header, body) = text.split_once("end_header\n").expect("a header");
     assert!(header.contains("nx\n") && header.contains("parent_a\n"));
@@ -129,7 +127,9 @@ fn each_side_of_a_rim_has_its_normals() {
             assert!(dot(&own, &corner[3..6]) > 0.9, "{own:?} {corner:?}");
         }
     }
-    run(&format!("refine {{}} -o {{}} {options}"), &[&input, &stl])
-        .expect(2)
-        .saying("--split-normals");
+    usage_error(
+        &format!("refine {{}} -o {{}} {options}"),
+        &[&input, &stl],
+        "--split-normals",
+    );
 }

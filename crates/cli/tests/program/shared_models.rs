@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::common::{claimed, counts, folder, names, run, soup};
+use crate::common::{claimed, counts, folder, json_of, names, run, soup};
 use serde_json::Value;
 
 /// By file: faces as stored; vertices, triangles, Euler characteristic, boundary loops and components of the control mesh, `cut` where
@@ -114,7 +114,7 @@ fn refuses(name: &str, path: &Path, words: &[&str]) {
 
 /// `info` finds what is expected; gives its report.
 fn examines(name: &str, path: &Path, faces: u64, shape: &str, findings: &[&str]) -> Value {
-    let info = run("info {} --json", &[path]).expect(0).json();
+    let info = json_of("info {} --json", &[path]);
     assert_eq!(info["input"]["faces"].as_u64(), Some(faces), "{name}");
     let keys = [
         "vertices",
@@ -151,7 +151,7 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     let number = |key: &str| control[key].as_u64().expect("a count");
     for method in ["limit-normal", "uniform"] {
         let command = format!("refine {{}} -o {{}} --method {method} --levels {levels} --report -");
-        let report = run(&command, &[path, &output]).expect(0).json();
+        let report = json_of(&command, &[path, &output]);
         let (result, written) = (&report["output"], counts(&soup(&output)));
         assert_eq!(written, claimed(result), "{name} {method}");
         assert_eq!(written.non_manifold_edges, 0, "{name} {method}");
@@ -173,7 +173,7 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     }
     let command =
         format!("measure {{}} --limit-of {{}} --reference-levels {levels} --samples 2000 --json");
-    let report = run(&command, &[&output, path]).expect(0).json();
+    let report = json_of(&command, &[&output, path]);
     let percent = report["hausdorff"]["symmetric_percent"]
         .as_f64()
         .expect("a number");
@@ -185,7 +185,7 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
 fn bounds_distances(name: &str, a: &Path, b: &Path) {
     let distance = |options: &str| {
         let command = format!("measure {{}} {{}} --json {options}");
-        run(&command, &[a, b]).expect(0).json()["hausdorff"].clone()
+        json_of(&command, &[a, b])["hausdorff"].clone()
     };
     let (certified, sampled) = (distance("--certified"), distance("--samples 20000"));
     let number = |value: &Value| value.as_f64().expect("a number");

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, json_of};
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -12,12 +12,10 @@ fn number(value: &Value) -> f64 {
 fn distances(input: &str, options: &str) -> ([f64; 2], [f64; 2]) {
     let folder = folder();
     let output = folder.path().join("out.off");
-    let report = run(
+    let report = json_of(
         &format!("refine {input} -o {{}} --report - {options}"),
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     has_keys(
         &report,
         "input_distance.lower_percent size.before.area size.before.volume size.after.area size.after.volume",
@@ -28,12 +26,10 @@ fn distances(input: &str, options: &str) -> ([f64; 2], [f64; 2]) {
         let percent = number(&told[format!("{end}_percent")]);
         assert!((percent - 100.0 * number(&told[end]) / diagonal).abs() < 1e-9);
     }
-    let found = run(
+    let found = json_of(
         &format!("measure {{}} {input} --certified --gap 0.5% --json"),
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     let ends = |of: &Value| ["lower", "upper"].map(|end| number(&of[end]));
     (ends(told), ends(&found["hausdorff"]))
 }
@@ -70,15 +66,13 @@ fn the_distance_to_the_input_is_what_measuring_both_finds() {
 fn what_has_moved_is_told_and_what_would_keep_it() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine builtin:cube -o {}", &[&output])
-        .expect(0)
+    done("refine builtin:cube -o {}", &[&output])
         .saying("of the diagonal (")
         .saying("from the input, certified")
         .saying("(--crease-angle 30 would keep 12 edges that look sharp)")
         .saying("area 6 to ")
         .saying("volume 1 to ");
-    let kept = run("refine builtin:cube -o {} --crease-angle 30", &[&output])
-        .expect(0)
+    let kept = done("refine builtin:cube -o {} --crease-angle 30", &[&output])
         .saying("volume 1 to 1 (+0.00 %)");
     assert!(
         !kept.stderr.contains("moved by") && !kept.stderr.contains("would keep"),
@@ -90,31 +84,25 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         "square.obj",
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
     );
-    let report = run(
+    let report = json_of(
         "refine {} -o {} --boundary fixed --report -",
         &[&square, &output],
-    )
-    .expect(0)
-    .json();
+    );
     assert!(number(&report["input_distance"]["upper"]) < 1e-6);
     assert_eq!(
         report["size"]["after"],
         json!({"area": 1.0, "volume": null})
     );
     // Other methods do not know where vertices came from.
-    let stepwise = run(
+    let stepwise = json_of(
         "refine builtin:cube -o {} --method uniform --report -",
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     assert_eq!(stepwise["input_distance"], Value::Null);
     assert!(number(&stepwise["size"]["after"]["volume"]) < 1.0);
     // Where much of the volume is gone, it is said what would keep it, once, whether the way is known or not.
     let hints = |options: &str| {
-        let said = run(&format!("refine {options} -o {{}}"), &[&output])
-            .expect(0)
-            .stderr;
+        let said = done(&format!("refine {options} -o {{}}"), &[&output]).stderr;
         said.matches("(--interpolate would lead the surface through the vertices)")
             .count()
     };
@@ -134,28 +122,26 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         assert_eq!(hints(&format!("builtin:cube {options}")), 0, "{options}");
     }
     // What lies in a plane can lose its outline alone.
-    let flat = run("refine {} -o {} --interpolate", &[&square, &output]).expect(0);
+    let flat = done("refine {} -o {} --interpolate", &[&square, &output]);
     let flat = flat
         .saying("moved by")
         .saying("(--boundary fixed would keep the outline)");
     assert!(!flat.stderr.contains("--crease-angle"), "{}", flat.stderr);
-    let plain = run("refine {} -o {}", &[&square, &output]).expect(0).stderr;
+    let plain = done("refine {} -o {}", &[&square, &output]).stderr;
     assert!(
         plain.contains("--boundary fixed") && !plain.contains("--interpolate would"),
         "{plain}"
     );
     let folded = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 2 2 0\nv 3 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n";
     let folded = file(&folder, "folded.obj", folded);
-    let said = run(
+    let said = done(
         "refine {} -o {} --interpolate --tolerance 2%",
         &[&folded, &output],
     )
-    .expect(0)
     .stderr;
     assert!(!said.contains("--crease-angle"), "{said}");
     // With a unit.
-    run("refine builtin:cube -o {} --unit mm", &[&output])
-        .expect(0)
+    done("refine builtin:cube -o {} --unit mm", &[&output])
         .saying(" mm²")
         .saying(" mm³");
 }

@@ -1,6 +1,6 @@
 //! `refine --scheme sqrt3`: uniform steps, what they write, and what does not go with them.
 
-use crate::common::{counts, folder, run, soup};
+use crate::common::{counts, done, folder, run, soup};
 
 #[test]
 fn steps_triple_the_triangles() {
@@ -10,11 +10,10 @@ fn steps_triple_the_triangles() {
     for (levels, limit) in [(0, ""), (1, "--limit"), (3, ""), (4, "--limit")] {
         let options =
             format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
-        let run = run(
+        let run = done(
             &format!("refine builtin:torus -o {{}} {options}"),
             &[&output],
-        )
-        .expect(0);
+        );
         let report = run.json();
         let triangles = report["output"]["triangles"].as_u64().expect("a count");
         assert_eq!(
@@ -76,7 +75,7 @@ fn goals_are_reached_without_cracks() {
         "--angle 30 --provenance",
     ] {
         let asked = format!("refine builtin:torus -o {{}} --scheme sqrt3 --report - {options}");
-        let done = run(&asked, &[&output]).expect(0);
+        let done = done(&asked, &[&output]);
         let report = done.json();
         assert_eq!(report["output"]["watertight"], true, "{options}");
         assert_eq!(report["output"]["t_junctions"], 0, "{options}");

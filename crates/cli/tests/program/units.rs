@@ -6,7 +6,7 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
-use crate::common::{data, folder, run, soup};
+use crate::common::{data, done, folder, soup, usage_error};
 use crate::glb::Glb;
 use crate::package;
 
@@ -17,25 +17,22 @@ fn lengths_are_in_the_unit_of_the_package_for_all_formats() {
     // 0.05 mm of a ball with a radius of an inch.
     for name in ["out.stl", "out.ply", "out.glb", "out.3mf"] {
         let output = folder.path().join(name);
-        run("refine {} -o {} --tolerance 0.05mm", &[&input, &output]).expect(0);
+        done("refine {} -o {} --tolerance 0.05mm", &[&input, &output]);
         assert_eq!(soup(&output).faces.len(), 5120, "{name}");
-        run(
+        done(
             "refine {} -o {} --tolerance 0.05mm --unit in",
             &[&input, &output],
-        )
-        .expect(0);
-        run(
+        );
+        usage_error(
             "refine {} -o {} --tolerance 0.05mm --unit mm",
             &[&input, &output],
-        )
-        .expect(2)
-        .saying("says that it is in in");
+            "says that it is in in",
+        );
     }
-    run(
+    done(
         "refine {} -o {} --tolerance 0.05mm",
         &[&input, &folder.path().join("out.stl")],
     )
-    .expect(0)
     .saying("its numbers are in");
 }
 
@@ -65,10 +62,12 @@ fn every_command_knows_the_unit_of_a_package() {
     ];
     for (command, paths) in commands {
         let paths: Vec<&Path> = paths.iter().map(|path| path.as_path()).collect();
-        run(command, &paths).expect(0);
-        run(&format!("{command} --unit mm"), &paths)
-            .expect(2)
-            .saying("says that it is in in");
+        done(command, &paths);
+        usage_error(
+            &format!("{command} --unit mm"),
+            &paths,
+            "says that it is in in",
+        );
     }
     let scale = &Glb::read(&levels).json["nodes"][0]["scale"];
     assert_eq!(scale, &serde_json::json!([0.0254, 0.0254, 0.0254]));
@@ -105,10 +104,8 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
     let path = |name: &str| folder.path().join(name);
     let (package, document, back, plain) =
         (path("a.3mf"), path("a.glb"), path("b.3mf"), path("c.3mf"));
-    run("refine {} -o {} --tolerance 0.05mm", &[&input, &package]).expect(0);
-    run("refine {} -o {} --tolerance 0.05mm", &[&input, &document])
-        .expect(0)
-        .saying("scales the mm");
+    done("refine {} -o {} --tolerance 0.05mm", &[&input, &package]);
+    done("refine {} -o {} --tolerance 0.05mm", &[&input, &document]).saying("scales the mm");
     let glb = Glb::read(&document);
     let scale = glb.json["nodes"][0]["scale"][0].as_f64().expect("a scale");
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
@@ -123,14 +120,11 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
         "{shown} {expected}"
     );
     // The other way, and with the unit that somebody says.
-    run("refine {} -o {} --tolerance 10m", &[&document, &back])
-        .expect(0)
-        .saying("in mm, 1000");
-    run(
+    done("refine {} -o {} --tolerance 10m", &[&document, &back]).saying("in mm, 1000");
+    done(
         "refine {} -o {} --tolerance 10m --unit cm",
         &[&document, &plain],
-    )
-    .expect(0);
+    );
     for (path, of_metres, name) in [(&back, 1000.0, "millimeter"), (&plain, 1.0, "centimeter")] {
         let found = radius(package::triangles(path).into_iter().flat_map(|own| own.0));
         assert!(
@@ -140,9 +134,7 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
         assert_eq!(unit(path), name);
     }
     // A measure knows both units.
-    let run = run("measure {} {} --json", &[&package, &document])
-        .expect(0)
-        .saying("its mm are taken to m");
+    let run = done("measure {} {} --json", &[&package, &document]).saying("its mm are taken to m");
     let distance = run.json()["hausdorff"]["symmetric"]
         .as_f64()
         .expect("a distance");

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::common::{file, folder, run, soup};
+use crate::common::{done, file, folder, json_of, run, soup, usage_error};
 
 /// Squares of voxels, by their low and high corners.
 type Square = [[f64; 3]; 2];
@@ -87,11 +87,10 @@ fn voxels_become_round_within_the_distance_in_every_format() {
     let input = file(&folder, "ball.off", &text);
     for name in ["round.ply", "round.stl", "round.obj", "round.off"] {
         let output = folder.path().join(name);
-        let run = run(
+        let run = done(
             "refine {} -o {} --within 0.87mm --unit mm --report -",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let report = run.json();
         assert_eq!(report["parameters"]["within"], 0.87);
         let found = &report["input_distance"];
@@ -118,9 +117,7 @@ fn voxels_become_round_within_the_distance_in_every_format() {
         );
     }
     let output = folder.path().join("percent.ply");
-    let report = run("refine {} -o {} --within 4% --report -", &[&input, &output])
-        .expect(0)
-        .json();
+    let report = json_of("refine {} -o {} --within 4% --report -", &[&input, &output]);
     let within = report["parameters"]["within"].as_f64().expect("a number");
     let diagonal = report["error"]["diagonal"].as_f64().expect("a number");
     assert!(
@@ -136,11 +133,10 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
     let input = file(&folder, "ball.off", &ball(3).0);
     let output = folder.path().join("out.ply");
     // A tiny distance neither takes many triangles nor is it missed.
-    run(
+    done(
         "refine {} -o {} --within 1e-7 --max-triangles 20k --strict",
         &[&input, &output],
     )
-    .expect(0)
     .saying("edges stay sharp");
     // A box of twelve triangles has no smooth surface so near.
     let corners: String = (0..8)
@@ -155,9 +151,7 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
         .collect();
     let sides = "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
     let box_of_twelve = file(&folder, "box.obj", &(corners + sides));
-    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output])
-        .expect(0)
-        .saying("12 edges stay sharp");
+    done("refine {} -o {} --within 0.04", &[&box_of_twelve, &output]).saying("12 edges stay sharp");
     let positions = soup(&output).positions;
     let is_on_box = |p: &[f64; 3]| {
         let beyond = [40.0, 20.0, 5.0]
@@ -188,7 +182,7 @@ fn what_does_not_go_with_it_is_refused() {
         "--scheme butterfly",
     ] {
         let line = format!("refine builtin:cup -o {{}} --within 1 {options}");
-        run(&line, &[output]).expect(2).saying("--within");
+        usage_error(&line, &[output], "--within");
     }
     for length in ["0", "-1", "nonsense", "0%", "101%"] {
         run(

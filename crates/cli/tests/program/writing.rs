@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 #[cfg(unix)]
-use crate::common::Running;
+use crate::common::{Running, done};
 use crate::common::{command, file, folder, names, run, soup};
 
 #[test]
@@ -37,17 +37,15 @@ fn numbers_that_overflow_are_not_written() {
 fn a_mesh_may_be_refined_in_place() {
     let folder = folder();
     let mesh = folder.path().join("mesh.off");
-    run(
+    done(
         "refine builtin:cube -o {} --levels 0 --method uniform",
         &[&mesh],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&mesh).faces.len(), 12);
-    run(
+    done(
         "refine {} -o {} --levels 1 --method uniform --overwrite",
         &[&mesh, &mesh],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&mesh).faces.len(), 48);
     assert_eq!(names(folder.path()), ["mesh.off"]);
 }
@@ -64,11 +62,10 @@ fn a_folder_that_does_not_exist_is_found_before_the_work() {
     run("refine builtin:head -o {} --report {}", &[&output, &report])
         .expect(1)
         .saying("nowhere");
-    run(
+    done(
         "refine builtin:head -o {}",
         &[&folder.path().join("sub.ply")],
-    )
-    .expect(0);
+    );
     assert_eq!(names(folder.path()), ["sub.ply"]);
 }
 
@@ -77,14 +74,13 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let picture = folder.path().join("out.png");
-    let silent = run(
+    let silent = done(
         "refine builtin:head -o {} --tolerance 1% --picture {} --quiet",
         &[&output, &picture],
-    )
-    .expect(0);
+    );
     assert_eq!((silent.stdout.as_str(), silent.stderr.as_str()), ("", ""));
     assert_eq!(names(folder.path()), ["out.ply", "out.png"]);
-    let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
+    let told = done("refine builtin:head -o {} --tolerance 1%", &[&output]);
     assert_eq!(told.stdout, "");
     // The head folds over in places, and that is said.
     assert_eq!(
@@ -98,7 +94,7 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
         "measure builtin:cup builtin:cup",
         "models",
     ] {
-        let run = run(&format!("{command} -q"), &[]).expect(0);
+        let run = done(&format!("{command} -q"), &[]);
         assert_eq!(run.stderr, "", "{command}");
         assert!(!run.stdout.is_empty(), "{command}");
     }

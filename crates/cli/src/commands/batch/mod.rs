@@ -24,6 +24,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
+use serde_json::value::RawValue;
 
 use crate::arguments::BatchArguments;
 use crate::failure::{Outcome, usage};
@@ -337,49 +338,53 @@ impl Batch {
         if let Some(earlier) = key.as_ref().and_then(|key| self.kept(key, job)) {
             return Ok(earlier);
         }
-        let status = match self.starter.run(&job.words())? {
-            Ended::Cancelled => return Ok(Fate::Cancelled),
-            Ended::Said {
-                report: Some(report),
-                verdict: Verdict::Done,
-            } => {
-                let report = status::on_one_line(&report, self.with_seconds)?;
-                JobStatus::Done {
-                    output_bytes: size(job),
-                    report,
-                }
-            }
-            Ended::Said {
-                report: Some(report),
-                verdict: Verdict::StoppedShort { why },
-            } => {
-                let report = status::on_one_line(&report, self.with_seconds)?;
-                JobStatus::StoppedShort {
-                    why,
-                    output_bytes: size(job),
-                    report,
-                }
-            }
-            Ended::Said {
-                verdict: Verdict::Options { message },
-                ..
-            } => failed(Kind::Options, None, message),
-            Ended::Said {
-                verdict: Verdict::File { message },
-                ..
-            } => failed(Kind::File, None, message),
-            Ended::Said { .. } => failed(Kind::Crash, None, "it ended without a report".to_owned()),
-            Ended::Passed(kind) => self.passed(kind),
-            Ended::Crashed(how) => failed(Kind::Crash, None, how),
+        let Some(status) = self.status(job)? else {
+            return Ok(Fate::Cancelled);
         };
-        let (input, output) = (Some(job.input.as_str()), job.output.as_deref());
         new(Line {
             line: task.line,
             key: key.as_deref(),
-            input,
-            output,
+            input: Some(&job.input),
+            output: job.output.as_deref(),
             status,
         })
+    }
+
+    /// What becomes of a job in its process; `None` where it is cancelled.
+    fn status(&self, job: &Job) -> anyhow::Result<Option<JobStatus>> {
+        let (verdict, report) = match self.starter.run(&job.words())? {
+            Ended::Cancelled => return Ok(None),
+            Ended::TooLong(most) => {
+                let most = most.as_secs_f64();
+                let message = format!("it took more than {most} s (--time-limit)");
+                let limit = serde_json::Number::from_f64(most);
+                return Ok(Some(failed(Kind::Time, limit, message)));
+            }
+            Ended::TooLarge(most) => {
+                let bytes = crate::format::bytes(most);
+                let message = format!("it took more than {bytes} of memory (--memory-limit)");
+                return Ok(Some(failed(Kind::Memory, Some(most.into()), message)));
+            }
+            Ended::Crashed(how) => return Ok(Some(failed(Kind::Crash, None, how))),
+            Ended::Said { verdict, report } => (verdict, report),
+        };
+        let on_one_line = |report: &RawValue| status::on_one_line(report, self.with_seconds);
+        let report = report.as_deref().map(on_one_line).transpose()?;
+        let output_bytes = size(job);
+        Ok(Some(match (verdict, report) {
+            (Verdict::Done, Some(report)) => JobStatus::Done {
+                output_bytes,
+                report,
+            },
+            (Verdict::StoppedShort { why }, Some(report)) => JobStatus::StoppedShort {
+                why,
+                output_bytes,
+                report,
+            },
+            (Verdict::Options { message }, _) => failed(Kind::Options, None, message),
+            (Verdict::File { message }, _) => failed(Kind::File, None, message),
+            _ => failed(Kind::Crash, None, "it ended without a report".to_owned()),
+        }))
     }
 
     /// The earlier result of a job, if it holds.
@@ -406,28 +411,6 @@ impl Batch {
         let is_there = matches!(standing, Standing::Failed(_))
             || size(job) == earlier.output_bytes && job.written().all(Path::exists);
         is_there.then(|| Fate::Kept(earlier.place, standing))
-    }
-
-    fn passed(&self, kind: Kind) -> JobStatus {
-        let Limits { time, memory } = self.starter.limits;
-        let (limit, message) = match kind {
-            Kind::Time => {
-                let most = time.unwrap_or_default().as_secs_f64();
-                (
-                    serde_json::Number::from_f64(most),
-                    format!("it took more than {most} s (--time-limit)"),
-                )
-            }
-            _ => {
-                let most = memory.unwrap_or_default();
-                let words = format!(
-                    "it took more than {} of memory (--memory-limit)",
-                    crate::format::bytes(most)
-                );
-                (Some(most.into()), words)
-            }
-        };
-        failed(kind, limit, message)
     }
 }
 

@@ -15,7 +15,6 @@ use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use super::status::Kind;
 use crate::interrupt;
 
 /// How often limits are looked at.
@@ -60,8 +59,10 @@ pub(super) enum Ended {
         report: Option<Box<RawValue>>,
         verdict: Verdict,
     },
-    /// It passed a limit.
-    Passed(Kind),
+    /// It took longer than this.
+    TooLong(Duration),
+    /// It took more memory than this.
+    TooLarge(usize),
     /// It ended without a verdict: what is known of that.
     Crashed(String),
     /// The batch is to end.
@@ -154,12 +155,10 @@ impl Starter {
             return Some(Ended::Cancelled);
         }
         let Limits { time, memory } = self.limits;
-        if time.is_some_and(|most| start.elapsed() > most) {
-            return Some(Ended::Passed(Kind::Time));
-        }
-        let is_large =
-            memory.is_some_and(|most| resident(child.id()).is_some_and(|now| now > most));
-        is_large.then_some(Ended::Passed(Kind::Memory))
+        let is_long = |most: &Duration| start.elapsed() > *most;
+        let is_large = |most: &usize| resident(child.id()).is_some_and(|now| now > *most);
+        let too_long = time.filter(is_long).map(Ended::TooLong);
+        too_long.or_else(|| memory.filter(is_large).map(Ended::TooLarge))
     }
 }
 

@@ -27,49 +27,94 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     if let Some(option) = unknown(arguments) {
         return usage(option.refusal(way, arguments.method));
     }
-    match way {
-        Way::Exact | Way::Sqrt3 => goals(arguments)?,
-        Way::Stepwise | Way::Sqrt3Steps => steps(arguments)?,
-        Way::Restricted => restricted(arguments)?,
+    if let Some((_, why)) = rules(arguments)
+        .into_iter()
+        .find(|&(is_broken, _)| is_broken)
+    {
+        return usage(why);
     }
-    viewers(arguments)?;
+    goals(arguments)?;
     let format = arguments.format()?;
-    if arguments.exact.provenance && format.is_some_and(|format| format != Format::Ply) {
+    let is_other = format.is_some_and(|format| format != Format::Ply);
+    if arguments.exact.provenance && is_other {
+        let name = arguments.output_name();
         return usage(format!(
-            "--provenance writes properties of PLY files; {} is none",
-            arguments.output_name()
+            "--provenance writes properties of PLY files; {name} is none"
         ));
     }
-    proof::check(arguments, format)?;
-    if arguments.split_normals && format.is_some_and(|format| format != Format::Ply) {
+    if arguments.split_normals && is_other {
         return usage(
             "--split-normals is for PLY files: OBJ holds normals by corner, and the others none",
         );
     }
-    if arguments.exact.dry_run && arguments.picture.is_some() {
-        return usage("--dry-run gives no mesh that --picture could draw");
-    }
+    proof::check(arguments, format)?;
     Ok(format)
 }
 
-/// Refuses viewers whom a method or the others do not know.
-fn viewers(arguments: &RefineArguments) -> anyhow::Result<()> {
+/// Whether a rule is broken, and why it holds.
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 13] {
+    let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
+    let has_angle = arguments.angle.is_some();
     let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
-    match arguments.view.iter().filter(is_one).count() {
-        0 if arguments.dilatation.is_some() => usage(
+    let viewers = arguments.view.iter().filter(is_one).count();
+    let by_steps = matches!(way, Way::Stepwise | Way::Sqrt3Steps);
+    let is_uniform = method == Method::Uniform;
+    let has_limit_normals = matches!(method, Method::Exact | Method::LimitNormal);
+    let is_whole = has_angle || arguments.has_cameras() || exact.balance;
+    [
+        (
+            viewers == 0 && arguments.dilatation.is_some(),
             "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",
         ),
-        0 => Ok(()),
-        1 if !matches!(arguments.method, Method::Exact | Method::LimitNormal) => usage(
-            "a direction or an eye in --view makes the angle from limit normals depend on the viewer; it needs --method exact or \
-             limit-normal",
+        (
+            viewers > 0 && !has_limit_normals,
+            "a direction or an eye in --view makes the angle from limit normals depend on the viewer; it needs --method exact or limit-normal",
         ),
-        1 if arguments.method == Method::Exact && arguments.angle.is_none() => usage(
+        (
+            viewers > 0 && method == Method::Exact && !has_angle,
             "a direction or an eye in --view makes --angle depend on the viewer; with --method exact it needs one",
         ),
-        1 => Ok(()),
-        _ => usage("--view knows one direction or eye at a time; of cameras there may be several"),
-    }
+        (
+            viewers > 1,
+            "--view knows one direction or eye at a time; of cameras there may be several",
+        ),
+        (
+            !by_steps && arguments.levels == Some(0),
+            "--levels 0 lets nothing be divided; goals need 1 at least",
+        ),
+        (
+            by_steps && arguments.levels.is_some_and(|levels| levels > MAX_STEPS),
+            "12 steps are the most, as each gives up to four times the triangles; --levels is a cap with --method exact alone",
+        ),
+        (
+            is_uniform && has_angle,
+            "--angle has no effect with --method uniform, which divides every face",
+        ),
+        (
+            is_uniform && arguments.seam.is_some(),
+            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
+        ),
+        (
+            method == Method::VertexError && has_angle,
+            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance",
+        ),
+        (
+            method == Method::Planarity && has_angle && exact.tolerance.is_some(),
+            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
+        ),
+        (
+            exact.optimize && is_whole,
+            "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
+        ),
+        (
+            exact.pixels.is_some() && !arguments.has_cameras(),
+            "--pixels is what cameras see; it needs a camera in --view",
+        ),
+        (
+            arguments.exact.dry_run && arguments.picture.is_some(),
+            "--dry-run gives no mesh that --picture could draw",
+        ),
+    ]
 }
 
 /// Refuses two jobs that would write one file, and one that would replace an input of any of them.
@@ -88,23 +133,20 @@ pub(super) fn together(
     output::check_replaced(&written, &inputs, Some(arguments.overwrite))?;
     output::check_once(&written)?;
     // Where that is asked for a result may replace its own input, but not what another result is to be made from.
-    let read: BTreeMap<FileIdentity, usize> = inputs
+    let read = inputs
         .iter()
-        .enumerate()
-        .map(|(number, input)| (FileIdentity::of(input), number))
-        .collect();
+        .zip(0..)
+        .map(|(input, number)| (FileIdentity::of(input), number));
+    let read: BTreeMap<FileIdentity, usize> = read.collect();
     for (number, job) in jobs.iter().enumerate() {
         let Some(output) = job.output.as_deref() else {
             continue;
         };
-        if read
-            .get(&FileIdentity::of(output))
-            .is_some_and(|&other| other != number)
-        {
+        let reader = read.get(&FileIdentity::of(output));
+        if reader.is_some_and(|&other| other != number) {
+            let (output, input) = (output.display(), job.input().display());
             return usage(format!(
-                "{} is an input, too, which the result of {} would replace",
-                output.display(),
-                job.input().display()
+                "{output} is an input, too, which the result of {input} would replace"
             ));
         }
     }
@@ -127,37 +169,26 @@ pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
     }
 }
 
-/// An option that not all ways to refine know.
+/// An option that not all methods know.
 struct Limited {
     name: &'static str,
-    is_given: bool,
     known: &'static [Way],
 }
 
-/// The first option that is given, and unknown to the way that is gone.
+/// The first option that is given, and unknown to the method. What depends on other options has rules of its own.
 fn unknown(arguments: &RefineArguments) -> Option<Limited> {
-    let way = arguments.way();
-    limited(arguments)
-        .into_iter()
-        .find(|option| option.is_given && !option.known.contains(&way))
-}
-
-/// All of them. What depends on other options has checks of its own.
-fn limited(arguments: &RefineArguments) -> Vec<Limited> {
     const EXACT: &[Way] = &[Way::Exact];
     const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
     const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
     const STEPS: &[Way] = &[Way::Stepwise, Way::Sqrt3Steps];
     let exact = &arguments.exact;
+    let is_led = arguments.interpolation.given().is_some();
     let has_tolerance = arguments.channels.given_tolerance().is_some();
-    [
+    let has_morphs = arguments.asset.morph_tolerance.is_some();
+    let all = [
         ("--seam", arguments.seam.is_some(), STEPS),
         ("--limit", arguments.limit, STEPS),
-        (
-            "--interpolate",
-            arguments.interpolation.given().is_some(),
-            IN_QUARTERS,
-        ),
+        ("--interpolate", is_led, IN_QUARTERS),
         ("--tolerance", exact.tolerance.is_some(), GOALS),
         ("--triangles", exact.triangles.is_some(), GOALS),
         ("--provenance", exact.provenance, GOALS),
@@ -171,18 +202,12 @@ fn limited(arguments: &RefineArguments) -> Vec<Limited> {
         ("--max-memory", exact.max_memory.is_some(), EXACT),
         ("--dry-run", exact.dry_run, EXACT),
         ("--attribute-tolerance", has_tolerance, EXACT),
-        (
-            "--morph-tolerance",
-            arguments.asset.morph_tolerance.is_some(),
-            EXACT,
-        ),
-    ]
-    .map(|(name, is_given, known)| Limited {
-        name,
-        is_given,
-        known,
-    })
-    .into()
+        ("--morph-tolerance", has_morphs, EXACT),
+    ];
+    let way = arguments.way();
+    let mut given = all.into_iter().filter(|&(_, is_given, _)| is_given);
+    let (name, _, known) = given.find(|(.., known)| !known.contains(&way))?;
+    Some(Limited { name, known })
 }
 
 impl Limited {
@@ -218,23 +243,10 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
             arguments.scheme()?.name()
         ));
     }
-    if arguments.levels == Some(0) {
-        return usage("--levels 0 lets nothing be divided; goals need 1 at least");
-    }
-    let cameras = arguments.has_cameras();
-    if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
-        return usage(
-            "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
-        );
-    }
-    let within = matches!(
-        arguments.asset.morph_tolerance,
-        Some(MorphTolerance::Within(_))
-    );
-    let goal = arguments
-        .channels
-        .given_tolerance()
-        .or(within.then_some("--morph-tolerance"));
+    let morph = arguments.asset.morph_tolerance;
+    let is_within = matches!(morph, Some(MorphTolerance::Within(_)));
+    let goal = arguments.channels.given_tolerance();
+    let goal = goal.or(is_within.then_some("--morph-tolerance"));
     let other = [
         ("--triangles", exact.triangles.is_some()),
         ("--balance", exact.balance),
@@ -255,47 +267,7 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
             thousands(arguments.max_triangles())
         ));
     }
-    if exact.pixels.is_some() && !cameras {
-        return usage("--pixels is what cameras see; it needs a camera in --view");
-    }
     Ok(())
-}
-
-/// Refuses goals that the criteria of the literature do not have.
-fn restricted(arguments: &RefineArguments) -> anyhow::Result<()> {
-    let why = match (arguments.method, arguments.angle) {
-        _ if arguments.levels == Some(0) => {
-            "--levels 0 lets nothing be divided; goals need 1 at least"
-        }
-        (_, None) => return Ok(()),
-        (Method::VertexError, _) => {
-            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance"
-        }
-        _ if arguments.exact.tolerance.is_some() => {
-            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together"
-        }
-        _ => return Ok(()),
-    };
-    usage(why)
-}
-
-/// Refuses too many steps, and what has no effect on uniform refinement.
-fn steps(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.levels.is_some_and(|levels| levels > MAX_STEPS) {
-        return usage(format!(
-            "{MAX_STEPS} steps are the most, as each gives up to four times the triangles; --levels is a cap with --method exact alone"
-        ));
-    }
-    let why = match arguments.method {
-        Method::Uniform if arguments.angle.is_some() => {
-            "--angle has no effect with --method uniform, which divides every face"
-        }
-        Method::Uniform if arguments.seam.is_some() => {
-            "--seam has no effect with --method uniform, where divided and undivided faces never meet"
-        }
-        _ => return Ok(()),
-    };
-    usage(why)
 }
 
 /// Checks that what is to be written can be, replaces no input, and is written once.

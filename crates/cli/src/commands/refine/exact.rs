@@ -17,7 +17,7 @@ use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::Phases;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport,
+    CameraReport, ErrorReport, ExactParametersReport, IntervalReport, MethodReport,
     ParametersReport, RoundEntry, ViewReport,
 };
 
@@ -38,7 +38,10 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
     let note = round(&mut found, rounding, goals);
     task.progress.notes(note);
     let diagonal = control.diagonal;
-    let moved = moved.map(|moved| InputDistanceReport::new(&moved.rounded(rounding), diagonal));
+    let moved = moved.map(|moved| {
+        let moved = moved.rounded(rounding);
+        IntervalReport::new(moved.lower, moved.upper, diagonal)
+    });
     let error = ErrorReport::new(&found.error, diagonal);
     let attributes = goals.attributes.reached(&found);
     let mut achieved = achieved(&found, &error, goals, task);

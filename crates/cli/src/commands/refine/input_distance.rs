@@ -13,7 +13,7 @@ use super::refined::INTERPOLATE;
 use super::task::Task;
 use crate::arguments::MOST_EXACT;
 use crate::format::{counted, number};
-use crate::report::{ErrorReport, InputDistanceReport};
+use crate::report::{ErrorReport, IntervalReport};
 use crate::vector::{cross, dot, length};
 
 /// Where triangles reach over several control faces, a mesh approximates the limit surface within this share of the diagonal.
@@ -76,7 +76,7 @@ fn on_whole<'a>(parts: &FaceParts, found: &'a Exact) -> Cow<'a, [Origin]> {
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
 /// keep it nearer.
 pub(super) fn in_words(
-    moved: &InputDistanceReport,
+    moved: &IntervalReport,
     error: &ErrorReport,
     goals: &Goals,
     task: &Task<'_>,

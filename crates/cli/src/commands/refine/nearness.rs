@@ -9,7 +9,7 @@ use crate::arguments::RefineArguments;
 use crate::failure::Outcome;
 use crate::format::{counted, number, upper_bound};
 use crate::progress::Progress;
-use crate::report::InputDistanceReport;
+use crate::report::IntervalReport;
 
 /// Collapsing edges takes so many parts of the distance where refining takes one: what is left is compared with the input by way of
 /// other triangles.
@@ -75,7 +75,7 @@ impl Nearness {
     /// Whether the result is as near as it has to be, and none of its triangles turned over where that is refused.
     pub(super) fn outcome(
         self,
-        moved: Option<&InputDistanceReport>,
+        moved: Option<&IntervalReport>,
         inverted: usize,
         arguments: &RefineArguments,
     ) -> Outcome {
