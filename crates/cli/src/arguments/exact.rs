@@ -40,7 +40,7 @@ pub(crate) struct ExactArguments {
     /// Greatest distance between the mesh and the limit surface as the cameras see it, in pixels [default with a camera in --view: 1]
     ///
     /// Each point of one that is in a picture has one of the other so near there, outlines included; the number that was
-    /// reached is told. What no camera sees stays coarse: what is out of the picture, and of closed meshes what looks away.
+    /// reached is reported. What no camera sees stays coarse: what is out of the picture, and of closed meshes what looks away.
     #[arg(long, value_name = "P", value_parser = values::above_zero, allow_hyphen_values = true)]
     pub(crate) pixels: Option<f64>,
 

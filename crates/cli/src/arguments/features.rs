@@ -103,7 +103,7 @@ pub(crate) struct FeatureArguments {
     /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims. Of the two sides of a
     /// needle that meet at its tip, the faces beyond them decide. With auto, a mesh that looks like a part gets the angle that parts
     /// its sharp edges from the others, or those edges that its normals say are sharp; the tips of its cones are sharp, too. Its surface is
-    /// led through the vertices where that does not fold it, unless --interpolate-within says otherwise. Files with tags or several
+    /// led through the vertices where that does not fold it, unless --interpolate says otherwise. Files with tags or several
     /// smoothing groups have sharpness of their own, and files of quadrilaterals are cages: neither are looked at. With none all edges are
     /// smooth but those that the file tags.
     #[arg(long, value_name = "DEG|auto|none", value_parser = crease_angle, allow_hyphen_values = true)]

@@ -131,7 +131,11 @@ fn by_use(argument: Arg) -> Arg {
     let id = argument.get_id().as_str();
     let is_kept = argument.is_positional() || id == "help";
     match USUAL.iter().find(|(_, ids)| ids.contains(&id)) {
-        Some((heading, _)) => argument.help_heading(*heading),
+        Some((heading, ids)) => {
+            let place = ids.iter().position(|own| *own == id);
+            let argument = argument.help_heading(*heading);
+            place.into_iter().fold(argument, Arg::display_order)
+        }
         None if is_kept => argument,
         None if argument.get_help_heading().is_some() => argument.hide_short_help(true),
         None => argument.help_heading("Other options").hide_short_help(true),
@@ -165,9 +169,6 @@ pub(crate) struct RefineArguments {
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
 
-    #[command(flatten)]
-    pub(crate) exact: ExactArguments,
-
     /// The angle that a face's normal may differ by [degrees, above 0 to 180]
     ///
     /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
@@ -200,7 +201,7 @@ pub(crate) struct RefineArguments {
     /// The inputs are frames of one mesh: refine them with the same triangles, each within the goals
     ///
     /// Frames share faces and tags, and only vertices move. A part is divided if any frame needs it; the files that are written have
-    /// identical triangles, and each frame's vertices on its own limit surface. What is proven is told for every frame in
+    /// identical triangles, and each frame's vertices on its own limit surface. What is proven is reported for every frame in
     /// --report FILE.json. Sharp edges, texture coordinates and the like are those of the first frame, of whose diagonal
     /// --tolerance is a part where it is in per cent.
     #[arg(long)]
@@ -283,6 +284,10 @@ pub(crate) struct RefineArguments {
     /// control face each: --divide-flat is implied, and --optimize does not go with it. For OBJ, OFF and PLY files.
     #[arg(long, value_name = "FILE.proof")]
     pub(crate) proof: Option<PathBuf>,
+
+    // Their headings hold for what follows.
+    #[command(flatten)]
+    pub(crate) exact: ExactArguments,
 
     #[command(flatten)]
     pub(crate) asset: AssetArguments,

@@ -156,7 +156,10 @@ fn call(argument: &Arg) -> String {
             .collect::<Vec<_>>()
             .join(" ")
     });
-    format!("{} {values}", names.join(", ")).trim().to_owned()
+    match argument.is_require_equals_set() {
+        true => format!("{}[={values}]", names.join(", ")),
+        false => format!("{} {values}", names.join(", ")).trim().to_owned(),
+    }
 }
 
 /// Help as Markdown, on as many lines as it has, without spaces at their ends; what would be formatting is escaped.
