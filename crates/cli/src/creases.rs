@@ -16,7 +16,7 @@ const SAME: f64 = 1e-3;
 /// The sine of the angle between faces that are not in one plane, 1°.
 const BENT: f64 = 0.0175;
 
-/// What a file tells of its edges, on a mesh's corners and faces.
+/// What a file says of its edges, on a mesh's corners and faces.
 pub(crate) struct Hints<'a> {
     /// Whether it tags edges or vertices.
     pub(crate) is_tagged: bool,
@@ -39,7 +39,7 @@ impl Hints<'_> {
     /// The edges that are to be sharp, each once; `name` is the file's.
     ///
     /// # Errors
-    /// The file tells nothing of that kind.
+    /// The file says nothing of that kind.
     pub(crate) fn edges(
         &self,
         mesh: &Mesh,

@@ -2,26 +2,16 @@
 
 use std::ffi::OsString;
 use std::fmt;
-use std::ops::ControlFlow;
 
 use clap::Parser;
 use limitmesh::Mesh;
-use limitmesh::progress::Progress as At;
 
 use crate::arguments::{Arguments, Command};
 use crate::commands;
 use crate::failure::{Outcome, UsageError};
 use crate::mesh_info;
 use crate::output;
-use crate::progress::Progress;
-
-/// A program that runs a command, and hears how it goes on.
-pub trait Host {
-    /// Told by long functions of the library; may stop the command.
-    fn observe(&self, at: &At) -> ControlFlow<()>;
-    /// A line that the program would print on standard error.
-    fn note(&self, line: &str);
-}
+use crate::progress::{Host, Progress};
 
 /// Why a command failed.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! Which paths name one file: by links, by `./`, and by capitals where the file system does not tell them apart.
+//! Which paths name one file: by links, by `./`, and by capitals where the file system does not distinguish them.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ pub(crate) enum FileIdentity {
 }
 
 impl FileIdentity {
-    /// Of the file that a path names, as far as can be told without making it.
+    /// Of the file that a path names, as far as is known without making it.
     pub(crate) fn of(path: &Path) -> Self {
         #[cfg(unix)]
         if let Ok(found) = std::fs::metadata(path) {

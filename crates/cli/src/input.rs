@@ -21,7 +21,7 @@ use crate::progress::Progress;
 /// What marks the name of a built-in model.
 const BUILTIN: &str = "builtin:";
 
-/// Stands for standard input where a file is expected.
+/// Standard input where a file is expected.
 const STANDARD_INPUT: &str = "-";
 
 /// What a file or a built-in model held.
@@ -45,7 +45,7 @@ pub(crate) struct Soup {
 }
 
 impl Input {
-    /// What it tells of sharp edges beside tags.
+    /// What it says of sharp edges, apart from tags.
     pub(crate) fn hints(&self) -> Hints<'_> {
         Hints {
             is_tagged: self.is_tagged,
@@ -54,10 +54,10 @@ impl Input {
         }
     }
 
-    /// Its mesh with the edges sharp that are to be, by what it tells.
+    /// Its mesh with the edges sharp that are to be, by what it says.
     ///
     /// # Errors
-    /// It tells nothing of that kind.
+    /// It says nothing of that kind.
     pub(crate) fn with_creases(self, from: CreasesFrom) -> anyhow::Result<Self> {
         let edges = self.hints().edges(&self.mesh, from, &self.name)?;
         Ok(Self {
@@ -228,7 +228,7 @@ pub(crate) fn unit_of_package(
     given: Option<Unit>,
     name: &str,
 ) -> anyhow::Result<Unit> {
-    let own = Unit::of_package(package.unit());
+    let own = Unit::of_package(package.unit())?;
     match given.filter(|&given| given != own) {
         Some(given) => usage(format!(
             "--unit {}: {name} says that it is in {}",
@@ -273,7 +273,7 @@ pub(crate) fn builtin_name(path: &Path) -> Option<&str> {
     path.to_str()?.strip_prefix(BUILTIN)
 }
 
-/// The format that a name tells, or where it tells none the one that was given.
+/// The format that a name says, or where it says none the one that was given.
 ///
 /// # Errors
 /// Neither says which.
@@ -282,7 +282,7 @@ pub(crate) fn format_of(path: &Path, given: Option<FileFormat>) -> anyhow::Resul
         (Ok(format), _) => Ok(format),
         (Err(_), Some(given)) => Ok(given.format()),
         (Err(_), None) if path.as_os_str() == STANDARD_INPUT => {
-            usage("standard input has no name that tells its format; it needs --from")
+            usage("standard input has no name that says its format; --from FORMAT does")
         }
         (Err(_), None) if path.is_dir() => usage(format!(
             "{} is a folder; `limitmesh batch` smooths all its files",
@@ -306,48 +306,17 @@ fn builtin(name: &str) -> anyhow::Result<PolygonSoup> {
     Ok(model.soup())
 }
 
-/// Reads a control mesh and says on standard error what was left out and what had to be repaired.
+/// Reads a control mesh; notes what was left out, but for what is `kept`, and what had to be repaired.
 ///
 /// # Errors
-/// As for [`read`]; or no mesh can be made of it, or only by a repair that `build` forbids.
+/// As for [`read`] and [`connect`].
 pub(crate) fn load(
-    path: &Path,
-    build: &BuildArguments,
-    progress: &Progress,
-) -> anyhow::Result<Input> {
-    load_keeping(path, build, &[], progress)
-}
-
-/// [`load`], where the output will have some of what a soup leaves out after all, so that nothing need be said of it.
-///
-/// # Errors
-/// As for [`load`].
-pub(crate) fn load_keeping(
     path: &Path,
     build: &BuildArguments,
     kept: &[&str],
     progress: &Progress,
 ) -> anyhow::Result<Input> {
-    let soup = read(path, build, progress)?;
-    connect(soup, build, kept, progress)
-}
-
-/// [`load_keeping`] for refinement, where channels are as `channels` asks.
-///
-/// # Errors
-/// As for [`load`]; or there is no channel of a name that is asked for.
-pub(crate) fn load_for(
-    path: &Path,
-    build: &BuildArguments,
-    (kept, channels): (&[&str], &ChannelArguments),
-    progress: &Progress,
-) -> anyhow::Result<Input> {
-    connect(
-        read_for(path, build, channels, progress)?,
-        build,
-        kept,
-        progress,
-    )
+    connect(read(path, build, progress)?, build, kept, progress)
 }
 
 /// [`read`] for refinement, where channels are as `channels` asks.
@@ -361,18 +330,17 @@ pub(crate) fn read_for(
     progress: &Progress,
 ) -> anyhow::Result<Soup> {
     let mut read = read(path, build, progress)?;
-    channels.check(
-        &read.name,
-        read.soup
-            .channels
-            .iter()
-            .map(|channel| channel.name.as_str()),
-    )?;
+    let names = read
+        .soup
+        .channels
+        .iter()
+        .map(|channel| channel.name.as_str());
+    channels.check(&read.name, names)?;
     channels.apply(&mut read.soup.channels)?;
     Ok(read)
 }
 
-/// A control mesh of what was read; says what was left out, but for what is `kept`, and what had to be repaired.
+/// A control mesh of what was read; notes what was left out, but for what is `kept`, and what had to be repaired.
 ///
 /// # Errors
 /// No mesh can be made of it, or only by a repair that `build` forbids.
@@ -382,90 +350,77 @@ pub(crate) fn connect(
     kept: &[&str],
     progress: &Progress,
 ) -> anyhow::Result<Input> {
-    let options = &build.in_unit(read.unit).options()?;
-    let Soup {
-        name,
-        format,
-        mut soup,
-        normals,
-        asset,
-        unit,
-        reading,
-        ..
-    } = read;
-    progress.stage(format!(
-        "connecting {}",
-        counted(soup.faces.len(), "face", "faces")
-    ));
-    let start = Instant::now();
-    let (mesh, diagnosis, trace) =
-        Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
-    let channels = soup
-        .channels
-        .iter()
-        .map(|channel| channel.on_mesh(&soup, &mesh, &trace));
-    let channels: Vec<Channel> = channels
-        .collect::<Result<_, _>>()
-        .with_context(|| name.clone())?;
-    let normals = normals
-        .map(|own| own.on_mesh(&soup, &mesh, &trace))
-        .transpose()
-        .with_context(|| name.clone())?;
-    let material_libraries = std::mem::take(&mut soup.material_libraries);
-    let texture_files = std::mem::take(&mut soup.texture_files);
-    let near = nearly_closed(&mesh, options.weld, welded(&soup));
-    let left_out = std::mem::take(&mut soup.left_out);
-    let is_tagged = !soup.creases.is_empty() || !soup.corners.is_empty();
-    // Large soups are given back before refinement needs the memory.
-    drop(soup);
-    let building = start.elapsed();
-    let lost: Vec<&str> = left_out
-        .iter()
-        .map(String::as_str)
-        .filter(|words| !kept.contains(words))
-        .collect();
+    let input = connected(read, build, progress)?;
+    let name = &input.name;
+    let words = input.left_out.iter().map(String::as_str);
+    let lost: Vec<&str> = words.filter(|words| !kept.contains(words)).collect();
     if !lost.is_empty() {
         progress.note(format!("{name}: left out: {}", lost.join("; ")));
     }
-    for line in diagnosis.repairs() {
-        progress.note(format!("{name}: {line}"));
-    }
-    if let Some(near) = near {
-        progress.note(format!("{name}: {near}"));
-    }
-    Ok(Input {
+    progress.notes(
+        input
+            .diagnosis
+            .repairs()
+            .iter()
+            .map(|line| format!("{name}: {line}")),
+    );
+    Ok(input)
+}
+
+/// A control mesh of what was read; notes where edges nearly close.
+///
+/// # Errors
+/// No mesh can be made of it, or only by a repair that `build` forbids.
+pub(crate) fn connected(
+    read: Soup,
+    build: &BuildArguments,
+    progress: &Progress,
+) -> anyhow::Result<Input> {
+    let options = &build.in_unit(read.unit).options()?;
+    let (name, mut soup) = (read.name, read.soup);
+    let faces = counted(soup.faces.len(), "face", "faces");
+    progress.stage(format!("connecting {faces}"));
+    let start = Instant::now();
+    let (mesh, diagnosis, trace) =
+        Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
+    let on_mesh = |channel: &Channel| channel.on_mesh(&soup, &mesh, &trace);
+    let channels = soup.channels.iter().map(on_mesh).collect::<Result<_, _>>();
+    let channels = channels.with_context(|| name.clone())?;
+    let normals = read.normals.as_ref().map(on_mesh).transpose();
+    let normals = normals.with_context(|| name.clone())?;
+    let near = nearly_closed(&mesh, options.weld, |weld| {
+        let options = BuildOptions::default().weld(weld);
+        Some(Mesh::from_soup(&soup, &options).ok()?.0)
+    });
+    progress.notes(near.map(|near| format!("{name}: {near}")));
+    let input = Input {
         name,
-        format,
-        left_out,
-        is_tagged,
+        format: read.format,
+        left_out: std::mem::take(&mut soup.left_out),
+        is_tagged: !soup.creases.is_empty() || !soup.corners.is_empty(),
         mesh,
         diagnosis,
         trace,
         normals,
         channels,
-        material_libraries,
-        texture_files,
-        asset: asset.map(|(asset, _)| asset),
-        unit,
-        reading,
-        building,
+        material_libraries: std::mem::take(&mut soup.material_libraries),
+        texture_files: std::mem::take(&mut soup.texture_files),
+        asset: read.asset.map(|(asset, _)| asset),
+        unit: read.unit,
+        reading: read.reading,
+        building: Duration::ZERO,
+    };
+    // Large soups are given back before refinement needs the memory.
+    drop(soup);
+    Ok(Input {
+        building: start.elapsed(),
+        ..input
     })
 }
 
 /// Vertices nearer to each other than this share of the diagonal are usually one, written with too few digits: about
 /// ten steps of single precision.
 const NEAR: f64 = 1e-6;
-
-/// The mesh of a soup for another way to merge vertices, if there is one.
-pub(crate) fn welded(soup: &PolygonSoup) -> impl FnOnce(Weld) -> Option<Mesh> {
-    |weld| {
-        Some(
-            Mesh::from_soup(soup, &BuildOptions::default().weld(weld))
-                .ok()?
-                .0,
-        )
-    }
-}
 
 /// Reports where open edges of a mesh would close if nearly equal positions were merged too; `build` makes it anew for that.
 pub(crate) fn nearly_closed(

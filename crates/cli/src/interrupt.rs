@@ -77,7 +77,7 @@ pub(crate) fn install() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A bit for each signal that is ignored from the start, where the system tells.
+/// A bit for each signal that is ignored from the start, where the system says.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

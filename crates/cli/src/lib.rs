@@ -20,14 +20,14 @@ mod input;
 mod interrupt;
 mod mesh_info;
 mod output;
-#[cfg(test)]
-mod pages;
 mod parts;
 mod pieces;
 mod points;
 mod progress;
 mod reference;
 mod report;
+#[cfg(test)]
+mod tests;
 mod vector;
 mod written_unit;
 
@@ -41,7 +41,8 @@ use arguments::{Arguments, Command};
 use failure::{Outcome, UsageError, is_broken_pipe};
 use progress::Progress;
 
-pub use embedded::{Failure, Host, Refined, examined, refine_files};
+pub use embedded::{Failure, Refined, examined, refine_files};
+pub use progress::Host;
 
 /// The program with a command line, whose first word is the program's name; gives its exit code. Where the command line makes no sense, or
 /// asks for help, the process ends here. `again` starts this program in another process: its file, and what comes before the arguments.

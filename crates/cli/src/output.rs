@@ -13,7 +13,7 @@ use crate::failure::usage;
 use crate::file_identity::FileIdentity;
 use crate::interrupt;
 
-/// Stands for standard output where a file is expected.
+/// Standard output where a file is expected.
 const STANDARD_OUTPUT: &str = "-";
 
 /// Prints text on standard output.
@@ -32,7 +32,7 @@ pub(crate) fn json(value: &impl Serialize) -> anyhow::Result<String> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
-/// Whether this stands for standard output.
+/// Whether this means standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == STANDARD_OUTPUT
 }
@@ -72,7 +72,8 @@ pub(crate) fn write_mesh(
 pub(crate) fn write_asset(
     path: &Path,
     asset: &Asset,
-    (format, are_images_linked): (Format, bool),
+    format: Format,
+    are_images_linked: bool,
 ) -> anyhow::Result<Vec<PathBuf>> {
     let write = || match are_images_linked {
         true => asset.write_linked(path, format),

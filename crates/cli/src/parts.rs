@@ -20,8 +20,10 @@ pub(crate) struct Decided {
 /// those edges are sharp that the file's normals say are, or else those beyond an angle. Its surface is led through its vertices where it
 /// `can_be`, unless something else is asked for.
 pub(crate) fn decided(
-    (mut features, mut interpolation): (FeatureArguments, InterpolationArguments),
-    (mesh, faces): (&Mesh, &[u32]),
+    mut features: FeatureArguments,
+    mut interpolation: InterpolationArguments,
+    mesh: &Mesh,
+    faces: &[u32],
     hints: &Hints<'_>,
     can_be_led: bool,
 ) -> Decided {

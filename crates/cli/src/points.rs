@@ -181,7 +181,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Whether both blanks and commas without a blank beside them stand between the first three numbers of a line: `1,5 2,5 3,5`.
+/// Whether both blanks and commas without a blank next to them stand between the first three numbers of a line: `1,5 2,5 3,5`.
 fn may_have_decimal_commas(line: &str) -> bool {
     if !line.contains(',') || line.contains([';', '"']) {
         return false;

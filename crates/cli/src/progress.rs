@@ -6,7 +6,6 @@ use std::io::{IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-use crate::embedded::Host;
 use crate::format::counted;
 use crate::interrupt;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -14,6 +13,14 @@ use limitmesh::progress::Stage;
 
 /// How often the spinner turns.
 const TICK: Duration = Duration::from_millis(100);
+
+/// A program that runs a command, and hears how it goes on.
+pub trait Host {
+    /// Called by long functions of the library; may stop the command.
+    fn observe(&self, at: &limitmesh::progress::Progress) -> ControlFlow<()>;
+    /// A line that the program would print on standard error.
+    fn note(&self, line: &str);
+}
 
 /// The phases of an optimised refinement: a fine mesh, collapses, and what these came to.
 #[derive(Default)]
@@ -93,7 +100,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// Shows what a long function of the library tells of itself.
+    /// Shows what a long function of the library reports.
     pub(crate) fn observer(&self) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
         self.observer_in_phases(None)
     }
@@ -134,10 +141,15 @@ impl<'a> Progress<'a> {
             host.note(line.as_ref());
         }
         if !self.quiet {
-            // Nobody is left to tell if standard error is closed.
+            // Nobody is left to read it if standard error is closed.
             self.spinner
                 .suspend(|| writeln!(std::io::stderr(), "{}", line.as_ref()).unwrap_or_default());
         }
+    }
+
+    /// Prints lines that stay.
+    pub(crate) fn notes(&self, lines: impl IntoIterator<Item = impl AsRef<str>>) {
+        lines.into_iter().for_each(|line| self.note(line));
     }
 
     /// A note for those who see no spinner.

@@ -1,4 +1,4 @@
-//! What stands for a limit surface when distances are measured, as in the paper: the control mesh refined
+//! What approximates a limit surface when distances are measured, as in the paper: the control mesh refined
 //! uniformly, all vertices moved to the limit.
 
 use limitmesh::refine::{Stop, UniformOptions, reference_levels, uniform};
@@ -21,7 +21,7 @@ const CHOSEN_TRIANGLES: usize = 4_000_000;
 /// Triangles that a reference has at most whatever is asked for.
 const MOST_TRIANGLES: usize = 50_000_000;
 
-/// A mesh that stands for a limit surface.
+/// A mesh that approximates a limit surface.
 pub(crate) struct Reference {
     /// The mesh, its vertices on the limit surface.
     pub(crate) mesh: Mesh,

@@ -5,6 +5,7 @@ use limitmesh::mesh::Weld;
 use limitmesh_io::gltf::Joining;
 
 use super::tolerances::MorphTolerance;
+use crate::failure::usage;
 
 /// The heading of these options in the help.
 const HEADING: &str = "Options of glTF assets";
@@ -25,10 +26,6 @@ pub(crate) struct AssetArguments {
     #[arg(long, value_name = "NAME")]
     pub(crate) material: Vec<String>,
 
-    /// What lengths in per cent are of: the diagonal of the scene's bounding box, or of each mesh's as the scene shows it
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
-    pub(crate) relative_to: RelativeTo,
-
     /// Leave images where they are: the new asset names those of the input, rather than copies beside it
     #[arg(long)]
     pub(crate) link_resources: bool,
@@ -36,7 +33,7 @@ pub(crate) struct AssetArguments {
     /// Make vertices at one place one, even if these move them apart [with a comma between several]
     ///
     /// Otherwise vertices become one where position, displacements of all morph targets, and joints with their weights are the
-    /// same; how many stay apart is told. The first of those that become one says how it moves.
+    /// same; a note says how many stay apart. The first of those that become one says how it moves.
     #[arg(long, value_enum, value_name = "WHAT", value_delimiter = ',')]
     pub(crate) weld_ignores: Vec<Mover>,
 
@@ -57,16 +54,6 @@ pub(crate) enum Mover {
     Morphs,
 }
 
-/// What lengths in per cent are of.
-#[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum RelativeTo {
-    /// The scene
-    #[default]
-    Scene,
-    /// The mesh that is refined
-    Mesh,
-}
-
 impl AssetArguments {
     /// Which vertices of a mesh become one that the scene shows `stretch` times as large.
     pub(crate) fn joining(&self, weld: Weld, stretch: f64) -> Joining {
@@ -83,12 +70,22 @@ impl AssetArguments {
         }
     }
 
+    /// Refuses these options for what is no glTF asset.
+    ///
+    /// # Errors
+    /// One is given.
+    pub(crate) fn refuse(&self) -> anyhow::Result<()> {
+        match self.given() {
+            Some(option) => usage(format!("{option} is for glTF assets that stay glTF")),
+            None => Ok(()),
+        }
+    }
+
     /// The first of these options that is given.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let all = [
             (!self.mesh.is_empty(), "--mesh"),
             (!self.material.is_empty(), "--material"),
-            (self.relative_to != RelativeTo::default(), "--relative-to"),
             (self.link_resources, "--link-resources"),
             (!self.weld_ignores.is_empty(), "--weld-ignores"),
             (self.morph_tolerance.is_some(), "--morph-tolerance"),

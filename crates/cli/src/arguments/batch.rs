@@ -10,7 +10,7 @@ use super::values;
 
 const EXAMPLES: &str = "\
 A job is an object on a line of its own: its input, the file to write, and any option of `limitmesh
-refine` by its name. A value is text or a number; true stands for an option without one; a list of
+refine` by its name. A value is text or a number; true is an option without one; a list of
 texts for an option that is given several times, a list of numbers for a point.
 
   {\"input\": \"scans/a.stl\", \"output\": \"smooth/a.ply\", \"tolerance\": \"0.1%\"}
@@ -77,7 +77,7 @@ pub(crate) struct BatchArguments {
     #[arg(long, value_name = "BYTES", value_parser = values::memory, allow_hyphen_values = true)]
     pub(crate) memory_limit: Option<usize>,
 
-    /// Keep the seconds that reports tell: then results are not the same bytes twice
+    /// Keep the seconds of reports: then results are not the same bytes twice
     #[arg(long)]
     pub(crate) seconds: bool,
 }

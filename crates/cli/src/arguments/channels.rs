@@ -1,43 +1,38 @@
-//! Options about what a mesh carries beside its shape.
+//! Options about what a mesh carries apart from its shape.
 
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use limitmesh::mesh::{Channel, Domain, Interpolation, SeamRule, Semantic, Storage};
 
-use super::tolerances::{AttributeTolerance, TextureTolerance};
+use super::tolerances::AttributeTolerance;
+use super::values::named;
 use crate::failure::usage;
+
+/// All texture coordinates, by whatever names the file has for them.
+const TEXTURES: &str = "uv";
 
 /// How what a mesh carries comes about between the elements of the input.
 #[derive(Args, Debug, Clone)]
 pub(crate) struct ChannelArguments {
-    /// How texture coordinates follow the surface
-    ///
-    /// They are as smooth as positions, by the same scheme; the modes say which of them stay where they are along the seams of
-    /// the texture. They are OpenSubdiv's, and the usual one is what Blender calls keeping boundaries.
-    #[arg(long, value_enum, value_name = "MODE", default_value_t)]
-    pub(crate) uv: TextureMode,
-
     /// How a channel is carried: smooth, linear, nearest or drop; may be given several times
     ///
-    /// Channels are called as `info` lists them, such as 'red,green,blue', 'texture coordinates' or TEXCOORD_0. smooth: by the scheme,
-    /// as positions are (texture coordinates by --uv along seams). linear: over each face of the input. nearest: the value of
-    /// the nearest corner, never blended. drop: left out. Where nothing is said, texture coordinates are smooth, other
-    /// numbers linear, whole numbers and names nearest. Of several for one channel the last holds.
+    /// Channels are called as `info` lists them, such as 'red,green,blue', 'texture coordinates' or TEXCOORD_0; uv is all texture
+    /// coordinates. smooth: by the scheme, as positions are. linear: over each face of the input. nearest: the value of the nearest
+    /// corner, never blended. drop: left out. Where nothing is said, texture coordinates are smooth, other numbers linear, whole numbers
+    /// and names nearest. Of several for one channel the last holds. Smooth texture coordinates stay where they are all along the seams of
+    /// the texture (boundaries), which are straight from vertex to vertex then, or as OpenSubdiv's other modes have it: none (seams are
+    /// smooth, too), corners-only (coordinates that one face alone has stay), corners-plus1 (so do those where more than two meet, or two
+    /// and a sharp edge), corners-plus2 (so do those where seams end).
     #[arg(long, value_name = "NAME=MODE")]
     pub(crate) channel: Vec<Choice>,
 
-    /// Divide until texture coordinates, linear on each triangle, are so near to where the surface has them
+    /// Divide until a channel, linear on each triangle, is so near to where the surface has it; may be given several times
     ///
-    /// In units of the chart, such as 0.001; or in texels of a texture so many texels wide: 0.5@2048. A goal beside the tolerance, for smooth
-    /// coordinates; linear ones are exact on any triangles. Not with --triangles, --balance or --optimize.
-    #[arg(long, value_name = "D|TEXELS@SIZE")]
-    pub(crate) uv_tolerance: Option<TextureTolerance>,
-
-    /// The same for any channel, in its own units; may be given several times
-    ///
-    /// Of several numbers, it is their Euclidean distance. Of several tolerances for one channel the last holds.
-    #[arg(long, value_name = "NAME=E")]
+    /// In the channel's own units; of several numbers it is their Euclidean distance. For texture coordinates (uv for all) also in texels
+    /// of a texture so many texels wide: uv=0.5@2048. A goal besides the tolerance, for smooth channels; linear ones are exact on any
+    /// triangles. Of several for one channel the last holds. Not with --triangles, --balance or --optimize.
+    #[arg(long, value_name = "NAME=E|NAME=TEXELS@SIZE")]
     pub(crate) attribute_tolerance: Vec<AttributeTolerance>,
 }
 
@@ -50,70 +45,49 @@ pub(crate) struct Choice {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {
-    Smooth,
+    Smooth(SeamRule),
     Linear,
     Nearest,
     Drop,
 }
 
+/// The modes by their names.
+const MODES: [(&str, Mode); 9] = [
+    ("smooth", Mode::Smooth(SeamRule::Boundaries)),
+    ("linear", Mode::Linear),
+    ("nearest", Mode::Nearest),
+    ("drop", Mode::Drop),
+    ("boundaries", Mode::Smooth(SeamRule::Boundaries)),
+    ("none", Mode::Smooth(SeamRule::None)),
+    ("corners-only", Mode::Smooth(SeamRule::CornersOnly)),
+    ("corners-plus1", Mode::Smooth(SeamRule::CornersPlus1)),
+    ("corners-plus2", Mode::Smooth(SeamRule::CornersPlus2)),
+];
+
 impl FromStr for Choice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // Names may have an equals sign, modes have none.
-        let Some((name, mode)) = text.rsplit_once('=') else {
+        let (name, mode) = named(text, "smooth, linear, nearest or drop")?;
+        let Some((_, found)) = MODES.iter().find(|(own, _)| *own == mode) else {
             return Err(format!(
-                "'{text}' has no =; give NAME=smooth, linear, nearest or drop"
+                "'{mode}' is none of smooth, linear, nearest and drop, nor a mode of seams"
             ));
-        };
-        let mode = match mode {
-            "smooth" => Mode::Smooth,
-            "linear" => Mode::Linear,
-            "nearest" => Mode::Nearest,
-            "drop" => Mode::Drop,
-            _ => {
-                return Err(format!(
-                    "'{mode}' is none of smooth, linear, nearest and drop"
-                ));
-            }
         };
         Ok(Self {
             name: name.to_owned(),
-            mode,
+            mode: *found,
         })
     }
 }
 
-/// How texture coordinates follow the surface.
-#[derive(ValueEnum, Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(crate) enum TextureMode {
-    /// Seams are smooth, too
-    None,
-    /// Coordinates that one face alone has stay
-    CornersOnly,
-    /// So do those where more than two meet, or two and a sharp edge
-    CornersPlus1,
-    /// So do those where seams end
-    CornersPlus2,
-    /// All along seams and boundaries stay: seams are straight from vertex to vertex
-    #[default]
-    Boundaries,
-    /// Linear over each face, as before refinement
-    Linear,
+/// Whether a name means a channel.
+fn means(name: &str, own: &str, is_texture: bool) -> bool {
+    name == own || is_texture && name == TEXTURES
 }
 
-impl TextureMode {
-    /// What holds along seams; nothing where coordinates are linear.
-    fn rule(self) -> Option<SeamRule> {
-        match self {
-            Self::None => Some(SeamRule::None),
-            Self::CornersOnly => Some(SeamRule::CornersOnly),
-            Self::CornersPlus1 => Some(SeamRule::CornersPlus1),
-            Self::CornersPlus2 => Some(SeamRule::CornersPlus2),
-            Self::Boundaries => Some(SeamRule::Boundaries),
-            Self::Linear => None,
-        }
-    }
+fn is_texture(channel: &Channel) -> bool {
+    channel.semantic == Semantic::TextureCoordinates
 }
 
 impl ChannelArguments {
@@ -127,21 +101,17 @@ impl ChannelArguments {
         names: impl Iterator<Item = &'a str>,
     ) -> anyhow::Result<()> {
         let names: Vec<&str> = names.collect();
-        let Some(unknown) = self
-            .channel
-            .iter()
-            .find(|choice| !names.contains(&choice.name.as_str()))
-        else {
+        let is_unknown = |own: &&Choice| own.name != TEXTURES && !names.contains(&&*own.name);
+        let Some(unknown) = self.channel.iter().find(is_unknown) else {
             return Ok(());
         };
-        let known = if names.is_empty() {
-            "there is none".to_owned()
-        } else {
-            format!("there are: {}", names.join("; "))
+        let known = match names.is_empty() {
+            true => "there is none".to_owned(),
+            false => format!("there are: {}", names.join("; ")),
         };
+        let unknown = &unknown.name;
         usage(format!(
-            "--channel: {input} has no channel '{}'; {known}",
-            unknown.name
+            "--channel: {input} has no channel '{unknown}'; {known}"
         ))
     }
 
@@ -155,26 +125,24 @@ impl ChannelArguments {
         input: &str,
         names: impl Iterator<Item = (&'a str, bool)>,
     ) -> anyhow::Result<()> {
-        let names: Vec<(&str, bool)> = names.filter(|(name, _)| !self.drops(name)).collect();
-        if self.uv_tolerance.is_some() && !names.iter().any(|&(_, is_texture)| is_texture) {
-            return usage(format!(
-                "--uv-tolerance: {input} has no texture coordinates that come out"
-            ));
-        }
-        let is_unknown =
-            |own: &&AttributeTolerance| !names.iter().any(|&(name, _)| name == own.name);
+        let is_kept = |(name, is_texture): &(&str, bool)| !self.drops(name, *is_texture);
+        let names: Vec<(&str, bool)> = names.filter(is_kept).collect();
+        let is_unknown = |own: &&AttributeTolerance| {
+            !names
+                .iter()
+                .any(|&(name, is_texture)| means(&own.name, name, is_texture))
+        };
         let Some(unknown) = self.attribute_tolerance.iter().find(is_unknown) else {
             return Ok(());
         };
         let known: Vec<&str> = names.into_iter().map(|(name, _)| name).collect();
-        let known = if known.is_empty() {
-            "none comes out".to_owned()
-        } else {
-            format!("those that come out are: {}", known.join("; "))
+        let known = match known.is_empty() {
+            true => "none comes out".to_owned(),
+            false => format!("those that come out are: {}", known.join("; ")),
         };
+        let unknown = &unknown.name;
         usage(format!(
-            "--attribute-tolerance: {input} has no channel '{}'; {known}",
-            unknown.name
+            "--attribute-tolerance: {input} has no channel '{unknown}'; {known}"
         ))
     }
 
@@ -182,39 +150,25 @@ impl ChannelArguments {
     fn check_tolerance(&self, channel: &Channel) -> anyhow::Result<()> {
         let is_inherited =
             channel.interpolation == Interpolation::Nearest || channel.domain == Domain::Face;
-        if is_inherited
-            && self
-                .attribute_tolerance
-                .iter()
-                .any(|own| own.name == channel.name)
-        {
-            return usage(format!(
+        match is_inherited && self.tolerance(channel).is_some() {
+            true => usage(format!(
                 "--attribute-tolerance: '{}' is inherited, never blended: nothing is between its values",
                 channel.name
-            ));
+            )),
+            false => Ok(()),
         }
-        Ok(())
     }
 
     /// How far the values of a channel may be off.
     pub(crate) fn tolerance(&self, channel: &Channel) -> Option<f64> {
-        let own = self
-            .attribute_tolerance
-            .iter()
-            .rev()
-            .find(|own| own.name == channel.name);
-        let is_texture = channel.semantic == Semantic::TextureCoordinates;
-        let texture = self
-            .uv_tolerance
-            .filter(|_| is_texture)
-            .map(|TextureTolerance(tolerance)| tolerance);
-        own.map(|own| own.tolerance).or(texture)
+        let mut all = self.attribute_tolerance.iter().rev();
+        let own = all.find(|own| means(&own.name, &channel.name, is_texture(channel)));
+        own.map(|own| own.tolerance)
     }
 
-    /// The first option that is a tolerance.
+    /// The option, if a tolerance is given.
     pub(crate) fn given_tolerance(&self) -> Option<&'static str> {
-        let attribute = (!self.attribute_tolerance.is_empty()).then_some("--attribute-tolerance");
-        self.uv_tolerance.map(|_| "--uv-tolerance").or(attribute)
+        (!self.attribute_tolerance.is_empty()).then_some("--attribute-tolerance")
     }
 
     /// Refuses to blend what triangles inherit.
@@ -227,7 +181,7 @@ impl ChannelArguments {
                 "{option} is for values that are blended; triangles inherit these"
             ));
         }
-        let is_blended = |choice: &&Choice| matches!(choice.mode, Mode::Smooth | Mode::Linear);
+        let is_blended = |choice: &&Choice| matches!(choice.mode, Mode::Smooth(_) | Mode::Linear);
         match self.channel.iter().find(is_blended) {
             Some(Choice { name, .. }) => usage(format!(
                 "--channel: '{name}' is inherited by triangles; it can be nearest or drop"
@@ -236,30 +190,31 @@ impl ChannelArguments {
         }
     }
 
-    /// The names of channels that are to be left out.
+    /// The names of channels that are to be left out, each once.
     pub(crate) fn dropped(&self) -> Vec<String> {
-        let is_first = |i: usize| {
-            !self.channel[..i]
-                .iter()
-                .any(|other| other.name == self.channel[i].name)
-        };
-        let all = self.channel.iter().enumerate();
-        all.filter(|(i, own)| self.drops(&own.name) && is_first(*i))
-            .map(|(_, own)| own.name.clone())
-            .collect()
+        let mut names: Vec<String> = Vec::new();
+        for own in &self.channel {
+            if self.drops(&own.name, false) && !names.contains(&own.name) {
+                names.push(own.name.clone());
+            }
+        }
+        names
+    }
+
+    /// Whether a channel of this name is to be left out, perhaps one of texture coordinates.
+    pub(crate) fn drops(&self, name: &str, is_texture: bool) -> bool {
+        self.mode(name, is_texture) == Some(Mode::Drop)
     }
 
     /// Whether a channel is to be left out.
-    pub(crate) fn drops(&self, name: &str) -> bool {
-        self.mode(name) == Some(Mode::Drop)
+    pub(crate) fn drops_channel(&self, channel: &Channel) -> bool {
+        self.drops(&channel.name, is_texture(channel))
     }
 
-    fn mode(&self, name: &str) -> Option<Mode> {
-        self.channel
-            .iter()
-            .rev()
-            .find(|choice| choice.name == name)
-            .map(|choice| choice.mode)
+    fn mode(&self, name: &str, is_texture: bool) -> Option<Mode> {
+        let mut all = self.channel.iter().rev();
+        let own = all.find(|choice| means(&choice.name, name, is_texture));
+        own.map(|choice| choice.mode)
     }
 
     /// Channels of the input as they are to be interpolated.
@@ -274,38 +229,31 @@ impl ChannelArguments {
     }
 
     fn apply_to(&self, channel: &mut Channel) -> anyhow::Result<()> {
-        let is_texture = channel.semantic == Semantic::TextureCoordinates;
-        let usual = if is_texture {
-            self.uv.rule()
-        } else {
-            Some(SeamRule::None)
-        };
-        channel.interpolation = match self.mode(&channel.name) {
-            None if is_texture => usual.map_or(Interpolation::Linear, Interpolation::Smooth),
+        let usual = is_texture(channel).then_some(Mode::Smooth(SeamRule::Boundaries));
+        let own = self.mode(&channel.name, is_texture(channel));
+        channel.interpolation = match own.or(usual) {
             None | Some(Mode::Drop) => return Ok(()),
             Some(Mode::Nearest) => Interpolation::Nearest,
             Some(Mode::Linear) => Interpolation::Linear,
-            Some(Mode::Smooth) => Interpolation::Smooth(usual.unwrap_or_default()),
+            Some(Mode::Smooth(rule)) if is_texture(channel) => Interpolation::Smooth(rule),
+            Some(Mode::Smooth(_)) => Interpolation::Smooth(SeamRule::None),
         };
-        if channel.interpolation == Interpolation::Nearest {
-            return Ok(());
-        }
         let name = &channel.name;
-        if channel.domain == Domain::Face {
-            return usage(format!(
-                "--channel: '{name}' has one value a face; it can be nearest or drop"
-            ));
-        }
-        if !channel.labels.is_empty() {
-            return usage(format!(
-                "--channel: '{name}' has names for values; it can be nearest or drop"
-            ));
-        }
-        if channel.semantic == Semantic::Label {
-            // Numbers are blended, whatever type the file has for them.
-            (channel.semantic, channel.storage) = (Semantic::Other, Storage::Double);
-        }
-        Ok(())
+        let what = match channel.interpolation {
+            Interpolation::Nearest => return Ok(()),
+            _ if channel.domain == Domain::Face => "one value a face",
+            _ if !channel.labels.is_empty() => "names for values",
+            _ => {
+                if channel.semantic == Semantic::Label {
+                    // Numbers are blended, whatever type the file has for them.
+                    (channel.semantic, channel.storage) = (Semantic::Other, Storage::Double);
+                }
+                return Ok(());
+            }
+        };
+        usage(format!(
+            "--channel: '{name}' has {what}; it can be nearest or drop"
+        ))
     }
 }
 
@@ -315,16 +263,17 @@ mod tests {
 
     #[test]
     fn choices_are_read() {
-        let read = |text: &str| text.parse::<Choice>();
         let choice = |name: &str, mode| {
-            Ok(Choice {
-                name: name.to_owned(),
-                mode,
-            })
+            let name = name.to_owned();
+            Ok(Choice { name, mode })
         };
-        assert_eq!(read("s,t=linear"), choice("s,t", Mode::Linear));
-        assert_eq!(read("a=b=drop"), choice("a=b", Mode::Drop));
-        assert!(read("s,t").is_err_and(|what| what.contains("no =")));
-        assert!(read("s,t=blend").is_err_and(|what| what.contains("none of smooth")));
+        assert_eq!("s,t=linear".parse(), choice("s,t", Mode::Linear));
+        assert_eq!("a=b=drop".parse(), choice("a=b", Mode::Drop));
+        let seams = Mode::Smooth(SeamRule::CornersOnly);
+        assert_eq!("uv=corners-only".parse(), choice("uv", seams));
+        for (wrong, words) in [("s,t", "no ="), ("s,t=blend", "none of smooth")] {
+            let why = wrong.parse::<Choice>().unwrap_err();
+            assert!(why.contains(words), "{why}");
+        }
     }
 }

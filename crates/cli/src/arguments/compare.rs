@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::LimitArguments;
+use super::limit::LimitArguments;
 use super::values;
 
 const EXAMPLES: &str = "\
@@ -31,7 +31,7 @@ pub(crate) struct CompareArguments {
     pub(crate) angle: f64,
 
     /// Steps of the adaptive methods
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::levels)]
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = values::steps)]
     pub(crate) levels: usize,
 
     /// Samples on each surface; all its vertices are among them, however many they are

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 
-use super::LimitArguments;
+use super::limit::LimitArguments;
 use super::quantity::finite;
 
 const EXAMPLES: &str = "\
@@ -20,7 +20,7 @@ Examples:
 ///
 /// Faces are the triangles of the control mesh, counted from 0 as in the file where that has triangles that need no repair; a
 /// place is given by the weights of the three corners, which add up to 1; where they do so within 0.0002, as 0.3333 three times, they
-/// are divided by their sum. The limit surface itself is evaluated, not a mesh that stands for it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
+/// are divided by their sum. The limit surface itself is evaluated, not a mesh that approximates it. Derivatives are by the weights of the second (u) and the third corner (v). --crease-angle and --boundary may
 /// divide faces at concave corners, which are numbered anew then; --concave-corners as-tagged leaves them. Curvature is in 1 / unit (Gaussian: 1 / unit²), below 0 on convex places whose normals point outwards; there
 /// is none at irregular vertices, nor for schemes other than loop and loop-warren.
 #[derive(Args, Debug, Clone)]

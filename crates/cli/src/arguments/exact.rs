@@ -1,11 +1,7 @@
 //! Options of `limitmesh refine --method exact`: its goals and its caps, some of which other methods have, too.
 
-use std::path::PathBuf;
-
 use clap::Args;
-use limitmesh::criterion::Camera;
 
-use super::camera;
 use super::values::{self, Extent};
 
 /// The heading of these options in the help.
@@ -17,7 +13,7 @@ const HEADING: &str = "Goals and caps of --method exact, and of others where the
 pub(crate) struct ExactArguments {
     /// Greatest distance between the mesh and the limit surface, either way [default without another goal: 0.1%]
     ///
-    /// A length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of the
+    /// A length in the mesh's unit, with a unit where --unit gives the mesh's, or with % in per cent of the diagonal of the
     /// control mesh's bounding box. With --scheme sqrt3 it is kept by an estimate; with --method planarity it is how far the middles of
     /// edges are off, with vertex-error how far control points are from their limits [default for that: 0.1%].
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
@@ -26,11 +22,11 @@ pub(crate) struct ExactArguments {
     /// The smoothest mesh that is certainly within that distance of the input, either way
     ///
     /// For scans and voxels, whose vertices are no more exact than that: steps are smoothed away, and closed parts keep their volume. A
-    /// length in the mesh's unit, with a unit where --unit tells the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
-    /// place of --tolerance and --interpolate. Where no smooth surface is so near, as where faces are large beside it, edges stay sharp. The exit
+    /// length in the mesh's unit, with a unit where --unit gives the mesh's, or with % in per cent of the diagonal of its bounding box. Takes the
+    /// place of --tolerance and --interpolate. Where no smooth surface is so near, as where faces are large against it, edges stay sharp. The exit
     /// code is 3 where it cannot be kept, and with --strict where triangles are turned over.
     #[arg(long, value_name = "T", value_parser = values::tolerance, allow_hyphen_values = true)]
-    #[arg(conflicts_with_all = ["tolerance", "interpolate", "interpolate_within", "no_input_distance"])]
+    #[arg(conflicts_with_all = ["tolerance", "interpolate"])]
     pub(crate) within: Option<Extent>,
 
     /// The best mesh with at most so many triangles, the worst places refined first
@@ -41,23 +37,12 @@ pub(crate) struct ExactArguments {
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) triangles: Option<usize>,
 
-    /// Greatest distance between the mesh and the limit surface as the cameras see it, in pixels [default with a camera: 1]
+    /// Greatest distance between the mesh and the limit surface as the cameras see it, in pixels [default with a camera in --view: 1]
     ///
     /// Each point of one that is in a picture has one of the other so near there, outlines included; the number that was
-    /// reached is told. What no camera sees stays coarse: what is out of the picture, and of closed meshes what looks away.
+    /// reached is reported. What no camera sees stays coarse: what is out of the picture, and of closed meshes what looks away.
     #[arg(long, value_name = "P", value_parser = values::above_zero, allow_hyphen_values = true)]
     pub(crate) pixels: Option<f64>,
-
-    /// A perspective camera for --pixels; may be given several times: one mesh serves them all
-    ///
-    /// EYE, TARGET and UP are X,Y,Z each; FOV is the vertical angle of view in degrees, WxH the picture in pixels, such
-    /// as 0,0,5,0,0,0,0,1,0,45,1920x1080.
-    #[arg(long, value_name = "EYE,TARGET,UP,FOV,WxH", value_parser = camera::camera, allow_hyphen_values = true)]
-    pub(crate) camera: Vec<Camera>,
-
-    /// A file of cameras for --pixels: one a line, with nothing after a '#'
-    #[arg(long, value_name = "FILE")]
-    pub(crate) camera_path: Vec<PathBuf>,
 
     /// Let vertices leave the limit surface by up to half the local error: fewer triangles for the same tolerance
     #[arg(long)]
@@ -78,13 +63,6 @@ pub(crate) struct ExactArguments {
     #[arg(long)]
     pub(crate) divide_flat: bool,
 
-    /// Divide no part of a control face more often [1 to 24; default: 24]
-    ///
-    /// What was reached by then is written, and the exit code is 3. Also with --method planarity and vertex-error [default: 30] and with
-    /// --scheme sqrt3, where two levels divide an edge in three [default: 20].
-    #[arg(long, value_name = "N", value_parser = values::exact_levels)]
-    pub(crate) max_levels: Option<usize>,
-
     /// Take no more memory, about [such as 500MB; K, M, G and T are powers of 1024; default: no limit]
     ///
     /// What was reached by then is written, and the exit code is 3.
@@ -94,10 +72,6 @@ pub(crate) struct ExactArguments {
     /// Predict the triangles and the memory, and write no mesh
     #[arg(long)]
     pub(crate) dry_run: bool,
-
-    /// Leave out how far the result is from the mesh that was read: saves a quarter of the memory of a result
-    #[arg(long)]
-    pub(crate) no_input_distance: bool,
 
     /// Say where each vertex and triangle came from, as properties of a PLY file
     ///

@@ -28,10 +28,10 @@ pub(crate) enum Boundary {
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum ConcaveCorners {
+    /// As the scheme has them, and OpenSubdiv: the surface folds over there
+    Smooth,
     /// Sharp edges inside divide them: flat faces stay flat
-    Divided,
-    /// As OpenSubdiv has them: the surface folds over there
-    AsTagged,
+    Fixed,
 }
 
 /// What in a file says that edges are sharp.
@@ -73,6 +73,18 @@ impl CreaseAngle {
     }
 }
 
+/// A crease angle: one in degrees, or the words `auto` and `none`.
+pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
+    match text {
+        "auto" => Ok(CreaseAngle::Auto),
+        "none" => Ok(CreaseAngle::None),
+        _ => match values::angle(text) {
+            Ok(degrees) => Ok(CreaseAngle::Above(degrees)),
+            Err(what) => Err(format!("{what}; degrees, 'auto' or 'none' are expected")),
+        },
+    }
+}
+
 /// A control mesh with its tags.
 pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
@@ -82,7 +94,7 @@ pub(crate) struct Featured {
     pub(crate) along_needles: usize,
 }
 
-/// Where the surface is sharp, beside the tags of the file.
+/// Where the surface is sharp, apart from the tags of the file.
 #[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct FeatureArguments {
     /// Keep edges sharp where the faces meet at more than this angle between their normals [degrees, above 0 to 180; auto or none;
@@ -91,10 +103,10 @@ pub(crate) struct FeatureArguments {
     /// For parts with flat faces and round ones: 30 keeps a box a box, and makes a cylinder round between sharp rims. Of the two sides of a
     /// needle that meet at its tip, the faces beyond them decide. With auto, a mesh that looks like a part gets the angle that parts
     /// its sharp edges from the others, or those edges that its normals say are sharp; the tips of its cones are sharp, too. Its surface is
-    /// led through the vertices where that does not fold it, unless --interpolate-within says otherwise. Files with tags or several
+    /// led through the vertices where that does not fold it, unless --interpolate says otherwise. Files with tags or several
     /// smoothing groups have sharpness of their own, and files of quadrilaterals are cages: neither are looked at. With none all edges are
     /// smooth but those that the file tags.
-    #[arg(long, value_name = "DEG|auto|none", value_parser = values::crease_angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG|auto|none", value_parser = crease_angle, allow_hyphen_values = true)]
     pub(crate) crease_angle: Option<CreaseAngle>,
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
@@ -114,7 +126,7 @@ pub(crate) struct FeatureArguments {
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) boundary: Option<Boundary>,
 
-    /// What becomes of corners that take 180° or more between two sharp edges [default: as-tagged; divided with --crease-angle
+    /// What becomes of corners that take 180° or more between two sharp edges [default: smooth; fixed with --crease-angle
     /// or --creases-from, or with --boundary corners or fixed]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) concave_corners: Option<ConcaveCorners>,
@@ -156,7 +168,7 @@ impl FeatureArguments {
     /// Refuses what has no meaning for assets.
     ///
     /// # Errors
-    /// Edges are to be sharp by what only other files tell.
+    /// Edges are to be sharp by what only other files say.
     pub(crate) fn check_of_asset(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None | CreasesFrom::Normals => Ok(()),
@@ -169,7 +181,7 @@ impl FeatureArguments {
     /// Refuses what has no meaning for packages.
     ///
     /// # Errors
-    /// Edges are to be sharp by what only other files tell.
+    /// Edges are to be sharp by what only other files say.
     pub(crate) fn check_of_package(&self) -> anyhow::Result<()> {
         match self.creases_from {
             CreasesFrom::None => Ok(()),
@@ -185,9 +197,9 @@ impl FeatureArguments {
             || self.creases_from != CreasesFrom::None
             || self.boundary.unwrap_or_default() != Boundary::Smooth;
         let usual = if is_asked {
-            ConcaveCorners::Divided
+            ConcaveCorners::Fixed
         } else {
-            ConcaveCorners::AsTagged
+            ConcaveCorners::Smooth
         };
         self.concave_corners.unwrap_or(usual)
     }
@@ -215,8 +227,8 @@ impl FeatureArguments {
             Some(CreaseAngle::Auto | CreaseAngle::None) | None => (mesh, 0),
         };
         let (mesh, concave) = match self.concave_corners() {
-            ConcaveCorners::Divided => mesh.with_divided_concave_corners()?,
-            ConcaveCorners::AsTagged => (mesh, Default::default()),
+            ConcaveCorners::Fixed => mesh.with_divided_concave_corners()?,
+            ConcaveCorners::Smooth => (mesh, Default::default()),
         };
         Ok(Featured {
             mesh,

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{BuildArguments, FeatureArguments};
+use super::features::FeatureArguments;
+use super::shared::BuildArguments;
 
 const EXAMPLES: &str = "\
 Examples:

@@ -8,19 +8,14 @@ use super::values::{self, Extent};
 /// Whether vertices are taken for points of the limit surface.
 #[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct InterpolationArguments {
-    /// Let the limit surface pass through every vertex, so that it does not shrink
+    /// Let the limit surface pass through every vertex, so that it does not shrink; with =T, that near to it, and as fair as it can be
     ///
     /// Control points are found whose limits are the vertices: a cylinder of 16 facets keeps its radius to 0.01 %, where its
-    /// plain limit surface loses 2.5 %. The price is that the surface undulates where vertices are out of line.
-    #[arg(long, conflicts_with = "interpolate_within")]
-    pub(crate) interpolate: bool,
-
-    /// Let the limit surface pass that near to every vertex, and be as fair as it can be
-    ///
-    /// A length in the mesh's unit, or with % in per cent of the diagonal of its bounding box; 0 is --interpolate. For scans,
-    /// whose vertices are no more exact than that.
-    #[arg(long, value_name = "T", value_parser = values::extent, allow_hyphen_values = true)]
-    pub(crate) interpolate_within: Option<Extent>,
+    /// plain limit surface loses 2.5 %. The price is that the surface undulates where vertices are out of line. For scans, whose vertices
+    /// are no more exact than T: a length in the mesh's unit, or with % in per cent of the diagonal of its bounding box.
+    #[arg(long, value_name = "WITHIN", value_parser = values::extent, allow_hyphen_values = true)]
+    #[arg(num_args = 0..=1, require_equals = true, default_missing_value = "0")]
+    pub(crate) interpolate: Option<Extent>,
 
     /// Whether it passes through those of a part around which it does not fold, as nothing else was asked for.
     #[arg(skip)]
@@ -33,10 +28,9 @@ impl InterpolationArguments {
         self.is_of_part || self.given().is_some()
     }
 
-    /// The one of these options that is given.
+    /// The option, where it is given.
     pub(crate) fn given(&self) -> Option<&'static str> {
-        let within = self.interpolate_within.map(|_| "--interpolate-within");
-        within.or(self.interpolate.then_some("--interpolate"))
+        self.interpolate.map(|_| "--interpolate")
     }
 
     /// How near the surface is to pass, for a mesh with this diagonal and unit; none where it is not led there.
@@ -44,9 +38,9 @@ impl InterpolationArguments {
     /// # Errors
     /// The length has a unit, and the mesh's is not known.
     pub(crate) fn within(&self, diagonal: f64, unit: Option<Unit>) -> anyhow::Result<Option<f64>> {
-        match self.interpolate_within {
+        match self.interpolate {
             Some(within) => within.length(diagonal, unit).map(Some),
-            None => Ok((self.interpolate || self.is_of_part).then_some(0.0)),
+            None => Ok(self.is_of_part.then_some(0.0)),
         }
     }
 }

@@ -2,7 +2,10 @@
 
 use clap::Args;
 
-use super::{BuildArguments, FeatureArguments, InterpolationArguments, SchemeName, Unit};
+use super::features::FeatureArguments;
+use super::interpolation::InterpolationArguments;
+use super::quantity::Unit;
+use super::shared::{BuildArguments, SchemeName};
 
 /// The scheme, and what is done to the mesh that was read before it is the control mesh.
 #[derive(Args, Debug, Clone, Copy)]

@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::channels::ChannelArguments;
+use super::limit::LimitArguments;
+use super::shared::OverwriteArguments;
 use super::values::{self, Extent};
-use super::{
-    BuildArguments, ChannelArguments, FeatureArguments, InterpolationArguments, OverwriteArguments,
-    SchemeName,
-};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -76,25 +75,15 @@ pub(crate) struct LodArguments {
     #[arg(long, value_name = "DEG", default_value_t = 60.0, value_parser = values::field_of_view)]
     pub(crate) fov: f64,
 
-    /// Scheme of the limit surface
-    #[arg(long, value_enum, default_value_t)]
-    pub(crate) scheme: SchemeName,
-
     /// Give no more triangles a level [default: 30000000]
     #[arg(long, value_name = "N", value_parser = values::positive)]
     pub(crate) max_triangles: Option<usize>,
 
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
+    pub(crate) limit: LimitArguments,
 
     #[command(flatten)]
     pub(crate) channels: ChannelArguments,
-
-    #[command(flatten)]
-    pub(crate) build: BuildArguments,
 
     #[command(flatten)]
     pub(crate) overwrite: OverwriteArguments,

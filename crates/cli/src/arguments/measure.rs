@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::LimitArguments;
+use super::limit::LimitArguments;
 use super::values::{self, Extent};
 
 const EXAMPLES: &str = "\
@@ -47,11 +47,11 @@ pub(crate) struct MeasureArguments {
     #[arg(long, value_name = "CONTROL")]
     pub(crate) limit_of: Option<PathBuf>,
 
-    /// Levels of uniform refinement that stand for the limit surface
+    /// Levels of uniform refinement that approximate the limit surface
     ///
     /// Default: 5, or fewer where they would give more than 4 million triangles, but two more than the first mesh has. With
     /// --limit-of only.
-    #[arg(long, value_name = "N", value_parser = values::levels)]
+    #[arg(long, value_name = "N", value_parser = values::steps)]
     pub(crate) reference_levels: Option<usize>,
 
     /// Samples on each surface; all its vertices are among them, however many they are
@@ -61,7 +61,7 @@ pub(crate) struct MeasureArguments {
     /// Bound the distance from both sides instead of sampling it: no point is farther away than the upper bound
     ///
     /// Branch and bound over the triangles of both meshes. The interval is as narrow as --gap says, or wider if
-    /// the work runs out first (exit code 3). With --limit-of, exact refinement stands for the limit surface, as fine as
+    /// the work runs out first (exit code 3). With --limit-of, exact refinement approximates the limit surface, as finely as
     /// the interval needs it; what it is off by at most is part of the interval.
     #[arg(long, conflicts_with = "samples")]
     pub(crate) certified: bool,

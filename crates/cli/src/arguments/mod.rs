@@ -2,7 +2,6 @@
 
 mod asset;
 mod batch;
-mod camera;
 mod channels;
 mod compare;
 mod evaluate;
@@ -22,10 +21,10 @@ mod reproduce;
 mod shared;
 mod tolerances;
 mod values;
+mod viewer;
 
-pub(crate) use asset::{AssetArguments, RelativeTo};
+pub(crate) use asset::AssetArguments;
 pub(crate) use batch::{BatchArguments, BatchJobArguments};
-pub(crate) use camera::cameras_in;
 pub(crate) use channels::ChannelArguments;
 pub(crate) use compare::CompareArguments;
 pub(crate) use evaluate::{EvaluateArguments, Place, Places};
@@ -48,9 +47,12 @@ pub(crate) use shared::{
     BuildArguments, FileFormat, OverwriteArguments, RefiningScheme, SchemeName, Seam,
 };
 pub(crate) use tolerances::MorphTolerance;
-pub(crate) use values::{Extent, Size};
+pub(crate) use values::{Extent, MAX_STEPS, Size};
+pub(crate) use viewer::Viewer;
 
 use clap::{Args, Parser, Subcommand};
+
+use shared::GENERAL;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -95,12 +97,12 @@ pub(crate) struct Arguments {
 #[derive(Args, Debug)]
 pub(crate) struct GlobalArguments {
     /// Print no progress and no notes on standard error; errors still appear
-    #[arg(long, short, global = true, help_heading = "General options")]
+    #[arg(long, short, global = true, help_heading = GENERAL)]
     pub(crate) quiet: bool,
 
     /// Number of threads; 0 takes all processors. Results are the same bytes for any number
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::threads)]
-    #[arg(global = true, help_heading = "General options")]
+    #[arg(global = true, help_heading = GENERAL)]
     pub(crate) threads: usize,
 }
 

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::limit::LimitArguments;
+use super::shared::OverwriteArguments;
 use super::shared::loop_family;
 use super::values::{self, Extent};
-use super::{LimitArguments, OverwriteArguments};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,8 +21,8 @@ Examples:
 ///
 /// POINTS are the vertices of a mesh, or a text file with three coordinates a line (.xyz, .txt, .csv, .asc; .pts, whose first line may
 /// be their number), between blanks, commas or semicolons. Each is projected onto the limit surface of CONTROL itself, not onto a mesh
-/// that stands for it: no point of the surface is nearer by more than --tolerance.
-/// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point tells.
+/// that approximates it: no point of the surface is nearer by more than --tolerance.
+/// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point says.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
 #[command(mut_arg("scheme", |scheme| scheme.value_parser(loop_family())))]

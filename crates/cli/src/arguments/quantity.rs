@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use anyhow::Context;
 use clap::ValueEnum;
 use limitmesh_io::threemf::LengthUnit;
 
@@ -24,50 +25,39 @@ pub(crate) enum Unit {
     Ft,
 }
 
-/// The units with how they are written and their length in micrometres.
-const UNITS: [(Unit, &str, f64); 7] = [
-    (Unit::Um, "um", 1.0),
-    (Unit::Um, "µm", 1.0),
-    (Unit::Mm, "mm", 1e3),
-    (Unit::Cm, "cm", 1e4),
-    (Unit::M, "m", 1e6),
-    (Unit::In, "in", 25_400.0),
-    (Unit::Ft, "ft", 304_800.0),
-];
-
-/// The units as 3MF packages have them.
-const IN_PACKAGES: [(Unit, LengthUnit); 6] = [
-    (Unit::Um, LengthUnit::Micron),
-    (Unit::Mm, LengthUnit::Millimeter),
-    (Unit::Cm, LengthUnit::Centimeter),
-    (Unit::M, LengthUnit::Meter),
-    (Unit::In, LengthUnit::Inch),
-    (Unit::Ft, LengthUnit::Foot),
-];
-
 impl Unit {
     /// How it is written after a number.
     pub(crate) fn name(self) -> &'static str {
-        UNITS
-            .iter()
-            .find(|unit| unit.0 == self)
-            .map_or("", |unit| unit.1)
+        match self {
+            Self::Um => "um",
+            Self::Mm => "mm",
+            Self::Cm => "cm",
+            Self::M => "m",
+            Self::In => "in",
+            Self::Ft => "ft",
+        }
     }
 
     /// The unit that a 3MF package names.
-    pub(crate) fn of_package(unit: LengthUnit) -> Self {
-        IN_PACKAGES
-            .iter()
-            .find(|pair| pair.1 == unit)
-            .map_or(Self::Mm, |pair| pair.0)
+    ///
+    /// # Errors
+    /// It is none of these.
+    pub(crate) fn of_package(unit: LengthUnit) -> anyhow::Result<Self> {
+        let mut all = Self::value_variants().iter().copied();
+        all.find(|own| own.in_package() == unit)
+            .with_context(|| format!("a package in {unit:?}, which is not known here"))
     }
 
     /// As a 3MF package has it.
     pub(crate) fn in_package(self) -> LengthUnit {
-        IN_PACKAGES
-            .iter()
-            .find(|pair| pair.0 == self)
-            .map_or(LengthUnit::Millimeter, |pair| pair.1)
+        match self {
+            Self::Um => LengthUnit::Micron,
+            Self::Mm => LengthUnit::Millimeter,
+            Self::Cm => LengthUnit::Centimeter,
+            Self::M => LengthUnit::Meter,
+            Self::In => LengthUnit::Inch,
+            Self::Ft => LengthUnit::Foot,
+        }
     }
 
     /// How many of another unit it is.
@@ -76,10 +66,14 @@ impl Unit {
     }
 
     fn micrometres(self) -> f64 {
-        UNITS
-            .iter()
-            .find(|unit| unit.0 == self)
-            .map_or(1.0, |unit| unit.2)
+        match self {
+            Self::Um => 1.0,
+            Self::Mm => 1e3,
+            Self::Cm => 1e4,
+            Self::M => 1e6,
+            Self::In => 25_400.0,
+            Self::Ft => 304_800.0,
+        }
     }
 }
 
@@ -122,22 +116,17 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
 /// A number, perhaps with a unit of length after it.
 pub(super) fn length(text: &str) -> Result<Length, String> {
     let text = text.trim();
-    // The longest first: `mm` ends with `m`.
-    let mut units = UNITS;
-    units.sort_by_key(|unit| std::cmp::Reverse(unit.1.len()));
-    let found = units
+    let names = Unit::value_variants()
         .iter()
-        .find_map(|&(unit, name, _)| Some((text.strip_suffix(name)?, unit)));
-    match found {
-        Some((number, unit)) => Ok(Length {
-            value: finite(number)?,
-            unit: Some(unit),
-        }),
-        None => Ok(Length {
-            value: finite(text)?,
-            unit: None,
-        }),
-    }
+        .map(|&unit| (unit, unit.name()));
+    let found = names
+        .chain([(Unit::Um, "µm")])
+        .filter_map(|(unit, name)| Some((unit, text.strip_suffix(name)?)))
+        // The longest name: `mm` ends with `m`.
+        .min_by_key(|(_, number)| number.len());
+    let (unit, number) = found.map_or((None, text), |(unit, number)| (Some(unit), number));
+    let value = finite(number)?;
+    Ok(Length { value, unit })
 }
 
 /// A whole number, perhaps with k, M or G for thousands, millions and thousands of millions, with commas or underscores
@@ -183,7 +172,7 @@ fn without_separators(text: &str) -> Option<String> {
     fits.then(|| groups.concat())
 }
 
-/// A number of bytes; K, M, G and T after it stand for powers of 1024, as do KiB to TiB, and KB to TB for powers of 1000.
+/// A number of bytes; K, M, G and T after it are powers of 1024, as do KiB to TiB, and KB to TB for powers of 1000.
 pub(super) fn bytes(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let upper = text.to_ascii_uppercase();

@@ -2,16 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Arg, Args, ValueEnum};
+use clap::{Arg, ArgAction, Args, ValueEnum};
+use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::scheme::Scheme;
 use limitmesh_io::{Format, WriteOptions};
 use serde::Serialize;
 
-use super::values;
-use super::{
-    AssetArguments, BuildArguments, ChannelArguments, ExactArguments, FeatureArguments, FileFormat,
-    InterpolationArguments, OverwriteArguments, RefiningScheme, Seam,
+use super::asset::AssetArguments;
+use super::channels::ChannelArguments;
+use super::exact::ExactArguments;
+use super::features::FeatureArguments;
+use super::interpolation::InterpolationArguments;
+use super::shared::{
+    BuildArguments, FileFormat, GENERAL, OverwriteArguments, RefiningScheme, Seam,
 };
+use super::values;
+use super::viewer::{Viewer, cameras_in};
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
 
@@ -49,7 +55,7 @@ impl Method {
     }
 }
 
-/// How a mesh is refined: what method and scheme come to together.
+/// How a mesh is refined: what method and scheme mean together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// To goals that are proven.
@@ -76,14 +82,14 @@ Examples:
   limitmesh refine builtin:cup -o cup.ply
   limitmesh refine scan.stl -o smooth.obj --tolerance 0.05 --report smooth.json
   limitmesh refine builtin:head -o head.ply --triangles 20000
-  limitmesh refine builtin:cup -o seen.ply --pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080
+  limitmesh refine builtin:cup -o seen.ply --pixels 0.5 --view 0,-4,2,0,0,0,0,0,1,40,1920x1080
   limitmesh refine builtin:cup --tolerance 0.001% --dry-run
   limitmesh refine builtin:cup -o cup.ply --method limit-normal --angle 5 --levels 4
   limitmesh refine builtin:sphere -o seen.ply --method limit-normal --view 0,0,-1 --levels 5
   limitmesh refine builtin:cup -o cup.ply --method planarity --angle 5
   limitmesh refine builtin:cup -o cup.ply --method vertex-error --tolerance 0.1%
   limitmesh refine part.stl -o part.ply --crease-angle 30 --interpolate
-  limitmesh refine scan.stl -o smooth.ply --interpolate-within 0.05
+  limitmesh refine scan.stl -o smooth.ply --interpolate=0.05
   limitmesh refine builtin:head -o head.ply --scheme sqrt3 --angle 10
   limitmesh refine builtin:head -o head.ply --scheme sqrt3 --method uniform --levels 5 --limit
   limitmesh refine big.ply -o fine.ply --method uniform --max-triangles 20M
@@ -100,30 +106,40 @@ Examples:
   limitmesh refine builtin:head -o head.ply --triangles 20000 --picture head.png
   limitmesh refine *.stl -o smooth/ --triangles 20k";
 
-/// What most people need, which `-h` shows; `--help` shows all.
-const USUAL: [&str; 16] = [
-    "output",
-    "to",
-    "within",
-    "tolerance",
-    "triangles",
-    "angle",
-    "optimize",
-    "crease_angle",
-    "interpolate",
-    "boundary",
-    "unit",
-    "strict",
-    "overwrite",
-    "dry_run",
-    "report",
-    "picture",
+/// What a first user needs, which `-h` shows by these headings; `--help` shows all.
+const USUAL: [(&str, &[&str]); 3] = [
+    (
+        "Goal",
+        &[
+            "tolerance",
+            "within",
+            "triangles",
+            "angle",
+            "optimize",
+            "unit",
+        ],
+    ),
+    ("Sharpness", &["crease_angle", "boundary", "interpolate"]),
+    (
+        "Output",
+        &["output", "to", "overwrite", "report", "picture", "dry_run"],
+    ),
 ];
 
-/// Keeps what few people need out of the short help.
-fn in_short_help(argument: Arg) -> Arg {
-    let is_usual = argument.is_positional() || USUAL.contains(&argument.get_id().as_str());
-    argument.hide_short_help(!is_usual)
+/// Gives usual options their heading, and keeps others out of the short help.
+fn by_use(argument: Arg) -> Arg {
+    let id = argument.get_id().as_str();
+    let is_kept = argument.is_positional() || id == "help";
+    match USUAL.iter().find(|(_, ids)| ids.contains(&id)) {
+        Some((heading, ids)) => {
+            let place = ids.iter().position(|own| *own == id);
+            let argument = argument.help_heading(*heading);
+            place.into_iter().fold(argument, Arg::display_order)
+        }
+        None if is_kept => argument,
+        None if argument.get_help_heading().is_some() => argument.hide_short_help(true),
+        None => argument.help_heading("Other options").hide_short_help(true),
+    }
 }
 
 /// Triangles at most where no number is given: as many as take about 10 gigabytes.
@@ -131,6 +147,9 @@ pub(crate) const MOST_EXACT: usize = 30_000_000;
 const MOST_STEPWISE: usize = 50_000_000;
 /// A restricted quadtree keeps the pieces of its nodes.
 const MOST_RESTRICTED: usize = 5_000_000;
+
+/// The dilatant factor where none is given: the paper's in most of its experiments.
+const USUAL_DILATATION: f64 = 1.0;
 
 /// The heading of the options of the stepwise methods.
 const STEPWISE: &str = "Options of the other methods";
@@ -141,13 +160,29 @@ const STEPWISE: &str = "Options of the other methods";
 /// vertices on it. The other methods refine step by step: each step marks faces, splits them in four, and closes
 /// the gaps to their neighbours. No method leaves cracks.
 #[derive(Args, Clone, Debug)]
-#[command(after_help = FIRST_EXAMPLES, after_long_help = EXAMPLES, mut_args(in_short_help))]
+#[command(after_help = FIRST_EXAMPLES, after_long_help = EXAMPLES, mut_args(by_use))]
+#[command(disable_help_flag = true, disable_version_flag = true)]
 pub(crate) struct RefineArguments {
     /// Mesh files (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     ///
     /// With several, --output is a folder: each is refined by itself, and where one fails the others go on.
     #[arg(required = true, value_name = "INPUT")]
     pub(crate) inputs: Vec<PathBuf>,
+
+    /// The angle that a face's normal may differ by [degrees, above 0 to 180]
+    ///
+    /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
+    /// face's vertices; for amresh the angle between neighbouring faces; for planarity that to limit normals at corners and middles of
+    /// edges. Not with --method uniform and vertex-error. Default: 10 for limit-normal, amresh and planarity; for exact it is one of the goals, and there is none. Where the surface has no tangent
+    /// plane, as at a cusp, exact ends at 1/1024 of a control face times the angle in radians, and says so.
+    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
+    pub(crate) angle: Option<f64>,
+
+    #[command(flatten)]
+    pub(crate) features: FeatureArguments,
+
+    #[command(flatten)]
+    pub(crate) interpolation: InterpolationArguments,
 
     /// File to write, whose extension (.obj, .ply, .stl, .off, .gltf, .glb, .3mf) chooses the format; FOLDER/, or - for standard output
     ///
@@ -166,7 +201,7 @@ pub(crate) struct RefineArguments {
     /// The inputs are frames of one mesh: refine them with the same triangles, each within the goals
     ///
     /// Frames share faces and tags, and only vertices move. A part is divided if any frame needs it; the files that are written have
-    /// identical triangles, and each frame's vertices on its own limit surface. What is proven is told for every frame in
+    /// identical triangles, and each frame's vertices on its own limit surface. What is proven is reported for every frame in
     /// --report FILE.json. Sharp edges, texture coordinates and the like are those of the first frame, of whose diagonal
     /// --tolerance is a part where it is in per cent.
     #[arg(long)]
@@ -176,32 +211,21 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_enum, default_value = "exact")]
     pub(crate) method: Method,
 
-    /// The angle that a face's normal may differ by [degrees, above 0 to 180]
+    /// Who looks at the mesh: a direction of sight X,Y,Z, an eye @X,Y,Z, a camera EYE,TARGET,UP,FOV,WxH, or a file of cameras
     ///
-    /// Smaller angles divide more faces. For exact and limit-normal it is the cone around the limit normals of the
-    /// face's vertices; for amresh the angle between neighbouring faces; for planarity that to limit normals at corners and middles of
-    /// edges. Not with --method uniform and vertex-error. Default: 10 for limit-normal, amresh and planarity; for exact it is one of the goals, and there is none. Where the surface has no tangent
-    /// plane, as at a cusp, exact ends at 1/1024 of a control face times the angle in radians, and says so.
-    #[arg(long, value_name = "DEG", value_parser = values::angle, allow_hyphen_values = true)]
-    pub(crate) angle: Option<f64>,
-
-    /// Direction of sight, from the viewer into the scene: parallel projection
-    ///
-    /// Makes --angle depend on the viewer, with --method exact or limit-normal: faces that look away are never divided,
-    /// those that look straight at the viewer where their normal leaves a cone of --dilatation times --angle, which
-    /// closes towards the silhouette; there limit-normal divides always. With exact it never gets narrower than
-    /// --angle: a viewer never costs triangles, and it takes a --dilatation above 1 to have the front coarser.
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    #[arg(conflicts_with = "eye")]
-    pub(crate) view: Option<[f64; 3]>,
-
-    /// Eye point: as --view, with a direction of its own for each face
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true)]
-    pub(crate) eye: Option<[f64; 3]>,
+    /// A direction, from the viewer into the scene, or an eye makes --angle depend on the viewer, with --method exact or limit-normal:
+    /// faces that look away are never divided, those that look straight at the viewer where their normal leaves a cone of --dilatation
+    /// times --angle, which closes towards the silhouette; there limit-normal divides always. With exact it never gets narrower than
+    /// --angle: a viewer never costs triangles, and it takes a --dilatation above 1 to have the front coarser. Cameras are for --pixels:
+    /// one mesh serves them all, however many times this is given. EYE, TARGET and UP are X,Y,Z each; FOV is the vertical angle of view
+    /// in degrees, WxH the picture in pixels, such as 0,0,5,0,0,0,0,1,0,45,1920x1080. A file has one camera a line, with nothing after
+    /// a '#'.
+    #[arg(long, value_name = "WHO", allow_hyphen_values = true)]
+    pub(crate) view: Vec<Viewer>,
 
     /// Factor on the angle of faces that look straight at the viewer [at least 0; default: 1]
     ///
-    /// Larger values divide fewer of them; with --view or --eye only. With --method exact values below 1 count as 1.
+    /// Larger values divide fewer of them; with a direction or an eye in --view only. With --method exact values below 1 count as 1.
     #[arg(long, value_name = "K", value_parser = values::factor, allow_hyphen_values = true)]
     pub(crate) dilatation: Option<f64>,
 
@@ -222,16 +246,18 @@ pub(crate) struct RefineArguments {
     pub(crate) max_triangles: Option<usize>,
 
     #[command(flatten)]
-    pub(crate) features: FeatureArguments,
-
-    #[command(flatten)]
-    pub(crate) interpolation: InterpolationArguments,
-
-    #[command(flatten)]
     pub(crate) channels: ChannelArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,
+
+    /// Divide no part of a control face more often [0 to 24]
+    ///
+    /// What was reached by then is written. Of the stepwise methods it is the number of steps [0 to 12; default: 3]; for goals it is a
+    /// cap [1 to 24; default: 24, for planarity and vertex-error 30, for --scheme sqrt3, where two levels divide an edge in three, 20], and
+    /// the exit code is 3 where it is reached.
+    #[arg(long, value_name = "N", value_parser = values::levels)]
+    pub(crate) levels: Option<usize>,
 
     /// Write PLY and STL as text rather than binary
     #[arg(long)]
@@ -259,15 +285,16 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_name = "FILE.proof")]
     pub(crate) proof: Option<PathBuf>,
 
+    // Their headings hold for what follows.
     #[command(flatten)]
     pub(crate) exact: ExactArguments,
 
     #[command(flatten)]
     pub(crate) asset: AssetArguments,
 
-    /// Greatest number of steps; each splits an edge at most once [default: 3]
-    #[arg(long, value_name = "N", value_parser = values::levels, help_heading = STEPWISE)]
-    pub(crate) levels: Option<usize>,
+    /// Print the options that a first user needs; all others: --help
+    #[arg(short, long, action = ArgAction::Help, help_heading = GENERAL)]
+    pub(crate) help: Option<bool>,
 
     /// Which vertices move where divided and undivided faces meet [default: all]
     #[arg(long, value_enum, help_heading = STEPWISE)]
@@ -311,6 +338,49 @@ impl RefineArguments {
         Ok(self.scheme.in_quarters()?.scheme())
     }
 
+    /// The view that makes the angle depend on the viewer.
+    pub(crate) fn viewer(&self) -> Option<View> {
+        let viewpoint = |viewer: &Viewer| match *viewer {
+            Viewer::Direction(direction) => Some(Viewpoint::Direction(direction)),
+            Viewer::Eye(eye) => Some(Viewpoint::Eye(eye)),
+            Viewer::Camera(_) | Viewer::File(_) => None,
+        };
+        Some(View {
+            viewpoint: self.view.iter().find_map(viewpoint)?,
+            dilatation: self.dilatation.unwrap_or(USUAL_DILATATION),
+        })
+    }
+
+    /// Whether there are cameras.
+    pub(crate) fn has_cameras(&self) -> bool {
+        let is_camera = |own: &Viewer| matches!(own, Viewer::Camera(_) | Viewer::File(_));
+        self.view.iter().any(is_camera)
+    }
+
+    /// The direction of sight of pictures.
+    pub(crate) fn sight(&self) -> Option<[f64; 3]> {
+        self.view.iter().find_map(|viewer| match viewer {
+            Viewer::Direction(direction) => Some(*direction),
+            _ => None,
+        })
+    }
+
+    /// All cameras.
+    ///
+    /// # Errors
+    /// A file of cameras cannot be read.
+    pub(crate) fn cameras(&self) -> anyhow::Result<Vec<Camera>> {
+        let mut cameras = Vec::new();
+        for viewer in &self.view {
+            match viewer {
+                Viewer::Camera(camera) => cameras.push(*camera),
+                Viewer::File(path) => cameras.extend(cameras_in(path)?),
+                Viewer::Direction(_) | Viewer::Eye(_) => {}
+            }
+        }
+        Ok(cameras)
+    }
+
     /// Whether flat regions are divided like all else, as proofs need it.
     pub(crate) fn divides_flat(&self) -> bool {
         self.exact.divide_flat || self.proof.is_some()
@@ -344,7 +414,7 @@ impl RefineArguments {
         match self.to {
             Some(to) => Ok(Some(to.format())),
             None if is_standard_output(path) => {
-                usage("standard output has no name that tells its format; it needs --to")
+                usage("standard output has no name that says its format; --to FORMAT does")
             }
             None => Ok(Some(
                 Format::from_path(path).map_err(|unknown| UsageError(unknown.to_string()))?,

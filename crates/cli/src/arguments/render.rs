@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::features::{CreaseAngle, crease_angle};
 use super::shared::loop_family;
+use super::shared::{BuildArguments, SchemeName};
 use super::values;
-use super::{BuildArguments, CreaseAngle, SchemeName, Size};
+use super::values::Size;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,7 +57,7 @@ pub(crate) struct RenderArguments {
     ///
     /// In place of the file's normals. Edges that the file tags as sharp for ever are shaded so in any case. With --exact they are creases
     /// of the surface, as `refine` has them.
-    #[arg(long, value_name = "DEG|auto|none", value_parser = values::crease_angle, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEG|auto|none", value_parser = crease_angle, allow_hyphen_values = true)]
     #[arg(conflicts_with = "flat")]
     pub(crate) crease_angle: Option<CreaseAngle>,
 

@@ -12,6 +12,9 @@ use super::quantity::Unit;
 use super::values::{self, WeldDistance};
 use crate::failure::usage;
 
+/// The heading of options that every command has.
+pub(super) const GENERAL: &str = "General options";
+
 /// Whether a result may take the place of an input.
 #[derive(Args, Debug, Clone, Copy)]
 pub(crate) struct OverwriteArguments {
@@ -72,6 +75,12 @@ impl From<SchemeName> for RefiningScheme {
 }
 
 impl RefiningScheme {
+    /// The library's name of it.
+    pub(crate) fn name(self) -> &'static str {
+        self.in_quarters()
+            .map_or("sqrt3", |name| name.scheme().name())
+    }
+
     /// The scheme, if it splits triangles in four.
     ///
     /// # Errors
@@ -142,6 +151,12 @@ impl BuildArguments {
     /// For a file whose unit is known, or not.
     pub(crate) fn in_unit(self, unit: Option<Unit>) -> Self {
         Self { unit, ..self }
+    }
+
+    /// ` mm`, or nothing where no unit is known.
+    pub(crate) fn unit_in_words(&self) -> String {
+        self.unit
+            .map_or_else(String::new, |unit| format!(" {}", unit.name()))
     }
 
     /// The library's options.

@@ -2,24 +2,7 @@
 
 use std::str::FromStr;
 
-use super::{Extent, values};
-
-/// How far texture coordinates may be off, in units of the chart: given so, or in texels of a texture so many texels wide.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TextureTolerance(pub(crate) f64);
-
-impl FromStr for TextureTolerance {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let Some((texels, size)) = text.split_once('@') else {
-            return values::above_zero(text).map(Self);
-        };
-        Ok(Self(
-            values::above_zero(texels)? / values::positive(size)? as f64,
-        ))
-    }
-}
+use super::values::{self, Extent, named};
 
 /// How far the values of a channel may be off.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,13 +15,14 @@ impl FromStr for AttributeTolerance {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        // Names may have an equals sign, numbers have none.
-        let Some((name, tolerance)) = text.rsplit_once('=') else {
-            return Err(format!("'{text}' has no =; give NAME=NUMBER"));
+        let (name, tolerance) = named(text, "NUMBER or TEXELS@SIZE")?;
+        let tolerance = match tolerance.split_once('@') {
+            Some((texels, size)) => values::above_zero(texels)? / values::positive(size)? as f64,
+            None => values::above_zero(tolerance)?,
         };
         Ok(Self {
             name: name.to_owned(),
-            tolerance: values::above_zero(tolerance)?,
+            tolerance,
         })
     }
 }
@@ -46,7 +30,7 @@ impl FromStr for AttributeTolerance {
 /// How far moved surfaces may be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum MorphTolerance {
-    /// Whatever comes of it.
+    /// Any distance does.
     None,
     /// As a length of the scene.
     Within(Extent),
@@ -70,25 +54,20 @@ mod tests {
 
     #[test]
     fn tolerances_are_read() {
-        assert_eq!("0.002".parse(), Ok(TextureTolerance(0.002)));
-        assert_eq!("0.5@2k".parse(), Ok(TextureTolerance(0.00025)));
-        for wrong in ["0", "-1", "nan", "inf", "1@0", "@", "1@2@3", "x"] {
-            assert!(wrong.parse::<TextureTolerance>().is_err(), "{wrong}");
-        }
-        let expected = AttributeTolerance {
-            name: "a=b".to_owned(),
-            tolerance: 0.1,
+        let tolerance = |name: &str, tolerance| {
+            let name = name.to_owned();
+            Ok(AttributeTolerance { name, tolerance })
         };
-        assert_eq!("a=b=0.1".parse(), Ok(expected));
-        assert!(
-            "a".parse::<AttributeTolerance>()
-                .is_err_and(|why| why.contains("no ="))
-        );
+        assert_eq!("a=b=0.1".parse(), tolerance("a=b", 0.1));
+        assert_eq!("uv=0.5@2k".parse(), tolerance("uv", 0.00025));
+        for wrong in [
+            "a", "a=0", "a=-1", "a=nan", "a=inf", "a=1@0", "a=@", "a=1@2@3", "a=x",
+        ] {
+            assert!(wrong.parse::<AttributeTolerance>().is_err(), "{wrong}");
+        }
         assert_eq!("none".parse(), Ok(MorphTolerance::None));
-        assert_eq!(
-            "1%".parse(),
-            Ok(MorphTolerance::Within(Extent::Percent(1.0)))
-        );
+        let percent = MorphTolerance::Within(Extent::Percent(1.0));
+        assert_eq!("1%".parse(), Ok(percent));
         assert!("-1".parse::<MorphTolerance>().is_err());
     }
 }

@@ -5,14 +5,13 @@ use std::time::Duration;
 
 use limitmesh::measure::SamplingOptions;
 
-use super::CreaseAngle;
 use super::quantity::{self, Length, Unit, finite};
 
-/// Levels beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
-const MAX_LEVELS: usize = 12;
+/// Levels of uniform refinement beyond this would need more than 4^12 (16 million) triangles for a single input triangle.
+pub(crate) const MAX_STEPS: usize = 12;
 
-/// Levels of exact refinement beyond this would divide an edge by more than ten million.
-const MAX_EXACT_LEVELS: usize = 24;
+/// Levels beyond this would divide an edge by more than ten million.
+const MAX_LEVELS: usize = 24;
 
 /// More threads than any machine we know of has processors.
 const MAX_THREADS: usize = 4096;
@@ -32,16 +31,10 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A crease angle: one in degrees, or the words `auto` and `none`.
-pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
-    match text {
-        "auto" => Ok(CreaseAngle::Auto),
-        "none" => Ok(CreaseAngle::None),
-        _ => match angle(text) {
-            Ok(degrees) => Ok(CreaseAngle::Above(degrees)),
-            Err(what) => Err(format!("{what}; degrees, 'auto' or 'none' are expected")),
-        },
-    }
+/// A name and what is said of it. Names may have an equals sign, what is said has none.
+pub(super) fn named<'a>(text: &'a str, what: &str) -> Result<(&'a str, &'a str), String> {
+    text.rsplit_once('=')
+        .ok_or_else(|| format!("'{text}' has no =; give NAME={what}"))
 }
 
 /// A factor of at least 0.
@@ -76,7 +69,7 @@ pub(crate) enum WeldDistance {
     Within(Length),
 }
 
-/// A length, absolute or beside a diagonal.
+/// A length, absolute or relative to a diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Extent {
     /// As it is, perhaps with its unit.
@@ -159,14 +152,14 @@ pub(super) fn levels(text: &str) -> Result<usize, String> {
     bounded(text, 0, MAX_LEVELS, "levels")
 }
 
-/// A count from 1 to [`MAX_EXACT_LEVELS`].
-pub(super) fn exact_levels(text: &str) -> Result<usize, String> {
-    bounded(text, 1, MAX_EXACT_LEVELS, "levels")
+/// A count from 0 to [`MAX_STEPS`].
+pub(super) fn steps(text: &str) -> Result<usize, String> {
+    bounded(text, 0, MAX_STEPS, "levels")
 }
 
-/// A count from 1 to [`MAX_LEVELS`].
+/// A count from 1 to [`MAX_STEPS`].
 pub(super) fn detail_levels(text: &str) -> Result<usize, String> {
-    bounded(text, 1, MAX_LEVELS, "levels")
+    bounded(text, 1, MAX_STEPS, "levels")
 }
 
 /// A number above 0 and below 1.

@@ -1,9 +1,12 @@
-//! `limitmesh measure --certified`: the distance between two meshes, bounded from both sides.
+//! `limitmesh measure --certified`: the distance between two meshes, or to a true limit surface, bounded from both sides.
 
-use limitmesh::Triangles;
 use limitmesh::measure::{
     Bounds, Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed,
 };
+use limitmesh::refine::{
+    LimitDistance, LimitDistanceOptions, is_certified, limit_distance_observed,
+};
+use limitmesh::{Mesh, Triangles};
 
 use crate::arguments::MeasureArguments;
 use crate::failure::{Outcome, usage};
@@ -33,47 +36,72 @@ pub(super) fn between(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<CertifiedHausdorff> {
-    let mut observer = progress.observer();
+    let observer = &mut progress.observer();
     let (surface, reference) = (
-        Bvh::new_observed(a, &mut observer)?,
-        Bvh::new_observed(b, &mut observer)?,
+        Bvh::new_observed(a, observer)?,
+        Bvh::new_observed(b, observer)?,
     );
     let mut options = CertifiedOptions::default();
     if let Some(gap) = arguments.gap {
-        options = options
-            .gap(Some(
-                gap.length(reference.diagonal(), arguments.limit.build.unit)?,
-            ))
-            .relative_gap(0.0);
+        let gap = gap.length(reference.diagonal(), arguments.limit.build.unit)?;
+        options = options.gap(Some(gap)).relative_gap(0.0);
     }
     if let Some(work) = arguments.max_work {
         options = options.max_work(work);
     }
-    Ok(certified_hausdorff_between_observed(
-        &surface,
-        &reference,
-        &options,
-        &mut observer,
+    let found = certified_hausdorff_between_observed(&surface, &reference, &options, observer)?;
+    Ok(found)
+}
+
+/// Bounds the distance to the limit surface of a control mesh, with finer and finer meshes until the interval is as narrow as asked
+/// for; folded flat regions are what their rims enclose if the surface `unfolds`.
+///
+/// # Errors
+/// Exact refinement proves nothing for the scheme, or a surface cannot be measured.
+pub(super) fn to_limit(
+    surface: Triangles<'_>,
+    control: &Mesh,
+    unfolds: bool,
+    arguments: &MeasureArguments,
+    progress: &Progress,
+) -> anyhow::Result<LimitDistance> {
+    let limit = &arguments.limit;
+    let scheme = limit.scheme().scheme();
+    if !is_certified(scheme) {
+        return usage(format!(
+            "nothing is certain about limit surfaces of the scheme {}; without --certified any can be measured against",
+            scheme.name()
+        ));
+    }
+    let gap = arguments
+        .gap
+        .map(|gap| gap.length(control.diagonal(), limit.build.unit));
+    let options = LimitDistanceOptions::default();
+    let mut options = options.gap(gap.transpose()?).unfold(unfolds);
+    if let Some(work) = arguments.max_work {
+        options = options.max_work(work);
+    }
+    let observer = &mut progress.observer();
+    Ok(limit_distance_observed(
+        surface, control, scheme, &options, observer,
     )?)
 }
 
-/// How the command ends; `capped` are the triangles of a mesh that could not be finer to stand for a limit surface.
+/// How the command ends; `capped` are the triangles of a mesh that could not approximate a limit surface better.
 pub(super) fn outcome(measured: &CertifiedHausdorff, capped: Option<usize>) -> Outcome {
     if measured.converged() {
         return Outcome::Done;
     }
     let [from, to] = interval(measured.lower(), measured.upper());
+    let why = match capped {
+        None => "the search was cut short; raise --max-work or --gap".to_owned(),
+        Some(triangles) => format!(
+            "the mesh that approximates the limit surface has {} and may not have many more; raise --gap",
+            counted(triangles, "triangle", "triangles")
+        ),
+    };
     Outcome::StoppedShort(format!(
-        "the interval, from {} to {}, is as certain but wider than asked for: {}",
-        from,
-        to,
-        match capped {
-            None => "the search was cut short; raise --max-work or --gap".to_owned(),
-            Some(triangles) => format!(
-                "the mesh that stands for the limit surface has {} and may not have many more; raise --gap",
-                counted(triangles, "triangle", "triangles")
-            ),
-        }
+        "the interval, from {from} to {to}, is as certain but wider than asked for: {why}"
     ))
 }
 

@@ -1,6 +1,4 @@
-//! What the input carries beside its shape, on its way to the output: texture coordinates, colours, materials, groups.
-
-use std::path::Path;
+//! What the input carries apart from its shape, on its way to the output: texture coordinates, colours, materials, groups.
 
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, FaceParts};
@@ -11,34 +9,9 @@ use limitmesh_io::{
     Format, MaterialLibraries, Output, WriteOptions, holds, splits_vertices, values_lost,
 };
 
-use super::named_files;
-use crate::arguments::{ChannelArguments, RefineArguments};
+use super::named_files::{self, Destination};
 use crate::format::counted;
 use crate::progress::Progress;
-
-/// Where channels go, and what was asked for them.
-pub(super) struct Destination<'a> {
-    /// Nothing is written without one.
-    pub(super) format: Option<Format>,
-    /// Whether it is written as text.
-    pub(super) ascii: bool,
-    pub(super) chosen: &'a ChannelArguments,
-    /// The file that they came from, and the one that they go to.
-    pub(super) files: (&'a Path, Option<&'a Path>),
-}
-
-impl<'a> Destination<'a> {
-    /// That of a refinement.
-    pub(super) fn of(arguments: &'a RefineArguments, format: Option<Format>) -> Self {
-        let files = (arguments.input(), arguments.output.as_deref());
-        Self {
-            format,
-            ascii: arguments.ascii,
-            chosen: &arguments.channels,
-            files,
-        }
-    }
-}
 
 fn names(channels: &[Channel]) -> String {
     let names: Vec<&str> = channels
@@ -61,7 +34,7 @@ pub(super) struct Channels {
 }
 
 impl Channels {
-    /// Those that reach the output; tells which do not, and why.
+    /// Those that reach the output; notes say which do not, and why.
     pub(super) fn of_input(
         channels: Vec<Channel>,
         [material_libraries, texture_files]: [Vec<String>; 2],
@@ -71,7 +44,7 @@ impl Channels {
         let Some(format) = to.format else {
             return Self::default();
         };
-        let is_dropped = |channel: &Channel| to.chosen.drops(&channel.name);
+        let is_dropped = |channel: &Channel| to.chosen.drops_channel(channel);
         let (dropped, channels): (Vec<Channel>, Vec<Channel>) =
             channels.into_iter().partition(is_dropped);
         if !dropped.is_empty() {
@@ -99,8 +72,7 @@ impl Channels {
     }
 
     /// Those of a mesh of an asset.
-    pub(super) fn of_asset(mut channels: Vec<Channel>, arguments: &RefineArguments) -> Self {
-        channels.retain(|channel| !arguments.channels.drops(&channel.name));
+    pub(super) fn of_asset(channels: Vec<Channel>) -> Self {
         Self {
             channels,
             ..Self::default()

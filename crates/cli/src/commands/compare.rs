@@ -7,13 +7,12 @@ use limitmesh::criterion::{LimitNormal, NeighbourNormal};
 use limitmesh::front::{Demand, Front, Measure};
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{
-    Exact, ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
+    ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
-use limitmesh::scheme::Scheme;
-use limitmesh::sqrt3::{self, Sqrt3, Sqrt3Options};
+use limitmesh::sqrt3::{self, Sqrt3Options};
 use limitmesh_paper::{match_angle, methods, nearest_level};
 
-use super::limit_control::{self, Prepared};
+use super::limit_control;
 use crate::arguments::{CompareArguments, ConcaveCorners, LimitArguments, RefiningScheme};
 use crate::failure::Outcome;
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
@@ -21,29 +20,19 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::reference::{self, Reference, USUAL_LEVELS};
-use crate::report::{CertifiedErrorReport, ComparedMethod, LimitReport, percent};
+use crate::report::{ComparedMethod, IntervalReport, LimitReport, percent};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input = input::load(&arguments.input, &arguments.limit.build, progress)?;
-    let limit = arguments.limit.in_unit(input.unit);
-    let arguments = &CompareArguments {
-        limit,
-        ..arguments.clone()
-    };
+    let input = input::load(&arguments.input, &arguments.limit.build, &[], progress)?;
     let diagonal = input.mesh.diagonal();
-    let Prepared {
-        mesh: control,
-        limit,
-        ..
-    } = limit_control::as_asked(input, &arguments.limit, progress)?;
+    let prepared = limit_control::as_asked(input, &arguments.limit, progress)?;
+    let (control, limit) = (prepared.input.mesh, prepared.limit);
     let scheme = arguments.limit.scheme().scheme();
     // Finer than what is measured against it by two levels, where that can be afforded.
     let wanted = USUAL_LEVELS.max(arguments.levels + 2);
     let levels = reference::affordable_levels(control.face_count(), wanted);
-    progress.stage(format!(
-        "refining by {levels} levels to stand for the limit surface"
-    ));
+    progress.stage(format!("refining by {levels} levels as the limit surface"));
     let reference = reference::at_level(&control, scheme, levels)?;
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let own = arguments.limit.scheme().into();
@@ -62,50 +51,40 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         .levels(arguments.levels)
         .max_triangles(Some(MOST_TRIANGLES));
     let criterion = LimitNormal::new(arguments.angle.to_radians());
-    let start = Instant::now();
-    let proposed = stepwise(&control, scheme, &criterion, &options)?;
-    let took = start.elapsed();
+    let (proposed, took) = timed(|| stepwise(&control, scheme, &criterion, &options))?;
     let (count, stop) = (proposed.mesh.face_count(), proposed.stop);
-    let levels = proposed.steps.len();
-    methods.push(judge.judge(
-        ("limit-normal", Some(arguments.angle)),
-        (&proposed.mesh, levels),
-        None,
-        took,
-    )?);
+    methods.push(judge.judge(Given {
+        angle_degrees: Some(arguments.angle),
+        ..Given::new("limit-normal", &proposed.mesh, proposed.steps.len(), took)
+    })?);
     drop(proposed);
 
+    let triangles = thousands(count);
     progress.stage(format!(
-        "amresh: finding the angle for {} triangles",
-        thousands(count)
+        "amresh: finding the angle for {triangles} triangles"
     ));
     // Far too fine attempts are cut off: that they are too fine is all that matters of them.
     let cap = count.saturating_mul(2).max(control.face_count());
     let options = options.max_triangles(Some(cap));
     let matched = match_angle(count, arguments.angle, |angle| {
-        stepwise(
-            &control,
-            scheme,
-            &NeighbourNormal::new(angle.to_radians()),
-            &options,
-        )
+        let criterion = NeighbourNormal::new(angle.to_radians());
+        stepwise(&control, scheme, &criterion, &options)
     })?;
-    let angle = Some(matched.angle_degrees);
-    let refinement = &matched.refinement;
-    let gives = (&refinement.mesh, refinement.steps.len());
-    methods.push(judge.judge(("amresh", angle), gives, None, matched.duration)?);
+    let found = &matched.refinement;
+    methods.push(judge.judge(Given {
+        angle_degrees: Some(matched.angle_degrees),
+        ..Given::new("amresh", &found.mesh, found.steps.len(), matched.duration)
+    })?);
     drop(matched);
 
     let level = nearest_level(control.face_count(), count);
     for (name, limit) in [("uniform", false), ("uniform-limit", true)] {
         progress.stage(name);
         let options = UniformOptions::default().levels(level).limit(limit);
-        let start = Instant::now();
-        let refinement = uniform(&control, scheme, &options)?;
-        let took = start.elapsed();
-        methods.push(judge.judge((name, None), (&refinement.mesh, level), None, took)?);
+        let (found, took) = timed(|| uniform(&control, scheme, &options))?;
+        methods.push(judge.judge(Given::new(name, &found.mesh, level, took))?);
     }
-    let unfolds = limit.features.concave_corners() == ConcaveCorners::Divided;
+    let unfolds = limit.features.concave_corners() == ConcaveCorners::Fixed;
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![
         ("exact", plain.clone()),
@@ -116,43 +95,38 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     }
     for (name, options) in kinds {
         progress.stage(name);
-        let start = Instant::now();
-        let Exact {
-            mesh,
-            levels,
-            error,
-            ..
-        } = exact(&control, scheme, &options)?;
-        let took = start.elapsed();
-        let proven = error.certified.then_some([error.lower, error.upper]);
-        methods.push(judge.judge((name, None), (&mesh, levels), proven, took)?);
+        let (found, took) = timed(|| exact(&control, scheme, &options))?;
+        let error = &found.error;
+        methods.push(judge.judge(Given {
+            certified: error.certified.then_some([error.lower, error.upper]),
+            ..Given::new(name, &found.mesh, found.levels, took)
+        })?);
     }
+    let mut others: Vec<(&str, anyhow::Result<ComparedMethod>)> = Vec::new();
     for (name, measure) in RESTRICTED {
         progress.stage(name);
-        match by_restricted((name, measure), (&control, scheme), count, &judge) {
-            Ok(found) => methods.push(found),
-            Err(why) => progress.note(format!("{name} left out: {why}")),
-        }
+        others.push((name, by_restricted(name, measure, &control, count, &judge)));
     }
     let of_part = limit
         .interpolation
         .is_of_part
         .then_some("--crease-angle auto");
-    let sqrt3 = match limit.interpolation.given().or(of_part) {
-        Some(option) => Err(anyhow::anyhow!(
-            "{option} is for schemes that split triangles in four"
-        )),
-        None => by_sqrt3(
-            &control,
-            count,
-            reference.mesh.face_count(),
-            &judge,
-            progress,
-        ),
-    };
-    match sqrt3 {
-        Ok(found) => methods.push(found),
-        Err(why) => progress.note(format!("sqrt3 left out: {why}")),
+    progress.stage("sqrt3");
+    let most = reference.mesh.face_count();
+    others.push((
+        "sqrt3",
+        match limit.interpolation.given().or(of_part) {
+            Some(option) => Err(anyhow::anyhow!(
+                "{option} is for schemes that split triangles in four"
+            )),
+            None => by_sqrt3(&control, count, most, &judge),
+        },
+    ));
+    for (name, found) in others {
+        match found {
+            Ok(found) => methods.push(found),
+            Err(why) => progress.note(format!("{name} left out: {why}")),
+        }
     }
     progress.clear();
     if arguments.json {
@@ -180,24 +154,33 @@ const RESTRICTED: [(&str, Measure); 3] = [
     ("vertex-error", Measure::VertexError),
 ];
 
+/// A result, and how long it took.
+fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, Duration), E> {
+    let start = Instant::now();
+    let found = work()?;
+    Ok((found, start.elapsed()))
+}
+
 /// A criterion over a restricted quadtree, by the least limit that takes at most so many triangles.
 fn by_restricted(
-    (name, measure): (&'static str, Measure),
-    (control, scheme): (&Mesh, &dyn Scheme),
+    name: &'static str,
+    measure: Measure,
+    control: &Mesh,
     count: usize,
     judge: &Judge<'_>,
 ) -> anyhow::Result<ComparedMethod> {
     let start = Instant::now();
+    let scheme = judge.limit.scheme().scheme();
     let mut front = Front::measured_by(control, scheme, measure)?;
-    front.update(
-        &Demand::tolerance(0.0)
-            .triangles(count)
-            .max_levels(methods::DEEPEST),
-    )?;
+    let demand = Demand::tolerance(0.0).triangles(count);
+    front.update(&demand.max_levels(methods::DEEPEST))?;
     let mesh = front.mesh()?;
-    let took = start.elapsed();
-    let angle = (measure == Measure::PlanarityAngle).then(|| front.limit().to_degrees());
-    judge.judge((name, angle), (&mesh, front.depth() as usize), None, took)
+    let (took, levels) = (start.elapsed(), front.depth() as usize);
+    let is_angle = measure == Measure::PlanarityAngle;
+    judge.judge(Given {
+        angle_degrees: is_angle.then(|| front.limit().to_degrees()),
+        ..Given::new(name, &mesh, levels, took)
+    })
 }
 
 /// Adaptive √3-subdivision with so many triangles, against its own limit surface, by as many triangles as the other one at most.
@@ -206,18 +189,11 @@ fn by_sqrt3(
     count: usize,
     most: usize,
     judge: &Judge<'_>,
-    progress: &Progress,
 ) -> anyhow::Result<ComparedMethod> {
-    progress.stage("sqrt3");
-    let start = Instant::now();
-    let Sqrt3 { mesh, levels, .. } =
-        sqrt3::adaptive(control, &Sqrt3Options::default().triangles(Some(count)))?;
-    let took = start.elapsed();
-    let (mesh_of, levels_of) = methods::sqrt3_reference(control, 0, most)?;
-    let reference = Reference {
-        mesh: mesh_of,
-        levels: levels_of,
-    };
+    let options = Sqrt3Options::default().triangles(Some(count));
+    let (found, took) = timed(|| sqrt3::adaptive(control, &options))?;
+    let (mesh, levels) = methods::sqrt3_reference(control, 0, most)?;
+    let reference = Reference { mesh, levels };
     let tree = Bvh::new(reference.mesh.as_triangles())?;
     let judge = Judge {
         scheme: RefiningScheme::Sqrt3,
@@ -225,7 +201,31 @@ fn by_sqrt3(
         tree: &tree,
         ..*judge
     };
-    judge.judge(("sqrt3", None), (&mesh, levels), None, took)
+    judge.judge(Given::new("sqrt3", &found.mesh, found.levels, took))
+}
+
+/// What a method gave: a mesh after some steps or levels.
+struct Given<'a> {
+    method: &'static str,
+    angle_degrees: Option<f64>,
+    mesh: &'a Mesh,
+    levels: usize,
+    /// Bounds that are proven.
+    certified: Option<[f64; 2]>,
+    took: Duration,
+}
+
+impl<'a> Given<'a> {
+    fn new(method: &'static str, mesh: &'a Mesh, levels: usize, took: Duration) -> Self {
+        Self {
+            method,
+            angle_degrees: None,
+            mesh,
+            levels,
+            certified: None,
+            took,
+        }
+    }
 }
 
 /// Triangles up to which the optimised mesh is shown too: beyond, it would take minutes.
@@ -246,46 +246,34 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn limit(&self) -> anyhow::Result<LimitReport> {
-        Ok(LimitReport {
-            scheme: self.scheme,
-            ..LimitReport::new(&self.limit, self.diagonal, self.reference.levels)?
-        })
-    }
-
-    /// Measures what a method with its angle gave: a mesh after some steps or levels, perhaps with proven bounds.
-    fn judge(
-        &self,
-        (method, angle_degrees): (&'static str, Option<f64>),
-        (mesh, levels): (&Mesh, usize),
-        certified: Option<[f64; 2]>,
-        took: Duration,
-    ) -> anyhow::Result<ComparedMethod> {
-        let surface = mesh.as_triangles();
+    /// Measures what a method gave.
+    fn judge(&self, given: Given<'_>) -> anyhow::Result<ComparedMethod> {
+        let surface = given.mesh.as_triangles();
         let options = SamplingOptions::default().samples(self.arguments.samples);
         let distance = hausdorff_between(&Bvh::new(surface)?, self.tree, &options);
         let quality = triangle_quality(surface);
-        let percent = |length| percent(length, self.diagonal.max(f64::MIN_POSITIVE));
+        let diagonal = self.diagonal.max(f64::MIN_POSITIVE);
+        let percent = |length| percent(length, diagonal);
+        let interval = |[lower, upper]: [f64; 2]| IntervalReport::new(lower, upper, diagonal);
+        let levels = self.reference.levels;
         Ok(ComparedMethod {
-            method,
-            angle_degrees,
-            levels,
+            method: given.method,
+            angle_degrees: given.angle_degrees,
+            levels: given.levels,
             triangles: surface.triangles.len(),
             symmetric: distance.symmetric(),
             symmetric_percent: percent(distance.symmetric()),
             mean_percent: percent(distance.forward.mean),
             rms_percent: percent(distance.forward.rms),
-            certified: certified.map(|[lower, upper]| CertifiedErrorReport {
-                lower,
-                upper,
-                lower_percent: percent(lower),
-                upper_percent: percent(upper),
-            }),
+            certified: given.certified.map(interval),
             samples: distance.forward.samples + distance.backward.samples,
             min_angle_degrees: quality.min_angle_degrees,
             mean_min_angle_degrees: quality.mean_min_angle_degrees,
-            seconds: took.as_secs_f64(),
-            reference: self.limit()?,
+            seconds: given.took.as_secs_f64(),
+            reference: LimitReport {
+                scheme: self.scheme,
+                ..LimitReport::new(&self.limit, self.diagonal, levels)?
+            },
             reference_triangles: self.reference.mesh.face_count(),
         })
     }

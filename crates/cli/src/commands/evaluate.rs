@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use limitmesh::{FaceId, LimitSurface, SurfacePoint};
 
-use super::limit_control::{self, Prepared};
+use super::limit_control;
 use crate::arguments::{EvaluateArguments, Place, Places};
 use crate::failure::Outcome;
 use crate::format::{counted, number, point, table};
@@ -27,13 +27,10 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         .map(places)
         .collect::<anyhow::Result<Vec<_>>>()?
         .concat();
-    let input = input::load(&arguments.control, &arguments.limit.build, progress)?;
-    let (name, limit) = (input.name.clone(), arguments.limit.in_unit(input.unit));
-    let Prepared {
-        mesh,
-        face_inputs: faces,
-        ..
-    } = limit_control::prepared(input, &limit, progress)?;
+    let input = input::load(&arguments.control, &arguments.limit.build, &[], progress)?;
+    let name = input.name.clone();
+    let prepared = limit_control::prepared(input, &arguments.limit, progress)?;
+    let (mesh, faces) = (&prepared.input.mesh, prepared.face_inputs());
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
         progress.note(format!(
@@ -54,8 +51,8 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         "evaluating {}",
         counted(places.len(), "place", "places")
     ));
-    let surface = LimitSurface::new(&mesh, arguments.limit.scheme().scheme())
-        .with_context(|| name.clone())?;
+    let surface =
+        LimitSurface::new(mesh, arguments.limit.scheme().scheme()).with_context(|| name.clone())?;
     let at: Vec<(FaceId, [f64; 3])> = places
         .iter()
         .map(|place| (FaceId(place.face), place.weights))

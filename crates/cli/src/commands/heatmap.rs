@@ -91,12 +91,7 @@ fn draw(
             .for_each(|distance| *distance *= percent);
     }
     let unit = per_length.map_or_else(String::new, |_| format!("% of the {}'s diagonal", whole.of));
-    draw_values(
-        path,
-        cut,
-        &distances,
-        (scale(&distances), "distance", &unit),
-    )
+    draw_values(path, cut, &distances, scale(&distances), "distance", &unit)
 }
 
 /// A picture of values at the vertices, with a colour bar that says what they are.
@@ -104,7 +99,9 @@ pub(super) fn draw_values(
     path: &Path,
     surface: Triangles<'_>,
     values: &[f64],
-    (scale, title, unit): (Scale, &str, &str),
+    scale: Scale,
+    title: &str,
+    unit: &str,
 ) -> anyhow::Result<()> {
     let Size { width, height } = SIZE;
     let style = Style::default()

@@ -3,21 +3,17 @@
 use std::collections::BTreeMap;
 
 use anyhow::Context;
-use limitmesh::mesh::{Channel, Trace};
 use limitmesh::scheme::Loop;
-use limitmesh::{Mesh, PolygonSoup};
 
-use super::interpolation;
-use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments};
+use super::limit_control;
+use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments, LimitArguments};
 use crate::bulk::Bulk;
-use crate::creases::Hints;
 use crate::dihedral::Dihedrals;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands};
-use crate::input;
+use crate::input::{self, Input};
 use crate::mesh_info;
 use crate::output;
-use crate::parts;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
@@ -37,75 +33,53 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
             "{option} belongs to a limit surface; it needs --limit"
         ));
     }
-    let input::Soup {
-        name,
-        format,
-        soup,
-        normals,
-        asset,
-        package,
-        unit,
-        ..
-    } = input::read(&arguments.input, &arguments.build, progress)?;
-    let options = arguments.build.in_unit(unit).options()?;
+    let mut read = input::read(&arguments.input, &arguments.build, progress)?;
+    let soup = &read.soup;
     let mut corners = BTreeMap::<usize, usize>::new();
     for face in soup.faces.iter() {
         *corners.entry(face.len()).or_default() += 1;
     }
-    let polygons = corners
-        .into_iter()
+    let polygons = corners.into_iter();
+    let polygons = polygons
         .map(|(corners, count)| PolygonCount { corners, count })
         .collect();
     let tags = TagCounts {
         creases: soup.creases.len(),
         corners: soup.corners.len(),
     };
-    let input = InputReport {
-        path: name.clone(),
-        format,
+    let report = InputReport {
+        path: read.name.clone(),
+        format: read.format,
         vertices: soup.positions.len(),
         faces: soup.faces.len(),
         left_out: soup.left_out.clone(),
         channels: soup.channels.iter().map(Into::into).collect(),
     };
-    progress.stage(format!(
-        "connecting {}",
-        counted(input.faces, "face", "faces")
-    ));
-    let (mesh, diagnosis, trace) =
-        Mesh::from_soup_traced(&soup, &options).map_err(|error| input::describe(&name, error))?;
-    if let Some(near) = input::nearly_closed(&mesh, options.weld, input::welded(&soup)) {
-        progress.note(format!("{name}: {near}"));
-    }
-    let limit = arguments.limit.then(|| {
-        limit_of(
-            &soup,
-            normals.as_ref(),
-            (&mesh, &trace),
-            arguments,
-            progress,
-        )
-    });
-    let limit = limit.transpose().with_context(|| name.clone())?.flatten();
-    drop(soup);
+    let (asset, package) = (read.asset.take(), read.package.take());
+    let input = input::connected(read, &arguments.build, progress)?;
     progress.stage("examining the mesh");
+    let found = [input.diagnosis.preparations(), input.diagnosis.repairs()].concat();
     let report = InformationReport {
         version: VERSION,
-        input,
+        input: report,
         polygons,
         tags,
         asset: asset.map(|(_, contents)| contents.into()),
-        package: package.map(PackageInformation::from),
-        diagnosis: (&diagnosis).into(),
-        mesh: mesh_info::examine(&mesh, &trace.faces),
-        limit,
+        package: package
+            .zip(input.unit)
+            .map(|(own, unit)| PackageInformation::new(own, unit)),
+        diagnosis: (&input.diagnosis).into(),
+        mesh: mesh_info::examine(&input.mesh, &input.trace.faces),
+        limit: match arguments.limit {
+            true => limit_of(input, arguments, progress)?,
+            false => None,
+        },
     };
     progress.clear();
     if arguments.json {
         output::print(&output::json(&report)?)?;
     } else {
         let mut text = describe_file(&report);
-        let found = [diagnosis.preparations(), diagnosis.repairs()].concat();
         text.push_str("\nfound\n");
         if found.is_empty() {
             text.push_str("  nothing to prepare or repair\n");
@@ -125,46 +99,19 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
 
 /// Area and volume of the limit surface, with what is sharp by its looks.
 fn limit_of(
-    soup: &PolygonSoup,
-    normals: Option<&Channel>,
-    (mesh, trace): (&Mesh, &Trace),
+    input: Input,
     arguments: &InfoArguments,
     progress: &Progress,
 ) -> anyhow::Result<Option<Bulk>> {
-    let on_mesh = |channel: &Channel| channel.on_mesh(soup, mesh, trace);
-    let normals = normals.map(on_mesh).transpose()?;
-    let channels = soup
-        .channels
-        .iter()
-        .map(on_mesh)
-        .collect::<Result<Vec<_>, _>>()?;
-    let is_tagged = !soup.creases.is_empty() || !soup.corners.is_empty();
-    let hints = Hints {
-        is_tagged,
-        normals: normals.as_ref(),
-        channels: &channels,
+    let name = input.name.clone();
+    let limit = LimitArguments {
+        scheme: None,
+        features: arguments.features,
+        interpolation: InterpolationArguments::default(),
+        build: arguments.build,
     };
-    let asked = (
-        arguments.features.or_auto(),
-        InterpolationArguments::default(),
-    );
-    let decided = parts::decided(asked, (mesh, &trace.faces), &hints, true);
-    decided
-        .note
-        .into_iter()
-        .for_each(|note| progress.note(note));
-    let edges = hints.edges(
-        mesh,
-        decided.features.creases_from,
-        &arguments.input.display().to_string(),
-    )?;
-    let mesh = decided
-        .features
-        .apply(mesh.clone().with_creases(&edges))?
-        .mesh;
-    let asked = (decided.interpolation, arguments.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, &Loop, progress)?;
-    Bulk::of_limit(&mesh, &Loop)
+    let prepared = limit_control::prepared(input, &limit, progress)?;
+    Bulk::of_limit(&prepared.input.mesh, &Loop).with_context(|| name)
 }
 
 fn describe_file(report: &InformationReport) -> String {

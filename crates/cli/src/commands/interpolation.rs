@@ -18,7 +18,8 @@ use crate::report::{InterpolationReport, percent};
 /// Some vertex has no limit, or none that is near enough.
 pub(super) fn apply(
     mesh: Mesh,
-    (arguments, unit): (InterpolationArguments, Option<Unit>),
+    arguments: InterpolationArguments,
+    unit: Option<Unit>,
     scheme: &dyn Scheme,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, Option<InterpolationReport>)> {
@@ -67,7 +68,7 @@ fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
     if passed_by > 0 {
         let others = counted(passed_by, "vertex", "vertices");
         vertices +=
-            &format!(", and by {others} beside much longer edges of sharp lines and boundaries");
+            &format!(", and by {others} next to much longer edges of sharp lines and boundaries");
     }
     let percent = percent(found.displacement, diagonal.max(f64::MIN_POSITIVE));
     let moved = format!(

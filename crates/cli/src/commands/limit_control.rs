@@ -1,28 +1,37 @@
-//! The control mesh of a limit surface that is measured, evaluated or drawn: as it was read, with sharp edges and control points as asked
-//! for.
+//! The control mesh of a limit surface: as it was read, with sharp edges and control points as asked for.
 
-use limitmesh::Mesh;
+use limitmesh::mesh::FaceParts;
 
 use super::interpolation;
-use crate::arguments::{Featured, LimitArguments};
+use crate::arguments::LimitArguments;
 use crate::input::Input;
 use crate::parts;
 use crate::progress::Progress;
 
-/// What a limit surface is of.
+/// A control mesh.
 pub(super) struct Prepared {
-    /// The mesh with its tags, and control points that let the surface pass through its vertices where that is asked for.
-    pub(super) mesh: Mesh,
-    /// By its faces, that of the file that each is from.
-    pub(super) face_inputs: Vec<u32>,
+    /// What was read; its mesh has tags, and control points that let the surface pass through its vertices where that is asked for.
+    pub(super) input: Input,
+    /// Where its faces are on those of the mesh that was read.
+    pub(super) parts: FaceParts,
     /// The arguments with what was decided by looking at the mesh.
     pub(super) limit: LimitArguments,
+}
+
+impl Prepared {
+    /// By face of the control mesh, the file's face that it is from.
+    pub(super) fn face_inputs(&self) -> Vec<u32> {
+        let input = |face| self.input.trace.faces[self.parts.whole(face) as usize];
+        (0..self.input.mesh.face_count() as u32)
+            .map(input)
+            .collect()
+    }
 }
 
 /// Prepares a mesh that was read. What is sharp by its looks counts where nothing else is asked for, as for `refine`.
 ///
 /// # Errors
-/// Edges are to be sharp by what the file does not tell, or some vertex has no limit that is near enough.
+/// Edges are to be sharp by what the file does not say, or some vertex has no limit that is near enough.
 pub(super) fn prepared(
     input: Input,
     arguments: &LimitArguments,
@@ -44,30 +53,23 @@ pub(super) fn as_asked(
     arguments: &LimitArguments,
     progress: &Progress,
 ) -> anyhow::Result<Prepared> {
-    let asked = (arguments.features, arguments.interpolation);
-    let decided = parts::decided(
-        asked,
-        (&input.mesh, &input.trace.faces),
-        &input.hints(),
-        true,
-    );
-    if let Some(note) = decided.note {
-        progress.note(format!("{}: {note}", input.name));
-    }
+    let (features, interpolation) = (arguments.features, arguments.interpolation);
+    let (mesh, faces) = (&input.mesh, &input.trace.faces);
+    let decided = parts::decided(features, interpolation, mesh, faces, &input.hints(), true);
+    progress.notes(decided.note.map(|note| format!("{}: {note}", input.name)));
     let limit = LimitArguments {
         features: decided.features,
         interpolation: decided.interpolation,
-        ..*arguments
+        ..arguments.in_unit(input.unit)
     };
-    let Input { mesh, trace, .. } = input.with_creases(limit.features.creases_from)?;
-    let Featured { mesh, concave, .. } = limit.features.apply(mesh)?;
-    let asked = (limit.interpolation, limit.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, limit.scheme().scheme(), progress)?;
-    let input_of = |face| trace.faces[concave.parts.whole(face) as usize];
-    let face_inputs = (0..mesh.face_count() as u32).map(input_of).collect();
+    let input = input.with_creases(limit.features.creases_from)?;
+    let featured = limit.features.apply(input.mesh)?;
+    let (unit, scheme) = (limit.build.unit, limit.scheme().scheme());
+    let led = limit.interpolation;
+    let (mesh, _) = interpolation::apply(featured.mesh, led, unit, scheme, progress)?;
     Ok(Prepared {
-        mesh,
-        face_inputs,
+        input: Input { mesh, ..input },
+        parts: featured.concave.parts,
         limit,
     })
 }

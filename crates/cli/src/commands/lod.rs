@@ -7,20 +7,21 @@ use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{
     ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance,
 };
+use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
 use limitmesh_io::{Asset, Format, Output, Property, WriteOptions};
 
-use super::channels::{Channels, Destination};
-use super::interpolation;
+use super::channels::Channels;
+use super::limit_control;
+use super::named_files::Destination;
 use super::normals::Normals;
-use crate::arguments::{Extent, Featured, LodArguments, MOST_EXACT};
+use crate::arguments::{Extent, LodArguments, MOST_EXACT};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, table, thousands, upper_bound};
-use crate::input::{self, Input};
+use crate::input;
 use crate::interrupt;
 use crate::output;
-use crate::parts;
 use crate::progress::Progress;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
@@ -80,102 +81,70 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
         ));
     }
     check_files(arguments, format)?;
-    let kept = [
-        Normals::kept(Some(format)),
-        if format.is_gltf() { &[MATERIALS] } else { &[] },
-    ]
-    .concat();
-    let input = input::load_for(
-        &arguments.input,
-        &arguments.build,
-        (&kept, &arguments.channels),
-        progress,
-    )?;
-    let asked = (arguments.features.or_auto(), arguments.interpolation);
-    let decided = parts::decided(
-        asked,
-        (&input.mesh, &input.trace.faces),
-        &input.hints(),
-        true,
-    );
-    decided
-        .note
-        .into_iter()
-        .for_each(|note| progress.note(note));
-    let input = input.with_creases(decided.features.creases_from)?;
+    let mut kept = Normals::kept(Some(format)).to_vec();
+    if format.is_gltf() {
+        kept.push(MATERIALS);
+    }
+    let build = &arguments.limit.build;
+    let read = input::read_for(&arguments.input, build, &arguments.channels, progress)?;
+    let input = input::connect(read, build, &kept, progress)?;
+    let diagonal = input.mesh.diagonal();
+    let report = InputReport::of(&input, &arguments.channels);
+    let prepared = limit_control::prepared(input, &arguments.limit, progress)?;
     let arguments = &LodArguments {
-        build: arguments.build.in_unit(input.unit),
+        limit: prepared.limit,
         ..arguments.clone()
     };
-    let unit = WrittenUnit::of(&arguments.input, &arguments.build, format);
+    let input = prepared.input;
+    let mesh = &input.mesh;
+    let unit = WrittenUnit::of(&arguments.input, &arguments.limit.build, format);
     unit.note(&arguments.output.display().to_string(), progress);
-    let diagonal = input.mesh.diagonal();
-    let told = InputReport::of(&input, &arguments.channels);
-    let Input {
-        mesh,
-        channels,
-        material_libraries,
-        texture_files,
-        asset,
-        ..
-    } = input;
     let to = Destination {
         format: Some(format),
         ascii: arguments.ascii,
         chosen: &arguments.channels,
         files: (&arguments.input, Some(&arguments.output)),
     };
-    let mut channels =
-        Channels::of_input(channels, [material_libraries, texture_files], &to, progress);
-    let asset = asset.filter(|_| format.is_gltf());
+    let files = [input.material_libraries, input.texture_files];
+    let mut channels = Channels::of_input(input.channels, files, &to, progress);
+    channels.on_parts(&prepared.parts, mesh);
+    let asset = input.asset.filter(|_| format.is_gltf());
     if asset.is_some() {
         progress.note("one mesh of all that the scene shows, in its coordinates, with its materials; nodes, skins, animations and cameras are left out");
     }
-    let Featured { mesh, concave, .. } = decided.features.apply(mesh)?;
-    channels.on_parts(&concave.parts, &mesh);
-    let scheme = arguments.scheme.scheme();
-    let asked = (decided.interpolation, arguments.build.unit);
-    let (mesh, _) = interpolation::apply(mesh, asked, scheme, progress)?;
 
-    let tolerances = tolerances(arguments, diagonal)?;
-    let asked = LodOptions::new(tolerances)
+    let asked = LodOptions::new(tolerances(arguments, diagonal)?)
         .geomorphs(arguments.morph)
         .max_triangles(Some(arguments.max_triangles.unwrap_or(MOST_EXACT)));
-    let mut levels = levels_of_detail_observed(&mesh, scheme, &asked, &mut progress.observer())?;
+    let scheme = arguments.limit.scheme().scheme();
+    let mut levels = levels_of_detail_observed(mesh, scheme, &asked, &mut progress.observer())?;
     let found = levels.len();
     leave_out_needless(&mut levels, progress);
     let written = levels
         .iter()
         .rev()
-        .map(|level| written(level, &mesh, &channels, arguments));
+        .map(|level| written(level, mesh, &channels, scheme));
     let written = written.collect::<anyhow::Result<Vec<_>>>()?;
-    if let Some(note) = written.first().and_then(|finest| finest.note(format)) {
-        progress.note(note);
-    }
-    let reports = reports(&levels, &mesh, arguments, format);
+    progress.notes(written.first().and_then(|finest| finest.note(format)));
+    let reports = reports(&levels, mesh, arguments, format);
     progress.stage(format!("writing {}", arguments.output.display()));
-    write(
-        arguments,
-        (format, &unit),
-        &written,
-        &reports,
-        asset.as_ref(),
-    )?;
+    match format.is_gltf() {
+        true => write_document(arguments, format, &unit, &written, &reports, asset.as_ref())?,
+        false => write_files(arguments, format, &unit, &written)?,
+    }
     progress.clear();
     progress.note(in_words(&reports, arguments));
-    let certified = levels.iter().all(|level| level.exact.error.certified);
     if let Some(path) = &arguments.report {
-        let picture = PictureReport {
-            pixels: arguments.pixels,
-            height: arguments.height,
-            fov_degrees: arguments.fov,
-        };
         let report = LodReport {
             version: VERSION,
-            input: told,
+            input: report,
             diagonal,
-            certified,
-            picture,
+            certified: levels.iter().all(|level| level.exact.error.certified),
+            picture: PictureReport {
+                pixels: arguments.pixels,
+                height: arguments.height,
+                fov_degrees: arguments.fov,
+            },
             levels: reports,
         };
         output::write_json(path, &report)?;
@@ -225,12 +194,12 @@ fn check_files(arguments: &LodArguments, format: Format) -> anyhow::Result<()> {
 
 /// From the coarsest to the finest, in the mesh's unit.
 fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64>> {
-    let length = |extent: &Extent| extent.length(diagonal, arguments.build.unit);
-    let lengths = if arguments.tolerances.is_empty() {
+    let length = |extent: &Extent| extent.length(diagonal, arguments.limit.build.unit);
+    let lengths: Vec<f64> = if arguments.tolerances.is_empty() {
         let finest = length(&arguments.tolerance.unwrap_or(USUAL_TOLERANCE))?;
         let ratio = arguments.ratio.unwrap_or(USUAL_RATIO);
-        let levels = arguments.levels.unwrap_or(USUAL_LEVELS);
-        (0..levels)
+        let levels = 0..arguments.levels.unwrap_or(USUAL_LEVELS);
+        levels
             .rev()
             .map(|level| finest / ratio.powi(level as i32))
             .collect()
@@ -239,11 +208,11 @@ fn tolerances(arguments: &LodArguments, diagonal: f64) -> anyhow::Result<Vec<f64
             .tolerances
             .iter()
             .map(length)
-            .collect::<anyhow::Result<Vec<f64>>>()?
+            .collect::<anyhow::Result<_>>()?
     };
     if let Some(at) = lengths.windows(2).position(|pair| pair[1] >= pair[0]) {
         return usage(format!(
-            "--tolerances are from coarse to fine, each below the one before; number {} comes to {} in the mesh's unit, after {}",
+            "--tolerances are from coarse to fine, each below the one before; number {} is {} in the mesh's unit, after {}",
             at + 2,
             number(lengths[at + 1]),
             number(lengths[at])
@@ -282,16 +251,13 @@ fn written(
     level: &Level,
     control: &Mesh,
     channels: &Channels,
-    arguments: &LodArguments,
+    scheme: &dyn Scheme,
 ) -> anyhow::Result<Written> {
-    let channels = channels.refined(control, &level.exact, arguments.scheme.scheme())?;
+    let channels = channels.refined(control, &level.exact, scheme)?;
     let (split, normals) = level.split_surface();
     let coarser = level.geomorph.as_ref().map(|morph| {
-        let positions = split
-            .sources
-            .iter()
-            .map(|&v| morph.positions[v as usize])
-            .collect();
+        let sources = split.sources.iter();
+        let positions = sources.map(|&v| morph.positions[v as usize]).collect();
         [positions, normals]
     });
     Ok(Written {
@@ -308,18 +274,16 @@ fn reports(
     arguments: &LodArguments,
     format: Format,
 ) -> Vec<LevelReport> {
-    let distance = |deviation| {
-        switching_distance(
-            deviation,
-            arguments.pixels,
-            arguments.height,
-            arguments.fov.to_radians(),
-        )
-    };
+    let (pixels, height, fov) = (
+        arguments.pixels,
+        arguments.height,
+        arguments.fov.to_radians(),
+    );
+    let distance = |deviation| switching_distance(deviation, pixels, height, fov);
     // The part of the picture's height that a ball around the control mesh takes where its nearest point is so far away.
     let coverage = |distance: f64| {
         let radius = 0.5 * control.diagonal();
-        (radius / ((distance + radius) * (0.5 * arguments.fov.to_radians()).tan())).min(1.0)
+        (radius / ((distance + radius) * (0.5 * fov).tan())).min(1.0)
     };
     // Between morphing levels each place counts; without morphs levels are shown as they are.
     let shown = |level: &Level| match level.exact.error.upper {
@@ -332,11 +296,8 @@ fn reports(
         let exact = &level.exact;
         // Where the coarser level takes over: it is good enough from there on.
         let coarser = i.checked_sub(1).map(shown);
-        let start = level
-            .geomorph
-            .as_ref()
-            .zip(coarser)
-            .map(|(morph, coarser)| morph.start.max(coarser));
+        let start = level.geomorph.as_ref().zip(coarser);
+        let start = start.map(|(morph, coarser)| morph.start.max(coarser));
         let ends = start.or(coarser);
         LevelReport {
             lod,
@@ -357,13 +318,8 @@ fn reports(
             stop: exact_stop_name(exact.stop),
         }
     };
-    levels
-        .iter()
-        .enumerate()
-        .rev()
-        .enumerate()
-        .map(report)
-        .collect()
+    let finest_first = levels.iter().enumerate().rev().enumerate();
+    finest_first.map(report).collect()
 }
 
 /// The file of a level.
@@ -377,76 +333,53 @@ fn path(output: &Path, format: Format, lod: usize) -> PathBuf {
     output.with_file_name(name)
 }
 
-fn write(
+/// Writes all levels into one document.
+fn write_document(
     arguments: &LodArguments,
-    (format, unit): (Format, &WrittenUnit<'_>),
+    format: Format,
+    unit: &WrittenUnit<'_>,
     levels: &[Written],
     reports: &[LevelReport],
     asset: Option<&Asset>,
 ) -> anyhow::Result<()> {
+    let levels = levels.iter().zip(reports).map(|(level, report)| {
+        let own = DetailLevel::new(level.output()).least_coverage(report.least_coverage);
+        match &level.coarser {
+            Some([positions, normals]) => own.coarser(positions, normals),
+            None => own,
+        }
+    });
+    let levels: Vec<DetailLevel<'_>> = levels.collect();
+    let path = &arguments.output;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let unit = unit.options(WriteOptions::default()).unit;
+    let write = || write_levels(path, format, (&name, &levels), asset, unit);
+    interrupt::whole_or_not(path, write).context("levels of detail")
+}
+
+/// Writes each level into a file of its own.
+fn write_files(
+    arguments: &LodArguments,
+    format: Format,
+    unit: &WrittenUnit<'_>,
+    levels: &[Written],
+) -> anyhow::Result<()> {
     let options = unit.options(WriteOptions::default().ascii(arguments.ascii));
-    if format.is_gltf() {
-        let levels: Vec<DetailLevel<'_>> = levels
-            .iter()
-            .zip(reports)
-            .map(|(level, report)| {
-                let own = DetailLevel::new(level.output()).least_coverage(report.least_coverage);
-                match &level.coarser {
-                    Some([positions, normals]) => own.coarser(positions, normals),
-                    None => own,
-                }
-            })
-            .collect();
-        let name = arguments
-            .output
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy();
-        return interrupt::whole_or_not(&arguments.output, || {
-            write_levels(
-                &arguments.output,
-                format,
-                (&name, &levels),
-                asset,
-                options.unit,
-            )
-        })
-        .context("levels of detail");
-    }
     for (lod, level) in levels.iter().enumerate() {
-        let axis = |axis: usize| -> Vec<f64> {
-            level
-                .coarser
-                .iter()
-                .flat_map(|[positions, _]| positions)
-                .map(|position| position[axis])
-                .collect()
-        };
-        let coarse = [axis(0), axis(1), axis(2)];
-        let names = ["coarse_x", "coarse_y", "coarse_z"];
-        let properties: Vec<Property<'_>> = match level.coarser {
-            Some(_) => names
-                .iter()
-                .zip(&coarse)
-                .map(|(name, own)| Property::numbers(name, own))
-                .collect(),
-            None => Vec::new(),
-        };
-        let written = level.output().vertex_properties(&properties);
+        let coarser = level.coarser.iter().flat_map(|[positions, _]| positions);
+        let coarse = [0, 1, 2].map(|axis| coarser.clone().map(|p| p[axis]).collect::<Vec<f64>>());
+        let named = ["coarse_x", "coarse_y", "coarse_z"].iter().zip(&coarse);
+        let named = named.filter(|_| level.coarser.is_some());
+        let properties = named.map(|(name, own)| Property::numbers(name, own));
+        let properties: Vec<Property<'_>> = properties.collect();
+        let mut written = level.output().vertex_properties(&properties);
         let positions = unit.positions(written.surface.positions);
-        let written = Output {
-            surface: Triangles {
-                positions: &positions,
-                ..written.surface
-            },
-            ..written
+        written.surface = Triangles {
+            positions: &positions,
+            ..written.surface
         };
-        output::write_mesh(
-            &path(&arguments.output, format, lod),
-            format,
-            &written,
-            &options,
-        )?;
+        let path = path(&arguments.output, format, lod);
+        output::write_mesh(&path, format, &written, &options)?;
     }
     Ok(())
 }

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use anyhow::Context;
 use limitmesh::measure::{CertifiedHausdorff, Hausdorff, SamplingOptions, hausdorff_observed};
 use limitmesh::{Mesh, Triangles};
 
-use super::limit_control::{self, Prepared};
-use super::{certified, certified_limit, heatmap};
+use super::limit_control;
+use super::{certified, heatmap};
 use crate::arguments::{ConcaveCorners, MeasureArguments};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
@@ -26,13 +27,13 @@ use crate::report::{
 pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::Result<Outcome> {
     check(arguments)?;
     let start = Instant::now();
-    let surface = input::load(&arguments.surface, &arguments.limit.build, progress)?;
+    let surface = input::load(&arguments.surface, &arguments.limit.build, &[], progress)?;
     let second = arguments
         .limit_of
         .as_deref()
-        .or(arguments.reference.as_deref())
-        .unwrap_or(Path::new(""));
-    let second = input::load(second, &arguments.limit.build, progress)?;
+        .or(arguments.reference.as_deref());
+    let second = second.context("there is nothing to measure against")?;
+    let second = input::load(second, &arguments.limit.build, &[], progress)?;
     let limit = arguments.limit.in_unit(second.unit);
     let arguments = &MeasureArguments {
         limit,
@@ -86,7 +87,7 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
 /// The distance as it was asked for.
 enum Distance {
     Sampled(Hausdorff),
-    /// Perhaps with the triangles of a mesh that could not be finer to stand for a limit surface.
+    /// Perhaps with the triangles of a mesh that could not approximate a limit surface better.
     Certified(CertifiedHausdorff, Option<usize>),
 }
 
@@ -98,18 +99,12 @@ impl Distance {
         progress: &Progress,
     ) -> anyhow::Result<Self> {
         if arguments.certified {
-            return Ok(Self::Certified(
-                certified::between(a, b, arguments, progress)?,
-                None,
-            ));
+            let found = certified::between(a, b, arguments, progress)?;
+            return Ok(Self::Certified(found, None));
         }
         let options = SamplingOptions::default().samples(arguments.samples);
-        Ok(Self::Sampled(hausdorff_observed(
-            a,
-            b,
-            &options,
-            &mut progress.observer(),
-        )?))
+        let found = hausdorff_observed(a, b, &options, &mut progress.observer())?;
+        Ok(Self::Sampled(found))
     }
 
     fn report(&self, whole: Whole) -> DistanceReport {
@@ -131,7 +126,7 @@ impl Distance {
     }
 }
 
-/// Bounds the distance to the limit surface of a control mesh; gives also the mesh that stands for it.
+/// Bounds the distance to the limit surface of a control mesh; gives also the mesh that approximates it.
 fn against_limit(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -139,30 +134,30 @@ fn against_limit(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Distance)> {
-    let unfolds = report
-        .limit
-        .as_ref()
-        .is_some_and(|limit| limit.concave_corners == ConcaveCorners::Divided);
-    let found = certified_limit::measure(surface, (control, unfolds), arguments, progress)?;
+    let is_fixed = |limit: &LimitReport| limit.concave_corners == ConcaveCorners::Fixed;
+    let unfolds = report.limit.as_ref().is_some_and(is_fixed);
+    let found = certified::to_limit(surface, control, unfolds, arguments, progress)?;
     let limit = report.limit.map(|limit| LimitReport {
         levels: found.levels,
         error: Some(found.error),
         ..limit
     });
+    let (vertices, triangles) = (found.reference.vertex_count(), found.reference.face_count());
     let report = SurfaceReport {
-        vertices: found.reference.vertex_count(),
-        triangles: found.reference.face_count(),
+        vertices,
+        triangles,
         limit,
         ..report
     };
+    let capped = found.is_capped.then_some(triangles);
     Ok((
         found.reference,
         report,
-        Distance::Certified(found.measured, found.capped),
+        Distance::Certified(found.distance, capped),
     ))
 }
 
-/// The second surface: a mesh as it is, or one that stands for a limit surface; the control mesh itself, where the
+/// The second surface: a mesh as it is, or one that approximates a limit surface; the control mesh itself, where the
 /// distance to its limit surface is to be certified. And what lengths are given in per cent of.
 fn reference(
     input: Input,
@@ -184,7 +179,8 @@ fn reference(
         diagonal: input.mesh.diagonal(),
         of: "control mesh",
     };
-    let Prepared { mesh, limit, .. } = limit_control::prepared(input, &arguments.limit, progress)?;
+    let prepared = limit_control::prepared(input, &arguments.limit, progress)?;
+    let (mesh, limit) = (prepared.input.mesh, prepared.limit);
     // Beyond what numbers hold they are not known; distances are.
     let bulk = Bulk::of_limit(&mesh, scheme.scheme()).ok().flatten();
     let (mesh, levels) = if arguments.certified {
@@ -192,7 +188,7 @@ fn reference(
     } else {
         let levels = reference::levels_for(&mesh, measured, arguments.reference_levels)?;
         progress.stage(format!(
-            "refining {} by {levels} levels to stand for its limit surface",
+            "refining {} by {levels} levels to approximate its limit surface",
             report.path
         ));
         (

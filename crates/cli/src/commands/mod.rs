@@ -3,7 +3,6 @@
 pub(crate) mod batch;
 pub(crate) mod batch_job;
 mod certified;
-mod certified_limit;
 mod channels;
 pub(crate) mod compare;
 mod covering;

@@ -6,9 +6,33 @@ use std::path::Path;
 use limitmesh::mesh::{Channel, Semantic};
 use limitmesh_io::{Format, MATERIAL, MaterialLibraries};
 
-use super::channels::Destination;
+use crate::arguments::{ChannelArguments, RefineArguments};
 use crate::output;
 use crate::progress::Progress;
+
+/// Where channels go, and what was asked for them.
+pub(super) struct Destination<'a> {
+    /// Nothing is written without one.
+    pub(super) format: Option<Format>,
+    /// Whether it is written as text.
+    pub(super) ascii: bool,
+    pub(super) chosen: &'a ChannelArguments,
+    /// The file that they came from, and the one that they go to.
+    pub(super) files: (&'a Path, Option<&'a Path>),
+}
+
+impl<'a> Destination<'a> {
+    /// That of a refinement.
+    pub(super) fn of(arguments: &'a RefineArguments, format: Option<Format>) -> Self {
+        let files = (arguments.input(), arguments.output.as_deref());
+        Self {
+            format,
+            ascii: arguments.ascii,
+            chosen: &arguments.channels,
+            files,
+        }
+    }
+}
 
 /// Finds the files that the output has a use for, given the names of libraries and pictures and the channels that are kept; says which it
 /// has none for, and which are not found.

@@ -9,8 +9,9 @@ use crate::arguments::Size;
 use crate::failure::usage;
 use crate::format::counted;
 use crate::output;
+use crate::progress::Progress;
 
-/// Size of pictures that are drawn beside other work.
+/// Size of pictures that are drawn along with other work.
 pub(super) const SIZE: Size = Size {
     width: 1200,
     height: 900,
@@ -61,10 +62,34 @@ pub(super) fn draw(
     output::write_file(path, &image.encode_png()?)
 }
 
+/// Draws a surface with its edges, at the usual size, and says so.
+pub(super) fn draw_edges(
+    path: &Path,
+    surface: Triangles<'_>,
+    normals: &[[f64; 3]],
+    sight: Option<[f64; 3]>,
+    progress: &Progress,
+) -> anyhow::Result<()> {
+    progress.stage(format!("drawing {}", path.display()));
+    let style = Style::default().wireframe(true);
+    draw(
+        path,
+        surface,
+        Some(normals),
+        view_direction(sight),
+        &style,
+        SIZE,
+    )?;
+    progress.note(drawn(path, surface.triangles.len()));
+    Ok(())
+}
+
 /// Draws a surface with its materials and writes the picture.
 pub(super) fn draw_covered(
     path: &Path,
-    (surface, normals, covering): (Triangles<'_>, Option<&[[f64; 3]]>, &Covering<'_>),
+    surface: Triangles<'_>,
+    normals: Option<&[[f64; 3]]>,
+    covering: &Covering<'_>,
     view: ViewDirection,
     style: &Style,
     Size { width, height }: Size,

@@ -9,7 +9,7 @@ use limitmesh_io::{Format, Output, Property, WriteOptions};
 use limitmesh_render::{ColourMap, Scale};
 
 use super::heatmap;
-use super::limit_control::{self, Prepared};
+use super::limit_control;
 use crate::arguments::ProjectArguments;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, lower_bound, number, point, thousands};
@@ -28,33 +28,25 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     input::check_once([&arguments.points, &arguments.onto].into_iter())?;
     let kind = arguments.output.as_deref().map(Kind::of).transpose()?;
     if let Some(output) = &arguments.output {
-        output::check_replaced(
-            &[output],
-            &[&arguments.points, &arguments.onto],
-            Some(arguments.overwrite),
-        )?;
+        let inputs: [&Path; 2] = [&arguments.points, &arguments.onto];
+        output::check_replaced(&[output], &inputs, Some(arguments.overwrite))?;
     }
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
-    let control = input::load(&arguments.onto, &arguments.limit.build, progress)?;
-    let limit = arguments.limit.in_unit(control.unit);
-    let arguments = &ProjectArguments {
-        limit,
-        ..arguments.clone()
-    };
+    let control = input::load(&arguments.onto, &arguments.limit.build, &[], progress)?;
     let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
     let scheme = arguments.limit.scheme();
-    let Prepared { mesh, .. } = limit_control::prepared(control, &arguments.limit, progress)?;
+    let prepared = limit_control::prepared(control, &arguments.limit, progress)?;
+    let mesh = prepared.input.mesh;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
         return usage(format!(
             "{} has no triangles to draw; -o writes .ply or .csv",
             points.name
         ));
     }
-    let tolerance = arguments
-        .tolerance
-        .length(diagonal, arguments.limit.build.unit)?;
+    let unit = prepared.limit.build.unit;
+    let tolerance = arguments.tolerance.length(diagonal, unit)?;
 
     progress.stage(format!(
         "projecting {}",
@@ -108,10 +100,8 @@ enum Kind {
 impl Kind {
     /// By the name of the file, before any work is done.
     fn of(path: &Path) -> anyhow::Result<Self> {
-        let extension = path
-            .extension()
-            .map(|extension| extension.to_ascii_lowercase());
-        let kind = match extension.as_ref().and_then(|extension| extension.to_str()) {
+        let extension = path.extension().map(|own| own.to_ascii_lowercase());
+        let kind = match extension.as_ref().and_then(|own| own.to_str()) {
             Some("ply") => Self::Ply,
             Some("csv") => Self::Csv,
             Some("png") => Self::Picture,
@@ -221,28 +211,21 @@ impl Found {
             .iter()
             .map(|&distance| scale.colour(distance))
             .collect();
-        let by = |value: fn(&Closest) -> f64| self.closest.iter().map(value).collect::<Vec<f64>>();
-        let closest = [
-            by(|at| at.point[0]),
-            by(|at| at.point[1]),
-            by(|at| at.point[2]),
-        ];
-        let weights = [
-            by(|at| at.barycentric[0]),
-            by(|at| at.barycentric[1]),
-            by(|at| at.barycentric[2]),
-        ];
+        let by = |value: fn(&Closest) -> [f64; 3]| {
+            let column = |axis: usize| self.closest.iter().map(|at| value(at)[axis]).collect();
+            [0, 1, 2].map(column)
+        };
+        let [x, y, z]: [Vec<f64>; 3] = by(|at| at.point);
+        let [w0, w1, w2]: [Vec<f64>; 3] = by(|at| at.barycentric);
         let faces: Vec<u32> = self.closest.iter().map(|at| at.face.0).collect();
-        let [x, y, z] = &closest;
-        let [w0, w1, w2] = &weights;
         let properties = [
-            Property::numbers("closest_x", x),
-            Property::numbers("closest_y", y),
-            Property::numbers("closest_z", z),
+            Property::numbers("closest_x", &x),
+            Property::numbers("closest_y", &y),
+            Property::numbers("closest_z", &z),
             Property::integers("control_face", &faces),
-            Property::numbers("w0", w0),
-            Property::numbers("w1", w1),
-            Property::numbers("w2", w2),
+            Property::numbers("w0", &w0),
+            Property::numbers("w1", &w1),
+            Property::numbers("w2", &w2),
         ];
         let surface = Triangles {
             positions: &points.positions,
@@ -280,7 +263,9 @@ impl Found {
             path,
             surface,
             &self.signed,
-            (self.scale(), "signed distance", ""),
+            self.scale(),
+            "signed distance",
+            "",
         )
     }
 }

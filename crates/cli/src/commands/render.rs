@@ -7,7 +7,7 @@ use limitmesh::{LimitSurface, RayCaster};
 use limitmesh_render::{Camera, Shading, Style, render_exact_observed};
 
 use super::covering::Cover;
-use super::limit_control::{self, Prepared};
+use super::limit_control;
 use super::{picture, shading};
 use crate::arguments::{
     CreaseAngle, FeatureArguments, InterpolationArguments, LimitArguments, RenderArguments,
@@ -37,7 +37,7 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     if arguments.crease_angle == Some(CreaseAngle::Auto) {
         return usage("--crease-angle auto is for limit surfaces; it needs --exact");
     }
-    let input = input::load_keeping(&arguments.input, &arguments.build, &UNSEEN, progress)?;
+    let input = input::load(&arguments.input, &arguments.build, &UNSEEN, progress)?;
     let cover = Cover::of(&input, arguments.texture.as_deref())?;
     let mut mesh = input.mesh;
     if let Some(angle) = arguments.crease_angle.and_then(CreaseAngle::degrees) {
@@ -72,8 +72,9 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
     };
     match &cover {
         Some(cover) => {
-            let covered = (surface, normals, &cover.covering());
-            picture::draw_covered(&arguments.output, covered, view, &style, arguments.size)?;
+            let (path, size) = (&arguments.output, arguments.size);
+            let covering = &cover.covering();
+            picture::draw_covered(path, surface, normals, covering, view, &style, size)?;
         }
         None => picture::draw(
             &arguments.output,
@@ -93,7 +94,7 @@ const FRAMED: usize = 100_000;
 
 /// Draws the limit surface of a control mesh by rays.
 fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input = input::load(&arguments.input, &arguments.build, progress)?;
+    let input = input::load(&arguments.input, &arguments.build, &[], progress)?;
     let name = input.name.clone();
     let limit = LimitArguments {
         scheme: arguments.scheme,
@@ -104,7 +105,7 @@ fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Out
         interpolation: InterpolationArguments::default(),
         build: arguments.build,
     };
-    let Prepared { mesh, limit, .. } = limit_control::prepared(input, &limit, progress)?;
+    let mesh = limit_control::prepared(input, &limit, progress)?.input.mesh;
     let scheme = limit.scheme().scheme();
     let surface = LimitSurface::new(&mesh, scheme).with_context(|| name.clone())?;
     let rays = RayCaster::new(&surface).with_context(|| name.clone())?;

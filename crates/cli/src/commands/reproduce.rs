@@ -39,7 +39,7 @@ struct Program<'a> {
 
 impl Host for Program<'_> {
     fn load(&self, name: &str) -> anyhow::Result<Mesh> {
-        Ok(input::load(Path::new(name), &Default::default(), self.progress)?.mesh)
+        Ok(input::load(Path::new(name), &Default::default(), &[], self.progress)?.mesh)
     }
 
     fn write(&self, path: &Path, bytes: &[u8]) -> anyhow::Result<()> {

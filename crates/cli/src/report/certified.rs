@@ -28,10 +28,10 @@ pub(crate) struct CertifiedReport {
     /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,
     /// From the surface to the reference.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::Bounds"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::Bounds"))]
     pub(crate) forward: Bounds,
     /// From the reference to the surface.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::Bounds"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::Bounds"))]
     pub(crate) backward: Bounds,
 }
 

@@ -1,4 +1,4 @@
-//! What a mesh carries beside its shape, as reported.
+//! What a mesh carries apart from its shape, as reported.
 
 use limitmesh::mesh::{Channel, Domain, Interpolation};
 use serde::Serialize;
@@ -45,7 +45,7 @@ impl ChannelReport {
     /// Of a channel that is carried as options say.
     pub(crate) fn chosen(channel: &Channel, arguments: &ChannelArguments) -> Self {
         let found = Self::from(channel);
-        let interpolation = if arguments.drops(&channel.name) {
+        let interpolation = if arguments.drops_channel(channel) {
             "drop"
         } else {
             found.interpolation
@@ -58,7 +58,7 @@ impl ChannelReport {
 
     /// Of an attribute of triangles that others inherit from them.
     pub(crate) fn inherited(name: &str, faces: usize, arguments: &ChannelArguments) -> Self {
-        let interpolation = if arguments.drops(name) {
+        let interpolation = if arguments.drops(name, false) {
             "drop"
         } else {
             "nearest"

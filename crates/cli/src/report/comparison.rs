@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::measurement::LimitReport;
+use super::whole::IntervalReport;
 
 /// One method at its triangle count.
 #[derive(Debug, Serialize)]
@@ -26,7 +27,7 @@ pub(crate) struct ComparedMethod {
     /// Root mean square of that distance, in the same per cent.
     pub(crate) rms_percent: f64,
     /// Bounds of the distance that are proven; null for methods that have none.
-    pub(crate) certified: Option<CertifiedErrorReport>,
+    pub(crate) certified: Option<IntervalReport>,
     /// Samples of both directions together.
     pub(crate) samples: usize,
     /// The least angle of a triangle.
@@ -35,22 +36,8 @@ pub(crate) struct ComparedMethod {
     pub(crate) mean_min_angle_degrees: f64,
     /// Wall-clock seconds of the refinement alone.
     pub(crate) seconds: f64,
-    /// What stands for the limit surface; sqrt3 has its own.
+    /// What approximates the limit surface; sqrt3 has its own.
     pub(crate) reference: LimitReport,
     /// Triangles of that mesh.
     pub(crate) reference_triangles: usize,
-}
-
-/// The true distance to the limit surface lies between these.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct CertifiedErrorReport {
-    /// In the mesh's units.
-    pub(crate) lower: f64,
-    /// In the mesh's units.
-    pub(crate) upper: f64,
-    /// In per cent of the diagonal of the control mesh's bounding box.
-    pub(crate) lower_percent: f64,
-    /// In per cent of that diagonal.
-    pub(crate) upper_percent: f64,
 }

@@ -13,7 +13,7 @@ pub(crate) struct DiagnosisReport {
     pub(crate) clean: bool,
     /// By the library's names of the findings.
     #[serde(flatten)]
-    #[cfg_attr(test, schemars(schema_with = "crate::pages::schema::findings"))]
+    #[cfg_attr(test, schemars(schema_with = "crate::tests::pages::schema::findings"))]
     pub(crate) findings: BTreeMap<&'static str, Finding>,
 }
 

@@ -6,8 +6,8 @@ use limitmesh_io::gltf::{Contents, MeshContents, PrimitiveContents};
 use limitmesh_io::threemf::{ObjectContents, PackageContents};
 use serde::Serialize;
 
-use super::InputReport;
 use super::diagnosis::DiagnosisReport;
+use super::input::InputReport;
 use crate::arguments::Unit;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
@@ -106,21 +106,15 @@ pub(crate) struct PackageObject {
     pub(crate) triangles: usize,
     /// How often the build has it.
     pub(crate) built: usize,
-    /// What its triangles have beside corners, by name.
+    /// What its triangles have apart from corners, by name.
     pub(crate) attributes: Vec<String>,
     /// What else its mesh has, by name.
     pub(crate) others: Vec<String>,
 }
 
-impl From<PackageContents> for PackageInformation {
-    fn from(contents: PackageContents) -> Self {
-        let PackageContents {
-            objects,
-            assemblies,
-            items,
-            unit,
-            ..
-        } = contents;
+impl PackageInformation {
+    /// Of a package in this unit.
+    pub(crate) fn new(contents: PackageContents, unit: Unit) -> Self {
         let object = |found: ObjectContents| PackageObject {
             name: found.name,
             vertices: found.vertices,
@@ -129,12 +123,11 @@ impl From<PackageContents> for PackageInformation {
             attributes: found.attributes,
             others: found.others,
         };
-        let objects = objects.into_iter().map(object).collect();
         Self {
-            unit: Unit::of_package(unit).name(),
-            items,
-            assemblies,
-            objects,
+            unit: unit.name(),
+            items: contents.items,
+            assemblies: contents.assemblies,
+            objects: contents.objects.into_iter().map(object).collect(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use limitmesh::interpolate::{Interpolated, InterpolationMethod};
 use serde::Serialize;
 
-use super::percent;
+use super::whole::percent;
 
 /// How control points came about.
 #[derive(Debug, Serialize)]

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::InputReport;
+use super::input::InputReport;
 
 /// Levels of detail, the finest first.
 #[derive(Debug, Serialize)]
@@ -22,7 +22,7 @@ pub(crate) struct LodReport {
     pub(crate) levels: Vec<LevelReport>,
 }
 
-/// A picture in which levels are not to be told from the surface.
+/// A picture in which levels look like the surface.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct PictureReport {

@@ -52,7 +52,7 @@ pub(crate) struct SurfaceReport {
     pub(crate) volume: Option<f64>,
     /// What was found and repaired.
     pub(crate) diagnosis: DiagnosisReport,
-    /// How the surface stands for a limit surface; null where it is measured as it is.
+    /// How the surface approximates a limit surface; null where it is measured as it is.
     pub(crate) limit: Option<LimitReport>,
 }
 
@@ -67,7 +67,7 @@ pub(crate) struct LimitReport {
     pub(crate) levels: usize,
     /// Whether the program chose the number of levels.
     pub(crate) chosen: bool,
-    /// How far the mesh that stands for the limit surface is from it at most; null where that is not proven.
+    /// How far the mesh that approximates the limit surface is from it at most; null where that is not proven.
     pub(crate) error: Option<f64>,
     /// The rule for open boundaries.
     pub(crate) boundary: Boundary,
@@ -75,7 +75,7 @@ pub(crate) struct LimitReport {
     pub(crate) crease_angle_degrees: Option<f64>,
     /// Whether that was found by looking at the mesh, where it looks like a part.
     pub(crate) crease_angle_auto: bool,
-    /// What in the file says that edges are sharp, beside tags.
+    /// What in the file says that edges are sharp, apart from tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
@@ -130,10 +130,10 @@ pub(crate) struct HausdorffReport {
     /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,
     /// From the surface to the reference.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::OneSided"))]
     pub(crate) forward_detail: OneSided,
     /// From the reference to the surface.
-    #[cfg_attr(test, schemars(with = "crate::pages::schema::OneSided"))]
+    #[cfg_attr(test, schemars(with = "crate::tests::pages::schema::OneSided"))]
     pub(crate) backward_detail: OneSided,
 }
 

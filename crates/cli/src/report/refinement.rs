@@ -2,13 +2,16 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
+use limitmesh::criterion::Viewpoint;
 use limitmesh::measure::{triangle_quality, watertightness};
 use limitmesh::mesh::Weld;
 use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
-use super::{InputReport, InterpolationReport, percent};
+use super::input::InputReport;
+use super::interpolation::InterpolationReport;
+use super::whole::{IntervalReport, percent};
 use crate::arguments::{
     Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme,
     Seam,
@@ -86,20 +89,6 @@ pub(crate) struct SizeReport {
     pub(crate) after: Bulk,
 }
 
-/// The distance between the mesh that was read and the one that was written, certified.
-#[derive(Debug, Serialize)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(crate) struct InputDistanceReport {
-    /// The distance is at least this, in the mesh's unit.
-    pub(crate) lower: f64,
-    /// The distance is at most this.
-    pub(crate) upper: f64,
-    /// In per cent of the diagonal of the control mesh's bounding box.
-    pub(crate) lower_percent: f64,
-    /// In per cent of that diagonal.
-    pub(crate) upper_percent: f64,
-}
-
 /// What the method did.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
@@ -119,17 +108,17 @@ pub(crate) struct MethodReport {
     /// How far the mesh and the limit surface are from each other; null for the stepwise methods.
     pub(crate) error: Option<ErrorReport>,
     /// How far the mesh is from the one that was read; null where that is not known.
-    pub(crate) input_distance: Option<InputDistanceReport>,
+    pub(crate) input_distance: Option<IntervalReport>,
     /// The distance to the limit surface in the cameras' pictures, in pixels at most; null without cameras or where it is not bounded.
     pub(crate) pixels: Option<f64>,
     /// Triangles outside the cone of the exact method's angle; null without one.
     pub(crate) open_cones: Option<usize>,
-    /// Goals beside the shape.
+    /// Goals apart from the shape.
     pub(crate) attributes: Vec<AttributeReport>,
 }
 
 impl MethodReport {
-    /// Of so many levels or steps that ended so; the rest as of a method that tells nothing else.
+    /// Of so many levels or steps that ended so; the rest as of a method that reports nothing else.
     pub(crate) fn new(levels: usize, stop: &'static str) -> Self {
         Self {
             steps: Vec::new(),
@@ -215,7 +204,7 @@ pub(crate) struct ParametersReport {
     pub(crate) crease_angle_degrees: Option<f64>,
     /// Whether that was found by looking at the mesh, where it looks like a part.
     pub(crate) crease_angle_auto: bool,
-    /// What in the file says that edges are sharp, beside tags.
+    /// What in the file says that edges are sharp, apart from tags.
     pub(crate) creases_from: CreasesFrom,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
@@ -330,6 +319,22 @@ pub(crate) struct ViewReport {
     pub(crate) eye: Option<[f64; 3]>,
     /// The factor of `--dilatation`.
     pub(crate) dilatation: f64,
+}
+
+impl ViewReport {
+    /// The view that makes the angle depend on the viewer.
+    pub(crate) fn of(arguments: &RefineArguments) -> Option<Self> {
+        let view = arguments.viewer()?;
+        let (direction, eye) = match view.viewpoint {
+            Viewpoint::Direction(direction) => (Some(direction), None),
+            Viewpoint::Eye(eye) => (None, Some(eye)),
+        };
+        Some(Self {
+            direction,
+            eye,
+            dilatation: view.dilatation,
+        })
+    }
 }
 
 /// What one step did.
@@ -463,7 +468,7 @@ pub(crate) struct ErrorReport {
     pub(crate) proven: Option<f64>,
 }
 
-/// A lower bound is told where the upper one is at most so many times as far.
+/// A lower bound is reported where the upper one is at most so many times as far.
 const NARROW: f64 = 1.25;
 
 impl ErrorReport {
@@ -499,19 +504,13 @@ impl ErrorReport {
         }
     }
 
-    /// With the distance that a proof confirms.
-    pub(crate) fn proven(self, within: Option<f64>) -> Self {
-        let proven = within.filter(|_| within != self.upper);
-        Self { proven, ..self }
-    }
-
     /// `within 0.0998 % of the diagonal (0.0123) of the limit surface, certified; at least 0.0962 %`, with a unit after
     /// lengths; what it is at least only where that is not far below.
-    pub(crate) fn in_words(&self, unit: &str) -> Vec<String> {
+    pub(crate) fn in_words(&self, unit: &str) -> String {
         let extent = |percent: String, length: String| {
             format!("{percent} % of the diagonal ({length}{unit})")
         };
-        vec![match (self.upper, self.upper_percent) {
+        match (self.upper, self.upper_percent) {
             (Some(upper), Some(percent)) if !self.certified => format!(
                 "about {} from the limit surface by samples, not certified",
                 extent(upper_bound(percent), upper_bound(upper))
@@ -529,40 +528,7 @@ impl ErrorReport {
                 "at least {} from the limit surface, not certified",
                 extent(lower_bound(self.lower_percent), lower_bound(self.lower))
             ),
-        }]
-    }
-}
-
-impl InputDistanceReport {
-    /// Of a mesh whose control mesh has that diagonal.
-    pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
-        let percent = |length: f64| percent(length, diagonal);
-        Self {
-            lower,
-            upper,
-            lower_percent: percent(lower),
-            upper_percent: percent(upper),
         }
-    }
-
-    /// `within 0.8123 % of the diagonal (0.01234) of the input, certified; at least 0.7901 %`, with a unit after lengths.
-    pub(crate) fn near_in_words(&self, unit: &str) -> String {
-        format!(
-            "within {} % of the diagonal ({}{unit}) of the input, either way, certified; at least {} %",
-            upper_bound(self.upper_percent),
-            upper_bound(self.upper),
-            lower_bound(self.lower_percent)
-        )
-    }
-
-    /// `moved by 0.7901 % to 0.8123 % of the diagonal (0.01234) from the input, certified`, with a unit after lengths.
-    pub(crate) fn in_words(&self, unit: &str) -> String {
-        format!(
-            "moved by {} % to {} % of the diagonal ({}{unit}) from the input, certified",
-            lower_bound(self.lower_percent),
-            upper_bound(self.upper_percent),
-            upper_bound(self.upper)
-        )
     }
 }
 

@@ -1,6 +1,8 @@
 //! What lengths are given in per cent of.
 
-use crate::format::number;
+use serde::Serialize;
+
+use crate::format::{lower_bound, number, upper_bound};
 
 /// The diagonal of the bounding box of the control mesh where one is known, of the mesh that is measured against else.
 #[derive(Debug, Clone, Copy)]
@@ -29,6 +31,52 @@ pub(crate) fn percent(length: f64, diagonal: f64) -> f64 {
         hundredfold / diagonal
     } else {
         100.0 * (length / diagonal)
+    }
+}
+
+/// A certified distance: the true one lies between these.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(schemars::JsonSchema))]
+pub(crate) struct IntervalReport {
+    /// The distance is at least this, in the mesh's unit.
+    pub(crate) lower: f64,
+    /// The distance is at most this.
+    pub(crate) upper: f64,
+    /// In per cent of the diagonal of the control mesh's bounding box.
+    pub(crate) lower_percent: f64,
+    /// In per cent of that diagonal.
+    pub(crate) upper_percent: f64,
+}
+
+impl IntervalReport {
+    /// An interval where the control mesh has that diagonal.
+    pub(crate) fn new(lower: f64, upper: f64, diagonal: f64) -> Self {
+        Self {
+            lower,
+            upper,
+            lower_percent: percent(lower, diagonal),
+            upper_percent: percent(upper, diagonal),
+        }
+    }
+
+    /// `within 0.8123 % of the diagonal (0.01234) of the input, certified; at least 0.7901 %`, with a unit after lengths.
+    pub(crate) fn near_in_words(&self, unit: &str) -> String {
+        format!(
+            "within {} % of the diagonal ({}{unit}) of the input, either way, certified; at least {} %",
+            upper_bound(self.upper_percent),
+            upper_bound(self.upper),
+            lower_bound(self.lower_percent)
+        )
+    }
+
+    /// `moved by 0.7901 % to 0.8123 % of the diagonal (0.01234) from the input, certified`, with a unit after lengths.
+    pub(crate) fn in_words(&self, unit: &str) -> String {
+        format!(
+            "moved by {} % to {} % of the diagonal ({}{unit}) from the input, certified",
+            lower_bound(self.lower_percent),
+            upper_bound(self.upper_percent),
+            upper_bound(self.upper)
+        )
     }
 }
 

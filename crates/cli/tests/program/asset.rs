@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{counts, file, folder, run, soup};
-use crate::glb::Glb;
+use crate::common::{counts, done, file, folder, json_of, run, soup, usage_error};
 
 /// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
 /// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
@@ -86,22 +85,18 @@ fn tolerances_are_the_scenes() {
     ] {
         let input = cube(&folder, "in.gltf", nodes, "");
         // Per cent of the scene: the same mesh at every scale.
-        let report = run(
+        let report = json_of(
             "refine {} -o {} --tolerance 1% --report - --crease-angle none",
             &[&input, &output],
-        )
-        .expect(0)
-        .json();
+        );
         let mesh = &report["meshes"][0];
         triangles.push(mesh["output"]["triangles"].as_u64().expect("a number"));
         let upper = mesh["error"]["upper"].as_f64().expect("a number");
         // The file's scene as another command reads it.
-        let measured = run(
+        let measured = json_of(
             "measure {} --limit-of {} --certified --json --crease-angle none",
             &[&output, &input],
-        )
-        .expect(0)
-        .json();
+        );
         let found = measured["hausdorff"]["lower"].as_f64().expect("a number");
         let most = measured["hausdorff"]["upper"].as_f64().expect("a number");
         assert!(
@@ -124,11 +119,10 @@ fn tolerances_are_the_scenes() {
         "",
     );
     let [few, many] = [small, large].map(|input: PathBuf| {
-        run(
+        done(
             "refine {} -o {} --tolerance 0.05 --crease-angle none",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let soup = soup(&output);
         soup.faces.len()
     });
@@ -146,13 +140,12 @@ fn materials_keep_their_border_and_stay_joined() {
         ("sharp.gltf", "--tolerance 2% --crease-angle 30"),
     ] {
         let output = folder.path().join(output);
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         // Read back, joined again along the border: closed.
-        let whole = run("info {} --json", &[&output]).expect(0).json();
+        let whole = json_of("info {} --json", &[&output]);
         assert_eq!(whole["mesh"]["watertight"], true);
         let primitives = &whole["asset"]["meshes"][0]["primitives"];
         assert_eq!(
@@ -196,173 +189,19 @@ pub(crate) fn first_mesh(path: &Path) -> limitmesh_io::gltf::MeshSoup {
 }
 
 #[test]
-fn values_are_linear_on_the_faces_they_come_from() {
-    let folder = folder();
-    let output = folder.path().join("out.glb");
-    // The cube's own positions as values: wherever vertices move, these stay on the cube and cover it once.
-    let input = cube(
-        &folder,
-        "in.gltf",
-        r#"{"mesh":0}"#,
-        r#","_HEAT":0,"_SIDE":4"#,
-    );
-    for options in [
-        "",
-        "--crease-angle 30",
-        "--crease-angle 100 --boundary corners",
-    ] {
-        let command = format!("refine {{}} -o {{}} --tolerance 1% {options} --report -");
-        let report = run(&command, &[&input, &output]).expect(0).json();
-        assert_eq!(report["left_out"], serde_json::json!([]));
-        let mesh = first_mesh(&output);
-        let table = |name: &str| {
-            mesh.attributes
-                .iter()
-                .find(|table| table.name == name)
-                .expect("a table")
-        };
-        let (heat, side) = (table("_HEAT"), table("_SIDE"));
-        let point = |v: u32| -> [f64; 3] {
-            heat.values[3 * v as usize..][..3]
-                .try_into()
-                .expect("three numbers")
-        };
-        let mut area = 0.0;
-        for corners in &heat.corners {
-            let [a, b, c] = corners.map(point);
-            let is_on =
-                |axis: usize| a[axis].abs() == 1.0 && a[axis] == b[axis] && a[axis] == c[axis];
-            assert!((0..3).any(is_on), "{a:?} {b:?} {c:?} on no side");
-            let [u, v] = [b, c].map(|p| [0, 1, 2].map(|i| p[i] - a[i]));
-            let normal = [0, 1, 2]
-                .map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3]);
-            area += 0.5 * normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        }
-        assert!((area - 24.0).abs() < 1e-5, "{area}");
-        // Whole numbers are never blended.
-        assert!(
-            side.is_integer
-                && side
-                    .values
-                    .chunks(4)
-                    .all(|id| id[0] <= 1.0 && id[1..] == [9.0, 0.0, 0.0])
-        );
-    }
-    // Where triangles reach over many faces, too, values are those of the faces that their corners are from.
-    let single = cube(&folder, "single.gltf", r#"{"mesh":0}"#, r#","_HEAT":0"#);
-    let text = std::fs::read_to_string(&single)
-        .expect("text")
-        .replace(r#""count":30"#, r#""count":36"#);
-    let (before, rest) = text
-        .split_once(r#"{"attributes":{"POSITION":0,"_HEAT":0},"indices":2"#)
-        .expect("the lid");
-    let rest = rest.split_once("},").expect("the line").1;
-    let single = file(&folder, "single.gltf", &format!("{before}{rest}"));
-    let told = run(
-        "refine {} -o {} --optimize --tolerance 1%",
-        &[&single, &output],
-    )
-    .expect(0)
-    .stderr;
-    assert!(!told.contains("left out"), "{told}");
-    let mesh = first_mesh(&output);
-    let heat = mesh
-        .attributes
-        .iter()
-        .find(|table| table.name == "_HEAT")
-        .expect("a table");
-    assert!(
-        heat.values
-            .chunks(3)
-            .all(|p| p.iter().any(|x| x.abs() == 1.0)),
-        "points of the cube"
-    );
-}
-
-#[test]
-fn skins_are_carried_along() {
-    let folder = folder();
-    let output = folder.path().join("out.glb");
-    let nodes = r#"{"mesh":0,"skin":0},{},{"translation":[0,0,5]}],"skins":[{"joints":[1,2]}"#;
-    let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5"#);
-    for options in [
-        "--tolerance 1% --optimize --crease-angle none",
-        "--method uniform --limit",
-        "--tolerance 1%",
-    ] {
-        run(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        check_weights(&first_mesh(&output));
-    }
-    // In its pose it is longer by as much as its second joint is away.
-    let soup = soup(&output);
-    let height = soup.positions.iter().fold(0.0f64, |most, p| most.max(p[2]));
-    assert!(height > 4.5, "{height}");
-}
-
-fn check_weights(mesh: &limitmesh_io::gltf::MeshSoup) {
-    assert_eq!(mesh.influences.len(), mesh.soup.positions.len());
-    // Weights are the height of the corners, so they are the height of the surface.
-    for (p, influences) in mesh.soup.positions.iter().zip(&mesh.influences) {
-        let up = 0.5 * (p[2] + 1.0);
-        let weight = |joint: u32| {
-            let own = influences.iter().find(|(own, _)| *own == joint);
-            own.map_or(0.0, |&(_, weight)| weight)
-        };
-        assert!((weight(1) - up).abs() < 1e-6 && (weight(0) + weight(1) - 1.0).abs() < 1e-6);
-    }
-}
-
-/// A target that moves vertices by where they are moves those of the result by where these are.
-#[test]
-fn targets_are_carried_through_collapses_and_steps() {
-    let folder = folder();
-    let output = folder.path().join("out.glb");
-    let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
-    let text = std::fs::read_to_string(&input).expect("text");
-    let input = file(
-        &folder,
-        "in.gltf",
-        &text.replace(r#""indices":"#, r#""targets":[{"POSITION":0}],"indices":"#),
-    );
-    for options in [
-        "--tolerance 1% --optimize --crease-angle none",
-        "--method uniform --limit",
-    ] {
-        run(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        let found = Glb::read(&output);
-        let primitive = found.primitive(0);
-        let [at, moved] = [&primitive["attributes"], &primitive["targets"][0]]
-            .map(|all| found.points(&all["POSITION"]));
-        assert!(at.len() > 30 && at.len() == moved.len());
-        for (p, q) in at.iter().zip(&moved) {
-            assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-6), "{p:?} {q:?}");
-        }
-    }
-}
-
-#[test]
 fn what_has_no_meaning_for_a_scene_is_refused() {
     let folder = folder();
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
     let output = folder.path().join("out.glb");
     let refused = |options: &str, words: &str| {
-        run(
+        usage_error(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
     };
-    refused("--camera 0,0,5,0,0,0,0,1,0,45,100x100", "stand in a scene");
-    refused("--angle 5 --view 0,0,1", "stand in a scene");
+    refused("--view 0,0,5,0,0,0,0,1,0,45,100x100", "look at one mesh");
+    refused("--angle 5 --view 0,0,1", "look at one mesh");
     refused("--provenance", "PLY");
     assert!(!output.exists());
     let broken = file(
@@ -388,7 +227,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
         r#"{"mesh":0,"translation":[10,0,0]}"#,
         "",
     );
-    let run_dry = run("refine {} --tolerance 1% --dry-run", &[&input]).expect(0);
+    let run_dry = done("refine {} --tolerance 1% --dry-run", &[&input]);
     assert!(
         run_dry.stdout.contains("meshes[0] 'Box': ")
             && run_dry.stdout.contains("nothing was written")
@@ -397,7 +236,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
         folder.path().join("out.gltf"),
         folder.path().join("out.png"),
     );
-    run("refine {} -o {} --picture {}", &[&input, &output, &picture]).expect(0);
+    done("refine {} -o {} --picture {}", &[&input, &output, &picture]);
     assert!(
         std::fs::read(&picture)
             .expect("a picture")
@@ -405,11 +244,11 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
     );
     // To a format without scenes: what is shown, in the scene's coordinates.
     let plain = folder.path().join("out.ply");
-    run("refine {} -o {}", &[&input, &plain]).expect(0);
+    done("refine {} -o {}", &[&input, &plain]);
     assert!(soup(&plain).positions.iter().all(|p| p[0] > 8.0));
     // And from one.
     let from = folder.path().join("from.glb");
-    run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
+    done("refine builtin:cube -o {} --tolerance 1%", &[&from]);
     let read = soup(&from);
     assert_eq!(
         (
@@ -424,7 +263,7 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
 /// The certified distance of a file to a limit surface is that share of its diagonal at most.
 fn measured_within(path: &Path, control: &str, share: f64) {
     let command = format!("measure {{}} --limit-of {control} --certified --json");
-    let report: Value = run(&command, &[path]).expect(0).json();
+    let report: Value = json_of(&command, &[path]);
     let percent = report["hausdorff"]["upper_percent"]
         .as_f64()
         .expect("a number");

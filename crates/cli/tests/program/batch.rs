@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{Running, command, file, folder, names, run};
+use crate::common::{Running, command, done, file, folder, json_of, names, run, usage_error};
 
 const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
@@ -62,9 +62,7 @@ fn a_job_is_what_refine_does_with_its_options() {
         ],
     );
     let found = folder.path().join("results.jsonl");
-    run("batch {} -o {} --jobs 3", &[&list, &found])
-        .expect(0)
-        .saying("4 of 4 jobs ended");
+    done("batch {} -o {} --jobs 3", &[&list, &found]).saying("4 of 4 jobs ended");
     let told = results(&found);
     let plain = [
         format!(
@@ -76,9 +74,7 @@ fn a_job_is_what_refine_does_with_its_options() {
     ];
     for (i, (words, name)) in plain.iter().zip(["a.ply", "b.obj", "c.ply"]).enumerate() {
         let own = folder.path().join(name);
-        let mut report = run(&format!("{words} --report -"), &[&own])
-            .expect(0)
-            .json();
+        let mut report = json_of(&format!("{words} --report -"), &[&own]);
         without_seconds(&mut report);
         let bytes = std::fs::read(out(name)).expect("a mesh");
         assert!(bytes == std::fs::read(&own).expect("a mesh"), "{name}");
@@ -103,7 +99,7 @@ fn a_job_is_what_refine_does_with_its_options() {
     );
     // Times are told where they are asked for.
     let timed = folder.path().join("timed.jsonl");
-    run("batch {} -o {} --seconds", &[&list, &timed]).expect(0);
+    done("batch {} -o {} --seconds", &[&list, &timed]);
     assert!(results(&timed)[0]["report"]["seconds"]["total"].is_number());
 }
 
@@ -280,7 +276,7 @@ fn results_are_kept_where_nothing_changed() {
     let (a, b) = (of(&one, "a.ply", "1%"), of(&two, "b.ply", "1%"));
     let list = jobs(&folder, &[a.clone(), b.clone()]);
     let found = folder.path().join("results.jsonl");
-    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
+    done("batch {} -o {} --resume", &[&list, &found]);
     let told = results(&found);
     // The key tells what decides on a result, wherever it is.
     assert_eq!(told[0]["key"], told[1]["key"]);
@@ -288,9 +284,7 @@ fn results_are_kept_where_nothing_changed() {
         .expect(1)
         .saying("--resume goes on with it");
     let kept = |count: usize| {
-        let told = run("batch {} -o {} --resume", &[&list, &found])
-            .expect(0)
-            .stderr;
+        let told = done("batch {} -o {} --resume", &[&list, &found]).stderr;
         let words = if count == 0 {
             "jobs ended;".to_owned()
         } else {
@@ -354,7 +348,7 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
         folder.path().join("found.jsonl"),
         folder.path().join("again.jsonl"),
     );
-    run("batch {} -o {} --jobs 1", &[&list, &found]).expect(0);
+    done("batch {} -o {} --jobs 1", &[&list, &found]);
     let meshes = |outputs: &[String]| -> Vec<Vec<u8>> {
         outputs
             .iter()
@@ -375,33 +369,9 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
         let cut = text(&again);
         std::fs::write(&again, &cut[..cut.len() - 3]).expect("cut");
     }
-    run("batch {} -o {} --jobs 2 --resume", &[&list, &again]).expect(0);
+    done("batch {} -o {} --jobs 2 --resume", &[&list, &again]);
     assert_eq!(text(&again), text(&found));
     assert!(meshes(&outputs) == whole);
-}
-
-/// A process that a killed batch had begun holds its file for a moment; another batch does for as long as it runs.
-#[test]
-fn a_file_that_another_batch_holds_is_waited_for_a_little() {
-    let folder = folder();
-    let job =
-        json!({"input": "builtin:cube", "output": below(&folder, "out.ply"), "tolerance": "1%"});
-    let (list, found) = (jobs(&folder, &[job]), folder.path().join("found.jsonl"));
-    let held = std::fs::File::create(&found).expect("a file");
-    held.lock().expect("a lock");
-    let refused = run("batch {} -o {} --resume", &[&list, &found]).expect(1);
-    assert!(
-        refused.stderr.contains("is in use by another batch"),
-        "{}",
-        refused.stderr
-    );
-    let holder = std::thread::spawn(move || {
-        std::thread::sleep(Duration::from_millis(300));
-        drop(held);
-    });
-    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
-    holder.join().expect("let go");
-    assert_eq!(results(&found).len(), 1);
 }
 
 /// Whether a process has this word on its command line.
@@ -443,59 +413,6 @@ fn jobs_do_not_outlive_a_batch_that_is_killed() {
     assert_eq!(names(folder.path()), ["found.jsonl", "jobs.jsonl"]);
 }
 
-/// Whether whoever started this process has it ignore a signal, where the system tells.
-#[cfg(unix)]
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = line
-        .and_then(|bits| u64::from_str_radix(bits.trim(), 16).ok())
-        .unwrap_or(0);
-    ignored >> (signal - 1) & 1 == 1
-}
-
-#[cfg(unix)]
-#[test]
-fn signals_leave_results_that_can_be_resumed_and_nothing_else() {
-    for (signal, code) in [("INT", 130), ("TERM", 143)] {
-        // As shells have jobs in the background ignore Ctrl-C: the program heeds that, and would go on for ever.
-        if is_ignored(code - 128) {
-            eprintln!("skipped: SIG{signal} is ignored by whoever started this test");
-            continue;
-        }
-        let folder = folder();
-        let (list, outputs) = disturbed(&folder, "out");
-        let found = folder.path().join("found.jsonl");
-        // One more that takes minutes, so that there is something to cancel.
-        let long = below(&folder, "out/long.ply");
-        let long = json!({"input": "builtin:bunny", "output": long, "method": "uniform", "levels": 10, "max-triangles": "2G"});
-        let all = text(&list);
-        std::fs::write(&list, format!("{all}{long}")).expect("a job");
-        let mut running = Running::start("batch {} -o {} --jobs 2", &[&list, &found]);
-        until_results(&mut running, 2, &found);
-        running.signal(signal);
-        running
-            .end()
-            .expect(code)
-            .saying("cancelled by")
-            .saying("found.jsonl written by then");
-        let there = names(&folder.path().join("out"));
-        assert!(there.iter().all(|name| name.ends_with(".ply")), "{there:?}");
-        let lines = results(&found);
-        assert!(
-            (2..=outputs.len()).contains(&lines.len()),
-            "{}",
-            lines.len()
-        );
-        assert!(lines.iter().all(|line| line["status"] == "done"));
-        std::fs::write(&list, all).expect("jobs");
-        run("batch {} -o {} --resume", &[&list, &found])
-            .expect(0)
-            .saying("kept from before");
-        assert_eq!(results(&found).len(), outputs.len());
-    }
-}
-
 #[test]
 fn jobs_come_from_standard_input_and_results_go_to_standard_output_in_order() {
     let folder = folder();
@@ -509,12 +426,10 @@ fn jobs_come_from_standard_input_and_results_go_to_standard_output_in_order() {
     std::io::Read::read_to_string(child.stdout.as_mut().expect("piped"), &mut told).expect("text");
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
     let found = folder.path().join("found.jsonl");
-    run("batch {} -o {} --resume", &[&list, &found]).expect(0);
+    done("batch {} -o {} --resume", &[&list, &found]);
     assert_eq!(told, text(&found));
     assert_eq!(told.lines().count(), outputs.len());
-    run("batch {} -o - --resume", &[&list])
-        .expect(2)
-        .saying("--resume");
+    usage_error("batch {} -o - --resume", &[&list], "--resume");
 }
 
 #[test]
@@ -533,12 +448,10 @@ fn files_that_are_no_results_and_jobs_that_are_not_there_are_refused() {
     run("batch {} -o {}", &[&none, &folder.path().join("r.jsonl")])
         .expect(1)
         .saying("none.jsonl");
-    run("batch {} -o {} --time-limit 0", &[&list, &none])
-        .expect(2)
-        .saying("above 0");
+    usage_error("batch {} -o {} --time-limit 0", &[&list, &none], "above 0");
     assert_eq!(names(folder.path()), ["jobs.jsonl", "notes.txt"]);
     // No jobs at all.
     let empty = file(&folder, "empty.jsonl", "\n\n");
-    run("batch {} -o {}", &[&empty, &none]).expect(0);
+    done("batch {} -o {}", &[&empty, &none]);
     assert_eq!(text(&none), "");
 }

@@ -1,11 +1,11 @@
-//! `--uv-tolerance`, `--attribute-tolerance` and `--morph-tolerance`: what is reached, and what is refused.
+//! `--attribute-tolerance` and `--morph-tolerance`: what is reached, and what is refused.
 
 use std::path::PathBuf;
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, run, usage_error};
 use crate::glb::{Builder, Glb, distances, limit};
 
 /// A flat square of 5 × 5 vertices whose texture is as wrinkled as can be, and a number for each vertex.
@@ -41,11 +41,10 @@ fn texture_coordinates_are_within_their_tolerance() {
     let json = folder.path().join("report.json");
     let mut triangles = Vec::new();
     for tolerance in ["0.02", "10.24@1k", "0.005"] {
-        run(
-            &format!("refine {{}} -o {{}} --report {{}} --uv-tolerance {tolerance}"),
+        done(
+            &format!("refine {{}} -o {{}} --report {{}} --attribute-tolerance uv={tolerance}"),
             &[&input, &output, &json],
         )
-        .expect(0)
         .saying("s,t: within ");
         let report = report(&folder);
         let [goal] = &report["attributes"].as_array().expect("goals")[..] else {
@@ -68,21 +67,19 @@ fn texture_coordinates_are_within_their_tolerance() {
         "{triangles:?}"
     );
     assert!(triangles[1] >= triangles[0]);
-    run(
-        "refine {} -o {} --uv linear --uv-tolerance 1e-6",
+    done(
+        "refine {} -o {} --channel uv=linear --attribute-tolerance uv=1e-6",
         &[&input, &output],
     )
-    .expect(0)
     .saying("s,t: exact, being linear on each face");
-    run(
+    done(
         "refine {} -o {} --channel heat=smooth --attribute-tolerance heat=0.01",
         &[&input, &output],
     )
-    .expect(0)
     .saying("heat: within ");
     // Too much is told, and what was reached.
     run(
-        "refine {} -o {} --uv-tolerance 1e-4 --max-triangles 2000 --report {}",
+        "refine {} -o {} --attribute-tolerance uv=1e-4 --max-triangles 2000 --report {}",
         &[&input, &output, &json],
     )
     .expect(3)
@@ -100,11 +97,10 @@ fn texture_coordinates_are_within_their_tolerance() {
             .expect("a number")
             > 500
     );
-    run(
-        "refine {} --dry-run -o {} --uv-tolerance 0.005",
+    done(
+        "refine {} --dry-run -o {} --attribute-tolerance uv=0.005",
         &[&input, &output],
-    )
-    .expect(0);
+    );
 }
 
 #[test]
@@ -114,43 +110,51 @@ fn tolerances_that_nothing_can_meet_are_refused() {
     let stl = folder.path().join("out.stl");
     for (options, words) in [
         (
-            "--uv-tolerance 0.01 --optimize",
-            "--uv-tolerance divides until it is met",
+            "--attribute-tolerance uv=0.01 --optimize",
+            "--attribute-tolerance divides until it is met",
         ),
         (
-            "--uv-tolerance 0.01 --triangles 500",
+            "--attribute-tolerance uv=0.01 --triangles 500",
             "that does not go with --triangles",
         ),
         (
             "--attribute-tolerance s,t=0.01 --balance",
             "--attribute-tolerance divides until it is met",
         ),
-        ("--uv-tolerance 0.01 --method uniform", "--uv-tolerance"),
+        (
+            "--attribute-tolerance uv=0.01 --method uniform",
+            "--attribute-tolerance",
+        ),
         (
             "--attribute-tolerance cold=1",
             "has no channel 'cold'; those that come out are: s,t; heat; part",
         ),
         ("--attribute-tolerance part=1", "'part' is inherited"),
         (
-            "--uv-tolerance 0.01 --channel s,t=drop",
-            "no texture coordinates that come out",
+            "--attribute-tolerance uv=0.01 --channel s,t=drop",
+            "has no channel 'uv'; those that come out are",
         ),
         (
             "--morph-tolerance 1%",
             "--morph-tolerance is for glTF assets",
         ),
     ] {
-        run(
+        usage_error(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
     }
-    run("refine {} -o {} --uv-tolerance 0.01", &[&input, &stl])
-        .expect(2)
-        .saying("that come out");
-    run("refine {} -o {} --uv-tolerance 1@0", &[&input, &output]).expect(2);
+    usage_error(
+        "refine {} -o {} --attribute-tolerance uv=0.01",
+        &[&input, &stl],
+        "none comes out",
+    );
+    run(
+        "refine {} -o {} --attribute-tolerance uv=1@0",
+        &[&input, &output],
+    )
+    .expect(2);
 }
 
 /// A flat square, and a target that makes a wave of it.
@@ -202,11 +206,10 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
         .collect();
     let reference = limit(&moved, &before.triangles(0), 2e-5);
     let apart = |options: &str| {
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);

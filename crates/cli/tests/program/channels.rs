@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::asset::{cube, first_mesh};
-use crate::common::{file, folder, run, soup};
+use crate::common::{done, file, folder, json_of, soup, usage_error};
 
 /// An octahedron in PLY, whose vertices have their x as `heat` and twice that as the whole number `id`.
 fn octahedron(folder: &TempDir) -> PathBuf {
@@ -59,7 +59,7 @@ fn channels_are_carried_as_asked() {
     let output = folder.path().join("out.ply");
     let refine = |options: &str| -> Value {
         let command = format!("refine {{}} -o {{}} --tolerance 1% --report - {options}");
-        run(&command, &[&input, &output]).expect(0).json()
+        json_of(&command, &[&input, &output])
     };
     // What is smooth follows the surface as x does, whole numbers too.
     let report = refine("--channel heat=smooth --channel id=smooth");
@@ -122,11 +122,10 @@ fn channels_are_left_out_on_demand() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    let found = run(
+    let found = done(
         "refine {} -o {} --channel heat=drop --report -",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert_eq!(
         found.json()["input"]["channels"][0]["interpolation"],
         "drop"
@@ -145,11 +144,10 @@ fn channels_are_left_out_on_demand() {
                 usemtl b\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let cube = file(&folder, "cube.obj", cube);
     let output = folder.path().join("out.obj");
-    run(
+    done(
         "refine {} -o {} --crease-angle 30 --channel materials=drop",
         &[&cube, &output],
-    )
-    .expect(0);
+    );
     let written = std::fs::read_to_string(&output).expect("a file");
     assert!(!written.contains("usemtl"), "{written}");
 }
@@ -159,35 +157,44 @@ fn what_cannot_be_done_is_refused() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    run("refine {} -o {} --channel hat=drop", &[&input, &output])
-        .expect(2)
-        .saying("octahedron.ply has no channel 'hat'; there are: heat; id");
-    run("refine {} --dry-run --channel hat=drop", &[&input])
-        .expect(2)
-        .saying("no channel 'hat'");
-    run("refine builtin:cup -o {} --channel heat=drop", &[&output])
-        .expect(2)
-        .saying("there is none");
-    run("refine {} -o {} --channel heat", &[&input, &output])
-        .expect(2)
-        .saying("has no =");
-    run("refine {} -o {} --channel heat=blend", &[&input, &output])
-        .expect(2)
-        .saying("'blend' is none of");
+    usage_error(
+        "refine {} -o {} --channel hat=drop",
+        &[&input, &output],
+        "octahedron.ply has no channel 'hat'; there are: heat; id",
+    );
+    usage_error(
+        "refine {} --dry-run --channel hat=drop",
+        &[&input],
+        "no channel 'hat'",
+    );
+    usage_error(
+        "refine builtin:cup -o {} --channel heat=drop",
+        &[&output],
+        "there is none",
+    );
+    usage_error(
+        "refine {} -o {} --channel heat",
+        &[&input, &output],
+        "has no =",
+    );
+    usage_error(
+        "refine {} -o {} --channel heat=blend",
+        &[&input, &output],
+        "'blend' is none of",
+    );
     let labelled = file(
         &folder,
         "in.obj",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n",
     );
-    run(
+    usage_error(
         "refine {} -o {} --channel materials=linear",
         &[&labelled, &output],
-    )
-    .expect(2)
-    .saying("'materials' has one value a face; it can be nearest or drop");
+        "'materials' has one value a face; it can be nearest or drop",
+    );
     // Names may have blanks.
     let blank = Path::new("texture coordinates=linear");
-    run("refine {} -o {} --channel {}", &[&labelled, &output, blank]).expect(0);
+    done("refine {} -o {} --channel {}", &[&labelled, &output, blank]);
 }
 
 #[test]
@@ -202,8 +209,7 @@ fn attributes_of_assets_are_carried_as_asked() {
     );
     let command =
         "refine {} -o {} --tolerance 1% --channel _HEAT=smooth --channel _SIDE=drop --report -";
-    let report = run(command, &[&input, &output])
-        .expect(0)
+    let report = done(command, &[&input, &output])
         .saying("left out: _SIDE")
         .json();
     assert_eq!(
@@ -231,186 +237,9 @@ fn attributes_of_assets_are_carried_as_asked() {
             );
         }
     }
-    run("refine {} -o {} --channel HEAT=drop", &[&input, &output])
-        .expect(2)
-        .saying("no channel 'HEAT'; there are: _HEAT; _SIDE");
-}
-
-/// A conversion moves nothing: texture coordinates are those of the file, to the digit.
-#[test]
-fn no_steps_leave_texture_coordinates_where_they_are() {
-    let folder = folder();
-    let text = "v 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nv 2 1 2\nvt 0 0\nvt 0.9 0.1\nvt 1 1\nvt 0 0.7\nvt 0.3 0.45\n\
-        f 1/1 2/2 5/5\nf 2/2 3/3 5/5\nf 3/3 4/4 5/5\nf 4/4 1/1 5/5\n";
-    let (input, output) = (file(&folder, "in.obj", text), folder.path().join("out.obj"));
-    run(
-        "refine {} -o {} --method uniform --levels 0",
+    usage_error(
+        "refine {} -o {} --channel HEAT=drop",
         &[&input, &output],
-    )
-    .expect(0);
-    let corners = |path: &std::path::Path| {
-        let soup = soup(path);
-        let texture = soup
-            .channels
-            .iter()
-            .find(|own| own.name == limitmesh_io::TEXTURE)
-            .expect("a texture");
-        (0..12)
-            .map(|corner| texture.value(corner).to_vec())
-            .collect::<Vec<_>>()
-    };
-    assert_eq!(corners(&input), corners(&output));
-}
-
-/// What an OBJ file leads to and the output does not is told, and corners that have no texture coordinates are counted.
-#[test]
-fn materials_that_stay_behind_are_told() {
-    let folder = folder();
-    let text = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl red\n\
-        f 1/1 2/2 3/3\nf 1 3 4\n";
-    let input = file(&folder, "in.obj", text);
-    run("refine {} -o {}", &[&input, &folder.path().join("out.glb")])
-        .expect(0)
-        .saying("paint.mtl: left out: No such file")
-        .saying("3 corners have no texture coordinates");
-    // Where names have no place either, nothing is said of them.
-    for output in ["out.ply", "out.stl", "out.off"] {
-        run("refine {} -o {}", &[&input, &folder.path().join(output)])
-            .expect(0)
-            .saying("materials (the output's format has no place for them)")
-            .saying("left out: paint.mtl (only OBJ files name others)");
-    }
-    let other = folder.path().join("other place/deep");
-    std::fs::create_dir_all(&other).expect("folders");
-    let library = |input: &Path| {
-        let output = other.join("out.obj");
-        let said = run("refine {} -o {}", &[input, &output]).expect(0).stderr;
-        let text = std::fs::read_to_string(&output).expect("written");
-        (
-            said,
-            text.lines()
-                .find_map(|line| line.strip_prefix("mtllib "))
-                .expect("a library")
-                .to_owned(),
-        )
-    };
-    let (said, name) = library(&input);
-    assert_eq!(name, "paint.mtl");
-    assert!(
-        said.contains("paint.mtl: named as in the input, and not copied: No such file"),
-        "{said}"
+        "no channel 'HEAT'; there are: _HEAT; _SIDE",
     );
-    // A file that is there comes along; so do several in one line.
-    file(&folder, "paint.mtl", "newmtl red\n");
-    let (said, name) = library(&input);
-    assert!(!said.contains("paint.mtl"), "{said}");
-    assert_eq!(name, "paint.mtl");
-    assert_eq!(
-        std::fs::read(other.join(name)).expect("a copy"),
-        b"newmtl red\n"
-    );
-    let several = file(
-        &folder,
-        "several.obj",
-        &text.replace("paint.mtl", "paint.mtl other.mtl"),
-    );
-    file(&folder, "other.mtl", "# other");
-    assert_eq!(library(&several).1, "paint.mtl other.mtl");
-    assert_eq!(
-        std::fs::read(other.join("other.mtl")).expect("a copy"),
-        b"# other"
-    );
-    let blank = file(
-        &folder,
-        "blank.obj",
-        &text.replace("paint.mtl", "my paint.mtl"),
-    );
-    file(&folder, "my paint.mtl", "# mine");
-    assert_eq!(library(&blank).1, "my paint.mtl");
-    assert_eq!(
-        std::fs::read(other.join("my paint.mtl")).expect("a copy"),
-        b"# mine"
-    );
-    // Other files are not reached, and none that is there is replaced.
-    let whole = folder.path().join("paint.mtl").display().to_string();
-    let absolute = file(&folder, "absolute.obj", &text.replace("paint.mtl", &whole));
-    let (said, name) = library(&absolute);
-    assert_eq!(name, whole);
-    assert!(
-        said.contains("not below the folder of the file that names it"),
-        "{said}"
-    );
-    file(&folder, "paint.mtl", "newmtl blue\n");
-    run("refine {} -o {}", &[&input, &other.join("out.obj")])
-        .expect(1)
-        .saying("it is there already, and not the same");
-    assert_eq!(
-        std::fs::read(other.join("paint.mtl")).expect("a copy"),
-        b"newmtl red\n"
-    );
-    let beside = run("refine {} -o {}", &[&input, &folder.path().join("out.obj")]).expect(0);
-    assert!(!beside.stderr.contains("paint.mtl"), "{}", beside.stderr);
-}
-
-/// A drum of 24 facets in PLY, whose faces have a number as `stl`, as trimesh writes what it reads from STL files.
-fn drum(folder: &TempDir, name: &str, stl: Option<&dyn Fn(u32) -> u32>) -> PathBuf {
-    let mut text = "ply\nformat ascii 1.0\nelement vertex 50\n".to_owned();
-    text += "property double x\nproperty double y\nproperty double z\nelement face 96\n";
-    text += "property list uchar int vertex_indices\n";
-    text += if stl.is_some() {
-        "property ushort stl\nend_header\n"
-    } else {
-        "end_header\n"
-    };
-    for z in 0..2 {
-        for i in 0..24 {
-            let (s, c) = (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
-            writeln!(text, "{c} {s} {z}").expect("text");
-        }
-    }
-    text += "0 0 0\n0 0 1\n";
-    for i in 0..24u32 {
-        let j = (i + 1) % 24;
-        for [a, b, c] in [
-            [i, j, j + 24],
-            [i, j + 24, i + 24],
-            [j, i, 48],
-            [i + 24, j + 24, 49],
-        ] {
-            let value = stl.map_or_else(String::new, |stl| format!(" {}", stl(i)));
-            writeln!(text, "3 {a} {b} {c}{value}").expect("text");
-        }
-    }
-    file(folder, name, &text)
-}
-
-/// Numbers of faces that are all alike change nothing; others end flat regions where they differ.
-#[test]
-fn values_of_faces_bound_flat_regions() {
-    let folder = folder();
-    let refined = |name: &str, stl: Option<&dyn Fn(u32) -> u32>, options: &str| {
-        let (input, output) = (drum(&folder, name, stl), folder.path().join("out.ply"));
-        let command = format!("refine {{}} -o {{}} --crease-angle 60 --tolerance 0.01% {options}");
-        run(&command, &[&input, &output]).expect(0);
-        soup(&output)
-    };
-    let plain = refined("plain.ply", None, "").faces.len();
-    let constant = refined("constant.ply", Some(&|_| 0), "");
-    assert_eq!(constant.faces.len(), plain);
-    let halves = refined("halves.ply", Some(&|facet| facet / 12), "");
-    let divided = refined("plain.ply", None, "--divide-flat").faces.len();
-    assert!(plain <= halves.faces.len() && 2 * halves.faces.len() < divided);
-    // By symmetry the halves end where y is 0.
-    let stl = halves
-        .channels
-        .iter()
-        .find(|channel| channel.name == "stl")
-        .expect("the channel");
-    for (face, corners) in halves.faces.iter().enumerate() {
-        let y: f64 = corners
-            .iter()
-            .map(|&v| halves.positions[v as usize][1])
-            .sum();
-        assert_eq!(stl.value(face), [f64::from(y < 0.0)]);
-    }
 }

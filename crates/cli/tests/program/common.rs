@@ -90,6 +90,24 @@ pub(crate) fn run(arguments: &str, paths: &[&Path]) -> Run {
     }
 }
 
+/// Runs the program, which must do all that is asked of it.
+#[track_caller]
+pub(crate) fn done(arguments: &str, paths: &[&Path]) -> Run {
+    run(arguments, paths).expect(0)
+}
+
+/// What [`done`] gives on standard output, as JSON.
+#[track_caller]
+pub(crate) fn json_of(arguments: &str, paths: &[&Path]) -> Value {
+    done(arguments, paths).json()
+}
+
+/// Runs the program, which must refuse its command line with these words.
+#[track_caller]
+pub(crate) fn usage_error(arguments: &str, paths: &[&Path], words: &str) -> Run {
+    run(arguments, paths).expect(2).saying(words)
+}
+
 /// The program at work; it is killed when this goes.
 pub(crate) struct Running(Child);
 

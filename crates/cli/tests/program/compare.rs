@@ -2,13 +2,11 @@
 
 use serde_json::Value;
 
-use crate::common::{has_keys, run};
+use crate::common::{has_keys, json_of};
 
 #[test]
 fn methods_stand_side_by_side_at_nearly_equal_counts() {
-    let list = run("compare builtin:head --json --samples 20000", &[])
-        .expect(0)
-        .json();
+    let list = json_of("compare builtin:head --json --samples 20000", &[]);
     let list = list.as_array().expect("a list");
     let names: Vec<_> = list
         .iter()
@@ -94,102 +92,4 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
         let miss = |level: u64| (142.0 * 4f64.powi(level as i32) - triangles(0)).abs();
         assert!(miss(levels) <= miss(other));
     }
-}
-
-#[test]
-fn the_counts_are_those_of_refine() {
-    let folder = crate::common::folder();
-    let output = folder.path().join("out.ply");
-    let report = run(
-        "refine builtin:cup -o {} --method limit-normal --angle 6 --levels 2 --report -",
-        &[&output],
-    )
-    .expect(0)
-    .json();
-    let list = run(
-        "compare builtin:cup --angle 6 --levels 2 --json --samples 20000",
-        &[],
-    )
-    .expect(0)
-    .json();
-    assert_eq!(list[0]["triangles"], report["output"]["triangles"]);
-    let angle = list[1]["angle_degrees"].as_f64().expect("an angle");
-    let amresh =
-        format!("refine builtin:cup -o {{}} --method amresh --angle {angle} --levels 2 --report -");
-    let report = run(&amresh, &[&output]).expect(0).json();
-    assert_eq!(list[1]["triangles"], report["output"]["triangles"]);
-    let count = &list[0]["triangles"];
-    for (row, method) in [
-        (7, "--method planarity --max-levels 8"),
-        (9, "--method vertex-error --max-levels 8"),
-        (10, "--scheme sqrt3"),
-    ] {
-        let words = format!("refine builtin:cup -o {{}} {method} --triangles {count} --report -");
-        let report = run(&words, &[&output]).expect(0).json();
-        assert_eq!(
-            list[row]["triangles"], report["output"]["triangles"],
-            "{method}"
-        );
-    }
-}
-
-/// What has no answer is left out with a note, and the others are compared.
-#[test]
-fn methods_without_an_answer_are_left_out() {
-    let folder = crate::common::folder();
-    let corners = [
-        "1e75 0 0",
-        "0 1e75 0",
-        "0 0 1e75",
-        "-1e75 0 0",
-        "0 -1e75 0",
-        "0 0 -1e75",
-    ];
-    let vertices: String = corners.iter().map(|at| format!("v {at}\n")).collect();
-    let faces = "f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
-    let far = crate::common::file(&folder, "far.obj", &(vertices + faces));
-    let said = run("compare {} --levels 1 --samples 2000 --json", &[&far]).expect(0);
-    let names = |said: &crate::common::Run| -> Vec<String> {
-        let list = said.json();
-        let name = |own: &serde_json::Value| own["method"].as_str().expect("a name").to_owned();
-        list.as_array().expect("a list").iter().map(name).collect()
-    };
-    let left = [
-        "limit-normal",
-        "amresh",
-        "uniform",
-        "uniform-limit",
-        "exact",
-        "exact-balance",
-        "exact-optimize",
-    ];
-    assert_eq!(names(&said), left);
-    let said = ["planarity", "planarity-distance", "vertex-error", "sqrt3"]
-        .into_iter()
-        .fold(said, |said, name| {
-            said.saying(&format!("{name} left out: "))
-        });
-    assert!(said.stderr.contains("1e-70 to 1e70"), "{}", said.stderr);
-    let said = run(
-        "compare builtin:head --levels 1 --samples 2000 --json --interpolate",
-        &[],
-    )
-    .expect(0);
-    assert!(!names(&said).contains(&"sqrt3".to_owned()));
-    said.saying("sqrt3 left out: --interpolate");
-}
-
-#[test]
-fn the_table_is_aligned() {
-    let text = run("compare builtin:torus --samples 20000", &[])
-        .expect(0)
-        .stdout;
-    let rows: Vec<&str> = text
-        .lines()
-        .skip_while(|line| !line.starts_with("method"))
-        .take_while(|l| !l.is_empty())
-        .collect();
-    assert_eq!(rows.len(), 12, "{text}");
-    let widths: Vec<usize> = rows.iter().map(|row| row.chars().count()).collect();
-    assert!(widths.iter().all(|&width| width == widths[0]), "{text}");
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, run, soup};
+use crate::common::{done, file, folder, json_of, run};
 
 /// An L of height 1: two caps of four triangles round a corner, and six sides.
 const L: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
@@ -19,11 +19,11 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     let output = folder.path().join("out.ply");
     let refine = |options: &str| {
         let words = format!("refine {{}} -o {{}} --crease-angle 30 --report - {options}");
-        let run = run(&words, &[&input, &output]).expect(0);
+        let run = done(&words, &[&input, &output]);
         (run.json(), run.stderr)
     };
     let off = || {
-        let run = run("measure {} {} --certified --json", &[&output, &input]).expect(0);
+        let run = done("measure {} {} --certified --json", &[&output, &input]);
         run.json()["hausdorff"]["upper"].as_f64().expect("a number")
     };
     let (report, told) = refine("");
@@ -32,7 +32,7 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
         json!({ "count": 2, "first": [3, 9] })
     );
     assert_eq!(report["diagnosis"]["clean"], true);
-    assert_eq!(report["parameters"]["concave_corners"], "divided");
+    assert_eq!(report["parameters"]["concave_corners"], "fixed");
     assert_eq!(
         (
             &report["output"]["inverted_triangles"],
@@ -47,9 +47,9 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     assert!(!told.contains("turned over"), "{told}");
     assert!(off() < 1e-9);
 
-    let (report, told) = refine("--concave-corners as-tagged");
+    let (report, told) = refine("--concave-corners smooth");
     assert_eq!(report["diagnosis"]["concave_corners"]["count"], 0);
-    assert_eq!(report["parameters"]["concave_corners"], "as-tagged");
+    assert_eq!(report["parameters"]["concave_corners"], "smooth");
     assert!(
         report["output"]["inverted_triangles"]
             .as_u64()
@@ -76,9 +76,9 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     // It is the same limit surface for measuring.
     refine("");
     let measure = "measure {} --limit-of {} --crease-angle 30 --certified --json";
-    let measured = run(measure, &[&output, &input]).expect(0).json();
+    let measured = json_of(measure, &[&output, &input]);
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-6);
-    assert_eq!(measured["reference"]["limit"]["concave_corners"], "divided");
+    assert_eq!(measured["reference"]["limit"]["concave_corners"], "fixed");
 }
 
 #[test]
@@ -87,81 +87,19 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
     let report = |options: &str| {
-        run(
+        json_of(
             &format!("refine {{}} -o {{}} --report - {options}"),
             &[&input, &output],
         )
-        .expect(0)
-        .json()
     };
     let tagged = report("");
-    assert_eq!(tagged["parameters"]["concave_corners"], "as-tagged");
+    assert_eq!(tagged["parameters"]["concave_corners"], "smooth");
     assert_eq!(tagged["diagnosis"]["concave_corners"]["count"], 0);
-    let divided = report("--concave-corners divided");
+    let divided = report("--concave-corners fixed");
     assert_eq!(divided["diagnosis"]["concave_corners"]["count"], 1);
     assert_eq!(divided["output"]["inverted_triangles"], 0);
     assert_eq!(
         report("--boundary corners")["parameters"]["concave_corners"],
-        "divided"
+        "fixed"
     );
-}
-
-#[test]
-fn origins_name_the_faces_of_the_control_mesh_before_they_were_divided() {
-    let folder = folder();
-    let input = file(&folder, "tagged.obj", TAGGED);
-    let output = folder.path().join("out.ply");
-    run(
-        "refine {} -o {} --concave-corners divided --provenance --ascii",
-        &[&input, &output],
-    )
-    .expect(0);
-    let text = std::fs::read_to_string(&output).expect("readable");
-    let mesh = soup(&output);
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .skip_while(|line| *line != "end_header")
-        .skip(1)
-        .map(|line| {
-            line.split_whitespace()
-                .map(|word| word.parse().expect("a number"))
-                .collect()
-        })
-        .collect();
-    let (vertices, faces) = rows.split_at(mesh.positions.len());
-    let input = soup(&input);
-    let flat = |v: u32| [0, 1].map(|axis| input.positions[v as usize][axis]);
-    let corners: Vec<Vec<[f64; 2]>> = input
-        .faces
-        .iter()
-        .map(|face| face.iter().map(|&v| flat(v)).collect())
-        .collect();
-    let is_parent = |row: &Vec<f64>| {
-        row.last()
-            .is_some_and(|&parent| (parent as usize) < corners.len())
-    };
-    assert!(!faces.is_empty() && faces.iter().all(is_parent));
-    let mut origins = Vec::new();
-    for row in vertices {
-        // The last column is the face of the file.
-        let [face, weights @ ..] = &row[row.len() - 5..row.len() - 1] else {
-            continue;
-        };
-        assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{row:?}");
-        let face = &corners[*face as usize];
-        origins.push([0, 1].map(|axis| (0..3).map(|i| weights[i] * face[i][axis]).sum::<f64>()));
-    }
-    // The first vertices are those of the file, and no two vertices come from one place.
-    for (v, origin) in origins.iter().enumerate().take(input.positions.len()) {
-        let expected = flat(v as u32);
-        assert!((origin[0] - expected[0]).abs() + (origin[1] - expected[1]).abs() < 1e-12);
-    }
-    for (i, a) in origins.iter().enumerate() {
-        for b in &origins[..i] {
-            assert!(
-                (a[0] - b[0]).abs() + (a[1] - b[1]).abs() > 1e-9,
-                "{a:?} twice"
-            );
-        }
-    }
 }

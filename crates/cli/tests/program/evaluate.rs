@@ -1,6 +1,6 @@
 //! `evaluate`, and `info --limit`: the limit surface itself, at places and as a whole.
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, run, usage_error};
 
 /// Corners in the order of the axes, faces counter-clockwise from outside.
 const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
@@ -23,7 +23,7 @@ fn places_of_an_octahedron() {
         "\u{feff}# an edge's middle, a face's centre\n4 0.5 0.5 0\n\n7,0.3333333333333333, 0.3333333333333333 0.3333333333333334\n",
     );
     let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
-    let found = run(command, &[&control, &places]).expect(0).json();
+    let found = json_of(command, &[&control, &places]);
     let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else {
         panic!("{found}")
     };
@@ -63,30 +63,11 @@ fn places_of_an_octahedron() {
         });
         assert!(most >= least && (most * least - gaussian).abs() < 1e-9);
     }
-    let text = run("evaluate {} --at 0,0.5,0.3,0.2", &[&control])
-        .expect(0)
-        .stdout;
+    let text = done("evaluate {} --at 0,0.5,0.3,0.2", &[&control]).stdout;
     assert!(
         text.contains("0.326") && text.contains("Gaussian"),
         "{text}"
     );
-}
-
-/// People write thirds with as many digits as they like.
-#[test]
-fn weights_with_few_digits_are_the_place_that_was_meant() {
-    let folder = folder();
-    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let places = file(&folder, "places.txt", "7 0.3333 0.3333 0.3333\n");
-    let command = "evaluate {} --at 7,0.333333,0.333333,0.333333 --at {} --json";
-    let found = run(command, &[&control, &places]).expect(0).json();
-    for place in found.as_array().expect("a list") {
-        assert_eq!(
-            place["barycentric"],
-            serde_json::json!([1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0])
-        );
-        near(&place["curvature"]["gaussian"], 3.848001180091);
-    }
 }
 
 #[test]
@@ -95,9 +76,7 @@ fn sharp_edges_have_a_normal_on_each_side() {
     let cube = "evaluate builtin:cube --crease-angle 30 --json --at";
     let mut normals = Vec::new();
     for face in 0..12 {
-        let found = run(&format!("{cube} {face},0.25,0.25,0.5"), &[])
-            .expect(0)
-            .json();
+        let found = json_of(&format!("{cube} {face},0.25,0.25,0.5"), &[]);
         let normal: Vec<f64> = found[0]["normal"]
             .as_array()
             .expect("three")
@@ -126,18 +105,22 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at 8,1,0,0", &[&control])
         .expect(1)
         .saying("no face 8: the control mesh has 8 triangles");
-    run("evaluate {} --at 0,0.5,0.5,0.5", &[&control])
-        .expect(2)
-        .saying("'0,0.5,0.5,0.5': the weights add up to 1.5 ");
-    run("evaluate {} --at 0,0.333,0.333,0.333", &[&control])
-        .expect(2)
-        .saying("add up to 0.999");
-    run("evaluate {} --at 0,1.5,-0.5,0", &[&control])
-        .expect(2)
-        .saying("the weight -0.5 ");
-    run("evaluate {} --at 0,1,0", &[&control])
-        .expect(2)
-        .saying("2 weights");
+    usage_error(
+        "evaluate {} --at 0,0.5,0.5,0.5",
+        &[&control],
+        "'0,0.5,0.5,0.5': the weights add up to 1.5 ",
+    );
+    usage_error(
+        "evaluate {} --at 0,0.333,0.333,0.333",
+        &[&control],
+        "add up to 0.999",
+    );
+    usage_error(
+        "evaluate {} --at 0,1.5,-0.5,0",
+        &[&control],
+        "the weight -0.5 ",
+    );
+    usage_error("evaluate {} --at 0,1,0", &[&control], "2 weights");
     run("evaluate {} --at {}", &[&control, &bad])
         .expect(1)
         .saying("line 2: '1 0.5 0.5' has 2 weights");
@@ -150,53 +133,5 @@ fn places_that_are_none_are_errors() {
     run("evaluate {} --at nowhere.txt", &[&control])
         .expect(1)
         .saying("nowhere.txt");
-    run("evaluate {}", &[&control]).expect(2).saying("--at");
-}
-
-#[test]
-fn polygons_are_told_to_be_triangles() {
-    let folder = folder();
-    let quad = file(
-        &folder,
-        "quad.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
-    );
-    run("evaluate {} --at 1,0.2,0.3,0.5", &[&quad])
-        .expect(0)
-        .saying("2 triangles of the control mesh");
-    let found = run("evaluate {} --at 1,0.2,0.3,0.5 --json", &[&quad])
-        .expect(0)
-        .json();
-    assert_eq!(
-        (&found[0]["face"], &found[0]["input_face"]),
-        (&1.into(), &0.into())
-    );
-}
-
-#[test]
-fn limits_have_area_and_volume() {
-    let folder = folder();
-    let control = file(&folder, "octahedron.obj", OCTAHEDRON);
-    let found = run("info {} --limit --json", &[&control]).expect(0).json();
-    near(&found["limit"]["volume"], 0.303854909279);
-    assert!(
-        run("info {} --limit", &[&control])
-            .expect(0)
-            .stdout
-            .contains("volume 0.30385")
-    );
-    assert!(run("info {} --json", &[&control]).expect(0).json()["limit"].is_null());
-    // With all edges sharp it is the octahedron.
-    let found = run("info {} --limit --crease-angle 30 --json", &[&control])
-        .expect(0)
-        .json();
-    near(&found["limit"]["volume"], 4.0 / 3.0);
-    near(&found["limit"]["area"], 4.0 * 3f64.sqrt());
-    run("info {} --crease-angle 30", &[&control])
-        .expect(2)
-        .saying("--limit");
-    let sheet = run("info builtin:sheet --limit --json", &[])
-        .expect(0)
-        .json();
-    assert!(sheet["limit"]["volume"].is_null() && sheet["limit"]["area"].as_f64() > Some(0.0));
+    usage_error("evaluate {}", &[&control], "--at");
 }

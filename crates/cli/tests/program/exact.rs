@@ -4,7 +4,9 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::common::{claimed, counts, file, folder, has_keys, run, soup};
+use crate::common::{
+    claimed, counts, done, file, folder, has_keys, json_of, run, soup, usage_error,
+};
 
 const CONTRACT: &str = "parameters.method parameters.exact.tolerance parameters.exact.tolerance_percent
     parameters.exact.triangles parameters.exact.pixels parameters.exact.cameras parameters.exact.balance
@@ -68,7 +70,7 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let report = refine(0, "builtin:cup", &output, "");
-    let info = run("info builtin:cup --json", &[]).expect(0).json();
+    let info = json_of("info builtin:cup --json", &[]);
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     let expected = json!({
         "tolerance": 0.1 / 100.0 * diagonal, "tolerance_percent": 0.1, "triangles": null, "pixels": null,
@@ -84,7 +86,7 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     );
     assert!(number(&report["error"]["upper_percent"]) <= 0.1);
     assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"]);
-    let said = run("refine builtin:cup -o {}", &[&output]).expect(0);
+    let said = done("refine builtin:cup -o {}", &[&output]);
     assert!(
         said.stderr.contains(" % of the diagonal (")
             && said.stderr.contains("certified; at least 0.0"),
@@ -93,49 +95,12 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     );
 }
 
-/// A lower bound far below the upper one says nothing: of a torus of which a damaged coordinate draws a vertex a million out it was a ten
-/// millionth of the diagonal.
-#[test]
-fn lower_bounds_that_say_nothing_are_not_reported() {
-    let folder = folder();
-    let at = |i: u32, j: u32| 10 * (i % 20) + j % 10 + 1;
-    let mut text = String::from("v 0 0 1e6\n");
-    for (i, j) in (0..200).map(|i| (i / 10, i % 10)).skip(1) {
-        let [u, v] =
-            [f64::from(i) / 20.0, f64::from(j) / 10.0].map(|turn| std::f64::consts::TAU * turn);
-        let r = 1.0 + 0.35 * v.cos();
-        text.push_str(&format!(
-            "v {} {} {}\n",
-            r * u.cos(),
-            r * u.sin(),
-            0.35 * v.sin()
-        ));
-    }
-    for (i, j) in (0..200).map(|i| (i / 10, i % 10)) {
-        let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        text.push_str(&format!("f {a} {b} {c}\nf {a} {c} {d}\n"));
-    }
-    let (input, output) = (
-        file(&folder, "far.obj", &text),
-        folder.path().join("out.ply"),
-    );
-    let said = run("refine {} -o {} --tolerance 1%", &[&input, &output])
-        .expect(0)
-        .stderr;
-    assert!(
-        said.contains("of the limit surface, certified\n") && !said.contains("at least"),
-        "{said}"
-    );
-}
-
 #[test]
 fn the_interval_holds_what_samples_find() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let report = refine(0, "builtin:head", &output, "--tolerance 0.5%");
-    let measured = run("measure {} --limit-of builtin:head --json", &[&output])
-        .expect(0)
-        .json();
+    let measured = json_of("measure {} --limit-of builtin:head --json", &[&output]);
     let sampled = number(&measured["hausdorff"]["symmetric"]);
     let (lower, upper) = (
         number(&report["error"]["lower"]),
@@ -190,51 +155,13 @@ fn a_number_of_triangles_is_used_up_and_not_passed() {
 }
 
 #[test]
-fn a_smaller_angle_gives_more_triangles() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let wide = refine(0, "builtin:icosphere", &output, "--angle 10");
-    let narrow = refine(0, "builtin:icosphere", &output, "--angle 3");
-    assert!(triangles(&wide) < triangles(&narrow));
-    assert_eq!(wide["parameters"]["exact"]["tolerance"], Value::Null);
-    assert_eq!(wide["parameters"]["angle_degrees"], 10.0);
-    let both = refine(
-        0,
-        "builtin:icosphere",
-        &output,
-        "--angle 10 --tolerance 0.01%",
-    );
-    assert!(triangles(&both) > triangles(&wide));
-    assert!(number(&both["error"]["upper_percent"]) <= 0.01);
-    assert_eq!(
-        (&both["pixels"], &both["open_cones"]),
-        (&Value::Null, &json!(0))
-    );
-}
-
-/// The corners of the head's mouth have no tangent plane.
-#[test]
-fn an_angle_that_cannot_be_met_everywhere_ends_and_says_so() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let report = refine(0, "builtin:head", &output, "--angle 40");
-    assert_eq!(report["stop"], "cones");
-    let open = report["open_cones"].as_u64().expect("a count");
-    assert!(open > 0 && open < triangles(&report) / 20, "{open}");
-    let words = format!("{open} triangles stay outside the angle");
-    run("refine builtin:head -o {} --angle 40", &[&output])
-        .expect(0)
-        .saying(&words);
-}
-
-#[test]
 fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for tolerance in ["1e-300", "1e-12%"] {
         let caps = [
             ("--max-triangles 5000", "triangle-cap"),
-            ("--max-levels 2", "level-cap"),
+            ("--levels 2", "level-cap"),
             ("--max-memory 2M", "memory-cap"),
         ];
         for (cap, stop) in caps {
@@ -266,7 +193,7 @@ fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
 fn cameras_see_the_detail() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let camera = |eye: &str| format!("--camera {eye},0,0,0,0,1,0,40,800x600");
+    let camera = |eye: &str| format!("--view {eye},0,0,0,0,1,0,40,800x600");
     let front = refine(
         0,
         "builtin:sphere",
@@ -289,9 +216,7 @@ fn cameras_see_the_detail() {
         "refine builtin:sphere -o {{}} --pixels 0.5 {}",
         camera("0,0,5")
     );
-    run(&words, &[&output])
-        .expect(0)
-        .saying("pixels as the cameras see it");
+    done(&words, &[&output]).saying("pixels as the cameras see it");
     // Most of the detail is on the side of the camera.
     let centres = soup(&output);
     let in_front = centres
@@ -327,8 +252,8 @@ fn cameras_see_the_detail() {
     // The same from a file.
     let lines = "# two cameras\n0,0,5, 0,0,0, 0,1,0, 40, 800x600 # the front\n\n0,0,-5,0,0,0,0,1,0,40,800x600\n";
     let path = file(&folder, "path.txt", lines);
-    let words = "refine builtin:sphere -o {} --pixels 0.5 --camera-path {} --report -";
-    let report = run(words, &[&output, &path]).expect(0).json();
+    let words = "refine builtin:sphere -o {} --pixels 0.5 --view {} --report -";
+    let report = json_of(words, &[&output, &path]);
     assert_eq!(triangles(&report), triangles(&both));
 }
 
@@ -341,7 +266,7 @@ fn cameras_that_cannot_be_used_are_refused() {
         "path.txt",
         "0,0,5,0,0,0,0,1,0,40,800x600\n0,0,5,0,0,0,0,0,0,40,800x600\n",
     );
-    let words = "refine builtin:sphere -o {} --camera-path {}";
+    let words = "refine builtin:sphere -o {} --view {}";
     run(words, &[&output, &path])
         .expect(1)
         .saying("path.txt, line 2")
@@ -353,10 +278,8 @@ fn cameras_that_cannot_be_used_are_refused() {
     run(words, &[&output, &folder.path().join("none.txt")])
         .expect(1)
         .saying("none.txt cannot be read");
-    let inside = "refine builtin:sphere -o {} --camera 0,0,0.1,0,0,5,0,1,0,40,800x600";
-    run(inside, &[&output])
-        .expect(2)
-        .saying("stands inside the mesh");
+    let inside = "refine builtin:sphere -o {} --view 0,0,0.1,0,0,5,0,1,0,40,800x600";
+    usage_error(inside, &[&output], "stands inside the mesh");
     assert!(!output.exists());
 }
 
@@ -384,48 +307,12 @@ fn a_view_makes_the_angle_depend_on_the_viewer() {
 }
 
 #[test]
-fn balance_needs_fewer_triangles_for_the_same_tolerance() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let on_surface = refine(0, "builtin:cup", &output, "--tolerance 0.05%");
-    let balanced = refine(0, "builtin:cup", &output, "--tolerance 0.05% --balance");
-    assert_eq!(balanced["parameters"]["exact"]["balance"], true);
-    assert!(number(&balanced["error"]["upper_percent"]) <= 0.05);
-    assert!(triangles(&balanced) < triangles(&on_surface));
-}
-
-#[test]
-fn optimisation_needs_fewer_triangles_and_keeps_the_tolerance() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let plain = refine(0, "builtin:bumpy", &output, "--tolerance 0.2%");
-    let optimised = refine(
-        0,
-        "builtin:bumpy",
-        &output,
-        "--tolerance 0.2% --optimize --provenance",
-    );
-    assert!(number(&optimised["error"]["upper_percent"]) <= 0.2);
-    assert!(
-        triangles(&optimised) * 10 < triangles(&plain) * 8,
-        "{optimised:#}"
-    );
-    assert_eq!(
-        optimised["output"]["euler_characteristic"],
-        plain["output"]["euler_characteristic"]
-    );
-    // Fewer triangles than the control mesh has are possible.
-    let few = refine(0, "builtin:bumpy", &output, "--triangles 300 --optimize");
-    assert!(triangles(&few) <= 300);
-}
-
-#[test]
 fn a_dry_run_predicts_and_writes_nothing() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for tolerance in ["0.1%", "0.01%"] {
         let words = format!("refine builtin:cup --tolerance {tolerance} --dry-run");
-        let predicted = run(&format!("{words} --report -"), &[]).expect(0).json();
+        let predicted = json_of(&format!("{words} --report -"), &[]);
         has_keys(
             &predicted,
             "version input.path diagnosis.clean parameters.exact estimate.memory_bytes",
@@ -441,30 +328,15 @@ fn a_dry_run_predicts_and_writes_nothing() {
             (0.5..2.0).contains(&(estimate / found)),
             "{tolerance}: {estimate} {found}"
         );
-        let text = run(&words, &[]).expect(0).stdout;
+        let text = done(&words, &[]).stdout;
         assert!(
             text.contains("triangles") && text.contains("nothing was written"),
             "{text}"
         );
     }
     std::fs::remove_file(&output).expect("removable");
-    run("refine builtin:cup -o {} --dry-run", &[&output]).expect(0);
+    done("refine builtin:cup -o {} --dry-run", &[&output]);
     assert!(!output.exists());
-}
-
-#[test]
-fn a_flat_mesh_is_met_as_it_is() {
-    let folder = folder();
-    let square = file(
-        &folder,
-        "square.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
-    );
-    let output = folder.path().join("out.ply");
-    let words = "refine {} -o {} --boundary fixed --report -";
-    let report = run(words, &[&square, &output]).expect(0).json();
-    assert_eq!(triangles(&report), 2);
-    assert_eq!(report["error"]["lower"], 0.0);
 }
 
 /// The rows of numbers of an ASCII PLY file's two elements, and the names of the vertices' properties.
@@ -559,32 +431,11 @@ fn vertices_and_triangles_know_where_they_came_from() {
     // The file remains one that can be read.
     assert_eq!(soup(&output).faces.len(), faces.len());
     let plain = folder.path().join("plain.ply");
-    run(
+    done(
         "refine builtin:cube -o {} --tolerance 0.5% --provenance",
         &[&plain],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&plain).positions, soup(&output).positions);
-}
-
-/// Faces that are left out, and squares that are cut, shift the numbers of control faces against those of the input.
-#[test]
-fn provenance_counts_the_faces_of_the_input() {
-    let folder = folder();
-    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 1 2\nf 1 4 3 2\n\
-                f 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 5 6 7 8\nf 1 5 8 4\nf 2 3 7 6\n";
-    let (input, output) = (file(&folder, "in.obj", text), folder.path().join("out.ply"));
-    run(
-        "refine {} -o {} --tolerance 2% --ascii --provenance",
-        &[&input, &output],
-    )
-    .expect(0);
-    let (_, _, faces) = rows(&output);
-    let mut found: Vec<u64> = faces.iter().map(|face| face[5] as u64).collect();
-    found.sort_unstable();
-    found.dedup();
-    // Without the line and the square that repeats another.
-    assert_eq!(found, [1, 2, 3, 4, 6, 7]);
 }
 
 /// Where masks may be negative nothing is proven, and nothing is called so.
@@ -658,44 +509,5 @@ fn what_a_format_rounds_is_part_of_the_distance() {
         let lower = number(&measured.expect(0).json()["hausdorff"]["lower"]);
         assert!(lower <= told, "{lower} {told}");
         assert_eq!(lower > 0.004, code == 3, "{lower}");
-    }
-}
-
-/// Flat regions of a part whose rims cross keep more triangles than were counted. Budgets had lost all flat regions to that, and the more
-/// triangles there were the farther off was what was proven.
-#[test]
-fn budgets_of_parts_that_fold_are_nearer_with_more_triangles() {
-    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
-        println!("skipped: LIMITMESH_MODELS names no folder");
-        return;
-    };
-    let folder = folder();
-    let notch = Path::new(&models).join("parts/notch.stl");
-    let upper = |options: &str| {
-        let options = format!("--crease-angle 30 --interpolate {options}");
-        let report = refine(
-            0,
-            &notch.to_string_lossy(),
-            &folder.path().join("notch.ply"),
-            &options,
-        );
-        (
-            number(&report["error"]["upper"]),
-            report["output"]["triangles"].as_u64().expect("a number"),
-        )
-    };
-    let (_, count) = upper("--tolerance 0.002");
-    let mut before = f64::INFINITY;
-    for number in [count / 2, count, 2 * count] {
-        let (found, triangles) = upper(&format!("--triangles {number}"));
-        assert!(
-            triangles <= number && found < before,
-            "{number}: {triangles}, {found} after {before}"
-        );
-        assert!(
-            number != count || found <= 1.15 * 0.002,
-            "{number}: {found}"
-        );
-        before = found;
     }
 }

@@ -1,19 +1,17 @@
 //! `info` and `models`: what is in a file, in words and as JSON.
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, json_of, run};
 
 #[test]
 fn every_listed_model_can_be_examined() {
-    let list = run("models --json", &[]).expect(0).json();
+    let list = json_of("models --json", &[]);
     let list = list.as_array().expect("a list");
     assert!(list.len() >= 8, "{list:?}");
-    let text = run("models", &[]).expect(0).stdout;
+    let text = done("models", &[]).stdout;
     for model in list {
         let name = model["name"].as_str().expect("a name");
         assert!(text.contains(&format!("builtin:{name}")), "{text}");
-        let report = run(&format!("info builtin:{name} --json"), &[])
-            .expect(0)
-            .json();
+        let report = json_of(&format!("info builtin:{name} --json"), &[]);
         has_keys(
             &report,
             "version input.path input.format input.vertices input.faces polygons tags.creases
@@ -37,10 +35,7 @@ fn known_shapes_have_their_topology() {
         ("sphere", [1, 0, 2, 0]),
         ("sheet", [1, 0, 1, 1]),
     ] {
-        let mesh = run(&format!("info builtin:{name} --json"), &[])
-            .expect(0)
-            .json()["mesh"]
-            .clone();
+        let mesh = json_of(&format!("info builtin:{name} --json"), &[])["mesh"].clone();
         let found = [
             "components",
             "genus",
@@ -50,7 +45,7 @@ fn known_shapes_have_their_topology() {
         .map(|key| mesh[key].as_i64().expect("a number"));
         assert_eq!(found, expected, "{name}");
     }
-    let text = run("info builtin:cube", &[]).expect(0).stdout;
+    let text = done("info builtin:cube", &[]).stdout;
     for words in [
         "6 with 4 corners",
         "cut into triangles",
@@ -66,7 +61,7 @@ fn findings_are_named_in_words() {
     let folder = folder();
     let bad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 4\nf 1 1 2\nf 3 1 2\n";
     let input = file(&folder, "bad.obj", bad);
-    let text = run("info {}", &[&input]).expect(0).stdout;
+    let text = done("info {}", &[&input]).stdout;
     for words in [
         "1 face with fewer than three different corners: left out (face 2)",
         "1 face that repeats another: left out (face 3)",

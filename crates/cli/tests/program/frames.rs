@@ -7,7 +7,7 @@ use limitmesh::refine::{LimitDistanceOptions, limit_distance};
 use limitmesh::scheme::Loop;
 use tempfile::TempDir;
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, run, usage_error};
 
 /// A box of four sharp edges and texture coordinates, sheared by so much.
 fn frame(shear: f64, faces: &str, tags: &str) -> String {
@@ -83,7 +83,7 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     let [a, b, c] = &inputs[..] else {
         panic!("three")
     };
-    let done = run(command, &[a, b, c, out.path(), &report]).expect(0);
+    let done = done(command, &[a, b, c, out.path(), &report]);
     assert!(
         done.stderr.contains("3 frames") && done.stderr.contains("every frame"),
         "{}",
@@ -132,46 +132,6 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     assert!(vertices[0] != vertices[1] && vertices[0].len() == vertices[1].len());
 }
 
-/// Where no division brings normals nearer, that is told, and how often: it is no cap that was reached.
-#[test]
-fn angles_that_no_division_closes_are_told() {
-    let (folder, out) = (folder(), crate::common::folder());
-    let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path().join(name));
-    for frame in [&first, &second] {
-        run(
-            "refine builtin:head -o {} --method uniform --levels 0",
-            &[frame],
-        )
-        .expect(0);
-    }
-    let report = folder.path().join("report.json");
-    let told = || -> serde_json::Value {
-        serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON")
-    };
-    let command = "refine {} {} -o {} --shared-topology --angle 40 --report {}";
-    let said = run(command, &[&first, &second, out.path(), &report]).expect(0);
-    let count = told()["open_cones"].as_u64().expect("a number");
-    said.saying(&format!("{count} triangles stay outside the angle"));
-    assert!(
-        count > 0 && told()["stop"] == "cones" && told()["pixels"].is_null(),
-        "{}",
-        told()
-    );
-    // As of one mesh.
-    run(
-        "refine {} -o {} --angle 40 --report {}",
-        &[&first, &out.path().join("one.ply"), &report],
-    )
-    .expect(0)
-    .saying("stay outside the angle");
-    assert_eq!(told()["stop"], "cones");
-    // Caps are those that were reached.
-    let capped = "refine {} {} -o {} --shared-topology --tolerance 0.01% --max-levels 2";
-    run(capped, &[&first, &second, out.path()])
-        .expect(3)
-        .saying("--max-levels 2 was reached");
-}
-
 #[test]
 fn frames_of_other_meshes_are_refused_by_what_differs() {
     let (folder, out) = (folder(), crate::common::folder());
@@ -215,7 +175,6 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
         "--interpolate",
         "--mesh box",
         "--material red",
-        "--relative-to mesh",
         "--link-resources",
         "--weld-ignores skin",
         "--morph-tolerance 1%",
@@ -227,18 +186,20 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     // Before anything is read: there is no such file.
     let none = folder.path().join("none.obj");
     let command = "refine {} {} -o {} --shared-topology --scheme sqrt3";
-    run(command, &[first, &none, out.path()])
-        .expect(2)
-        .saying("sqrt3");
+    usage_error(command, &[first, &none, out.path()], "sqrt3");
     let command = "refine {} {} -o {} --shared-topology --report {}";
     let before = std::fs::read(first).expect("a frame");
-    run(command, &[first, &inputs[1], out.path(), first])
-        .expect(2)
-        .saying("box_0.obj is an input");
+    usage_error(
+        command,
+        &[first, &inputs[1], out.path(), first],
+        "box_0.obj is an input",
+    );
     assert_eq!(std::fs::read(first).expect("a frame"), before);
     let own = out.path().join("box_1.obj");
-    run(command, &[first, &inputs[1], out.path(), &own])
-        .expect(2)
-        .saying("would be written twice");
+    usage_error(
+        command,
+        &[first, &inputs[1], out.path(), &own],
+        "would be written twice",
+    );
     assert!(crate::common::names(out.path()).is_empty());
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, usage_error};
 
 pub(crate) const CORNERS: [[i32; 3]; 8] = [
     [-1, -1, -1],
@@ -57,7 +57,7 @@ fn cube(folder: &TempDir, normals: bool, before: &dyn Fn(usize) -> String) -> Pa
 fn volume(input: &Path, options: &str) -> f64 {
     let output = input.with_extension("ply");
     let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
-    let report = run(&command, &[input, &output]).expect(0).json();
+    let report = json_of(&command, &[input, &output]);
     report["size"]["after"]["volume"]
         .as_f64()
         .expect("a number")
@@ -67,15 +67,14 @@ fn volume(input: &Path, options: &str) -> f64 {
 fn normals_say_where_edges_are_sharp() {
     let folder = folder();
     let input = cube(&folder, true, &|_| String::new());
-    run("refine {} -o {}", &[&input, &input.with_extension("stl")])
-        .expect(0)
+    done("refine {} -o {}", &[&input, &input.with_extension("stl")])
         .saying("12 edges have different normals on both sides; --creases-from normals");
     assert!(volume(&input, "") < 5.0);
     assert!((volume(&input, "--creases-from normals") - 8.0).abs() < 1e-9);
     // The distance is to the surface with the same edges.
     let output = input.with_extension("ply");
     let command = "measure {} --limit-of {} --creases-from normals --certified --json";
-    let measured = run(command, &[&output, &input]).expect(0).json();
+    let measured = json_of(command, &[&output, &input]);
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-9);
     assert_eq!(measured["reference"]["limit"]["creases_from"], "normals");
     // A vertex for each side, as PLY and STL have them: welded, and the normals kept apart.
@@ -102,12 +101,10 @@ fn normals_say_where_edges_are_sharp() {
     });
     let input = file(&folder, "split.ply", &text);
     let output = folder.path().join("out.obj");
-    let report = run(
+    let report = json_of(
         "refine {} -o {} --creases-from normals --report -",
         &[&input, &output],
-    )
-    .expect(0)
-    .json();
+    );
     assert!(
         (report["size"]["after"]["volume"]
             .as_f64()
@@ -154,75 +151,14 @@ fn groups_and_materials_say_so_too() {
         ("materials", "no materials"),
     ] {
         let command = format!("refine {{}} -o {{}} --creases-from {from}");
-        run(&command, &[&bare, &output]).expect(2).saying(what);
+        usage_error(&command, &[&bare, &output], what);
     }
     let package = folder.path().join("a.3mf");
-    run("refine builtin:cube -o {}", &[&package]).expect(0);
+    done("refine builtin:cube -o {}", &[&package]);
     let again = folder.path().join("b.3mf");
-    run(
+    usage_error(
         "refine {} -o {} --creases-from normals",
         &[&package, &again],
-    )
-    .expect(2)
-    .saying("is for OBJ, PLY");
-}
-
-/// Normals of glTF assets say so, too: in the mesh's own coordinates where it is edited, and in the scene's elsewhere.
-#[test]
-fn normals_of_assets_say_so() {
-    let folder = folder();
-    let mut bytes = Vec::new();
-    let mut put = |numbers: &[i32; 3]| {
-        numbers
-            .iter()
-            .for_each(|&x| bytes.extend((x as f32).to_le_bytes()))
-    };
-    SIDES
-        .iter()
-        .for_each(|(corners, _)| corners.iter().for_each(|&corner| put(&CORNERS[corner])));
-    SIDES
-        .iter()
-        .for_each(|(_, normal)| (0..4).for_each(|_| put(normal)));
-    bytes.extend((0..6u8).flat_map(|side| [0, 1, 2, 0, 2, 3].map(|corner| 4 * side + corner)));
-    std::fs::write(folder.path().join("cube.bin"), &bytes).expect("written");
-    let document = |attributes: &str| {
-        format!(
-            r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"byteLength":612,"uri":"cube.bin"}}],
-            "bufferViews":[{{"buffer":0,"byteLength":576}},{{"buffer":0,"byteOffset":576,"byteLength":36}}],"accessors":[
-            {{"bufferView":0,"componentType":5126,"count":24,"type":"VEC3","min":[-1,-1,-1],"max":[1,1,1]}},
-            {{"bufferView":0,"byteOffset":288,"componentType":5126,"count":24,"type":"VEC3"}},
-            {{"bufferView":1,"componentType":5121,"count":36,"type":"SCALAR"}}],
-            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0{attributes}}},"indices":2}}]}}],
-            "nodes":[{{"mesh":0,"scale":[-3,1,0.5]}}]}}"#
-        )
-    };
-    let input = file(&folder, "cube.gltf", &document(r#","NORMAL":1"#));
-    let output = folder.path().join("out.glb");
-    let refine = |options: &str| {
-        let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
-        let report = run(&command, &[&input, &output]).expect(0).json();
-        report["meshes"][0]["size"]["after"]["volume"]
-            .as_f64()
-            .expect("a number")
-    };
-    // As the scene shows it.
-    let whole = 8.0 * 1.5;
-    assert!((refine("--creases-from normals") - whole).abs() < 1e-9);
-    assert!(refine("--crease-angle none") < 0.7 * whole);
-    // Facets that are shaded flat do not tell edges apart: by its looks it is a part.
-    assert!((refine("") - whole).abs() < 1e-9);
-    run("refine {} -o {} --crease-angle none", &[&input, &output])
-        .expect(0)
-        .saying("12 edges have different normals on both sides");
-    assert!((volume(&input, "--creases-from normals") - 8.0 * 1.5).abs() < 1e-9);
-    run(
-        "refine {} -o {} --creases-from materials",
-        &[&input, &output],
-    )
-    .expect(2)
-    .saying("normals alone");
-    let bare = file(&folder, "bare.gltf", &document(""));
-    run("refine {} -o {} --creases-from normals", &[&bare, &output])
-        .expect(2)
-        .saying("has no normals");
+        "is for OBJ, PLY",
+    );
 }

@@ -1,11 +1,11 @@
-//! `--interpolate` and `--interpolate-within`: the limit surface through the vertices, in every command that has one.
+//! `--interpolate[=WITHIN]`: the limit surface through the vertices, in every command that has one.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, has_keys, run, soup};
+use crate::common::{done, file, folder, has_keys, json_of, soup};
 
 /// A peg of 16 facets and radius 5 between flat ends, as OBJ.
 fn peg() -> String {
@@ -57,7 +57,7 @@ fn a_peg_keeps_its_radius() {
     let refine = |options: &str| {
         let line =
             format!("refine {{}} -o {{}} --crease-angle 30 --tolerance 0.01 --report - {options}");
-        let run = run(&line, &[&input, &output]).expect(0);
+        let run = done(&line, &[&input, &output]);
         (run.json(), radii(&soup(&output).positions), run.stderr)
     };
     let (report, (_, most), _) = refine("");
@@ -91,7 +91,7 @@ fn a_peg_keeps_its_radius() {
     let percent = 100.0 * number(&found["displacement"]) / 264f64.sqrt();
     assert!((number(&found["displacement_percent"]) - percent).abs() < 1e-9);
 
-    let (report, (_, most), said) = refine("--interpolate-within 0.02");
+    let (report, (_, most), said) = refine("--interpolate=0.02");
     let found = &report["interpolation"];
     assert!((4.97..4.985).contains(&most), "{most}");
     assert!(said.contains("passes within 0.02 of 32 vertices"), "{said}");
@@ -100,7 +100,7 @@ fn a_peg_keeps_its_radius() {
         number(&found["least_energy"]) <= number(&found["energy"])
             && number(&found["energy"]) < 1.0
     );
-    let (report, ..) = refine("--interpolate-within 0%");
+    let (report, ..) = refine("--interpolate=0%");
     assert_eq!(report["interpolation"]["within"], 0.0);
 }
 
@@ -108,14 +108,13 @@ fn a_peg_keeps_its_radius() {
 fn every_command_with_a_limit_surface_has_it() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run(
+    done(
         "refine builtin:cup -o {} --interpolate --tolerance 0.2%",
         &[&output],
-    )
-    .expect(0);
+    );
     let measured = |options: &str| {
         let line = format!("measure {{}} --limit-of builtin:cup --json {options}");
-        run(&line, &[&output]).expect(0).json()
+        json_of(&line, &[&output])
     };
     let (plain, through) = (measured(""), measured("--interpolate"));
     assert_eq!(
@@ -125,52 +124,21 @@ fn every_command_with_a_limit_surface_has_it() {
     assert_eq!(through["reference"]["limit"]["interpolate_within"], 0.0);
     assert!(number(&through["hausdorff"]["symmetric_percent"]) <= 0.21);
     assert!(number(&plain["hausdorff"]["symmetric_percent"]) > 0.5);
-    let compared = run(
+    let compared = json_of(
         "compare builtin:tetrahedron --interpolate --json --samples 2000 --levels 1",
         &[],
-    )
-    .expect(0)
-    .json();
+    );
     assert_eq!(compared[0]["reference"]["interpolate_within"], 0.0);
 
     // Without refinement it is the control mesh.
-    run(
+    done(
         "refine builtin:cup -o {} --interpolate --method uniform --levels 0",
         &[&output],
-    )
-    .expect(0);
+    );
     let control = soup(&output);
     let plain = limitmesh_models::find("cup").expect("a model").soup();
     assert_eq!(control.positions.len(), plain.positions.len());
     assert!(control.positions != plain.positions);
     // A dry run knows of it.
-    run("refine builtin:cup --dry-run --interpolate", &[])
-        .expect(0)
-        .saying("passes through");
-}
-
-#[test]
-fn what_changes_nothing_is_said() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:spike -o {} --scheme butterfly --interpolate --tolerance 2%",
-        &[&output],
-    )
-    .expect(0)
-    .saying("as it is");
-    run(
-        "refine builtin:spike -o {} --interpolate --interpolate-within 1",
-        &[&output],
-    )
-    .expect(2);
-    run(
-        "refine builtin:spike -o {} --interpolate-within -1",
-        &[&output],
-    )
-    .expect(2)
-    .saying("at least 0");
-    run("measure builtin:spike builtin:cup --interpolate", &[])
-        .expect(2)
-        .saying("--limit-of");
+    done("refine builtin:cup --dry-run --interpolate", &[]).saying("passes through");
 }

@@ -8,8 +8,7 @@ use limitmesh::{Mesh, Triangles};
 use limitmesh_io::read;
 
 use crate::asset::{cube, first_mesh};
-use crate::common::{file, folder, has_keys, names, run};
-use crate::glb::Glb;
+use crate::common::{done, file, folder, has_keys, names, run, usage_error};
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -26,11 +25,10 @@ fn files_are_within_their_tolerances_and_nested() {
         folder.path().join("torus.ply"),
         folder.path().join("torus.json"),
     );
-    run(
+    done(
         "lod builtin:torus -o {} --tolerances 2%,0.5% --report {}",
         &[&out, &report],
     )
-    .expect(0)
     .saying("LOD1");
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
@@ -78,11 +76,10 @@ fn files_are_within_their_tolerances_and_nested() {
 fn morphs_begin_on_the_coarser_level() {
     let folder = folder();
     let out = folder.path().join("cup.ply");
-    run(
+    done(
         "lod builtin:cup -o {} --levels 2 --tolerance 0.5% --morph",
         &[&out],
-    )
-    .expect(0);
+    );
     let [fine, coarse] =
         [0, 1].map(|lod| read(folder.path().join(format!("cup_LOD{lod}.ply"))).expect("a mesh"));
     let axis = |name: &str| {
@@ -117,11 +114,10 @@ fn morphs_begin_on_the_coarser_level() {
 fn one_document_has_all_levels() {
     let folder = folder();
     let out = folder.path().join("cup.gltf");
-    run(
+    done(
         "lod builtin:cup -o {} --levels 3 --tolerance 0.1% --morph",
         &[&out],
-    )
-    .expect(0);
+    );
     let text = std::fs::read_to_string(&out).expect("a document");
     let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(document["meshes"].as_array().expect("meshes").len(), 3);
@@ -160,20 +156,18 @@ fn one_document_has_all_levels() {
 fn what_cannot_be_is_told() {
     let folder = folder();
     let out = folder.path().join("cup.obj");
-    run("lod builtin:sphere -o {} --tolerances 3,1,2", &[&out])
-        .expect(2)
-        .saying("number 3 comes to 2 in the mesh's unit, after 1");
-    run("lod builtin:cup -o -", &[])
-        .expect(2)
-        .saying("not to standard output");
+    usage_error(
+        "lod builtin:sphere -o {} --tolerances 3,1,2",
+        &[&out],
+        "number 3 is 2 in the mesh's unit, after 1",
+    );
+    usage_error("lod builtin:cup -o -", &[], "not to standard output");
     run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
     run("lod builtin:none -o {}", &[&out])
         .expect(1)
         .saying("none");
     let stl = folder.path().join("cup.stl");
-    run("lod builtin:cup -o {} --morph", &[&stl])
-        .expect(2)
-        .saying("cup.stl")
+    usage_error("lod builtin:cup -o {} --morph", &[&stl], "cup.stl")
         .saying("STL files have no place");
 }
 
@@ -193,83 +187,6 @@ fn a_cap_that_ends_the_levels_is_named() {
 const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\n\
     f 1/1 2/2 3/3\nusemtl blue\nf 1/1 3/3 4/4\n";
 
-/// What channels lead to, what is left out and why: as `refine` says it.
-#[test]
-fn what_channels_need_comes_along() {
-    let folder = folder();
-    let input = file(&folder, "in.obj", PAINTED);
-    file(
-        &folder,
-        "paint.mtl",
-        "newmtl red\nnewmtl blue\nKd 0 0.25 1\n",
-    );
-    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
-    let output = folder.path().join("deep/out.obj");
-    let said = run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
-    assert!(folder.path().join("deep/paint.mtl").is_file());
-    assert!(
-        !said.stderr.contains("left out: normals"),
-        "{}",
-        said.stderr
-    );
-    let mut levels = names(&folder.path().join("deep"));
-    levels.retain(|name| name.ends_with(".obj"));
-    assert!(
-        !levels.is_empty() && levels[0] == "out_LOD0.obj",
-        "{levels:?}"
-    );
-    for name in levels {
-        let text =
-            std::fs::read_to_string(folder.path().join("deep").join(&name)).expect("a level");
-        for line in ["mtllib paint.mtl", "usemtl red", "usemtl blue"] {
-            assert!(text.lines().any(|own| own == line), "{line} in {name}");
-        }
-        assert!(text.contains("\nvt ") && text.contains("\nvn "), "{name}");
-    }
-    run(
-        "lod {} -o {} --levels 2 --channel materials=drop",
-        &[&input, &output],
-    )
-    .expect(0)
-    .saying("left out: materials (by --channel)");
-    let output = folder.path().join("out.glb");
-    run("lod {} -o {} --levels 2", &[&input, &output]).expect(0);
-    let materials = Glb::read(&output).json["materials"].clone();
-    assert_eq!(
-        materials[1]["pbrMetallicRoughness"]["baseColorFactor"],
-        serde_json::json!([0.0, 0.25, 1.0, 1.0])
-    );
-}
-
-#[test]
-fn textures_of_ply_files_come_along() {
-    let folder = folder();
-    let seamed = crate::seams::cube().replace(
-        "element vertex",
-        "comment TextureFile wood.png\nelement vertex",
-    );
-    let input = file(&folder, "in.ply", &seamed);
-    file(&folder, "wood.png", "");
-    std::fs::create_dir(folder.path().join("deep")).expect("a folder");
-    let output = folder.path().join("deep/out.ply");
-    run("lod {} -o {} --levels 2 --ascii", &[&input, &output])
-        .expect(0)
-        .saying("vertices on seams of texture coordinates are written once for each side");
-    let text = std::fs::read_to_string(folder.path().join("deep/out_LOD0.ply")).expect("a level");
-    assert!(
-        text.contains("comment TextureFile wood.png\n"),
-        "{}",
-        &text[..400]
-    );
-    assert!(folder.path().join("deep/wood.png").is_file());
-    let other = run(
-        "lod {} -o {} --levels 2",
-        &[&input, &folder.path().join("out.obj")],
-    )
-    .expect(0);
-    other.saying("left out: wood.png (only PLY files name pictures themselves)");
-}
-
 /// Of an asset all but its nodes, skins and what names them.
 #[test]
 fn an_assets_materials_come_along() {
@@ -283,11 +200,10 @@ fn an_assets_materials_come_along() {
     );
     std::fs::write(&input, text).expect("written");
     let output = folder.path().join("out.gltf");
-    let said = run(
+    let said = done(
         "lod {} -o {} --levels 2 --crease-angle none",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     let said = said.saying("left out: joints and weights\n");
     assert!(!said.stderr.contains("place for them"), "{}", said.stderr);
     let document: serde_json::Value =
@@ -314,11 +230,10 @@ fn an_assets_materials_come_along() {
         [&materials[0]["material"], &materials[1]["material"]],
         [0, 1]
     );
-    let all = run(
+    let all = done(
         "lod {} -o {} --levels 2",
         &[&input, &folder.path().join("out.ply")],
-    )
-    .expect(0);
+    );
     all.saying("colours and textures of materials");
 }
 
@@ -328,23 +243,23 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     let folder = folder();
     let input = file(&folder, "rock_LOD0.obj", PAINTED);
     let rock = folder.path().join("rock.obj");
-    run("lod {} -o {}", &[&input, &rock])
-        .expect(2)
-        .saying("rock_LOD0.obj is an input");
+    usage_error(
+        "lod {} -o {}",
+        &[&input, &rock],
+        "rock_LOD0.obj is an input",
+    );
     assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
-    run(
+    usage_error(
         "lod {} -o {} --report {}",
         &[&input, &folder.path().join("a.glb"), &input],
-    )
-    .expect(2)
-    .saying("rock_LOD0.obj is an input");
+        "rock_LOD0.obj is an input",
+    );
     let own = folder.path().join("a_LOD1.obj");
-    run(
+    usage_error(
         "lod {} -o {} --report {}",
         &[&input, &folder.path().join("a.obj"), &own],
-    )
-    .expect(2)
-    .saying("a_LOD1.obj would be written twice");
+        "a_LOD1.obj would be written twice",
+    );
     std::fs::create_dir(folder.path().join("b_LOD3.obj")).expect("a folder");
     run("lod {} -o {}", &[&input, &folder.path().join("b.obj")])
         .expect(1)
@@ -357,71 +272,18 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
     .expect(1)
     .saying("no folder");
     for (option, value) in [
-        ("--uv-tolerance", "0.1"),
+        ("--attribute-tolerance", "uv=0.1"),
         ("--attribute-tolerance", "heat=1"),
     ] {
-        run(
+        usage_error(
             &format!("lod {{}} -o {{}} {option} {value}"),
             &[&input, &folder.path().join("d.obj")],
-        )
-        .expect(2)
-        .saying(&format!("{option} is for `refine`"));
+            &format!("{option} is for `refine`"),
+        );
     }
     assert_eq!(
         names(folder.path()),
         ["b_LOD3.obj", "rock_LOD0.obj"],
         "nothing is written"
     );
-}
-
-/// Levels that would be as coarse as the control mesh allows are told and left out, and whoever goes away meets levels in order.
-#[test]
-fn distances_grow_from_level_to_level() {
-    for words in [
-        "builtin:cup -o {}",
-        "builtin:cup -o {} --tolerances 20%,10%,1%,0.5%,0.1% --morph",
-        "builtin:head -o {} --levels 5",
-    ] {
-        let folder = folder();
-        let output = folder.path().join("out.glb");
-        let found = run(&format!("lod {words} --report -"), &[&output]).expect(0);
-        let report = found.json();
-        let levels = report["levels"].as_array().expect("a list");
-        let numbers = |key: &str| -> Vec<f64> {
-            levels
-                .iter()
-                .map(|level| level[key].as_f64().expect("a number"))
-                .collect()
-        };
-        let (triangles, distances, coverage) = (
-            numbers("triangles"),
-            numbers("switching_distance"),
-            numbers("least_coverage"),
-        );
-        assert!(
-            triangles.windows(2).all(|pair| pair[0] > pair[1]),
-            "{words}: {triangles:?}"
-        );
-        assert!(
-            distances.windows(2).all(|pair| pair[0] < pair[1]),
-            "{words}: {distances:?}"
-        );
-        assert!(
-            coverage.windows(2).all(|pair| pair[0] > pair[1]),
-            "{words}: {coverage:?}"
-        );
-        for level in levels.iter().filter(|level| !level["morph"].is_null()) {
-            assert!(
-                level["morph"]["from_distance"].as_f64() < level["morph"]["to_distance"].as_f64(),
-                "{level}"
-            );
-        }
-    }
-    let folder = folder();
-    run(
-        "lod builtin:cup -o {} --tolerances 20%,10%,1%",
-        &[&folder.path().join("out.glb")],
-    )
-    .expect(0)
-    .saying("left out: the next finer one");
 }

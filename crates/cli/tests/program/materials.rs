@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{file, folder, names, run};
+use crate::common::{done, file, folder, names, run};
 use crate::glb::Glb;
 
 /// The bytes that tell a PNG file, and others that make it one of its own.
@@ -74,9 +74,7 @@ fn colours_and_pictures_come_to_documents() {
     let output = folder.path().join("out.glb");
     // Once refined, once in levels of detail.
     for command in ["refine {} -o {}", "lod {} -o {} --levels 1"] {
-        run(command, &[&input, &output])
-            .expect(0)
-            .saying("odd.tga: left out: neither PNG nor JPEG");
+        done(command, &[&input, &output]).saying("odd.tga: left out: neither PNG nor JPEG");
         let glb = Glb::read(&output);
         has_materials(&glb.json);
         assert_eq!(image(&glb), ("image/png", picture(b"wood").as_slice()));
@@ -86,7 +84,7 @@ fn colours_and_pictures_come_to_documents() {
             glb.numbers(&glb.primitive(0)["indices"]).len() / 3
         );
     }
-    let piped = run("refine {} -o - --to gltf", &[&input]).expect(0);
+    let piped = done("refine {} -o - --to gltf", &[&input]);
     let json: Value = serde_json::from_str(&piped.stdout).expect("JSON");
     has_materials(&json);
     assert_eq!(
@@ -97,7 +95,7 @@ fn colours_and_pictures_come_to_documents() {
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
     let output = other.join("out.gltf");
-    run("refine {} -o {}", &[&input, &output]).expect(0);
+    done("refine {} -o {}", &[&input, &output]);
     let text = Glb::text(&output);
     has_materials(&text.json);
     assert_eq!(text.json["images"][0], json!({"uri": "skin/my%20wood.png"}));
@@ -113,7 +111,7 @@ fn libraries_and_pictures_come_to_other_folders() {
     let input = painted(&folder);
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("a folder");
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    done("refine {} -o {}", &[&input, &other.join("out.obj")]);
     for name in ["paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"] {
         let [was, is] =
             [folder.path(), &other].map(|folder| std::fs::read(folder.join(name)).expect(name));
@@ -122,7 +120,7 @@ fn libraries_and_pictures_come_to_other_folders() {
     let text = std::fs::read_to_string(other.join("out.obj")).expect("written");
     assert!(text.contains("mtllib paint.mtl\n") && text.contains("usemtl glass\n"));
     // Twice is as well as once.
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
+    done("refine {} -o {}", &[&input, &other.join("out.obj")]);
 }
 
 /// Writes a library for [`OBJ`], and gives the material `wood` of the document that comes of it, and what was said.
@@ -131,98 +129,11 @@ fn wood(folder: &Path, library: &str) -> (Value, String) {
     std::fs::write(&input, OBJ).expect("written");
     std::fs::write(folder.join("paint.mtl"), library).expect("written");
     let output = folder.join("out.glb");
-    let said = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    let said = done("refine {} -o {}", &[&input, &output]).stderr;
     (
         Glb::read(&output).json["materials"][0]["pbrMetallicRoughness"].take(),
         said,
     )
-}
-
-#[test]
-fn statements_of_libraries() {
-    let folder = folder();
-    let cases = [
-        ("Kd 0.5 0.25 1 # dull", json!([0.5, 0.25, 1.0, 1.0])),
-        ("Kd 0.5 \\\n 0.25 2", json!([0.5, 0.25, 1.0, 1.0])),
-        ("kd 0.5", json!([0.5, 0.5, 0.5, 1.0])),
-        ("Kd 0.5\nKd 1 x\nd\nTr nan", json!([0.5, 0.5, 0.5, 1.0])),
-        ("d 0.25", json!([1.0, 1.0, 1.0, 0.25])),
-        ("d -halo 0.25", json!([1.0, 1.0, 1.0, 0.25])),
-        ("Tr 0.25", json!([1.0, 1.0, 1.0, 0.75])),
-        // Programs that write this mean opaque.
-        ("Tr 1", json!([1.0, 1.0, 1.0, 1.0])),
-        ("newmtl other\nKd 0.5", json!([1.0, 1.0, 1.0, 1.0])),
-        (
-            "newmtl other\nKd 0.5\nnewmtl\t wood  \nKd 0.25",
-            json!([0.25, 0.25, 0.25, 1.0]),
-        ),
-    ];
-    for (statements, factor) in cases {
-        let (material, _) = wood(
-            folder.path(),
-            &format!("Kd 0.125\nnewmtl wood\n{statements}\n"),
-        );
-        assert_eq!(material["baseColorFactor"], factor, "{statements}");
-    }
-    let (_, said) = wood(
-        folder.path(),
-        "newmtl wood\nKs 1 1 1\nillum 2\nmap_Kd -s 2 2 a.png\n",
-    );
-    assert!(
-        said.contains("left out of the materials: Ks, illum, map_Kd -s\n"),
-        "{said}"
-    );
-}
-
-#[test]
-fn pictures_are_found_from_the_library() {
-    let folder = folder();
-    for name in ["mats", "tex"] {
-        std::fs::create_dir(folder.path().join(name)).expect("a folder");
-    }
-    std::fs::write(
-        folder.path().join("mats/paint.mtl"),
-        "newmtl wood\nmap_Kd ..\\tex\\wood.png\n",
-    )
-    .expect("written");
-    std::fs::write(folder.path().join("tex/wood.png"), picture(b"wood")).expect("written");
-    let input = file(
-        &folder,
-        "in.obj",
-        &OBJ.replace("paint.mtl", "mats/paint.mtl"),
-    );
-    let other = folder.path().join("other");
-    std::fs::create_dir(&other).expect("a folder");
-    run("refine {} -o {}", &[&input, &other.join("out.gltf")]).expect(0);
-    assert_eq!(
-        Glb::text(&other.join("out.gltf")).json["images"],
-        json!([{"uri": "tex/wood.png"}])
-    );
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
-    assert!(other.join("mats/paint.mtl").is_file());
-    assert_eq!(
-        std::fs::read(other.join("tex/wood.png")).expect("a copy"),
-        picture(b"wood")
-    );
-}
-
-#[test]
-fn documents_without_coordinates_have_no_pictures() {
-    let folder = folder();
-    painted(&folder);
-    let bare =
-        "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nusemtl wood\nf 1 2 3\nf 1 3 4\n";
-    let input = file(&folder, "bare.obj", bare);
-    let output = folder.path().join("out.glb");
-    let said = run("refine {} -o {}", &[&input, &output]).expect(0);
-    said.saying("skin/my wood.png: left out: there are no texture coordinates");
-    let json = Glb::read(&output).json;
-    assert!(
-        json.get("images").is_none() && json.get("textures").is_none(),
-        "{json}"
-    );
-    let model = json!({"baseColorFactor": [0.5, 0.25, 1.0, 1.0], "metallicFactor": 0});
-    assert_eq!(json["materials"][0]["pbrMetallicRoughness"], model);
 }
 
 #[test]
@@ -247,7 +158,7 @@ fn nothing_is_replaced() {
     };
     let before = state();
     for name in ["out.obj", "out.gltf"] {
-        run("refine {} -o {}", &[&input, &folder.path().join(name)]).expect(0);
+        done("refine {} -o {}", &[&input, &folder.path().join(name)]);
         assert_eq!(state(), before, "{name}");
     }
     // Another file in the way is kept, and then nothing is written.
@@ -263,82 +174,6 @@ fn nothing_is_replaced() {
     }
 }
 
-#[cfg(unix)]
-#[test]
-fn devices_get_no_files() {
-    let folder = folder();
-    let input = painted(&folder);
-    let other = folder.path().join("other");
-    std::fs::create_dir(&other).expect("a folder");
-    std::os::unix::fs::symlink("/dev/null", other.join("out.obj")).expect("a link");
-    run("refine {} -o {}", &[&input, &other.join("out.obj")]).expect(0);
-    assert_eq!(names(&other), ["out.obj"]);
-}
-
-/// Files of other programs: pictures arrive in documents and folders to the byte, and what is `Tr 1` there is opaque.
-#[test]
-fn materials_of_real_files() {
-    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
-        println!("skipped: LIMITMESH_MODELS names no folder");
-        return;
-    };
-    let assets = PathBuf::from(models).join("assets");
-    let cases = [
-        (
-            "fuze",
-            "fuze.obj.mtl",
-            "a-super-duper-material",
-            1.0,
-            Some("fuze uv.jpg"),
-        ),
-        (
-            "capsule",
-            "capsule.mtl",
-            "material0",
-            1.0,
-            Some("capsule0.jpg"),
-        ),
-        ("ico4uv", "ico4uv.mtl", "None", 0.8, None),
-    ];
-    for (name, library, material, grey, picture) in cases {
-        let folder = folder();
-        let input = assets.join(format!("{name}.obj"));
-        let output = folder.path().join("out.glb");
-        run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
-        let glb = Glb::read(&output);
-        let own = &glb.json["materials"][0];
-        assert_eq!(own["name"], material);
-        assert_eq!(
-            own["pbrMetallicRoughness"]["baseColorFactor"],
-            json!([grey, grey, grey, 1.0])
-        );
-        assert_eq!(own.get("alphaMode"), None);
-        let read = |folder: &Path, name: &str| std::fs::read(folder.join(name)).expect("a file");
-        if let Some(picture) = picture {
-            assert_eq!(
-                own["pbrMetallicRoughness"]["baseColorTexture"],
-                json!({"index": 0})
-            );
-            assert_eq!(
-                image(&glb),
-                ("image/jpeg", read(&assets, picture).as_slice())
-            );
-        }
-        run(
-            "refine {} -o {} --tolerance 1%",
-            &[&input, &folder.path().join("out.obj")],
-        )
-        .expect(0);
-        let mut expected = vec!["out.glb", "out.obj", library];
-        expected.extend(picture);
-        expected.sort_unstable();
-        assert_eq!(names(folder.path()), expected);
-        for name in [Some(library), picture].into_iter().flatten() {
-            assert_eq!(read(folder.path(), name), read(&assets, name), "{name}");
-        }
-    }
-}
-
 #[test]
 fn what_is_missing_or_elsewhere_is_named() {
     let outside = folder();
@@ -348,9 +183,7 @@ fn what_is_missing_or_elsewhere_is_named() {
     let input = inside.join("in.obj");
     let output = inside.join("out.glb");
     std::fs::write(&input, OBJ).expect("written");
-    run("refine {} -o {}", &[&input, &output])
-        .expect(0)
-        .saying("paint.mtl: left out: No such file");
+    done("refine {} -o {}", &[&input, &output]).saying("paint.mtl: left out: No such file");
     let bare: Vec<Value> = ["wood", "glass", "odd"]
         .map(|name| json!({ "name": name }))
         .into();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{file, folder, has_keys, run};
+use crate::common::{done, file, folder, has_keys, json_of, run, usage_error};
 
 const CONTRACT: &str = "version surface.path surface.triangles reference.path reference.triangles
     reference.limit hausdorff.kind hausdorff.symmetric hausdorff.symmetric_percent hausdorff.forward
@@ -16,9 +16,7 @@ const CONTRACT: &str = "version surface.path surface.triangles reference.path re
     seconds.prepare seconds.measure";
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
-    let report = run(&format!("measure {arguments} --json"), paths)
-        .expect(0)
-        .json();
+    let report = json_of(&format!("measure {arguments} --json"), paths);
     has_keys(&report, CONTRACT);
     report
 }
@@ -68,26 +66,16 @@ fn parallel_squares_are_as_far_apart_as_they_stand() {
 }
 
 #[test]
-fn a_surface_has_no_distance_to_itself() {
-    let report = measure("builtin:cup builtin:cup", &[]);
-    assert!(
-        number(&report["hausdorff"]["symmetric_percent"]) < 1e-10,
-        "{report}"
-    );
-}
-
-#[test]
 fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let folder = folder();
     let refined = folder.path().join("refined.ply");
     let mut last = f64::INFINITY;
     for levels in 0..4 {
         let options = format!("--method uniform --limit --levels {levels}");
-        run(
+        done(
             &format!("refine builtin:torus -o {{}} {options}"),
             &[&refined],
-        )
-        .expect(0);
+        );
         let report = measure("{} --limit-of builtin:torus", &[&refined]);
         let percent = number(&report["hausdorff"]["symmetric_percent"]);
         // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.
@@ -108,100 +96,6 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     assert_eq!(same["reference"]["limit"]["chosen"], false);
 }
 
-/// What is measured lies on the limit surface with its vertices alone, as the reference does: compared with itself it would be at no
-/// distance. How far it is the next levels show.
-#[test]
-fn a_mesh_of_many_levels_is_not_its_own_reference() {
-    let folder = folder();
-    let refined = folder.path().join("refined.ply");
-    run(
-        "refine builtin:tetrahedron -o {} --method uniform --limit --levels 5",
-        &[&refined],
-    )
-    .expect(0);
-    let report = measure("{} --limit-of builtin:tetrahedron", &[&refined]);
-    assert_eq!(report["reference"]["limit"]["levels"], 7);
-    let certified = run(
-        "measure {} --limit-of builtin:tetrahedron --certified --json",
-        &[&refined],
-    )
-    .expect(0)
-    .json();
-    let [lower, upper] = ["lower", "upper"].map(|end| number(&certified["hausdorff"][end]));
-    let found = number(&report["hausdorff"]["symmetric"]);
-    // Two levels finer it is a sixteenth of that off itself.
-    assert!(
-        0.9 * lower < found && found < upper,
-        "{found}, certainly from {lower} to {upper}"
-    );
-}
-
-/// Area and volume are beside what is asked for: where they are beyond what numbers hold, distances are not.
-#[test]
-fn distances_are_measured_where_areas_are_not_known() {
-    let folder = folder();
-    let octahedron = |r: &str| {
-        let corners = [[r, "0", "0"], ["0", r, "0"], ["0", "0", r]].map(|at| at.join(" "));
-        let opposite = corners.clone().map(|at| at.replace(r, &format!("-{r}")));
-        let vertices: String = corners
-            .iter()
-            .chain(&opposite)
-            .map(|at| format!("v {at}\n"))
-            .collect();
-        format!(
-            "{vertices}f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n"
-        )
-    };
-    let [near, far] = ["1", "1e110"].map(|r| file(&folder, &format!("{r}.obj"), &octahedron(r)));
-    let of = |path: &Path| measure("{} --limit-of {}", &[path, path]);
-    let (near, far) = (of(&near), of(&far));
-    let percent = |report: &Value| number(&report["hausdorff"]["symmetric_percent"]);
-    assert!(
-        (percent(&near) - percent(&far)).abs() < 1e-6,
-        "{near:#} {far:#}"
-    );
-    assert!(
-        near["reference"]["volume"].is_f64() && far["reference"]["volume"].is_null(),
-        "{far:#}"
-    );
-}
-
-#[test]
-fn the_text_says_that_samples_give_a_lower_bound() {
-    let text = run(
-        "measure builtin:icosphere --limit-of builtin:icosphere",
-        &[],
-    )
-    .expect(0)
-    .stdout;
-    for words in [
-        "lower bound",
-        "samples",
-        "% of the control mesh's diagonal",
-        "RMS",
-        "closest point",
-        "5 levels",
-    ] {
-        assert!(text.contains(words), "{words} in:\n{text}");
-    }
-}
-
-#[test]
-fn non_manifold_surfaces_can_be_measured() {
-    let folder = folder();
-    let fan = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
-    let input = file(&folder, "fan.obj", fan);
-    let report = measure("{} {}", &[&input, &input]);
-    assert!(number(&report["hausdorff"]["symmetric"]) < 1e-12);
-    assert_eq!(report["surface"]["diagnosis"]["clean"], false);
-    assert!(
-        run("measure {} {}", &[&input, &input])
-            .expect(0)
-            .stdout
-            .contains("repaired first")
-    );
-}
-
 #[test]
 fn heat_maps_are_meshes_or_pictures() {
     let folder = folder();
@@ -219,7 +113,7 @@ fn heat_maps_are_meshes_or_pictures() {
         folder.path().join("heat.ply"),
         folder.path().join("heat.png"),
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]).expect(0);
+    done("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]);
     let written = crate::common::soup(&mesh);
     assert_eq!(written.positions.len(), 4);
     let bytes = std::fs::read(&mesh).expect("a file");
@@ -228,15 +122,13 @@ fn heat_maps_are_meshes_or_pictures() {
         header.contains("quality") && header.contains("uchar red"),
         "{header}"
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &picture]).expect(0);
+    done("measure {} {} --heatmap {}", &[&tilted, &low, &picture]);
     assert!(
         std::fs::read(&picture)
             .expect("a file")
             .starts_with(b"\x89PNG")
     );
-    run("measure {} {} --heatmap {}", &[&tilted, &low, &low])
-        .expect(2)
-        .saying(".png");
+    usage_error("measure {} {} --heatmap {}", &[&tilted, &low, &low], ".png");
 }
 
 const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind hausdorff.lower hausdorff.upper
@@ -251,57 +143,6 @@ fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
         .json();
     has_keys(&report, CERTIFIED);
     report["hausdorff"].clone()
-}
-
-#[test]
-fn certified_intervals_hold_the_distance() {
-    let folder = folder();
-    let low = file(
-        &folder,
-        "low.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
-    );
-    let high = file(
-        &folder,
-        "high.obj",
-        "v 0 0 .25\nv 2 0 .25\nv 2 1 .25\nv 0 1 .25\nf 1 2 3 4\n",
-    );
-    let far = (1.0f64 + 0.0625).sqrt();
-    for (gap, widest) in [
-        ("", 0.01 * far),
-        ("--gap 1e-6", 1e-6),
-        ("--gap 0.1%", 0.001 * 5f64.sqrt()),
-        ("--gap 0", 1e-9),
-    ] {
-        let h = certified(&format!("{{}} {{}} {gap}"), &[&low, &high], 0);
-        assert_eq!(
-            (&h["kind"], &h["converged"]),
-            (&"certified interval".into(), &true.into())
-        );
-        for (direction, truth) in [(&h["forward"], 0.25), (&h["backward"], far), (&h, far)] {
-            let (lower, upper) = (number(&direction["lower"]), number(&direction["upper"]));
-            assert!(
-                lower <= truth && truth <= upper && upper - lower <= widest,
-                "{gap}: {direction}"
-            );
-        }
-        near(
-            &h["upper_percent"],
-            100.0 * number(&h["upper"]) / 5f64.sqrt(),
-        );
-    }
-    let text = run("measure {} {} --certified", &[&low, &high])
-        .expect(0)
-        .stdout;
-    for words in [
-        "certified",
-        "at least",
-        "at most",
-        "backward maximum near (2, ",
-        "% of the second mesh's diagonal",
-    ] {
-        assert!(text.contains(words), "{words} in:\n{text}");
-    }
 }
 
 #[test]
@@ -321,43 +162,32 @@ fn a_certified_interval_that_is_cut_short_is_given_with_code_3() {
 #[test]
 fn what_belongs_to_certified_distances_and_what_does_not() {
     let two = "measure builtin:cup builtin:torus";
-    run(&format!("{two} --gap 1%"), &[])
-        .expect(2)
-        .saying("--certified");
-    run(&format!("{two} --max-work 5"), &[])
-        .expect(2)
-        .saying("--certified");
-    run(&format!("{two} --certified --gap -1"), &[])
-        .expect(2)
-        .saying("at least 0");
-    run(&format!("{two} --certified --samples 9"), &[])
-        .expect(2)
-        .saying("--samples");
-    run(
+    usage_error(&format!("{two} --gap 1%"), &[], "--certified");
+    usage_error(&format!("{two} --max-work 5"), &[], "--certified");
+    usage_error(&format!("{two} --certified --gap -1"), &[], "at least 0");
+    usage_error(&format!("{two} --certified --samples 9"), &[], "--samples");
+    usage_error(
         "measure builtin:cup --limit-of builtin:cup --certified --reference-levels 3",
         &[],
-    )
-    .expect(2)
-    .saying("sampled");
+        "sampled",
+    );
 }
 
 #[test]
 fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let refined = run(
+    let refined = json_of(
         "refine builtin:cup -o {} --tolerance 0.5% --report -",
         &[&output],
-    )
-    .expect(0)
-    .json();
+    );
     let (lower, upper) = (
         number(&refined["error"]["lower"]),
         number(&refined["error"]["upper"]),
     );
     for options in ["", "--gap 0.05%"] {
         let words = format!("measure {{}} --limit-of builtin:cup --certified --json {options}");
-        let report = run(&words, &[&output]).expect(0).json();
+        let report = json_of(&words, &[&output]);
         let h = &report["hausdorff"];
         let (low, high) = (number(&h["lower"]), number(&h["upper"]));
         // Two intervals for one distance overlap.
@@ -375,9 +205,7 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
         assert!(number(&limit["error"]) > 0.0 && number(&limit["error"]) <= 0.5 * wide);
         assert_eq!(h["converged"], true);
     }
-    let text = run("measure {} --limit-of builtin:cup --certified", &[&output])
-        .expect(0)
-        .stdout;
+    let text = done("measure {} --limit-of builtin:cup --certified", &[&output]).stdout;
     assert!(
         text.contains("limit surface of builtin:cup") && text.contains("certainly within"),
         "{text}"
@@ -396,32 +224,6 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
     .expect(2);
 }
 
-/// Uniform refinement and a sphere: distances to the limit surface that no exact refinement had a part in.
-#[test]
-fn the_distance_of_other_meshes_to_the_limit_surface_is_certified() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    for options in [
-        "--method uniform --levels 2 --limit",
-        "--method limit-normal --angle 8",
-    ] {
-        run(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&output],
-        )
-        .expect(0);
-        let sampled = measure("{} --limit-of builtin:torus", &[&output]);
-        let h = certified("{} --limit-of builtin:torus", &[&output], 0);
-        let sampled = number(&sampled["hausdorff"]["symmetric"]);
-        let (low, high) = (number(&h["lower"]), number(&h["upper"]));
-        // The samples' own limit surface is a mesh as well: off by hundredths of this distance.
-        assert!(
-            sampled <= 1.02 * high && sampled >= 0.9 * low,
-            "{options}: {sampled} in {low}, {high}"
-        );
-    }
-}
-
 /// What `refine` proves and what `measure` finds are per cent of one diagonal, the control mesh's; its limit surface is
 /// smaller, and so is the box of the refined mesh.
 #[test]
@@ -431,25 +233,22 @@ fn refine_and_measure_speak_of_one_diagonal() {
         folder.path().join("cup.ply"),
         folder.path().join("cup.json"),
     );
-    run(
+    done(
         "refine builtin:cup -o {} --tolerance 0.2% --report {}",
         &[&mesh, &report],
-    )
-    .expect(0);
+    );
     let refined: Value =
         serde_json::from_str(&std::fs::read_to_string(&report).expect("a report")).expect("JSON");
     let error = &refined["error"];
-    let info = run("info builtin:cup --json", &[]).expect(0).json();
+    let info = json_of("info builtin:cup --json", &[]);
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);
     assert_eq!(number(&error["diagonal"]), diagonal);
 
     let sampled = measure("{} --limit-of builtin:cup", &[&mesh]);
-    let certified = run(
+    let certified = json_of(
         "measure {} --limit-of builtin:cup --certified --json",
         &[&mesh],
-    )
-    .expect(0)
-    .json();
+    );
     let (sampled, certified) = (&sampled["hausdorff"], &certified["hausdorff"]);
     for found in [sampled, certified] {
         assert_eq!(number(&found["diagonal"]), diagonal);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{file, folder, names, run};
+use crate::common::{done, file, folder, names, usage_error};
 
 const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
@@ -15,18 +15,15 @@ fn is_unchanged(input: &Path) -> bool {
 fn a_result_without_a_name_stands_by_its_input_as_smooth() {
     let folder = folder();
     let inputs = ["a.obj", "b.obj"].map(|name| file(&folder, name, TETRAHEDRON));
-    run("refine {} --tolerance 5%", &[&inputs[0]])
-        .expect(0)
-        .saying("a-smooth.obj");
+    done("refine {} --tolerance 5%", &[&inputs[0]]).saying("a-smooth.obj");
     assert_eq!(names(folder.path()), ["a-smooth.obj", "a.obj", "b.obj"]);
     // Several, in another format; what is there of an earlier run is replaced.
-    run(
+    done(
         "refine {} {} --tolerance 5% --to stl",
         &[&inputs[0], &inputs[1]],
     )
-    .expect(0)
     .saying("b-smooth.stl");
-    run("refine {} {} --tolerance 5%", &[&inputs[0], &inputs[1]]).expect(0);
+    done("refine {} {} --tolerance 5%", &[&inputs[0], &inputs[1]]);
     let all = [
         "a-smooth.obj",
         "a-smooth.stl",
@@ -37,11 +34,9 @@ fn a_result_without_a_name_stands_by_its_input_as_smooth() {
     ];
     assert_eq!(names(folder.path()), all);
     assert!(inputs.iter().all(|input| is_unchanged(input)));
-    run("refine {} --dry-run", &[&inputs[0]]).expect(0);
+    done("refine {} --dry-run", &[&inputs[0]]);
     assert_eq!(names(folder.path()), all);
-    run("refine - --from obj", &[])
-        .expect(2)
-        .saying("--output FILE names it");
+    usage_error("refine - --from obj", &[], "--output FILE names it");
 }
 
 #[test]
@@ -61,9 +56,11 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
     let other = file(&folder, "b.obj", TETRAHEDRON);
     let dotted = folder.path().join(".").join("a.obj");
     let refused = |words: &str, paths: &[&Path]| {
-        run(words, paths)
-            .expect(2)
-            .saying("is an input, which the result would replace; --overwrite");
+        usage_error(
+            words,
+            paths,
+            "is an input, which the result would replace; --overwrite",
+        );
         assert!(is_unchanged(&input) && is_unchanged(&other), "{words}");
     };
     refused("refine {} -o {} --tolerance 5%", &[&input, &input]);
@@ -88,34 +85,31 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
     refused("refine {} -o {} --tolerance 5%", &[&input, &hard]);
     // Another input would be gone before it is read.
     let smooth = file(&folder, "a-smooth.obj", TETRAHEDRON);
-    run(
+    usage_error(
         "refine {} {} --tolerance 5% --overwrite",
         &[&input, &smooth],
-    )
-    .expect(2)
-    .saying("is an input, too");
+        "is an input, too",
+    );
     assert!(is_unchanged(&smooth));
     let ply = folder.path().join("c.ply");
-    run("refine {} -o {} --tolerance 5%", &[&input, &ply]).expect(0);
+    done("refine {} -o {} --tolerance 5%", &[&input, &ply]);
     let before = std::fs::read(&ply).expect("a file");
     let words = "is an input, which the result would replace";
-    run("project {} --onto {} -o {}", &[&ply, &input, &ply])
-        .expect(2)
-        .saying(words);
-    run("measure {} {} --heatmap {}", &[&ply, &input, &ply])
-        .expect(2)
-        .saying("is an input");
+    usage_error("project {} --onto {} -o {}", &[&ply, &input, &ply], words);
+    usage_error(
+        "measure {} {} --heatmap {}",
+        &[&ply, &input, &ply],
+        "is an input",
+    );
     assert_eq!(std::fs::read(&ply).expect("a file"), before);
 
-    run(
+    done(
         "refine {} {} -o {} --tolerance 5% --overwrite",
         &[&input, &other, folder.path()],
-    )
-    .expect(0);
+    );
     assert!(!is_unchanged(&input) && !is_unchanged(&other));
-    run(
+    done(
         "project {} --onto {} -o {} --overwrite",
         &[&ply, &input, &ply],
-    )
-    .expect(0);
+    );
 }

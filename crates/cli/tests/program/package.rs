@@ -7,7 +7,7 @@ use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
-use crate::common::{counts, folder, run, soup};
+use crate::common::{counts, done, folder, json_of, run, soup, usage_error};
 
 const RELATIONSHIPS: &str = "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" \
                              Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
@@ -134,11 +134,10 @@ fn triangles_inherit_what_their_side_carries() {
     };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
     // With sharp edges the cube is itself; flat regions keep the sides apart, as these carry different things.
-    run(
+    done(
         "refine {} -o {} --crease-angle 30 --divide-flat --tolerance 1%",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     let found = triangles(&output);
     assert!(found.len() >= 12);
     for (corners, tag) in &found {
@@ -149,11 +148,10 @@ fn triangles_inherit_what_their_side_carries() {
         assert_eq!(rest, expected.strip_prefix(" pid"), "{tag}");
     }
     // The round cube: from each side two thirds and more of the surface where it was.
-    run(
+    done(
         "refine {} -o {} --tolerance 0.5% --crease-angle none",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     let found = triangles(&output);
     assert!(found.len() > 100);
     for (corners, tag) in &found {
@@ -175,22 +173,25 @@ fn triangles_inherit_what_their_side_carries() {
         }
     }
     // Left out on demand.
-    run(
+    done(
         "refine {} -o {} --channel paint_color=drop --channel x:own=drop",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert!(
         triangles(&output)
             .iter()
             .all(|(_, tag)| !tag.contains("paint_color") && tag.contains("pid"))
     );
-    run("refine {} -o {} --channel pid=linear", &[&input, &output])
-        .expect(2)
-        .saying("it can be nearest or drop");
-    run("refine {} -o {} --channel colour=drop", &[&input, &output])
-        .expect(2)
-        .saying("no channel 'colour'; there are: p1; paint_color; pid; x:own");
+    usage_error(
+        "refine {} -o {} --channel pid=linear",
+        &[&input, &output],
+        "it can be nearest or drop",
+    );
+    usage_error(
+        "refine {} -o {} --channel colour=drop",
+        &[&input, &output],
+        "no channel 'colour'; there are: p1; paint_color; pid; x:own",
+    );
 }
 
 #[test]
@@ -206,11 +207,10 @@ fn paint_in_parts_is_taken_at_the_centre() {
         }
     };
     let input = cube(&folder, "in.3mf", &of_side, "", ITEM);
-    let found = run(
+    let found = done(
         "refine {} -o {} --tolerance 0.2% --crease-angle none",
         &[&input, &output],
-    )
-    .expect(0);
+    );
     found.saying("took paint at the centre");
     let found = triangles(&output);
     let paint = |tag: &str| value(tag, "slic3rpe:mmu_segmentation").to_owned();
@@ -242,44 +242,41 @@ fn lengths_are_the_builds() {
         "<item objectid=\"1\"/><item objectid=\"1\" transform=\"0 0 30 0 1 0 -1 0 0 100 0 0\"/>";
     let large = cube(&folder, "large.3mf", &plain, "", large);
     let [few, many] = [&small, &large].map(|input: &PathBuf| {
-        run(
+        done(
             "refine {} -o {} --tolerance 0.5mm --crease-angle none",
             &[input, &output],
-        )
-        .expect(0);
+        );
         triangles(&output).len()
     });
     assert!(many > 4 * few, "{many} and {few}");
     // The file says what it is in.
-    run("refine {} -o {} --unit mm", &[&small, &output])
-        .expect(2)
-        .saying("says that it is in cm");
-    let report = run(
+    usage_error(
+        "refine {} -o {} --unit mm",
+        &[&small, &output],
+        "says that it is in cm",
+    );
+    let report = json_of(
         "refine {} -o {} --tolerance 0.5mm --report - --crease-angle none",
         &[&small, &output],
-    )
-    .expect(0)
-    .json();
+    );
     let mesh = &report["meshes"][0];
     assert_eq!(mesh["parameters"]["exact"]["tolerance"], 0.05);
     assert!(mesh["error"]["upper"].as_f64().expect("a number") <= 0.05);
     // What another command finds between the files.
-    let measured = run(
+    let measured = json_of(
         "measure {} --limit-of {} --certified --json --crease-angle none",
         &[&output, &small],
-    )
-    .expect(0)
-    .json();
+    );
     assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") <= 0.0501);
     // All items together, in another format and from one.
     let stl = folder.path().join("out.stl");
-    run("refine {} -o {} --tolerance 1%", &[&large, &stl]).expect(0);
+    done("refine {} -o {} --tolerance 1%", &[&large, &stl]);
     assert!(
         soup(&stl).positions.iter().any(|p| p[0] > 90.0)
             && soup(&stl).positions.iter().any(|p| p[0] < 1.0)
     );
     let from = folder.path().join("from.3mf");
-    run("refine builtin:cube -o {} --tolerance 1%", &[&from]).expect(0);
+    done("refine builtin:cube -o {} --tolerance 1%", &[&from]);
     let read = soup(&from);
     assert_eq!(
         (
@@ -290,11 +287,10 @@ fn lengths_are_the_builds() {
     );
     // The same package from and to streams of bytes.
     let picture = folder.path().join("out.png");
-    run(
+    done(
         "refine {} -o {} --tolerance 1% --picture {}",
         &[&large, &output, &picture],
-    )
-    .expect(0);
+    );
     assert!(
         std::fs::read(&picture)
             .expect("a picture")
@@ -314,19 +310,17 @@ fn what_cannot_be_followed_stays_and_is_told() {
         "<b:beamlattice><b:beam v1=\"0\" v2=\"7\"/></b:beamlattice>",
         ITEM,
     );
-    run("refine {} -o {}", &[&beams, &output]).expect(0).saying(
+    done("refine {} -o {}", &[&beams, &output]).saying(
         "object 1 'Box': kept as it is: b:beamlattice names its vertices or triangles by number",
     );
     assert_eq!(triangles(&output).len(), 12);
     let mixed = cube(&folder, "mixed.3mf", &of_side, "", ITEM);
-    run("refine {} -o {} --optimize", &[&mixed, &output])
-        .expect(0)
+    done("refine {} -o {} --optimize", &[&mixed, &output])
         .saying("its triangles carry different things");
-    let told = run(
+    let told = done(
         "refine {} -o {} --method uniform --levels 1",
         &[&mixed, &output],
     )
-    .expect(0)
     .stderr;
     assert!(
         !told.contains("kept as it is") && triangles(&output).len() == 48,
@@ -340,11 +334,10 @@ fn what_cannot_be_followed_stays_and_is_told() {
         "",
         ITEM,
     );
-    run(
+    done(
         "refine {} -o {} --method uniform --levels 1",
         &[&plain, &output],
-    )
-    .expect(0);
+    );
     let found = triangles(&output);
     assert!(
         found.len() == 48
@@ -352,10 +345,12 @@ fn what_cannot_be_followed_stays_and_is_told() {
                 .iter()
                 .all(|(_, tag)| tag.contains("pid=\"9\" p1=\"0\""))
     );
-    run("refine {} --dry-run", &[&mixed]).expect(0);
-    run("refine {} -o {} --angle 5 --view 0,0,1", &[&plain, &output])
-        .expect(2)
-        .saying("built many times");
+    done("refine {} --dry-run", &[&mixed]);
+    usage_error(
+        "refine {} -o {} --angle 5 --view 0,0,1",
+        &[&plain, &output],
+        "look at one mesh",
+    );
     let unbuilt = cube(&folder, "unbuilt.3mf", &of_side, "", "");
     run("refine {} -o {}", &[&unbuilt, &output])
         .expect(1)
@@ -372,7 +367,7 @@ fn info_lists_objects() {
         "<x/>",
         &ITEM.repeat(3),
     );
-    let found = run("info {}", &[&input]).expect(0);
+    let found = done("info {}", &[&input]);
     assert!(
         found.stdout.contains("in cm; 3 items are built"),
         "{}",
@@ -381,7 +376,7 @@ fn info_lists_objects() {
     assert!(found.stdout.contains(
         "object 1 'Box': 8 vertices, 12 triangles, built 3 times; triangles have pid; x"
     ));
-    let json = run("info {} --json", &[&input]).expect(0).json();
+    let json = json_of("info {} --json", &[&input]);
     assert_eq!(json["package"]["objects"][0]["built"], 3);
     assert_eq!(json["package"]["unit"], "cm");
 }
@@ -396,14 +391,13 @@ fn units_come_out_as_they_were_said() {
         ("--unit in", "inch", "in"),
         ("--unit um", "micron", "µm"),
     ] {
-        run(&format!("refine builtin:cube -o {{}} {words}"), &[&output]).expect(0);
+        done(&format!("refine builtin:cube -o {{}} {words}"), &[&output]);
         let source = limitmesh_io::threemf::Package::open(&output).expect("a package");
         assert_eq!(format!("{:?}", source.unit()).to_lowercase(), unit);
         let again = folder.path().join("again.3mf");
-        run(
+        done(
             &format!("refine {{}} -o {{}} --tolerance 0.5{of_length}"),
             &[&output, &again],
-        )
-        .expect(0);
+        );
     }
 }

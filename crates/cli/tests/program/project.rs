@@ -1,6 +1,6 @@
 //! `project`: points against the limit surface, in text, JSON and files.
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, run};
 
 /// Corners in the order of the axes, faces counter-clockwise from outside.
 const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
@@ -23,12 +23,10 @@ fn points_along_the_axes_of_an_octahedron() {
         "x,y,z\n2,0,0\n0,-3,0\n0.3,0,0 # inside\n",
     );
     let out = folder.path().join("out.csv");
-    let found = run(
+    let found = json_of(
         "project {} --onto {} -o {} --json",
         &[&points, &control, &out],
-    )
-    .expect(0)
-    .json();
+    );
     assert_eq!(
         (&found["points"]["count"], &found["sign"]),
         (&3.into(), &"inside".into())
@@ -57,9 +55,7 @@ fn points_along_the_axes_of_an_octahedron() {
     assert_eq!((rows.len(), rows[0].len()), (3, 11));
     assert!((rows[0][3] - (2.0 - corner)).abs() < 1e-6);
     assert!(rows[2][3] < 0.0 && rows[2][3] > 0.3 - corner - 3.5e-6);
-    let text = run("project {} --onto {}", &[&points, &control])
-        .expect(0)
-        .stdout;
+    let text = done("project {} --onto {}", &[&points, &control]).stdout;
     assert!(text.contains("RMS") && text.contains("1 inside"), "{text}");
 }
 
@@ -74,7 +70,7 @@ fn a_scan_keeps_its_vertices_and_triangles() {
         "v 0.5 0.1 0\nv 0 0.5 0.1\nv 0.1 0 0.5\nf 1 2 3\n",
     );
     let out = folder.path().join("map.ply");
-    run("project {} --onto {} -o {}", &[&scan, &control, &out]).expect(0);
+    done("project {} --onto {} -o {}", &[&scan, &control, &out]);
     let soup = limitmesh_io::read(&out).expect("a mesh");
     assert_eq!(
         soup.positions,
@@ -91,9 +87,7 @@ fn a_scan_keeps_its_vertices_and_triangles() {
         let face = value("control_face", vertex);
         let weights = ["w0", "w1", "w2"].map(|name| value(name, vertex));
         let place = format!("{face},{},{},{}", weights[0], weights[1], weights[2]);
-        let there = run(&format!("evaluate {{}} --at {place} --json"), &[&control])
-            .expect(0)
-            .json();
+        let there = json_of(&format!("evaluate {{}} --at {place} --json"), &[&control]);
         for (axis, name) in ["closest_x", "closest_y", "closest_z"]
             .into_iter()
             .enumerate()
@@ -103,7 +97,7 @@ fn a_scan_keeps_its_vertices_and_triangles() {
         assert!(value("quality", vertex) > 0.0);
     }
     let picture = folder.path().join("map.png");
-    run("project {} --onto {} -o {}", &[&scan, &control, &picture]).expect(0);
+    done("project {} --onto {} -o {}", &[&scan, &control, &picture]);
     assert!(
         std::fs::read(&picture)
             .expect("a picture")
@@ -117,12 +111,10 @@ fn open_surfaces_have_two_sides() {
     let points = file(&folder, "points.xyz", "0.5 0.3 2\n0.5 0.3 -1\n");
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
     let control = file(&folder, "square.obj", square);
-    let found = run(
+    let found = json_of(
         "project {} --onto {} --boundary corners --json",
         &[&points, &control],
-    )
-    .expect(0)
-    .json();
+    );
     assert_eq!(found["sign"], "normal");
     near(&found["distance"]["greatest"], 2.0);
     near(&found["distance"]["least"], -1.0);

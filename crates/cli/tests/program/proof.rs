@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test's helpers fail the test")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use limitmesh_check::proof::Proof;
 use limitmesh_check::{read, verdict};
 use serde_json::{Value, json};
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, json_of, usage_error};
 
 /// Triangles that are refused, the files being as they are.
 fn refused(control: Option<&Path>, result: &Path, proof: &Path, times: f64) -> usize {
@@ -29,10 +29,7 @@ fn proven(input: &str, options: &str, ending: &str) -> Value {
     let [result, proof] =
         ["result", "proof"].map(|name| folder.path().join(format!("{name}.{ending}")));
     let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
-    let report = run(&command, &[&result, &proof])
-        .expect(0)
-        .saying("proves")
-        .json();
+    let report = done(&command, &[&result, &proof]).saying("proves").json();
     let control = (!input.starts_with("builtin:")).then_some(Path::new(input));
     assert_eq!(
         refused(control, &result, &proof, 1.0),
@@ -51,74 +48,6 @@ fn proven(input: &str, options: &str, ending: &str) -> Value {
     report
 }
 
-/// What was certified is confirmed, not a little more.
-#[test]
-fn built_in_models_are_confirmed_as_they_are_certified() {
-    for model in limitmesh_models::all() {
-        for tolerance in ["0.1%", "0.01%"] {
-            let report = proven(
-                &format!("builtin:{}", model.name),
-                &format!("--tolerance {tolerance}"),
-                "ply",
-            );
-            assert!(
-                report["error"]["proven"].is_null(),
-                "{} {tolerance}: {}",
-                model.name,
-                report["error"]
-            );
-        }
-    }
-}
-
-fn shared(name: &str) -> Option<PathBuf> {
-    let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {
-        println!("skipped: LIMITMESH_MODELS names no folder");
-        return None;
-    };
-    Some(Path::new(&models).join(name))
-}
-
-#[test]
-fn shared_models_are_confirmed_as_they_are_certified() {
-    for name in [
-        "bunny_1k.off",
-        "mechpart_creased.obj",
-        "mannequin.off",
-        "bunny_3674.obj",
-        "teddy.obj",
-        "skull_low.obj",
-        "boot_684.off",
-        "plane_holes.obj",
-        "sphere_360.obj",
-        "monsterfrog.obj",
-        "loop_pole64.obj",
-        "rook_creased.obj",
-        "loop_icos_semisharp.obj",
-        "loop_saddle_edgecorner.obj",
-        "bob_cage.obj",
-        "beetle.obj",
-        "teapot.obj",
-        "goathead_be.ply",
-        "parts/cyl16.stl",
-        "parts/notch.stl",
-    ] {
-        let Some(path) = shared(name) else { return };
-        for tolerance in ["0.1%", "0.01%"] {
-            let report = proven(
-                &path.to_string_lossy(),
-                &format!("--tolerance {tolerance}"),
-                "ply",
-            );
-            assert!(
-                report["error"]["proven"].is_null(),
-                "{name} {tolerance}: {}",
-                report["error"]
-            );
-        }
-    }
-}
-
 /// Whatever else is asked for, in all formats that the checker reads.
 #[test]
 fn all_kinds_of_results_are_confirmed() {
@@ -131,7 +60,7 @@ fn all_kinds_of_results_are_confirmed() {
         ("--tolerance 0.3% --scheme loop-warren", "ply"),
         ("--tolerance 0.3% --crease-angle 20", "obj"),
         (
-            "--tolerance 0.3% --pixels 0.5 --camera 0,0,5,0,0,0,0,1,0,40,300x200",
+            "--tolerance 0.3% --pixels 0.5 --view 0,0,5,0,0,0,0,1,0,40,300x200",
             "ply",
         ),
     ] {
@@ -156,49 +85,6 @@ fn all_kinds_of_results_are_confirmed() {
     );
 }
 
-/// A clean file is not in the proof: less than a byte for each triangle. Others are.
-#[test]
-fn proofs_are_small() {
-    let folder = folder();
-    let [clean, result, proof] =
-        ["clean.obj", "result.ply", "result.proof"].map(|name| folder.path().join(name));
-    run(
-        "refine builtin:bunny -o {} --method uniform --levels 0",
-        &[&clean],
-    )
-    .expect(0);
-    let report = run(
-        "refine {} -o {} --tolerance 0.05% --proof {} --report -",
-        &[&clean, &result, &proof],
-    )
-    .expect(0)
-    .json();
-    let triangles = report["output"]["triangles"].as_u64().unwrap();
-    let bytes = std::fs::metadata(&proof).unwrap().len();
-    assert!(bytes < triangles, "{bytes} bytes for {triangles} triangles");
-    assert!(
-        Proof::read(&std::fs::read(&proof).unwrap())
-            .unwrap()
-            .held
-            .is_none()
-    );
-    assert_eq!(refused(Some(&clean), &result, &proof, 1.0), 0);
-    // Two vertices at one place: the control mesh is not what the file holds.
-    let text = std::fs::read_to_string(&clean).unwrap() + "v 9 9 9\n";
-    std::fs::write(&clean, text).unwrap();
-    run(
-        "refine {} -o {} --tolerance 1% --proof {}",
-        &[&clean, &result, &proof],
-    )
-    .expect(0);
-    assert!(
-        Proof::read(&std::fs::read(&proof).unwrap())
-            .unwrap()
-            .held
-            .is_some()
-    );
-}
-
 #[test]
 fn what_has_no_proof_is_refused_by_name() {
     let folder = folder();
@@ -210,31 +96,30 @@ fn what_has_no_proof_is_refused_by_name() {
         ("--scheme sqrt3", "loop"),
         ("--method uniform", "--method exact"),
     ] {
-        run(
+        usage_error(
             &format!("refine builtin:cube -o {{}} {options} --proof {{}}"),
             &[&result, &proof],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
         assert!(!proof.exists() && !result.exists(), "{options}");
     }
     for name in ["result.stl", "result.glb", "result.3mf"] {
-        run(
+        usage_error(
             "refine builtin:cube -o {} --proof {}",
             &[&folder.path().join(name), &proof],
-        )
-        .expect(2)
-        .saying(".ply");
+            ".ply",
+        );
     }
-    run(
+    usage_error(
         "refine builtin:cube -o - --to ply --ascii --proof {}",
         &[&proof],
-    )
-    .expect(2)
-    .saying("file");
-    run("refine builtin:cube -o {} --proof {}", &[&result, &result])
-        .expect(2)
-        .saying("twice");
+        "file",
+    );
+    usage_error(
+        "refine builtin:cube -o {} --proof {}",
+        &[&result, &result],
+        "twice",
+    );
 }
 
 #[test]
@@ -243,14 +128,13 @@ fn batches_and_folders_have_proofs() {
     let at = |name: &str| folder.path().join(name);
     let job = json!({"input": "builtin:cube", "output": at("a.ply"), "tolerance": "1%", "proof": at("a.proof")});
     let jobs = file(&folder, "jobs.jsonl", &format!("{job}\n"));
-    run("batch {} -o {}", &[&jobs, &at("results.jsonl")]).expect(0);
+    done("batch {} -o {}", &[&jobs, &at("results.jsonl")]);
     assert_eq!(refused(None, &at("a.ply"), &at("a.proof"), 1.0), 0);
     std::fs::create_dir(at("out")).unwrap();
-    run(
+    done(
         "refine builtin:cube builtin:cup -o {} --tolerance 1% --proof {}",
         &[&at("out"), &at("out")],
-    )
-    .expect(0);
+    );
     for name in ["cube", "cup"] {
         let [result, proof] =
             ["ply", "proof"].map(|ending| at("out").join(format!("{name}.{ending}")));
@@ -279,7 +163,7 @@ fn the_checker_in_python_agrees() {
         ),
     ] {
         let command = format!("refine {input} -o {{}} {options} --proof {{}} --report -");
-        let report = run(&command, &[&result, &proof]).expect(0).json();
+        let report = json_of(&command, &[&result, &proof]);
         let check = |within: f64| {
             let files = [Path::new("-"), &result, &proof];
             let mut python = Command::new("python3");

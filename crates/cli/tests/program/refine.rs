@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{Counts, claimed, counts, file, folder, has_keys, run, soup};
+use crate::common::{claimed, counts, done, file, folder, has_keys, json_of, run, soup};
 
 /// The keys that users of the report may rely on.
 const CONTRACT: &str = "version input.path input.format input.vertices input.faces diagnosis.clean
@@ -22,11 +22,10 @@ const CONTRACT: &str = "version input.path input.format input.vertices input.fac
 
 /// Refines and gives the report, after checking that it fits the file.
 fn refine(input: &str, output: &Path, options: &str) -> Value {
-    let run = run(
+    let run = done(
         &format!("refine {input} -o {{}} --report - {options}"),
         &[output],
-    )
-    .expect(0);
+    );
     let report = run.json();
     has_keys(&report, CONTRACT);
     assert_eq!(
@@ -75,7 +74,7 @@ fn every_built_in_model_is_refined_by_every_method() {
         ];
         for options in methods {
             let report = refine(&name, &output, options);
-            let info = run(&format!("info {name} --json"), &[]).expect(0).json();
+            let info = json_of(&format!("info {name} --json"), &[]);
             assert_eq!(
                 report["output"]["euler_characteristic"],
                 info["mesh"]["euler_characteristic"]
@@ -94,20 +93,6 @@ fn every_built_in_model_is_refined_by_every_method() {
 }
 
 #[test]
-fn uniform_refinement_quadruples_the_faces_of_the_head() {
-    let folder = folder();
-    let report = refine(
-        "builtin:head",
-        &folder.path().join("out.off"),
-        "--method uniform",
-    );
-    assert_eq!(report["output"]["triangles"], 9088);
-    assert_eq!(report["stop"], "levels");
-    assert_eq!(report["parameters"]["angle_degrees"], Value::Null);
-    assert_eq!(report["parameters"]["seam"], Value::Null);
-}
-
-#[test]
 fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let folder = folder();
     let parameters = refine(
@@ -119,33 +104,10 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop_all() {
     let expected = serde_json::json!({
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop", "seam": "all",
         "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null, "within": null,
-        "creases_from": "none", "concave_corners": "as-tagged",
+        "creases_from": "none", "concave_corners": "smooth",
         "max_triangles": 50_000_000, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
-}
-
-#[test]
-fn a_smaller_angle_gives_more_triangles_and_a_view_fewer() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    let triangles = |options: &str| {
-        let options = format!("--method limit-normal {options}");
-        refine("builtin:icosphere", &output, &options)["output"]["triangles"]
-            .as_u64()
-            .expect("a count")
-    };
-    let (wide, narrow) = (triangles("--angle 10"), triangles("--angle 3"));
-    assert!(wide < narrow, "{wide} {narrow}");
-    // Two levels, so that the outline, which is divided at any angle, cannot outweigh the back.
-    let seen = triangles("--angle 3 --levels 2 --view 0,0,-1");
-    assert!(seen < narrow, "faces that look away stay: {seen} {narrow}");
-    let from_near = triangles("--angle 3 --levels 2 --eye 0,0,3");
-    assert!(
-        from_near < seen,
-        "an eye sees less than half of a sphere: {from_near} {seen}"
-    );
-    assert!(triangles("--angle 3 --levels 2 --view 0,0,-1 --dilatation 3") < seen);
 }
 
 #[test]
@@ -167,11 +129,10 @@ fn every_format_holds_the_same_mesh() {
         ("text.stl", "--ascii"),
     ] {
         let path = folder.path().join(name);
-        run(
+        done(
             &format!("refine builtin:cup -o {{}} --tolerance 0.5% {options}"),
             &[&path],
-        )
-        .expect(0);
+        );
         let mesh = welded(&path);
         if name.ends_with("stl") {
             // Single precision, and vertices in the order of the facets.
@@ -180,33 +141,6 @@ fn every_format_holds_the_same_mesh() {
             assert!((mesh.diagonal() - expected.diagonal()).abs() < 1e-6);
         } else {
             assert_eq!(mesh, expected, "{name}");
-        }
-    }
-}
-
-#[test]
-fn limit_positions_of_a_tetrahedron_follow_the_closed_form() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    refine(
-        "builtin:tetrahedron",
-        &output,
-        "--method uniform --levels 0 --limit",
-    );
-    let control = limitmesh_models::find("tetrahedron")
-        .expect("a model")
-        .soup();
-    let limit = soup(&output);
-    for (i, p) in limit.positions.iter().enumerate() {
-        for axis in 0..3 {
-            // Loop at valence 3: each neighbour weighs 1/5, the vertex the remaining 2/5.
-            let sum: f64 = control.positions.iter().map(|q| q[axis]).sum();
-            let expected = 0.2 * sum + 0.2 * control.positions[i][axis];
-            assert!(
-                (p[axis] - expected).abs() < 1e-14,
-                "vertex {i}: {} {expected}",
-                p[axis]
-            );
         }
     }
 }
@@ -236,55 +170,14 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
 }
 
 #[test]
-fn a_cap_below_the_input_writes_the_input() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:head -o {} --method limit-normal --max-triangles 10",
-        &[&output],
-    )
-    .expect(3)
-    .saying("stopped short");
-    assert_eq!(counts(&soup(&output)).triangles, 142);
-}
-
-#[test]
-fn flat_faces_satisfy_the_criterion_at_once() {
-    let folder = folder();
-    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-    let input = file(&folder, "square.obj", square);
-    let output = folder.path().join("out.ply");
-    let words = "refine {} -o {} --method limit-normal --report -";
-    let run = run(words, &[&input, &output])
-        .expect(0)
-        .saying("no face is divisible");
-    assert_eq!(run.json()["stop"], "satisfied");
-    assert_eq!(
-        run.json()["diagnosis"]["polygons"]["first"],
-        serde_json::json!([0])
-    );
-    assert_eq!(
-        counts(&soup(&output)),
-        Counts {
-            vertices: 4,
-            triangles: 2,
-            boundary_edges: 4,
-            non_manifold_edges: 0,
-            euler_characteristic: 1
-        }
-    );
-}
-
-#[test]
 fn results_are_the_same_bytes_for_any_number_of_threads() {
     let folder = folder();
     let bytes = |threads: usize, options: &str| {
         let output = folder.path().join(format!("out{threads}.ply"));
-        run(
+        done(
             &format!("refine builtin:shoe -o {{}} --threads {threads} {options}"),
             &[&output],
-        )
-        .expect(0);
+        );
         std::fs::read(&output).expect("a file")
     };
     // Large enough that the loops do run in parallel.
@@ -311,8 +204,7 @@ fn repairs_are_told_and_strict_refuses_them() {
         "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -1 1 0\nv -1 -1 0\nv 9 9 9\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
     let input = file(&folder, "fan.obj", fan);
     let output = folder.path().join("out.ply");
-    let report = run("refine {} -o {} --report -", &[&input, &output])
-        .expect(0)
+    let report = done("refine {} -o {} --report -", &[&input, &output])
         .saying("1 edge with more than two faces")
         .saying("1 vertex in no face: left out (vertex 5)")
         .json();
@@ -327,74 +219,6 @@ fn repairs_are_told_and_strict_refuses_them() {
 }
 
 #[test]
-fn welding_within_a_distance_closes_a_gap() {
-    let folder = folder();
-    let gap = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.001 0 0\nv 0 1.001 0\nv 1 1 0.2\nf 1 2 3\nf 4 6 5\n";
-    let input = file(&folder, "gap.obj", gap);
-    let components = |options: &str| {
-        run(&format!("info {{}} --json {options}"), &[&input])
-            .expect(0)
-            .json()["mesh"]["components"]
-            .clone()
-    };
-    assert_eq!(components(""), 2);
-    assert_eq!(components("--weld 0.01"), 1);
-}
-
-#[test]
-fn ply_carries_limit_normals() {
-    let folder = folder();
-    let output = folder.path().join("out.ply");
-    run(
-        "refine builtin:icosphere -o {} --tolerance 5% --ascii",
-        &[&output],
-    )
-    .expect(0);
-    let text = std::fs::read_to_string(&output).expect("text");
-    let (header, body) = text.split_once("end_header\n").expect("a header");
-    let properties: Vec<&str> = header
-        .lines()
-        .filter(|line| line.starts_with("property") && !line.contains("list"))
-        .collect();
-    let names: Vec<&str> = properties
-        .iter()
-        .filter_map(|line| line.split(' ').next_back())
-        .collect();
-    assert_eq!(names, ["x", "y", "z", "nx", "ny", "nz"]);
-    let numbers: Vec<f64> = body
-        .lines()
-        .next()
-        .expect("a vertex")
-        .split(' ')
-        .map(|x| x.parse().expect("a number"))
-        .collect();
-    // A sphere's normal at a vertex of the icosahedron's symmetry points where the vertex does.
-    let dot: f64 = (0..3).map(|i| numbers[i] * numbers[i + 3]).sum();
-    let length = numbers[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
-    assert!(dot > 0.999 * length, "{numbers:?}");
-}
-
-#[test]
-fn tags_reach_the_output_where_its_format_has_them() {
-    let folder = folder();
-    let cage =
-        "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nt corner 1/1/0 0 10.0\n";
-    let input = file(&folder, "tagged.obj", cage);
-    let output = folder.path().join("out.obj");
-    run(
-        "refine {} -o {} --method limit-normal --levels 2",
-        &[&input, &output],
-    )
-    .expect(0);
-    let soup = soup(&output);
-    assert_eq!(soup.corners.len(), 1);
-    assert_eq!(
-        soup.positions[soup.corners[0].vertex as usize],
-        [0.0, 0.0, 1.0]
-    );
-}
-
-#[test]
 fn tags_are_kept_or_the_loss_is_told() {
     let folder = folder();
     let input = folder.path().join("tagged.obj");
@@ -403,11 +227,10 @@ fn tags_are_kept_or_the_loss_is_told() {
     std::fs::write(&input, content).expect("a file");
     for name in ["out.obj", "out.ply"] {
         let output = folder.path().join(name);
-        let run = run(
+        let run = done(
             "refine {} -o {} --method limit-normal --levels 2",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let kept = name.ends_with("obj");
         let told = run
             .stderr
@@ -421,57 +244,6 @@ fn tags_are_kept_or_the_loss_is_told() {
     }
 }
 
-#[test]
-fn a_cube_with_creases_stays_a_cube_and_the_limit_surface_is_the_same_one() {
-    let folder = folder();
-    let output = folder.path().join("cube.ply");
-    let report = refine(
-        "builtin:cube",
-        &output,
-        "--method uniform --levels 3 --crease-angle 30",
-    );
-    assert_eq!(report["parameters"]["crease_angle_degrees"], 30.0);
-    let on_cube =
-        |p: &[f64; 3]| (p.iter().fold(0.0, |far: f64, x| far.max(x.abs())) - 0.5).abs() < 1e-7;
-    assert!(soup(&output).positions.iter().all(on_cube));
-    let off = |options: &str| {
-        let words = format!("measure {{}} --limit-of builtin:cube --json --samples 2000 {options}");
-        run(&words, &[&output]).expect(0).json()["hausdorff"]["symmetric"]
-            .as_f64()
-            .expect("a number")
-    };
-    assert!(off("--crease-angle 30") < 1e-7 && off("") > 0.1);
-}
-
-#[test]
-fn boundaries_are_smooth_or_keep_their_corners_or_stay() {
-    let folder = folder();
-    let square = file(
-        &folder,
-        "square.obj",
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n",
-    );
-    let output = folder.path().join("out.obj");
-    let kept = |rule: &str| {
-        let words = format!("refine {{}} -o {{}} --method uniform --levels 2 --limit {rule}");
-        run(&words, &[&square, &output]).expect(0);
-        let corners = [
-            [0.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [0.0, 1.0, 0.0],
-        ];
-        corners
-            .iter()
-            .filter(|corner| soup(&output).positions.contains(corner))
-            .count()
-    };
-    assert_eq!(kept(""), 0);
-    assert_eq!(kept("--boundary smooth"), 0);
-    assert_eq!(kept("--boundary corners"), 2);
-    assert_eq!(kept("--boundary fixed"), 4);
-}
-
 /// A tetrahedron whose faces name their own vertices, one of them a rounding away from the others at its place.
 const NEARLY_CLOSED: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1.0000001 0 0\n\
     f 1 3 2\nf 1 2 4\nf 5 3 4\nf 3 1 4\n";
@@ -481,7 +253,7 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let folder = folder();
     let input = file(&folder, "nearly.obj", NEARLY_CLOSED);
     let output = folder.path().join("out.ply");
-    let first = run("refine {} -o {} --tolerance 1%", &[&input, &output]).expect(0);
+    let first = done("refine {} -o {} --tolerance 1%", &[&input, &output]);
     let told = first
         .stderr
         .split("--weld ")
@@ -490,11 +262,10 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let distance = told
         .unwrap_or_else(|| panic!("no distance in {}", first.stderr))
         .to_owned();
-    let second = run(
+    let second = done(
         &format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"),
         &[&input, &output],
-    )
-    .expect(0);
+    );
     assert!(
         !second.stderr.contains("--weld") && second.stderr.contains(", closed ("),
         "{}",
@@ -502,11 +273,10 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     );
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
-    run(
+    done(
         &format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"),
         &[&output, &input],
-    )
-    .expect(0);
+    );
 }
 
 #[test]
@@ -536,7 +306,7 @@ fn what_is_left_out_is_told() {
         file(&folder, "in.obj", content),
         folder.path().join("out.obj"),
     );
-    let told = run("refine {} -o {}", &[&input, &output]).expect(0).stderr;
+    let told = done("refine {} -o {}", &[&input, &output]).stderr;
     assert!(!told.contains("left out"), "{told}");
     let text = std::fs::read_to_string(&output).expect("it is there");
     assert!(
@@ -544,8 +314,8 @@ fn what_is_left_out_is_told() {
         "{text}"
     );
     let carried = "carries: texture coordinates (2 numbers a corner); materials (by face)";
-    assert!(run("info {}", &[&input]).expect(0).stdout.contains(carried));
-    let report = run("info {} --json", &[&input]).expect(0).json();
+    assert!(done("info {}", &[&input]).stdout.contains(carried));
+    let report = json_of("info {} --json", &[&input]);
     assert_eq!(report["input"]["left_out"], serde_json::json!([]));
     assert_eq!(
         report["input"]["channels"][0]["name"],
@@ -554,114 +324,17 @@ fn what_is_left_out_is_told() {
     let stl = folder.path().join("out.stl");
     let words =
         "left out: texture coordinates; materials (the output's format has no place for them)";
-    run("refine {} -o {}", &[&input, &stl])
-        .expect(0)
-        .saying(words);
+    done("refine {} -o {}", &[&input, &stl]).saying(words);
     for options in [
         "--optimize",
         "--method uniform --levels 1",
         "--method limit-normal",
     ] {
-        let told = run(
+        let told = done(
             &format!("refine {{}} -o {{}} {options}"),
             &[&input, &output],
         )
-        .expect(0)
         .stderr;
         assert!(!told.contains("left out"), "{options}: {told}");
-    }
-}
-
-/// A cube's texture, a net of six squares: affine over each face, so with straight seams it is what it was everywhere, and each square
-/// of the texture has a sixth of the triangles' area.
-#[test]
-fn textures_come_out_as_they_went_in() {
-    let folder = folder();
-    let corners = [
-        [0, 1, 3, 2],
-        [4, 6, 7, 5],
-        [0, 4, 5, 1],
-        [2, 3, 7, 6],
-        [0, 2, 6, 4],
-        [1, 5, 7, 3],
-    ];
-    let mut content = String::new();
-    for v in 0..8 {
-        content += &format!("v {} {} {}\n", v >> 2 & 1, v >> 1 & 1, v & 1);
-    }
-    for (side, corners) in corners.iter().enumerate() {
-        for [s, t] in [[0, 0], [1, 0], [1, 1], [0, 1]] {
-            content += &format!("vt {} {t}\n", side + s);
-        }
-        content += &format!("usemtl side{side}\nf");
-        corners
-            .iter()
-            .enumerate()
-            .for_each(|(k, v)| content += &format!(" {}/{}", v + 1, 4 * side + k + 1));
-        content += "\n";
-    }
-    let (input, output) = (
-        file(&folder, "cube.obj", &content),
-        folder.path().join("out.obj"),
-    );
-    for options in [
-        "--tolerance 1%",
-        "--tolerance 0.2% --optimize",
-        "--method uniform",
-        "--method limit-normal",
-    ] {
-        run(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        check_net(&std::fs::read_to_string(&output).expect("it is there"));
-    }
-}
-
-/// Checks the texture of a refined cube.
-fn check_net(text: &str) {
-    let mut places: Vec<[f64; 2]> = Vec::new();
-    let (mut side, mut areas, mut count) = (0, [0.0; 6], 0);
-    for line in text.lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        match words[0] {
-            "vt" => places.push([1, 2].map(|i| words[i].parse().expect("a number"))),
-            "usemtl" => {
-                side = words[1]
-                    .strip_prefix("side")
-                    .expect("its name")
-                    .parse()
-                    .expect("a number")
-            }
-            "f" => {
-                let place = |word: &str| {
-                    places[word
-                        .split('/')
-                        .nth(1)
-                        .expect("vt")
-                        .parse::<usize>()
-                        .expect("vt")
-                        - 1]
-                };
-                let [a, b, c] = [1, 2, 3].map(|i| place(words[i]));
-                // Each triangle lies in its own side's square.
-                for [s, t] in [a, b, c] {
-                    let s: f64 = s - side as f64;
-                    assert!(
-                        (-1e-12..=1.0 + 1e-12).contains(&s) && (-1e-12..=1.0 + 1e-12).contains(&t),
-                        "{line}"
-                    );
-                }
-                areas[side] +=
-                    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-                count += 1;
-            }
-            _ => {}
-        }
-    }
-    assert!(count > 100);
-    for area in areas {
-        assert!((area - 1.0).abs() < 1e-9, "{areas:?}");
     }
 }

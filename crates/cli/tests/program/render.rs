@@ -1,6 +1,6 @@
 //! `render` and `--picture`: PNG files of the size asked for, which show what was asked for.
 
-use crate::common::{folder, run};
+use crate::common::{done, folder, run, usage_error};
 use crate::shading::pixels;
 
 /// Width and height in a PNG file's header.
@@ -22,30 +22,27 @@ fn pictures_differ_by_what_is_asked_for() {
         "--view 1,0,0",
         "--flat --wireframe --view 0,1,0",
     ] {
-        run(
+        done(
             &format!("render builtin:head -o {{}} --size 160x120 {options}"),
             &[&path],
-        )
-        .expect(0);
+        );
         let png = std::fs::read(&path).expect("a picture");
         assert_eq!(size(&png), [160, 120]);
         assert!(!pictures.contains(&png), "{options}");
         pictures.push(png);
     }
-    run(
+    done(
         "render builtin:head -o {} --size 160x120 --crease-angle 30 --threads 1",
         &[&path],
-    )
-    .expect(0);
+    );
     assert!(
         pictures[0] == std::fs::read(&path).expect("a picture"),
         "edges beyond 30° show by default"
     );
-    run(
+    done(
         "render builtin:head -o {} --size 160x120 --smooth",
         &[&path],
-    )
-    .expect(0);
+    );
     assert!(
         pictures[0] != std::fs::read(&path).expect("a picture"),
         "and not where all is smooth"
@@ -56,7 +53,7 @@ fn pictures_differ_by_what_is_asked_for() {
 fn refine_draws_its_result() {
     let folder = folder();
     let (mesh, path) = (folder.path().join("out.ply"), folder.path().join("out.png"));
-    run("refine builtin:cup -o {} --picture {}", &[&mesh, &path]).expect(0);
+    done("refine builtin:cup -o {} --picture {}", &[&mesh, &path]);
     let png = std::fs::read(&path).expect("a picture");
     assert_eq!(size(&png), [1200, 900]);
     assert!(png.len() > 20_000, "{} bytes", png.len());
@@ -66,28 +63,27 @@ fn refine_draws_its_result() {
 fn wrong_pictures_are_refused() {
     let folder = folder();
     let path = folder.path().join("out.png");
-    run("render builtin:head -o {} --flat --smooth", &[&path])
-        .expect(2)
-        .saying("cannot be used with");
-    run(
+    usage_error(
+        "render builtin:head -o {} --flat --smooth",
+        &[&path],
+        "cannot be used with",
+    );
+    usage_error(
         "render builtin:head -o {} --flat --crease-angle 30",
         &[&path],
-    )
-    .expect(2)
-    .saying("cannot be used with");
+        "cannot be used with",
+    );
     let missing = folder.path().join("missing.png");
     run("render builtin:head -o {} --texture {}", &[&path, &missing])
         .expect(1)
         .saying(&format!("--texture {}", missing.display()));
-    run("render builtin:head -o {} --size 0x10", &[&path])
-        .expect(2)
-        .saying("1 to");
-    run("render builtin:head -o {} --size big", &[&path])
-        .expect(2)
-        .saying("WxH");
-    run("render builtin:head -o {}", &[&path.with_extension("gif")])
-        .expect(2)
-        .saying(".png");
+    usage_error("render builtin:head -o {} --size 0x10", &[&path], "1 to");
+    usage_error("render builtin:head -o {} --size big", &[&path], "WxH");
+    usage_error(
+        "render builtin:head -o {}",
+        &[&path.with_extension("gif")],
+        ".png",
+    );
     assert!(!path.exists());
 }
 
@@ -113,11 +109,10 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     )
     .expect("written");
     let drawn = |options: &str| {
-        run(
+        done(
             &format!("render {{}} -o {{}} --size 160x120 {options}"),
             &[&mesh, &path],
-        )
-        .expect(0);
+        );
         std::fs::read(&path).expect("a picture")
     };
     let none = drawn("");
@@ -126,7 +121,7 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     // A picture of a picture has the same colours all over its side.
     let picture = folder.path().join("texture.png");
     std::fs::write(&picture, &checker).expect("written");
-    run("render {} -o {} --texture {}", &[&mesh, &path, &picture]).expect(0);
+    done("render {} -o {} --texture {}", &[&mesh, &path, &picture]);
     std::fs::write(&picture, "no picture").expect("written");
     let broken = run("render {} -o {} --texture {}", &[&mesh, &path, &picture]);
     broken
@@ -147,11 +142,10 @@ fn limit_surfaces_are_drawn_by_rays() {
     let folder = folder();
     let path = folder.path().join("exact.png");
     let draw = |options: &str| {
-        run(
+        done(
             &format!("render builtin:cube -o {{}} --size 120x90 {options}"),
             &[&path],
-        )
-        .expect(0);
+        );
         std::fs::read(&path).expect("a picture")
     };
     let exact = draw("--exact");
@@ -168,12 +162,11 @@ fn limit_surfaces_are_drawn_by_rays() {
         folder.path().join("fine.ply"),
         folder.path().join("fine.png"),
     );
-    run(
+    done(
         "refine builtin:cube -o {} --method uniform --levels 4 --limit",
         &[&fine],
-    )
-    .expect(0);
-    run("render {} -o {} --size 120x90", &[&fine, &drawn]).expect(0);
+    );
+    done("render {} -o {} --size 120x90", &[&fine, &drawn]);
     let (own, other) = (
         covered(&exact),
         covered(&std::fs::read(&drawn).expect("a picture")),
@@ -189,124 +182,19 @@ fn limit_surfaces_are_drawn_by_rays() {
     assert!(exact != draw("--exact --scheme loop-warren"));
     assert!(exact != draw("--exact --crease-angle 30"));
     run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
-    run("render builtin:cube -o {} --exact --smooth", &[&path])
-        .expect(2)
-        .saying("--smooth");
-    run("render builtin:cube -o {} --scheme loop", &[&path])
-        .expect(2)
-        .saying("it needs --exact");
-    run(
+    usage_error(
+        "render builtin:cube -o {} --exact --smooth",
+        &[&path],
+        "--smooth",
+    );
+    usage_error(
+        "render builtin:cube -o {} --scheme loop",
+        &[&path],
+        "it needs --exact",
+    );
+    usage_error(
         "render builtin:cube -o {} --exact --scheme butterfly",
         &[&path],
-    )
-    .expect(2)
-    .saying("loop, loop-warren]");
-}
-
-/// A cube without normals looks as one whose file has the normal of its side at each corner; a ball of many faces as one that is smooth all
-/// over.
-#[test]
-fn files_without_normals_are_shaded_apart_at_sharp_edges() {
-    let folder = folder();
-    let path = folder.path().join("out.png");
-    let drawn = |input: &std::path::Path, options: &str| {
-        run(
-            &format!("render {{}} -o {{}} --size 120x90 {options}"),
-            &[input, &path],
-        )
-        .expect(0);
-        pixels(&std::fs::read(&path).expect("a picture"))
-    };
-    let corners: String = (0..8)
-        .map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2))
-        .collect();
-    let normals = "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 0 1 0\nvn -1 0 0\nvn 1 0 0\n";
-    let sides = [
-        [1, 3, 4, 2],
-        [5, 6, 8, 7],
-        [1, 2, 6, 5],
-        [3, 7, 8, 4],
-        [1, 5, 7, 3],
-        [2, 4, 8, 6],
-    ];
-    let faces = |has_normals: bool| -> String {
-        let corner = |side: usize, v: u32| {
-            if has_normals {
-                format!(" {v}//{}", side + 1)
-            } else {
-                format!(" {v}")
-            }
-        };
-        let face = |(side, corners): (usize, &[u32; 4])| {
-            format!(
-                "f{}\n",
-                corners.iter().map(|&v| corner(side, v)).collect::<String>()
-            )
-        };
-        sides.iter().enumerate().map(face).collect()
-    };
-    let file = |name: &str, text: String| {
-        let path = folder.path().join(name);
-        std::fs::write(&path, text).expect("written");
-        path
-    };
-    let bare = file("bare.obj", format!("{corners}{}", faces(false)));
-    let sided = file("sided.obj", format!("{corners}{normals}{}", faces(true)));
-    let plain = drawn(&bare, "");
-    assert!(plain == drawn(&sided, "") && plain == drawn(&bare, "--flat"));
-    assert!(plain != drawn(&bare, "--smooth"));
-    let ball = folder.path().join("ball.stl");
-    run("refine builtin:sphere -o {} --triangles 5000", &[&ball]).expect(0);
-    assert!(
-        drawn(&ball, "") == drawn(&ball, "--smooth") && drawn(&ball, "") != drawn(&ball, "--flat")
+        "loop, loop-warren]",
     );
-}
-
-/// A dense mesh is not blackened by edges that nobody could tell apart; a coarse one shows them.
-#[test]
-fn edges_of_small_triangles_are_left_out() {
-    let folder = folder();
-    let (mesh, path) = (
-        folder.path().join("ball.stl"),
-        folder.path().join("out.png"),
-    );
-    let differ = |triangles: usize| {
-        run(
-            &format!("refine builtin:sphere -o {{}} --triangles {triangles}"),
-            &[&mesh],
-        )
-        .expect(0);
-        let drawn = |options: &str| {
-            run(
-                &format!("render {{}} -o {{}} --size 160x120 {options}"),
-                &[&mesh, &path],
-            )
-            .expect(0);
-            std::fs::read(&path).expect("a picture")
-        };
-        drawn("") != drawn("--wireframe")
-    };
-    assert!(differ(400));
-    // A hemisphere of about 100 pixels across with 20,000 triangles: less than a pixel each.
-    assert!(!differ(40_000));
-}
-
-/// A picture is named where results are told, and a distance is told once though a cap ended the refinement.
-#[test]
-fn results_name_their_pictures_and_say_distances_once() {
-    let folder = folder();
-    let (mesh, picture) = (folder.path().join("cup.ply"), folder.path().join("cup.png"));
-    let run = run(
-        "refine builtin:cup -o {} --picture {} --max-triangles 2000",
-        &[&mesh, &picture],
-    )
-    .expect(3);
-    let run = run
-        .saying(&format!("{}: ", picture.display()))
-        .saying("triangles drawn");
-    let within = run
-        .stderr
-        .matches("of the limit surface, certified")
-        .count();
-    assert_eq!(within, 1, "{}", run.stderr);
 }

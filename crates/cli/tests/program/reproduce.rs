@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use limitmesh_render::{TextStyle, text_width};
 use serde_json::Value;
 
-use crate::common::{file, folder, names, run};
+use crate::common::{done, file, folder, names, run};
 
 const COLUMNS: &str = "model,angle_degrees,faces,shd_percent,amresh_faces,amresh_shd_percent,ratio_percent,\
                        uniform_limit_faces,uniform_limit_shd_percent,exact_faces,exact_shd_percent";
@@ -25,37 +24,16 @@ fn between<'a>(text: &'a str, from: &str, to: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The text of an element without the tags in it.
-fn plain(html: &str) -> String {
-    let mut text = String::new();
-    let mut inside = false;
-    for c in html.chars() {
-        match c {
-            '<' => inside = true,
-            '>' => inside = false,
-            c if !inside => text.push(c),
-            _ => {}
-        }
-    }
-    text
-}
-
 #[test]
 fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
     let place = folder();
     // The folder does not exist, nor does the one it is in.
     let out = place.path().join("new").join("paper");
-    run("reproduce --quick -o {}", &[&out]).expect(0);
+    done("reproduce --quick -o {}", &[&out]);
 
     let csv = read(&out, "table1.csv");
     let rows = csv_is_sound(&csv);
     let page = read(&out, "index.html");
-    page_has_the_rows(&page, "table1", &rows);
-    page_has_the_rows(
-        &page,
-        "references",
-        &references_are_sound(&read(&out, "references.csv"), &rows),
-    );
     links_lead_somewhere(&page, &out);
     json_agrees(&read(&out, "reproduction.json"), &rows);
     for name in names(&out).iter().filter(|name| name.ends_with(".svg")) {
@@ -65,13 +43,12 @@ fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
             "{name}"
         );
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
-        words_are_inside_and_apart(name, &svg);
     }
 
     // Nothing but the seconds depends on the number of threads, or on what was in the folder before.
     let before = contents(&out);
     fs::write(out.join("index.html"), "x".repeat(1 << 20)).expect("writable");
-    run("reproduce --quick --threads 1 -o {}", &[&out]).expect(0);
+    done("reproduce --quick --threads 1 -o {}", &[&out]);
     assert!(before == contents(&out), "the same run gave other files");
 }
 
@@ -121,54 +98,6 @@ fn csv_is_sound(csv: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// The methods of other references have no more faces than the paper's, and nearly as many.
-fn references_are_sound(csv: &str, table_1: &[Vec<String>]) -> Vec<Vec<String>> {
-    let rows: Vec<Vec<String>> = csv
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(str::to_owned).collect())
-        .collect();
-    assert_eq!(rows.len(), table_1.len());
-    for (row, paper) in rows.iter().zip(table_1) {
-        assert_eq!(row[..2], paper[..2]);
-        let number = |cell: &String| cell.parse::<f64>().expect("a number");
-        let faces = number(&paper[2]);
-        for pair in row[2..].chunks(2) {
-            let [own, shd] = [&pair[0], &pair[1]].map(number);
-            assert!(
-                own <= faces && own > 0.9 * faces && shd > 0.0 && shd < 2.0,
-                "{row:?}"
-            );
-        }
-        // Planarity by distance is nearly a bound of what is measured, vertex errors are not.
-        assert!(number(&row[3]) < number(&row[5]), "{row:?}");
-    }
-    rows
-}
-
-fn page_has_the_rows(page: &str, id: &str, rows: &[Vec<String>]) {
-    let table = between(page, &format!("<table id=\"{id}\">"), "</table>");
-    assert_eq!(table.len(), 1);
-    let body = table[0].split_once("</thead>").expect("a head").1;
-    let shown: Vec<Vec<String>> = between(body, "<tr", "</tr>")
-        .into_iter()
-        .map(|row| {
-            let cells = row
-                .split("</t")
-                .filter(|cell| cell.contains("<td") || cell.contains("<th"));
-            cells
-                .map(|cell| {
-                    plain(&format!("<{cell}"))
-                        .replace([',', '°'], "")
-                        .trim()
-                        .to_owned()
-                })
-                .collect()
-        })
-        .collect();
-    assert_eq!(shown, rows);
-}
-
 fn links_lead_somewhere(page: &str, folder: &Path) {
     let links = ["src", "srcset", "href"]
         .map(|key| between(page, &format!(" {key}=\""), "\""))
@@ -193,58 +122,6 @@ fn links_lead_somewhere(page: &str, folder: &Path) {
     }
 }
 
-/// No text of a drawing is cut off at its border, and none lies on another, in the widest font that a viewer may choose.
-fn words_are_inside_and_apart(name: &str, svg: &str) {
-    // DejaVu Sans has 1.12 to 1.17 times the width of Noto Sans.
-    const WIDEST: f32 = 1.17;
-    let attribute = |element: &str, key: &str| {
-        let values = between(element, &format!(" {key}=\""), "\"");
-        values.first().expect(key).to_string()
-    };
-    let number =
-        |element: &str, key: &str| attribute(element, key).parse::<f32>().expect("a number");
-    let [width, height] = ["width", "height"].map(|key| number(svg, key));
-    let mut boxes: Vec<(String, [f32; 4])> = Vec::new();
-    for element in between(svg, "<text", "</text>") {
-        let (attributes, words) = element.split_once('>').expect("a tag's end");
-        assert!(
-            !attributes.contains("transform"),
-            "{name}: turned text is not looked at here"
-        );
-        let size = number(attributes, "font-size");
-        let style = TextStyle::default()
-            .size(size)
-            .bold(attributes.contains("bold"));
-        let words = words.replace("&#39;", "'").replace("&amp;", "&");
-        let wide = WIDEST * text_width(&words, &style).expect("a width");
-        let [x, y] = ["x", "y"].map(|key| number(attributes, key));
-        let left = match attribute(attributes, "text-anchor").as_str() {
-            "start" => x,
-            "middle" => x - 0.5 * wide,
-            _ => x - wide,
-        };
-        let own = [left, y - 0.75 * size, left + wide, y + 0.22 * size];
-        assert!(
-            own[0] >= 0.0 && own[1] >= 0.0 && own[2] <= width && own[3] <= height,
-            "{name}, {width} × {height}: {words} at {own:?}"
-        );
-        for (others, other) in &boxes {
-            let apart = own[2] <= other[0]
-                || other[2] <= own[0]
-                || own[3] <= other[1]
-                || other[3] <= own[1];
-            assert!(apart, "{name}: {words} at {own:?} on {others} at {other:?}");
-        }
-        boxes.push((words, own));
-    }
-    assert!(boxes.len() > 5, "{name}: {boxes:?}");
-    assert_eq!(
-        width <= 400.0,
-        name.ends_with("-narrow.svg"),
-        "{name}: {width} pixels"
-    );
-}
-
 fn json_agrees(json: &str, rows: &[Vec<String>]) {
     let json: Value = serde_json::from_str(json).expect("JSON");
     // The paper's Figure 7: 142 faces split in four three times.
@@ -253,7 +130,6 @@ fn json_agrees(json: &str, rows: &[Vec<String>]) {
         assert_eq!(head["uniform_faces"], 9088);
         assert!(head["adaptive_faces"].as_u64() < Some(9088));
     }
-    the_ellipsoid_is_recomputed(&json["figure_7"]);
     let studies = json["table_1"].as_array().expect("a list");
     let measured: Vec<&Value> = studies
         .iter()
@@ -287,55 +163,6 @@ fn json_agrees(json: &str, rows: &[Vec<String>]) {
     for tried in sphere["tried"].as_array().expect("a list") {
         assert!(tried["faces"].as_u64() < Some(5760), "{tried}");
     }
-}
-
-/// The row beside Figure 7's heads: nearest to the paper's 3,954, as `refine` has it, and as docs/paper.md says. So of the sphere
-/// that it is stretched from.
-fn the_ellipsoid_is_recomputed(rows: &Value) {
-    let faces = |name: &str| {
-        let row = rows
-            .as_array()
-            .expect("a list")
-            .iter()
-            .find(|row| row["name"] == name)
-            .expect(name);
-        row["adaptive_faces"].as_i64().expect("a count")
-    };
-    let place = folder();
-    let soup = limitmesh_models::find("ellipsoid").expect("a model").soup();
-    let vertices = soup
-        .positions
-        .iter()
-        .map(|[x, y, z]| format!("v {} {} {}\n", x / 0.5, y / 0.8, z / 0.6));
-    let corners = soup
-        .faces
-        .iter()
-        .map(|face| format!("f {} {} {}\n", face[0] + 1, face[1] + 1, face[2] + 1));
-    let sphere = file(
-        &place,
-        "sphere.obj",
-        &vertices.chain(corners).collect::<String>(),
-    );
-    let about = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/paper.md"))
-        .expect("docs/paper.md");
-    let refined = |model: &Path| {
-        let [mesh, report] = ["mesh.ply", "report.json"].map(|name| place.path().join(name));
-        run(
-            "refine {} --method limit-normal --angle 5 --levels 3 -o {} --report {}",
-            &[model, &mesh, &report],
-        )
-        .expect(0);
-        let report: Value = serde_json::from_str(&read(place.path(), "report.json")).expect("JSON");
-        let count = report["output"]["triangles"].as_i64().expect("a count");
-        let told = format!("| {},{:03} |", count / 1000, count % 1000);
-        assert!(about.contains(&told), "docs/paper.md does not say {told}");
-        count
-    };
-    let count = faces("ellipsoid");
-    assert_eq!(refined(Path::new("builtin:ellipsoid")), count);
-    assert!((count - 3954).abs() < (faces("head") - 3954).abs());
-    // Each of its faces is divided twice, and none a third time.
-    assert_eq!(refined(&sphere), 142 << 4);
 }
 
 #[test]

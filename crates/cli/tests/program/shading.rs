@@ -1,6 +1,6 @@
 //! Normals by side: what files hold of them, and what pictures show.
 
-use crate::common::{file, folder, run};
+use crate::common::{done, file, folder, run, usage_error};
 
 /// A prism of twelve sides, radius 2 and height 1, in the format OBJ: its ends are polygons.
 fn prism() -> String {
@@ -67,11 +67,10 @@ fn each_side_of_a_rim_has_its_normals() {
         ["out.obj", "out.ply", "split.ply", "out.stl"].map(|name| folder.path().join(name));
     let options = "--crease-angle 40 --tolerance 0.01 --quiet --ascii";
     for method in ["", "--optimize"] {
-        run(
+        done(
             &format!("refine {{}} -o {{}} {options} {method}"),
             &[&input, &obj],
-        )
-        .expect(0);
+        );
         let text = std::fs::read_to_string(&obj).expect("written");
         let list = |key: &str| -> Vec<Vec<f64>> {
             text.lines()
@@ -110,11 +109,10 @@ fn each_side_of_a_rim_has_its_normals() {
     let text = std::fs::read_to_string(&ply).expect("written");
     assert!(!text.contains(" nx\n"));
     let options = format!("{options} --split-normals");
-    run(
+    done(
         &format!("refine {{}} -o {{}} {options} --provenance"),
         &[&input, &split],
-    )
-    .expect(0);
+    );
     let text = std::fs::read_to_string(&split).expect("written");
     let (header, body) = text.split_once("end_header\n").expect("a header");
     assert!(header.contains("nx\n") && header.contains("parent_a\n"));
@@ -129,148 +127,9 @@ fn each_side_of_a_rim_has_its_normals() {
             assert!(dot(&own, &corner[3..6]) > 0.9, "{own:?} {corner:?}");
         }
     }
-    run(&format!("refine {{}} -o {{}} {options}"), &[&input, &stl])
-        .expect(2)
-        .saying("--split-normals");
-}
-
-/// Without sharp edges files have a normal for each vertex, as ever.
-#[test]
-fn smooth_meshes_have_a_normal_for_each_vertex() {
-    let folder = folder();
-    let output = folder.path().join("out.obj");
-    run(
-        "refine builtin:cube -o {} --tolerance 2% --quiet",
-        &[&output],
-    )
-    .expect(0);
-    let text = std::fs::read_to_string(&output).expect("written");
-    let count = |key: &str| text.lines().filter(|line| line.starts_with(key)).count();
-    assert_eq!(count("v "), count("vn "));
-}
-
-/// A file's normals are what its picture is shaded by, whichever file it is; and options that ask for others are heard.
-#[test]
-fn pictures_are_shaded_by_the_files_normals() {
-    let folder = folder();
-    let picture = folder.path().join("out.png");
-    let draw = |input: &std::path::Path, options: &str| {
-        run(
-            &format!("render {{}} -o {{}} --size 200x150 {options}"),
-            &[input, &picture],
-        )
-        .expect(0);
-        std::fs::read(&picture).expect("a picture")
-    };
-    // A sphere's own normals at the corners of an octahedron, which are the means of its faces', and then all along z.
-    let octahedron = |normal: &dyn Fn([i32; 3]) -> String| {
-        let corners = [
-            [1, 0, 0],
-            [-1, 0, 0],
-            [0, 1, 0],
-            [0, -1, 0],
-            [0, 0, 1],
-            [0, 0, -1],
-        ];
-        let mut text = String::new();
-        corners
-            .iter()
-            .for_each(|[x, y, z]| text += &format!("v {x} {y} {z}\n"));
-        corners
-            .iter()
-            .for_each(|&corner| text += &format!("vn {}\n", normal(corner)));
-        for [a, b] in [[1, 3], [3, 2], [2, 4], [4, 1]] {
-            text += &format!("f {a}//{a} {b}//{b} 5//5\nf {b}//{b} {a}//{a} 6//6\n");
-        }
-        text
-    };
-    let own = octahedron(&|[x, y, z]| format!("{x} {y} {z}"));
-    let plain = own
-        .lines()
-        .filter(|line| !line.starts_with("vn"))
-        .map(|line| {
-            let words: Vec<&str> = line
-                .split(' ')
-                .map(|word| word.split("//").next().expect("a word"))
-                .collect();
-            words.join(" ") + "\n"
-        });
-    let without = file(&folder, "plain.obj", &plain.collect::<String>());
-    let (plain, apart_at_edges) = (draw(&without, "--smooth"), draw(&without, ""));
-    assert!(plain != apart_at_edges);
-    assert!(draw(&file(&folder, "own.obj", &own), "") == plain);
-    // Of any length, and against the way round of their faces.
-    let inwards = file(
-        &folder,
-        "inwards.obj",
-        &octahedron(&|[x, y, z]| format!("{} {} {}", -2 * x, -2 * y, -2 * z)),
+    usage_error(
+        &format!("refine {{}} -o {{}} {options}"),
+        &[&input, &stl],
+        "--split-normals",
     );
-    assert!(draw(&inwards, "") == plain);
-    // Zeros are none.
-    let none = file(&folder, "none.obj", &octahedron(&|_| "0 0 0".to_owned()));
-    assert!(draw(&none, "") == plain);
-    let bent = file(
-        &folder,
-        "bent.obj",
-        &octahedron(&|[x, y, z]| format!("{} {} {}", x + 2 * y, y - x, z + x)),
-    );
-    assert!(draw(&bent, "") != plain);
-    assert!(draw(&bent, "--smooth") == plain);
-    assert!(draw(&bent, "--crease-angle 179") == plain);
-    assert!(draw(&bent, "--flat") == draw(&inwards, "--flat"));
-    // What refinement writes is shaded the same from any file that holds normals: corners, vertices, and a document's.
-    let input = file(&folder, "prism.obj", &prism());
-    let pictures = ["obj", "ply", "glb"].map(|format| {
-        let output = folder.path().join(format!("refined.{format}"));
-        let split = if format == "ply" {
-            "--split-normals"
-        } else {
-            ""
-        };
-        run(
-            &format!("refine {{}} -o {{}} --crease-angle 40 --tolerance 0.01 {split}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        (draw(&output, ""), draw(&output, "--smooth"))
-    });
-    let apart = |a: &[u8], b: &[u8]| {
-        let [a, b] = [a, b].map(|png| pixels(png).concat());
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| a.abs_diff(b))
-            .max()
-            .expect("pixels")
-    };
-    assert!(
-        pictures.iter().all(|(own, smooth)| own != smooth),
-        "rims are sharp"
-    );
-    // Positions and normals are rounded to floats in some of them.
-    assert!(apart(&pictures[0].0, &pictures[1].0) <= 2);
-    assert!(apart(&pictures[0].0, &pictures[2].0) <= 2);
-}
-
-/// A box that is shaded by sides shows a single colour on each of them.
-#[test]
-fn boxes_show_one_colour_a_side() {
-    let folder = folder();
-    let colours = |option: &str| {
-        let picture = folder.path().join("cube.png");
-        run(
-            &format!("render builtin:cube -o {{}} --size 200x150 {option}"),
-            &[&picture],
-        )
-        .expect(0);
-        let mut counts = std::collections::BTreeMap::new();
-        for pixel in pixels(&std::fs::read(&picture).expect("written")) {
-            *counts.entry(pixel).or_insert(0usize) += 1;
-        }
-        // The background, and what fills more than a hundredth of the picture.
-        counts.values().filter(|&&count| count > 300).count()
-    };
-    assert!(colours("--crease-angle 30") <= 4);
-    assert!(colours("--crease-angle 30") >= 3);
-    assert_eq!(colours(""), colours("--crease-angle 30"));
-    assert_eq!(colours("--smooth"), 1);
 }

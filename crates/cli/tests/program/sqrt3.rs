@@ -1,6 +1,6 @@
 //! `refine --scheme sqrt3`: uniform steps, what they write, and what does not go with them.
 
-use crate::common::{counts, folder, run, soup};
+use crate::common::{counts, done, folder, run, soup};
 
 #[test]
 fn steps_triple_the_triangles() {
@@ -10,11 +10,10 @@ fn steps_triple_the_triangles() {
     for (levels, limit) in [(0, ""), (1, "--limit"), (3, ""), (4, "--limit")] {
         let options =
             format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
-        let run = run(
+        let run = done(
             &format!("refine builtin:torus -o {{}} {options}"),
             &[&output],
-        )
-        .expect(0);
+        );
         let report = run.json();
         let triangles = report["output"]["triangles"].as_u64().expect("a count");
         assert_eq!(
@@ -33,16 +32,11 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
     let output = folder.path().join("out.ply");
     for (options, word) in [
         ("--method uniform --interpolate", "--interpolate"),
-        ("--interpolate-within 0.1", "--interpolate-within"),
+        ("--interpolate=0.1", "--interpolate"),
         ("--method amresh", "--method amresh"),
         ("--method limit-normal", "--method limit-normal"),
         ("--method planarity", "--method planarity"),
         ("--method vertex-error --angle 5", "--method vertex-error"),
-        ("--no-input-distance", "--no-input-distance"),
-        (
-            "--method uniform --no-input-distance",
-            "--no-input-distance",
-        ),
         (
             "--method uniform --tolerance 1%",
             "--tolerance is for exact refinement",
@@ -58,7 +52,7 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--optimize", "--optimize"),
         ("--pixels 1", "--pixels"),
         ("--view 0,0,1 --angle 5", "--view"),
-        ("--levels 3", "--levels"),
+        ("--levels 0", "goals need 1"),
     ] {
         let run = run(
             &format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"),
@@ -81,7 +75,7 @@ fn goals_are_reached_without_cracks() {
         "--angle 30 --provenance",
     ] {
         let asked = format!("refine builtin:torus -o {{}} --scheme sqrt3 --report - {options}");
-        let done = run(&asked, &[&output]).expect(0);
+        let done = done(&asked, &[&output]);
         let report = done.json();
         assert_eq!(report["output"]["watertight"], true, "{options}");
         assert_eq!(report["output"]["t_junctions"], 0, "{options}");

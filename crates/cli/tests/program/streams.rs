@@ -7,7 +7,7 @@ use std::process::{Output, Stdio};
 
 use serde_json::Value;
 
-use crate::common::{command, file, folder, names, run, soup};
+use crate::common::{command, done, file, folder, names, run, soup, usage_error};
 
 /// Runs the program with bytes on standard input.
 fn fed(bytes: &[u8], arguments: &str, paths: &[&Path]) -> Output {
@@ -34,7 +34,7 @@ fn a_mesh_goes_from_standard_input_to_standard_output() {
     let folder = folder();
     let input = file(&folder, "in.obj", TETRAHEDRON);
     let whole = folder.path().join("whole.ply");
-    run("refine {} -o {}", &[&input, &whole]).expect(0);
+    done("refine {} -o {}", &[&input, &whole]);
     let expected = std::fs::read(&whole).expect("a file");
     let piped = fed(
         TETRAHEDRON.as_bytes(),
@@ -94,14 +94,10 @@ fn a_mesh_goes_from_standard_input_to_standard_output() {
 fn formats_that_nothing_tells_are_asked_for() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    run("refine - -o {}", &[&output]).expect(2).saying("--from");
-    run("refine builtin:head -o -", &[])
-        .expect(2)
-        .saying("--to");
-    run("measure - -", &[]).expect(2).saying("once");
-    run("refine builtin:head -o - --to ply --report -", &[])
-        .expect(2)
-        .saying("twice");
+    usage_error("refine - -o {}", &[&output], "--from");
+    usage_error("refine builtin:head -o -", &[], "--to");
+    usage_error("measure - -", &[], "once");
+    usage_error("refine builtin:head -o - --to ply --report -", &[], "twice");
     let run_of = fed(b"", "refine - --from obj -o {}", &[&output]);
     assert_eq!(run_of.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&run_of.stderr).contains("standard input: the file is empty"));
@@ -113,11 +109,11 @@ fn formats_that_nothing_tells_are_asked_for() {
     run("refine {} -o {}", &[&input, &output])
         .expect(1)
         .saying("'dat'");
-    run("refine {} -o {} --from obj --to off", &[&input, &unnamed]).expect(0);
+    done("refine {} -o {} --from obj --to off", &[&input, &unnamed]);
     assert!(std::fs::read(&unnamed).expect("a file").starts_with(b"OFF"));
     // A name that tells its format wins over --from, which is for standard input and the like.
     let named = file(&folder, "named.obj", TETRAHEDRON);
-    run("info {} --from stl", &[&named]).expect(0);
+    done("info {} --from stl", &[&named]);
     assert_eq!(names(folder.path()), ["named.obj", "scan.dat", "unnamed"]);
 }
 
@@ -130,9 +126,7 @@ fn several_inputs_go_into_a_folder_by_their_names() {
     );
     let out = folder.path().join("out/");
     let words = "refine {} {} builtin:cube -o {} --report {} --picture {} --triangles 100";
-    run(words, &[&one, &two, &out, &out, &out])
-        .expect(0)
-        .saying("two.obj: 100 triangles");
+    done(words, &[&one, &two, &out, &out, &out]).saying("two.obj: 100 triangles");
     let expected = [
         "cube.json",
         "cube.ply",
@@ -156,7 +150,7 @@ fn several_inputs_go_into_a_folder_by_their_names() {
     // One input into a folder that is there, with a format of its own.
     let there = folder.path().join("there");
     std::fs::create_dir(&there).expect("a folder");
-    run("refine {} -o {} --to stl", &[&one, &there]).expect(0);
+    done("refine {} -o {} --to stl", &[&one, &there]);
     assert_eq!(names(&there), ["one.stl"]);
 }
 
@@ -177,15 +171,13 @@ fn several_inputs_go_on_after_one_that_fails() {
     run(short, &[&good, &out]).expect(3).saying("2 of 2 inputs");
     // What makes no sense is found before anything is done.
     let file_for_two = folder.path().join("both.ply");
-    run("refine {} {} -o {}", &[&good, &bad, &file_for_two])
-        .expect(2)
-        .saying("FOLDER/");
-    run("refine {} {} -o {}", &[&good, &good, &out])
-        .expect(2)
-        .saying("twice");
-    run("refine - --from obj -o {}", &[&out])
-        .expect(2)
-        .saying("has no name");
+    usage_error(
+        "refine {} {} -o {}",
+        &[&good, &bad, &file_for_two],
+        "FOLDER/",
+    );
+    usage_error("refine {} {} -o {}", &[&good, &good, &out], "twice");
+    usage_error("refine - --from obj -o {}", &[&out], "has no name");
     let none = folder.path().join("none/");
     run("refine {} -o {} --limit", &[&good, &none]).expect(2);
     assert!(!none.exists());
@@ -201,7 +193,7 @@ fn names_may_be_in_any_encoding() {
     let [input, output, report] = [&b"B\xfcste.obj"[..], b"B\xfcste.ply", b"B\xfcste.json"]
         .map(|name| folder.path().join(OsStr::from_bytes(name)));
     std::fs::write(&input, TETRAHEDRON).expect("writable");
-    run("refine {} -o {} --report {}", &[&input, &output, &report]).expect(0);
+    done("refine {} -o {} --report {}", &[&input, &output, &report]);
     assert!(soup(&output).faces.len() > 100);
     let report: Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a file")).expect("JSON");
@@ -211,8 +203,8 @@ fn names_may_be_in_any_encoding() {
             .expect("a name")
             .ends_with("B\u{fffd}ste.obj")
     );
-    run("info {}", &[&input]).expect(0);
-    run("measure {} --limit-of {}", &[&output, &input]).expect(0);
+    done("info {}", &[&input]);
+    done("measure {} --limit-of {}", &[&output, &input]);
 }
 
 /// Whoever cannot take what is written is named.

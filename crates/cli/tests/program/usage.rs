@@ -1,17 +1,17 @@
 //! Wrong command lines: exit code 2, a message that says what is wrong, and no file touched.
 
-use crate::common::{folder, names, run};
+use crate::common::{done, folder, names, run, usage_error};
 
 #[test]
 fn nothing_to_do_is_a_usage_error() {
-    run("", &[]).expect(2).saying("Usage: limitmesh");
-    run("polish x.obj", &[]).expect(2).saying("polish");
-    run("refine", &[]).expect(2).saying("INPUT");
+    usage_error("", &[], "Usage: limitmesh");
+    usage_error("polish x.obj", &[], "polish");
+    usage_error("refine", &[], "INPUT");
 }
 
 #[test]
 fn help_and_version_are_printed() {
-    let help = run("--help", &[]).expect(0).stdout;
+    let help = done("--help", &[]).stdout;
     for command in [
         "refine",
         "measure",
@@ -24,7 +24,7 @@ fn help_and_version_are_printed() {
     ] {
         assert!(help.contains(command), "{command} in:\n{help}");
     }
-    let help = run("refine --help", &[]).expect(0).stdout;
+    let help = done("refine --help", &[]).stdout;
     for word in [
         "degrees",
         "default: 3",
@@ -36,7 +36,7 @@ fn help_and_version_are_printed() {
     ] {
         assert!(help.contains(word), "{word} in:\n{help}");
     }
-    let version = run("--version", &[]).expect(0).stdout;
+    let version = done("--version", &[]).stdout;
     assert_eq!(
         version.trim(),
         concat!("limitmesh ", env!("CARGO_PKG_VERSION"))
@@ -45,7 +45,7 @@ fn help_and_version_are_printed() {
 
 #[test]
 fn the_short_help_shows_what_most_people_need() {
-    let help = run("refine -h", &[]).expect(0).stdout;
+    let help = done("refine -h", &[]).stdout;
     let is_option = |line: &&str| line.trim_start().starts_with('-') && line.starts_with("  ");
     let options: Vec<&str> = help.lines().filter(is_option).collect();
     assert!(
@@ -65,10 +65,10 @@ fn the_short_help_shows_what_most_people_need() {
             "{option} in:\n{help}"
         );
     }
-    let whole = run("refine --help", &[]).expect(0).stdout;
+    let whole = done("refine --help", &[]).stdout;
     for option in [
         "--provenance",
-        "--uv-tolerance",
+        "--attribute-tolerance",
         "--seam",
         "--max-memory",
         "--weld-ignores",
@@ -85,14 +85,16 @@ fn help_offers_the_schemes_that_there_are() {
         "project builtin:cube --onto builtin:cube",
     ] {
         let name = command.split(' ').next().expect("a command");
-        let help = run(&format!("{name} --help"), &[]).expect(0).stdout;
+        let help = done(&format!("{name} --help"), &[]).stdout;
         assert!(
             help.contains("loop-warren") && !help.contains("butterfly"),
             "{help}"
         );
-        run(&format!("{command} --scheme butterfly"), &[])
-            .expect(2)
-            .saying("loop, loop-warren]");
+        usage_error(
+            &format!("{command} --scheme butterfly"),
+            &[],
+            "loop, loop-warren]",
+        );
     }
 }
 
@@ -108,10 +110,10 @@ fn usage_is_shown_for_what_is_written_wrong_alone() {
         assert!(shown(written_wrong), "{written_wrong}");
     }
     for makes_no_sense in [
-        "refine builtin:cup -o x.ply --levels 3",
+        "refine builtin:cup -o x.ply --levels 0",
         "refine builtin:cup -o x.vtk",
         "refine builtin:cup -o x.ply --tolerance 0",
-        "refine builtin:cup -o x.ply --view 0,0,1 --eye 0,0,1",
+        "refine builtin:cup -o x.ply --angle 5 --view 0,0,1 --view @0,0,1",
         "render builtin:cup -o x.png --flat --smooth",
         "lod builtin:cup -o -",
     ] {
@@ -132,12 +134,12 @@ fn slips_are_answered_with_what_was_meant() {
         .expect(2);
         said.saying(&format!("such as 0.1{unit}"));
     }
-    run("refine {} -o {}", &[folder.path(), &output])
-        .expect(2)
-        .saying("is a folder; `limitmesh batch`");
-    run("peg.stl", &[])
-        .expect(2)
-        .saying("`limitmesh refine peg.stl` smooths a file");
+    usage_error(
+        "refine {} -o {}",
+        &[folder.path(), &output],
+        "is a folder; `limitmesh batch`",
+    );
+    usage_error("peg.stl", &[], "`limitmesh refine peg.stl` smooths a file");
 }
 
 #[test]
@@ -150,16 +152,19 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--angle 180.5", "at most 180"),
         ("--angle NaN", "not a finite number"),
         ("--angle ten", "not a number"),
-        ("--levels 13", "at most 12"),
+        ("--method uniform --levels 13", "12 steps are the most"),
         ("--levels two", "whole number"),
         ("--view 0,0,0", "no direction"),
         ("--view 1,2", "three"),
         ("--view 1,2,inf", "not a finite number"),
-        ("--view 0,0,1 --eye 0,0,1", "cannot be used with"),
-        ("--dilatation 2", "--view or --eye"),
+        (
+            "--angle 5 --view 0,0,1 --view @0,0,1",
+            "one direction or eye",
+        ),
+        ("--dilatation 2", "it needs --view"),
         ("--view 0,0,1 --dilatation -1", "at least 0"),
         ("--view 0,0,1 --method amresh", "limit-normal"),
-        ("--eye 0,0,1 --method uniform", "limit-normal"),
+        ("--view @0,0,1 --method uniform", "limit-normal"),
         ("--method uniform --angle 5", "divides every face"),
         ("--method uniform --seam any", "never meet"),
         ("--max-triangles 0", "at least 1"),
@@ -171,23 +176,18 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--tolerance fine", "a length or per cent"),
         ("--triangles 0", "at least 1"),
         ("--triangles many", "whole number"),
-        ("--max-levels 0", "at least 1"),
-        ("--max-levels 25", "at most 24"),
-        ("--levels 3", "--max-levels"),
+        ("--levels 0", "goals need 1"),
+        ("--levels 25", "at most 24"),
         ("--limit", "lie on the limit surface"),
         ("--seam all", "lie on the limit surface"),
         ("--method uniform --tolerance 1", "--method exact"),
         ("--method amresh --triangles 1000", "--method exact"),
-        ("--method limit-normal --max-levels 3", "--method exact"),
         ("--method limit-normal --provenance", "--method exact"),
-        ("--pixels 1", "--camera"),
-        (
-            "--pixels 0 --camera 0,0,5,0,0,0,0,1,0,40,800x600",
-            "above 0",
-        ),
-        ("--camera 0,0,5,0,0,0,0,0,0,40,800x600", "upward direction"),
-        ("--camera 0,0,0,0,0,0,0,1,0,40,800x600", "eye to its target"),
-        ("--camera 0,0,5", "eye, target and up"),
+        ("--pixels 1", "a camera in --view"),
+        ("--pixels 0 --view 0,0,5,0,0,0,0,1,0,40,800x600", "above 0"),
+        ("--view 0,0,5,0,0,0,0,0,0,40,800x600", "upward direction"),
+        ("--view 0,0,0,0,0,0,0,1,0,40,800x600", "eye to its target"),
+        ("--view 0,0,5,1", "eye, target and up"),
         ("--optimize --angle 5", "--optimize"),
         ("--optimize --balance", "--optimize"),
         ("--method uniform --optimize", "--method exact"),
@@ -204,42 +204,40 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--threads 100000", "at most"),
     ];
     for (options, words) in wrong {
-        run(
+        usage_error(
             &format!("refine builtin:head -o {{}} {options}"),
             &[&output],
-        )
-        .expect(2)
-        .saying(words);
+            words,
+        );
     }
-    run(
+    usage_error(
         "refine builtin:head -o {} --provenance",
         &[&folder.path().join("out.obj")],
-    )
-    .expect(2)
-    .saying("PLY");
+        "PLY",
+    );
     let other = folder.path().join("out.vtk");
-    run("refine builtin:head -o {}", &[&other])
-        .expect(2)
-        .saying("'vtk'")
-        .saying(".ply");
-    run("refine builtin:head -o {} --report {}", &[&output, &output])
-        .expect(2)
-        .saying("twice");
+    usage_error("refine builtin:head -o {}", &[&other], "'vtk'").saying(".ply");
+    usage_error(
+        "refine builtin:head -o {} --report {}",
+        &[&output, &output],
+        "twice",
+    );
     assert_eq!(names(folder.path()), [""; 0]);
 }
 
 #[test]
 fn measuring_needs_exactly_one_reference() {
     run("measure builtin:head", &[]).expect(2);
-    run(
+    usage_error(
         "measure builtin:head builtin:cup --limit-of builtin:head",
         &[],
-    )
-    .expect(2)
-    .saying("cannot be used with");
-    run("measure builtin:head builtin:cup --reference-levels 3", &[])
-        .expect(2)
-        .saying("--limit-of");
+        "cannot be used with",
+    );
+    usage_error(
+        "measure builtin:head builtin:cup --reference-levels 3",
+        &[],
+        "--limit-of",
+    );
     for option in [
         "--crease-angle 30",
         "--creases-from normals",
@@ -247,27 +245,27 @@ fn measuring_needs_exactly_one_reference() {
         "--interpolate",
     ] {
         let name = option.split(' ').next().expect("a name");
-        run(&format!("measure builtin:head builtin:cup {option}"), &[])
-            .expect(2)
-            .saying(&format!(
-                "{name} belongs to a limit surface; it needs --limit-of"
-            ));
+        usage_error(
+            &format!("measure builtin:head builtin:cup {option}"),
+            &[],
+            &format!("{name} belongs to a limit surface; it needs --limit-of"),
+        );
     }
-    run("measure builtin:head builtin:cup --samples 0", &[])
-        .expect(2)
-        .saying("at least 1");
-    run(
+    usage_error(
+        "measure builtin:head builtin:cup --samples 0",
+        &[],
+        "at least 1",
+    );
+    usage_error(
         "measure builtin:head --limit-of builtin:head --reference-levels 12",
         &[],
-    )
-    .expect(2)
-    .saying("levels are possible");
-    run(
+        "levels are possible",
+    );
+    usage_error(
         "measure builtin:head --limit-of builtin:head --reference-levels 0",
         &[],
-    )
-    .expect(2)
-    .saying("would measure against the control mesh's own triangles");
+        "would measure against the control mesh's own triangles",
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::common::{file, folder, run, soup};
+use crate::common::{done, file, folder, json_of, run, soup, usage_error};
 
 /// Squares of voxels, by their low and high corners.
 type Square = [[f64; 3]; 2];
@@ -87,11 +87,10 @@ fn voxels_become_round_within_the_distance_in_every_format() {
     let input = file(&folder, "ball.off", &text);
     for name in ["round.ply", "round.stl", "round.obj", "round.off"] {
         let output = folder.path().join(name);
-        let run = run(
+        let run = done(
             "refine {} -o {} --within 0.87mm --unit mm --report -",
             &[&input, &output],
-        )
-        .expect(0);
+        );
         let report = run.json();
         assert_eq!(report["parameters"]["within"], 0.87);
         let found = &report["input_distance"];
@@ -118,9 +117,7 @@ fn voxels_become_round_within_the_distance_in_every_format() {
         );
     }
     let output = folder.path().join("percent.ply");
-    let report = run("refine {} -o {} --within 4% --report -", &[&input, &output])
-        .expect(0)
-        .json();
+    let report = json_of("refine {} -o {} --within 4% --report -", &[&input, &output]);
     let within = report["parameters"]["within"].as_f64().expect("a number");
     let diagonal = report["error"]["diagonal"].as_f64().expect("a number");
     assert!(
@@ -131,72 +128,15 @@ fn voxels_become_round_within_the_distance_in_every_format() {
 }
 
 #[test]
-fn assets_packages_batches_and_dry_runs_have_it_too() {
-    let folder = folder();
-    let (text, squares) = ball(5);
-    let input = file(&folder, "ball.off", &text);
-    for kind in ["glb", "3mf"] {
-        let [plain, output] =
-            ["plain", "round"].map(|name| folder.path().join(format!("{name}.{kind}")));
-        let unit = if kind == "3mf" { "--unit mm" } else { "" };
-        run(
-            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
-            &[&input, &plain],
-        )
-        .expect(0);
-        let report = run(
-            "refine {} -o {} --within 0.8 --report -",
-            &[&plain, &output],
-        )
-        .expect(0)
-        .json();
-        let found = &report["meshes"][0];
-        assert_eq!(found["parameters"]["within"], 0.8, "{kind}");
-        assert!(
-            found["input_distance"]["upper"].as_f64().expect("a number") <= 0.8,
-            "{kind}: {found}"
-        );
-        let back = folder.path().join(format!("{kind}.ply"));
-        run(
-            "refine {} -o {} --method uniform --levels 0",
-            &[&output, &back],
-        )
-        .expect(0);
-        let positions = soup(&back).positions;
-        assert!(
-            distance(&positions, &squares) <= 0.8 + 1e-6 && deviation(&positions) < 0.1,
-            "{kind}"
-        );
-    }
-    let jobs = format!(
-        "{{\"input\": {:?}, \"output\": {:?}, \"within\": 0.8}}\n",
-        input.display().to_string(),
-        folder.path().join("job.ply").display().to_string()
-    );
-    let jobs = file(&folder, "jobs.jsonl", &jobs);
-    run(
-        "batch {} -o {}",
-        &[&jobs, &folder.path().join("results.jsonl")],
-    )
-    .expect(0);
-    assert!(deviation(&soup(&folder.path().join("job.ply")).positions) < 0.1);
-    let dry = run("refine {} --dry-run --within 0.8 --report -", &[&input])
-        .expect(0)
-        .json();
-    assert_eq!(dry["parameters"]["within"], 0.8);
-}
-
-#[test]
 fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
     let folder = folder();
     let input = file(&folder, "ball.off", &ball(3).0);
     let output = folder.path().join("out.ply");
     // A tiny distance neither takes many triangles nor is it missed.
-    run(
+    done(
         "refine {} -o {} --within 1e-7 --max-triangles 20k --strict",
         &[&input, &output],
     )
-    .expect(0)
     .saying("edges stay sharp");
     // A box of twelve triangles has no smooth surface so near.
     let corners: String = (0..8)
@@ -211,9 +151,7 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
         .collect();
     let sides = "f 1 3 4\nf 1 4 2\nf 5 6 8\nf 5 8 7\nf 1 2 6\nf 1 6 5\nf 3 7 8\nf 3 8 4\nf 1 5 7\nf 1 7 3\nf 2 4 8\nf 2 8 6\n";
     let box_of_twelve = file(&folder, "box.obj", &(corners + sides));
-    run("refine {} -o {} --within 0.04", &[&box_of_twelve, &output])
-        .expect(0)
-        .saying("12 edges stay sharp");
+    done("refine {} -o {} --within 0.04", &[&box_of_twelve, &output]).saying("12 edges stay sharp");
     let positions = soup(&output).positions;
     let is_on_box = |p: &[f64; 3]| {
         let beyond = [40.0, 20.0, 5.0]
@@ -232,77 +170,19 @@ fn what_cannot_be_smooth_stays_sharp_and_what_cannot_be_kept_ends_with_3() {
 }
 
 #[test]
-fn edges_are_sharp_only_where_somebody_says_so() {
-    let folder = folder();
-    let mut text = String::new();
-    for corner in 0..8 {
-        let side = |bit: u32, size: f64| if corner >> bit & 1 == 0 { 0.0 } else { size };
-        writeln!(
-            text,
-            "v {} {} {}",
-            side(0, 40.0),
-            side(1, 20.0),
-            side(2, 5.0)
-        )
-        .expect("text");
-    }
-    for [a, b, c, d] in [
-        [1, 3, 4, 2],
-        [5, 6, 8, 7],
-        [1, 2, 6, 5],
-        [3, 7, 8, 4],
-        [1, 5, 7, 3],
-        [2, 4, 8, 6],
-    ] {
-        writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").expect("text");
-    }
-    let input = file(&folder, "box.obj", &text);
-    let output = folder.path().join("out.ply");
-    let refined = |options: &str| {
-        run(
-            &format!("refine {{}} -o {{}} --within 0.5 {options}"),
-            &[&input, &output],
-        )
-        .expect(0);
-        soup(&output).positions
-    };
-    // Rounded, a corner is left; sharp, it is there.
-    let is_there = |positions: Vec<[f64; 3]>| positions.contains(&[40.0, 20.0, 5.0]);
-    assert!(!is_there(refined("")));
-    assert!(is_there(refined("--crease-angle 30")));
-}
-
-/// A mesh has no fewer triangles than it began with, and says so.
-#[test]
-fn fewer_triangles_than_there_are_end_with_3() {
-    let folder = folder();
-    let (input, output) = (
-        file(&folder, "ball.off", &ball(4).0),
-        folder.path().join("out.ply"),
-    );
-    let said = run(
-        "refine {} -o {} --within 0.9 --triangles 100",
-        &[&input, &output],
-    )
-    .expect(3);
-    said.saying("more than --triangles 100; --optimize goes below");
-}
-
-#[test]
 fn what_does_not_go_with_it_is_refused() {
     let output = Path::new("out.ply");
     for options in [
         "--tolerance 1",
         "--interpolate",
-        "--interpolate-within 1",
-        "--no-input-distance",
+        "--interpolate=1",
         "--method uniform",
         "--method planarity",
         "--scheme sqrt3",
         "--scheme butterfly",
     ] {
         let line = format!("refine builtin:cup -o {{}} --within 1 {options}");
-        run(&line, &[output]).expect(2).saying("--within");
+        usage_error(&line, &[output], "--within");
     }
     for length in ["0", "-1", "nonsense", "0%", "101%"] {
         run(

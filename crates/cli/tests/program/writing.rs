@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 #[cfg(unix)]
-use crate::common::Running;
+use crate::common::{Running, done};
 use crate::common::{command, file, folder, names, run, soup};
 
 #[test]
@@ -37,17 +37,15 @@ fn numbers_that_overflow_are_not_written() {
 fn a_mesh_may_be_refined_in_place() {
     let folder = folder();
     let mesh = folder.path().join("mesh.off");
-    run(
+    done(
         "refine builtin:cube -o {} --levels 0 --method uniform",
         &[&mesh],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&mesh).faces.len(), 12);
-    run(
+    done(
         "refine {} -o {} --levels 1 --method uniform --overwrite",
         &[&mesh, &mesh],
-    )
-    .expect(0);
+    );
     assert_eq!(soup(&mesh).faces.len(), 48);
     assert_eq!(names(folder.path()), ["mesh.off"]);
 }
@@ -64,11 +62,10 @@ fn a_folder_that_does_not_exist_is_found_before_the_work() {
     run("refine builtin:head -o {} --report {}", &[&output, &report])
         .expect(1)
         .saying("nowhere");
-    run(
+    done(
         "refine builtin:head -o {}",
         &[&folder.path().join("sub.ply")],
-    )
-    .expect(0);
+    );
     assert_eq!(names(folder.path()), ["sub.ply"]);
 }
 
@@ -77,14 +74,13 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     let picture = folder.path().join("out.png");
-    let silent = run(
+    let silent = done(
         "refine builtin:head -o {} --tolerance 1% --picture {} --quiet",
         &[&output, &picture],
-    )
-    .expect(0);
+    );
     assert_eq!((silent.stdout.as_str(), silent.stderr.as_str()), ("", ""));
     assert_eq!(names(folder.path()), ["out.ply", "out.png"]);
-    let told = run("refine builtin:head -o {} --tolerance 1%", &[&output]).expect(0);
+    let told = done("refine builtin:head -o {} --tolerance 1%", &[&output]);
     assert_eq!(told.stdout, "");
     // The head folds over in places, and that is said.
     assert_eq!(
@@ -98,7 +94,7 @@ fn quiet_says_nothing_and_otherwise_only_results_go_to_standard_output() {
         "measure builtin:cup builtin:cup",
         "models",
     ] {
-        let run = run(&format!("{command} -q"), &[]).expect(0);
+        let run = done(&format!("{command} -q"), &[]);
         assert_eq!(run.stderr, "", "{command}");
         assert!(!run.stdout.is_empty(), "{command}");
     }
@@ -164,60 +160,6 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
             }
         }
     }
-}
-
-/// Nobody waits for the end of a large file: the temporary one is removed, and an earlier one of that name stays.
-#[cfg(unix)]
-#[test]
-fn a_signal_ends_the_writing_of_a_large_file() {
-    for (name, how) in [("out.ply", "--ascii"), ("out.obj", "")] {
-        let folder = folder();
-        let output = file(&folder, name, "precious");
-        let words = format!("refine builtin:shoe -o {{}} -q --method uniform --levels 6 {how}");
-        let mut running = Running::start(&words, &[&output]);
-        // Before the work one is made, too, to find out whether that is possible; nothing is written to it.
-        running.until("a temporary file", || {
-            let temporary = |name: &String| name.ends_with(".tmp");
-            let length =
-                |name| std::fs::metadata(folder.path().join(name)).map_or(0, |there| there.len());
-            names(folder.path())
-                .into_iter()
-                .filter(temporary)
-                .any(|name| length(name) > 0)
-        });
-        running.signal("TERM");
-        running
-            .end()
-            .expect(143)
-            .saying("while writing ")
-            .saying("nothing was written");
-        assert_eq!(names(folder.path()), [name]);
-        assert_eq!(
-            std::fs::read_to_string(&output).expect("the earlier file"),
-            "precious"
-        );
-    }
-}
-
-/// A pipe that nobody reads from keeps no program from ending.
-#[cfg(unix)]
-#[test]
-fn a_signal_ends_the_writing_into_a_full_pipe() {
-    let folder = folder();
-    let pipe = pipe(&folder, "pipe.ply");
-    let mut running = Running::start(
-        "refine builtin:shoe -o {} -q --method uniform --levels 3",
-        &[&pipe],
-    );
-    // Opens when the program does, and is read from by nobody.
-    let reader = std::thread::spawn(move || std::fs::File::open(&pipe));
-    running.until("a pipe", || reader.is_finished());
-    running.signal("TERM");
-    running
-        .end()
-        .expect(143)
-        .saying("while writing ")
-        .saying("part of it may have been read");
 }
 
 /// Of files that belong together none counts as written before all are.
@@ -303,7 +245,7 @@ fn lines_of_results_are_short() {
         "builtin:head --angle 3",
         "builtin:head --angle 40",
         "builtin:head --triangles 3000 --optimize",
-        "builtin:head --pixels 0.5 --camera 0,-4,2,0,0,0,0,0,1,40,1920x1080",
+        "builtin:head --pixels 0.5 --view 0,-4,2,0,0,0,0,0,1,40,1920x1080",
         "builtin:head --method uniform",
     ];
     for options in long {

@@ -155,24 +155,23 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         method=method, levels=levels, tolerance=tolerance, within=within, triangles=triangles, angle=angle, optimize=optimize,
         balance=balance, max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
-    arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--uv={uv}"]
+    arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--channel=uv={uv}"]
     arguments += [f"--scheme={scheme}", f"--boundary={boundary}"]
     arguments.append("--weld=none" if weld is None else f"--weld={weld!r}")
     if interpolate is True:
         arguments.append("--interpolate")
     elif interpolate is not False and interpolate is not None:
-        arguments.append(f"--interpolate-within={interpolate}")
+        arguments.append(f"--interpolate={interpolate}")
     for name, value in (
         ("tolerance", tolerance),
         ("within", within),
         ("proof", None if proof is None else _name(proof, "proof")),
         ("crease-angle", creases if crease_angle is None else crease_angle),
         ("angle", angle),
-        ("concave-corners", concave_corners),
+        ("concave-corners", {"divided": "fixed", "as-tagged": "smooth"}.get(concave_corners or "")),
         ("triangles", goals["triangles"]),
         ("max-triangles", goals["max_triangles"]),
-        ("max-levels", goals["max_levels"]),
-        ("levels", None if levels is None else goals["levels"]),
+        ("levels", goals["max_levels"] if levels is None else goals["levels"]),
         ("max-memory", goals["max_memory"] if method == "exact" else None),
     ):
         if value is not None:

@@ -7,7 +7,7 @@ use std::path::{Path, is_separator};
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Viewer};
 use crate::file_identity::FileIdentity;
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
@@ -94,8 +94,13 @@ impl Reader {
                 "output" => job.output = Some(value.into_text(&name)?),
                 known if self.known.contains(known) => {
                     is_dry |= known == "dry-run" && value == Value::Yes;
-                    if known == "camera-path" {
-                        job.option_files.extend(value.texts());
+                    if known == "view" {
+                        job.option_files.extend(
+                            value
+                                .texts()
+                                .iter()
+                                .filter_map(|text| file_of_cameras(text)),
+                        );
                     }
                     if ["picture", "proof"].contains(&known) {
                         job.others.extend(value.texts());
@@ -122,6 +127,11 @@ impl Reader {
         }
         Ok(job)
     }
+}
+
+/// The file that an option names in which cameras are.
+fn file_of_cameras(text: &str) -> Option<String> {
+    matches!(text.parse(), Ok(Viewer::File(_))).then(|| text.to_owned())
 }
 
 fn is_folder(path: &Path) -> bool {
@@ -303,8 +313,8 @@ mod tests {
                 "'tolerance' is an object",
             ),
             (
-                r#"{"input": "a.obj", "output": "b.ply", "camera": [[1]]}"#,
-                "'camera' is a list of something",
+                r#"{"input": "a.obj", "output": "b.ply", "view": [[1]]}"#,
+                "'view' is a list of something",
             ),
         ] {
             let what = job(line).unwrap_err();

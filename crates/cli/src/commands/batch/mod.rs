@@ -5,13 +5,13 @@
 //! ```
 //!
 //! Processes, because what one mesh does must not end the others: memory that is not there, a limit that is passed, an error of
-//! the program. What it costs to start one is small beside a mesh (docs/fleet.md).
+//! the program. What it costs to start one is small against a mesh (docs/fleet.md).
 
 mod job;
 mod key;
 mod process;
 mod results;
-mod told;
+mod status;
 
 use std::collections::VecDeque;
 use std::ffi::OsString;
@@ -24,6 +24,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
+use serde_json::value::RawValue;
 
 use crate::arguments::BatchArguments;
 use crate::failure::{Outcome, usage};
@@ -37,10 +38,10 @@ pub(super) use process::Verdict;
 use process::{Ended, Limits, Starter};
 use results::{EarlierResults, Place, Results};
 #[cfg(test)]
-pub(crate) use told::Line as BatchLine;
-use told::{ErrorTold, Kind, Line, Told};
+pub(crate) use status::Line as BatchLine;
+use status::{JobError, JobStatus, Kind, Line};
 
-/// Where nobody sees a spinner, how things stand is told so often.
+/// Where nobody sees a spinner, a note says so often how things stand.
 const TELL: Duration = Duration::from_secs(30);
 
 /// How often the batch looks whether it is to end.
@@ -99,17 +100,24 @@ pub(crate) fn run(
     let processes = arguments
         .processes
         .unwrap_or((processors / starter.threads).max(1));
+    let with_seconds = arguments.seconds;
     let batch = Batch {
         starter,
         earlier,
-        with_seconds: arguments.seconds,
+        with_seconds,
     };
-    batch.run(
-        tasks,
-        processes,
-        (results, output_name(arguments)),
-        (start, progress),
-    )
+    let name = output_name(arguments);
+    let jobs = tasks.len();
+    let counts = batch.run(tasks, processes, results, &name, progress)?;
+    let took = seconds(start.elapsed().as_secs_f64());
+    progress.note(format!("{}; {took}", counts.in_words(jobs)));
+    let jobs = counted(jobs, "job", "jobs");
+    let failed = thousands(counts.failed);
+    anyhow::ensure!(counts.failed == 0, "{failed} of {jobs} failed");
+    Ok(match counts.short {
+        0 => Outcome::Done,
+        short => Outcome::StoppedShort(format!("{} of {jobs}", thousands(short))),
+    })
 }
 
 fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
@@ -118,7 +126,7 @@ fn check(arguments: &BatchArguments) -> anyhow::Result<()> {
     }
     if arguments.memory_limit.is_some() && process::resident(std::process::id()).is_none() {
         return usage(
-            "--memory-limit needs a system that tells in /proc what processes have in memory",
+            "--memory-limit needs a system that says in /proc what processes have in memory",
         );
     }
     Ok(())
@@ -231,9 +239,10 @@ impl Batch {
         &self,
         tasks: Vec<Task>,
         processes: usize,
-        (mut results, name): (Results, String),
-        (start, progress): (Instant, &Progress),
-    ) -> anyhow::Result<Outcome> {
+        mut results: Results,
+        name: &str,
+        progress: &Progress,
+    ) -> anyhow::Result<Counts> {
         let jobs = tasks.len();
         tasks.iter().for_each(|task| results.expect(task.line));
         let tasks = Mutex::new(VecDeque::from(tasks));
@@ -245,11 +254,11 @@ impl Batch {
                 scope.spawn(move || self.work(tasks, &sender));
             }
             drop(sender);
-            let mut told = Instant::now();
+            let mut noted = Instant::now();
             let outcome = loop {
                 progress.stage(format!("refining: {}", counts.in_words(jobs)));
-                if told.elapsed() > TELL {
-                    told = Instant::now();
+                if noted.elapsed() > TELL {
+                    noted = Instant::now();
                     progress.note_where_nothing_moves(counts.in_words(jobs));
                 }
                 let (line, result) = match receiver.recv_timeout(LOOK) {
@@ -289,29 +298,10 @@ impl Batch {
         if interrupt::is_asked() {
             progress.stage(format!("refining: {}", counts.in_words(jobs)));
             progress.clear();
-            interrupt::end_as_asked(name);
+            interrupt::end_as_asked(name.to_owned());
         }
         results.finish()?;
-        progress.note(format!(
-            "{}; {}",
-            counts.in_words(jobs),
-            seconds(start.elapsed().as_secs_f64())
-        ));
-        let Counts { short, failed, .. } = counts;
-        anyhow::ensure!(
-            failed == 0,
-            "{} of {} failed",
-            thousands(failed),
-            counted(jobs, "job", "jobs")
-        );
-        Ok(match short {
-            0 => Outcome::Done,
-            _ => Outcome::StoppedShort(format!(
-                "{} of {}",
-                thousands(short),
-                counted(jobs, "job", "jobs")
-            )),
-        })
+        Ok(counts)
     }
 
     /// Does tasks as long as there are any.
@@ -334,13 +324,13 @@ impl Batch {
         let job = match &task.job {
             Ok(job) => job,
             Err(what) => {
-                let told = failed(Kind::Line, None, what.clone());
+                let status = failed(Kind::Line, None, what.clone());
                 return new(Line {
                     line: task.line,
                     key: None,
                     input: None,
                     output: None,
-                    told,
+                    status,
                 });
             }
         };
@@ -348,49 +338,53 @@ impl Batch {
         if let Some(earlier) = key.as_ref().and_then(|key| self.kept(key, job)) {
             return Ok(earlier);
         }
-        let told = match self.starter.run(&job.words())? {
-            Ended::Cancelled => return Ok(Fate::Cancelled),
-            Ended::Said {
-                report: Some(report),
-                verdict: Verdict::Done,
-            } => {
-                let report = told::on_one_line(&report, self.with_seconds)?;
-                Told::Done {
-                    output_bytes: size(job),
-                    report,
-                }
-            }
-            Ended::Said {
-                report: Some(report),
-                verdict: Verdict::StoppedShort { why },
-            } => {
-                let report = told::on_one_line(&report, self.with_seconds)?;
-                Told::StoppedShort {
-                    why,
-                    output_bytes: size(job),
-                    report,
-                }
-            }
-            Ended::Said {
-                verdict: Verdict::Options { message },
-                ..
-            } => failed(Kind::Options, None, message),
-            Ended::Said {
-                verdict: Verdict::File { message },
-                ..
-            } => failed(Kind::File, None, message),
-            Ended::Said { .. } => failed(Kind::Crash, None, "it ended without a report".to_owned()),
-            Ended::Passed(kind) => self.passed(kind),
-            Ended::Crashed(how) => failed(Kind::Crash, None, how),
+        let Some(status) = self.status(job)? else {
+            return Ok(Fate::Cancelled);
         };
-        let (input, output) = (Some(job.input.as_str()), job.output.as_deref());
         new(Line {
             line: task.line,
             key: key.as_deref(),
-            input,
-            output,
-            told,
+            input: Some(&job.input),
+            output: job.output.as_deref(),
+            status,
         })
+    }
+
+    /// What becomes of a job in its process; `None` where it is cancelled.
+    fn status(&self, job: &Job) -> anyhow::Result<Option<JobStatus>> {
+        let (verdict, report) = match self.starter.run(&job.words())? {
+            Ended::Cancelled => return Ok(None),
+            Ended::TooLong(most) => {
+                let most = most.as_secs_f64();
+                let message = format!("it took more than {most} s (--time-limit)");
+                let limit = serde_json::Number::from_f64(most);
+                return Ok(Some(failed(Kind::Time, limit, message)));
+            }
+            Ended::TooLarge(most) => {
+                let bytes = crate::format::bytes(most);
+                let message = format!("it took more than {bytes} of memory (--memory-limit)");
+                return Ok(Some(failed(Kind::Memory, Some(most.into()), message)));
+            }
+            Ended::Crashed(how) => return Ok(Some(failed(Kind::Crash, None, how))),
+            Ended::Said { verdict, report } => (verdict, report),
+        };
+        let on_one_line = |report: &RawValue| status::on_one_line(report, self.with_seconds);
+        let report = report.as_deref().map(on_one_line).transpose()?;
+        let output_bytes = size(job);
+        Ok(Some(match (verdict, report) {
+            (Verdict::Done, Some(report)) => JobStatus::Done {
+                output_bytes,
+                report,
+            },
+            (Verdict::StoppedShort { why }, Some(report)) => JobStatus::StoppedShort {
+                why,
+                output_bytes,
+                report,
+            },
+            (Verdict::Options { message }, _) => failed(Kind::Options, None, message),
+            (Verdict::File { message }, _) => failed(Kind::File, None, message),
+            _ => failed(Kind::Crash, None, "it ended without a report".to_owned()),
+        }))
     }
 
     /// The earlier result of a job, if it holds.
@@ -418,28 +412,6 @@ impl Batch {
             || size(job) == earlier.output_bytes && job.written().all(Path::exists);
         is_there.then(|| Fate::Kept(earlier.place, standing))
     }
-
-    fn passed(&self, kind: Kind) -> Told {
-        let Limits { time, memory } = self.starter.limits;
-        let (limit, message) = match kind {
-            Kind::Time => {
-                let most = time.unwrap_or_default().as_secs_f64();
-                (
-                    serde_json::Number::from_f64(most),
-                    format!("it took more than {most} s (--time-limit)"),
-                )
-            }
-            _ => {
-                let most = memory.unwrap_or_default();
-                let words = format!(
-                    "it took more than {} of memory (--memory-limit)",
-                    crate::format::bytes(most)
-                );
-                (Some(most.into()), words)
-            }
-        };
-        failed(kind, limit, message)
-    }
 }
 
 /// Bytes of the mesh that a job wrote.
@@ -448,9 +420,9 @@ fn size(job: &Job) -> Option<u64> {
     std::fs::metadata(path).ok().map(|file| file.len())
 }
 
-fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> Told {
-    Told::Failed {
-        error: ErrorTold {
+fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> JobStatus {
+    JobStatus::Failed {
+        error: JobError {
             kind,
             limit,
             message,
@@ -460,10 +432,10 @@ fn failed(kind: Kind, limit: Option<serde_json::Number>, message: String) -> Tol
 
 /// A result as its line.
 fn new(line: Line<'_>) -> anyhow::Result<Fate> {
-    let standing = match &line.told {
-        Told::Done { .. } => Standing::Done,
-        Told::StoppedShort { .. } => Standing::Short,
-        Told::Failed { error } => {
+    let standing = match &line.status {
+        JobStatus::Done { .. } => Standing::Done,
+        JobStatus::StoppedShort { .. } => Standing::Short,
+        JobStatus::Failed { error } => {
             Standing::Failed(format!("error ({}): {}", error.kind.name(), error.message))
         }
     };

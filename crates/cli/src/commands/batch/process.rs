@@ -15,7 +15,6 @@ use anyhow::Context;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use super::told::Kind;
 use crate::interrupt;
 
 /// How often limits are looked at.
@@ -60,8 +59,10 @@ pub(super) enum Ended {
         report: Option<Box<RawValue>>,
         verdict: Verdict,
     },
-    /// It passed a limit.
-    Passed(Kind),
+    /// It took longer than this.
+    TooLong(Duration),
+    /// It took more memory than this.
+    TooLarge(usize),
     /// It ended without a verdict: what is known of that.
     Crashed(String),
     /// The batch is to end.
@@ -80,7 +81,7 @@ impl Starter {
         // Closed to end it.
         let mut line = child.stdin.take();
         let said = listen(child.stdout.take());
-        let told = listen(child.stderr.take());
+        let messages = listen(child.stderr.take());
         let start = Instant::now();
         let mut asked: Option<(Ended, Instant)> = None;
         let bytes = loop {
@@ -117,7 +118,7 @@ impl Starter {
                 report: values.pop(),
                 verdict,
             },
-            None => Ended::Crashed(in_words(status, &told.recv().unwrap_or_default())),
+            None => Ended::Crashed(in_words(status, &messages.recv().unwrap_or_default())),
         })
     }
 
@@ -154,12 +155,10 @@ impl Starter {
             return Some(Ended::Cancelled);
         }
         let Limits { time, memory } = self.limits;
-        if time.is_some_and(|most| start.elapsed() > most) {
-            return Some(Ended::Passed(Kind::Time));
-        }
-        let is_large =
-            memory.is_some_and(|most| resident(child.id()).is_some_and(|now| now > most));
-        is_large.then_some(Ended::Passed(Kind::Memory))
+        let is_long = |most: &Duration| start.elapsed() > *most;
+        let is_large = |most: &usize| resident(child.id()).is_some_and(|now| now > *most);
+        let too_long = time.filter(is_long).map(Ended::TooLong);
+        too_long.or_else(|| memory.filter(is_large).map(Ended::TooLarge))
     }
 }
 
@@ -175,7 +174,7 @@ fn listen(stream: Option<impl Read + Send + 'static>) -> Receiver<Vec<u8>> {
     receiver
 }
 
-/// Bytes that a process has in memory, where the system tells.
+/// Bytes that a process has in memory, where the system says.
 pub(super) fn resident(process: u32) -> Option<usize> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status
@@ -186,9 +185,9 @@ pub(super) fn resident(process: u32) -> Option<usize> {
 }
 
 /// How a process ended without a verdict, with the end of what it said.
-fn in_words(status: std::process::ExitStatus, told: &[u8]) -> String {
-    let told = String::from_utf8_lossy(told);
-    let lines: Vec<&str> = told
+fn in_words(status: std::process::ExitStatus, messages: &[u8]) -> String {
+    let messages = String::from_utf8_lossy(messages);
+    let lines: Vec<&str> = messages
         .lines()
         .map(str::trim)
         .filter(|line| !line.is_empty())

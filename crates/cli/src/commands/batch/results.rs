@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail, ensure};
 use serde::Deserialize;
 
-use super::told::Kind;
+use super::status::Kind;
 use crate::interrupt;
 use crate::output;
 
@@ -104,11 +104,12 @@ pub(super) struct Stream {
 impl Stream {
     fn add(&mut self, line: usize, result: String) -> anyhow::Result<()> {
         self.expected.insert(line, Some(result));
-        while let Some(first) = self.expected.first_entry() {
-            if first.get().is_none() {
+        while let Some((line, result)) = self.expected.pop_first() {
+            let Some(result) = result else {
+                self.expected.insert(line, None);
                 break;
-            }
-            output::print(&first.remove().unwrap_or_default())?;
+            };
+            output::print(&result)?;
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Goals beside the shape: values of channels, and surfaces that morph targets make.
+//! Goals apart from the shape: values of channels, and surfaces that morph targets make.
 
 use limitmesh::Mesh;
 use limitmesh::carry::goal;
@@ -19,7 +19,7 @@ pub(super) struct AttributeGoals {
 struct Wanted {
     name: String,
     tolerance: f64,
-    /// `None` where any triangles do, as for what is linear on each face.
+    /// `None` where any triangles meet it, as for what is linear on each face.
     goal: Option<AttributeGoal>,
     /// Whether it is a length of the scene rather than a channel's own unit.
     is_length: bool,
@@ -39,12 +39,7 @@ impl AttributeGoals {
         for channel in channels.all() {
             if let Some(tolerance) = arguments.tolerance(channel) {
                 let goal = goal(channel, control, tolerance)?;
-                self.all.push(Wanted {
-                    name: channel.name.clone(),
-                    tolerance,
-                    goal,
-                    is_length: false,
-                });
+                self.add(channel.name.clone(), tolerance, goal, false);
             }
         }
         Ok(())
@@ -52,31 +47,32 @@ impl AttributeGoals {
 
     /// Adds the surface that a morph target makes.
     pub(super) fn add_surface(&mut self, name: String, moved: Mesh, tolerance: f64) {
-        let goal = Some(AttributeGoal::surface(moved, tolerance));
+        let goal = AttributeGoal::surface(moved, tolerance);
+        self.add(name, tolerance, Some(goal), true);
+    }
+
+    fn add(&mut self, name: String, tolerance: f64, goal: Option<AttributeGoal>, is_length: bool) {
         self.all.push(Wanted {
             name,
             tolerance,
             goal,
-            is_length: true,
+            is_length,
         });
     }
 
     /// What is asked of the refinement.
     pub(super) fn options(&self) -> Vec<AttributeGoal> {
-        self.all
-            .iter()
-            .filter_map(|wanted| wanted.goal.clone())
-            .collect()
+        let goals = self.all.iter().filter_map(|wanted| wanted.goal.clone());
+        goals.collect()
     }
 
     /// The goals in words, if there are some.
     pub(super) fn in_words(&self) -> Option<&'static str> {
-        let has_goal = |wanted: &Wanted| wanted.goal.is_some();
-        let is_length = |wanted: &Wanted| has_goal(wanted) && wanted.is_length;
-        match (
-            self.all.iter().any(is_length),
-            self.all.iter().any(|own| has_goal(own) && !own.is_length),
-        ) {
+        let have = |is_length: bool| {
+            let mut wanted = self.all.iter();
+            wanted.any(|own| own.goal.is_some() && own.is_length == is_length)
+        };
+        match (have(true), have(false)) {
             (false, false) => None,
             (true, false) => Some("the morph targets' tolerance"),
             (false, true) => Some("the channels' tolerances"),
@@ -116,10 +112,8 @@ impl AttributeGoals {
         }
         lines.extend(morphs.map(|upper| match upper {
             Some(upper) => {
-                format!(
-                    "each morph target within {}{unit} of its limit surface",
-                    upper_bound(upper)
-                )
+                let upper = upper_bound(upper);
+                format!("each morph target within {upper}{unit} of its limit surface")
             }
             None => "morph targets are not bounded".to_owned(),
         }));

@@ -6,8 +6,9 @@ use std::path::Path;
 
 use limitmesh_io::Format;
 
-use super::{picture, proof};
-use crate::arguments::{Method, MorphTolerance, RefineArguments, Way};
+use super::super::picture;
+use super::proof;
+use crate::arguments::{MAX_STEPS, Method, MorphTolerance, RefineArguments, Viewer, Way};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
 use crate::format::thousands;
@@ -26,45 +27,94 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     if let Some(option) = unknown(arguments) {
         return usage(option.refusal(way, arguments.method));
     }
-    match way {
-        Way::Exact | Way::Sqrt3 => goals(arguments)?,
-        Way::Stepwise | Way::Sqrt3Steps => uniform(arguments)?,
-        Way::Restricted => restricted(arguments)?,
+    if let Some((_, why)) = rules(arguments)
+        .into_iter()
+        .find(|&(is_broken, _)| is_broken)
+    {
+        return usage(why);
     }
-    let view = arguments.view.is_some() || arguments.eye.is_some();
-    if view && !matches!(arguments.method, Method::Exact | Method::LimitNormal) {
-        return usage(
-            "--view and --eye make the angle from limit normals depend on the viewer; they need --method exact or \
-             limit-normal",
-        );
-    }
-    if view && arguments.method == Method::Exact && arguments.angle.is_none() {
-        return usage(
-            "--view and --eye make --angle depend on the viewer; with --method exact they need one",
-        );
-    }
-    if arguments.dilatation.is_some() && !view {
-        return usage(
-            "--dilatation widens the angle of faces that look at a viewer; it needs --view or --eye",
-        );
-    }
+    goals(arguments)?;
     let format = arguments.format()?;
-    if arguments.exact.provenance && format.is_some_and(|format| format != Format::Ply) {
+    let is_other = format.is_some_and(|format| format != Format::Ply);
+    if arguments.exact.provenance && is_other {
+        let name = arguments.output_name();
         return usage(format!(
-            "--provenance writes properties of PLY files; {} is none",
-            arguments.output_name()
+            "--provenance writes properties of PLY files; {name} is none"
         ));
     }
-    proof::check(arguments, format)?;
-    if arguments.split_normals && format.is_some_and(|format| format != Format::Ply) {
+    if arguments.split_normals && is_other {
         return usage(
             "--split-normals is for PLY files: OBJ holds normals by corner, and the others none",
         );
     }
-    if arguments.exact.dry_run && arguments.picture.is_some() {
-        return usage("--dry-run gives no mesh that --picture could draw");
-    }
+    proof::check(arguments, format)?;
     Ok(format)
+}
+
+/// Whether a rule is broken, and why it holds.
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 13] {
+    let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
+    let has_angle = arguments.angle.is_some();
+    let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
+    let viewers = arguments.view.iter().filter(is_one).count();
+    let by_steps = matches!(way, Way::Stepwise | Way::Sqrt3Steps);
+    let is_uniform = method == Method::Uniform;
+    let has_limit_normals = matches!(method, Method::Exact | Method::LimitNormal);
+    let is_whole = has_angle || arguments.has_cameras() || exact.balance;
+    [
+        (
+            viewers == 0 && arguments.dilatation.is_some(),
+            "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",
+        ),
+        (
+            viewers > 0 && !has_limit_normals,
+            "a direction or an eye in --view makes the angle from limit normals depend on the viewer; it needs --method exact or limit-normal",
+        ),
+        (
+            viewers > 0 && method == Method::Exact && !has_angle,
+            "a direction or an eye in --view makes --angle depend on the viewer; with --method exact it needs one",
+        ),
+        (
+            viewers > 1,
+            "--view knows one direction or eye at a time; of cameras there may be several",
+        ),
+        (
+            !by_steps && arguments.levels == Some(0),
+            "--levels 0 lets nothing be divided; goals need 1 at least",
+        ),
+        (
+            by_steps && arguments.levels.is_some_and(|levels| levels > MAX_STEPS),
+            "12 steps are the most, as each gives up to four times the triangles; --levels is a cap with --method exact alone",
+        ),
+        (
+            is_uniform && has_angle,
+            "--angle has no effect with --method uniform, which divides every face",
+        ),
+        (
+            is_uniform && arguments.seam.is_some(),
+            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
+        ),
+        (
+            method == Method::VertexError && has_angle,
+            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance",
+        ),
+        (
+            method == Method::Planarity && has_angle && exact.tolerance.is_some(),
+            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
+        ),
+        (
+            exact.optimize && is_whole,
+            "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
+        ),
+        (
+            exact.pixels.is_some() && !arguments.has_cameras(),
+            "--pixels is what cameras see; it needs a camera in --view",
+        ),
+        (
+            arguments.exact.dry_run && arguments.picture.is_some(),
+            "--dry-run gives no mesh that --picture could draw",
+        ),
+    ]
 }
 
 /// Refuses two jobs that would write one file, and one that would replace an input of any of them.
@@ -83,23 +133,20 @@ pub(super) fn together(
     output::check_replaced(&written, &inputs, Some(arguments.overwrite))?;
     output::check_once(&written)?;
     // Where that is asked for a result may replace its own input, but not what another result is to be made from.
-    let read: BTreeMap<FileIdentity, usize> = inputs
+    let read = inputs
         .iter()
-        .enumerate()
-        .map(|(number, input)| (FileIdentity::of(input), number))
-        .collect();
+        .zip(0..)
+        .map(|(input, number)| (FileIdentity::of(input), number));
+    let read: BTreeMap<FileIdentity, usize> = read.collect();
     for (number, job) in jobs.iter().enumerate() {
         let Some(output) = job.output.as_deref() else {
             continue;
         };
-        if read
-            .get(&FileIdentity::of(output))
-            .is_some_and(|&other| other != number)
-        {
+        let reader = read.get(&FileIdentity::of(output));
+        if reader.is_some_and(|&other| other != number) {
+            let (output, input) = (output.display(), job.input().display());
             return usage(format!(
-                "{} is an input, too, which the result of {} would replace",
-                output.display(),
-                job.input().display()
+                "{output} is an input, too, which the result of {input} would replace"
             ));
         }
     }
@@ -122,73 +169,45 @@ pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
     }
 }
 
-/// An option that not all ways to refine know.
+/// An option that not all methods know.
 struct Limited {
     name: &'static str,
-    is_given: bool,
     known: &'static [Way],
 }
 
-/// The first option that is given, and unknown to the way that is gone.
+/// The first option that is given, and unknown to the method. What depends on other options has rules of its own.
 fn unknown(arguments: &RefineArguments) -> Option<Limited> {
-    let way = arguments.way();
-    limited(arguments)
-        .into_iter()
-        .find(|option| option.is_given && !option.known.contains(&way))
-}
-
-/// All of them. What depends on other options has checks of its own.
-fn limited(arguments: &RefineArguments) -> [Limited; 24] {
     const EXACT: &[Way] = &[Way::Exact];
     const IN_QUARTERS: &[Way] = &[Way::Exact, Way::Stepwise, Way::Restricted];
     const GOALS: &[Way] = &[Way::Exact, Way::Restricted, Way::Sqrt3];
     const STEPS: &[Way] = &[Way::Stepwise, Way::Sqrt3Steps];
-    let RefineArguments {
-        exact,
-        channels,
-        asset,
-        interpolation,
-        ..
-    } = arguments;
-    let option = |name, is_given, known| Limited {
-        name,
-        is_given,
-        known,
-    };
-    [
-        option("--levels", arguments.levels.is_some(), STEPS),
-        option("--seam", arguments.seam.is_some(), STEPS),
-        option("--limit", arguments.limit, STEPS),
-        option("--view", arguments.view.is_some(), IN_QUARTERS),
-        option("--eye", arguments.eye.is_some(), IN_QUARTERS),
-        option("--interpolate", interpolation.interpolate, IN_QUARTERS),
-        option(
-            "--interpolate-within",
-            interpolation.interpolate_within.is_some(),
-            IN_QUARTERS,
-        ),
-        option("--tolerance", exact.tolerance.is_some(), GOALS),
-        option("--within", exact.within.is_some(), EXACT),
-        option("--triangles", exact.triangles.is_some(), GOALS),
-        option("--max-levels", exact.max_levels.is_some(), GOALS),
-        option("--provenance", exact.provenance, GOALS),
-        option("--pixels", exact.pixels.is_some(), EXACT),
-        option("--camera", !exact.camera.is_empty(), EXACT),
-        option("--camera-path", !exact.camera_path.is_empty(), EXACT),
-        option("--balance", exact.balance, EXACT),
-        option("--optimize", exact.optimize, EXACT),
-        option("--divide-flat", exact.divide_flat, EXACT),
-        option("--no-input-distance", exact.no_input_distance, EXACT),
-        option("--max-memory", exact.max_memory.is_some(), EXACT),
-        option("--dry-run", exact.dry_run, EXACT),
-        option("--uv-tolerance", channels.uv_tolerance.is_some(), EXACT),
-        option(
-            "--attribute-tolerance",
-            !channels.attribute_tolerance.is_empty(),
-            EXACT,
-        ),
-        option("--morph-tolerance", asset.morph_tolerance.is_some(), EXACT),
-    ]
+    let exact = &arguments.exact;
+    let is_led = arguments.interpolation.given().is_some();
+    let has_tolerance = arguments.channels.given_tolerance().is_some();
+    let has_morphs = arguments.asset.morph_tolerance.is_some();
+    let all = [
+        ("--seam", arguments.seam.is_some(), STEPS),
+        ("--limit", arguments.limit, STEPS),
+        ("--interpolate", is_led, IN_QUARTERS),
+        ("--tolerance", exact.tolerance.is_some(), GOALS),
+        ("--triangles", exact.triangles.is_some(), GOALS),
+        ("--provenance", exact.provenance, GOALS),
+        ("--within", exact.within.is_some(), EXACT),
+        ("--pixels", exact.pixels.is_some(), EXACT),
+        ("cameras in --view", arguments.has_cameras(), EXACT),
+        ("--view", !arguments.view.is_empty(), IN_QUARTERS),
+        ("--balance", exact.balance, EXACT),
+        ("--optimize", exact.optimize, EXACT),
+        ("--divide-flat", exact.divide_flat, EXACT),
+        ("--max-memory", exact.max_memory.is_some(), EXACT),
+        ("--dry-run", exact.dry_run, EXACT),
+        ("--attribute-tolerance", has_tolerance, EXACT),
+        ("--morph-tolerance", has_morphs, EXACT),
+    ];
+    let way = arguments.way();
+    let mut given = all.into_iter().filter(|&(_, is_given, _)| is_given);
+    let (name, _, known) = given.find(|(.., known)| !known.contains(&way))?;
+    Some(Limited { name, known })
 }
 
 impl Limited {
@@ -197,12 +216,10 @@ impl Limited {
         let name = self.name;
         let is_of_steps = self.known.contains(&Way::Sqrt3Steps);
         match way {
-            Way::Exact | Way::Sqrt3 if name == "--levels" => {
-                "--levels is the number of steps of the other methods; with --method exact, --max-levels is a cap"
-                    .to_owned()
-            }
             Way::Exact | Way::Sqrt3 if is_of_steps => {
-                format!("{name} has no effect with --method exact, whose vertices lie on the limit surface")
+                format!(
+                    "{name} has no effect with --method exact, whose vertices lie on the limit surface"
+                )
             }
             Way::Sqrt3 | Way::Sqrt3Steps if !self.known.contains(&Way::Sqrt3) => format!(
                 "{name} does not go with --scheme sqrt3; it knows the schemes that split triangles in four: loop, loop-warren, \
@@ -226,20 +243,10 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
             arguments.scheme()?.name()
         ));
     }
-    let cameras = !exact.camera.is_empty() || !exact.camera_path.is_empty();
-    if exact.optimize && (arguments.angle.is_some() || cameras || exact.balance) {
-        return usage(
-            "--optimize keeps --tolerance and --triangles; not --angle, cameras or --balance",
-        );
-    }
-    let within = matches!(
-        arguments.asset.morph_tolerance,
-        Some(MorphTolerance::Within(_))
-    );
-    let goal = arguments
-        .channels
-        .given_tolerance()
-        .or(within.then_some("--morph-tolerance"));
+    let morph = arguments.asset.morph_tolerance;
+    let is_within = matches!(morph, Some(MorphTolerance::Within(_)));
+    let goal = arguments.channels.given_tolerance();
+    let goal = goal.or(is_within.then_some("--morph-tolerance"));
     let other = [
         ("--triangles", exact.triangles.is_some()),
         ("--balance", exact.balance),
@@ -260,43 +267,6 @@ fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
             thousands(arguments.max_triangles())
         ));
     }
-    if exact.pixels.is_some() && !cameras {
-        return usage("--pixels is what cameras see; it needs --camera or --camera-path");
-    }
-    Ok(())
-}
-
-/// Refuses goals that the criteria of the literature do not have.
-fn restricted(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.angle.is_none() {
-        return Ok(());
-    }
-    if arguments.method == Method::VertexError {
-        return usage(
-            "--angle does not go with --method vertex-error, whose goal is a distance: --tolerance",
-        );
-    }
-    if arguments.exact.tolerance.is_some() {
-        return usage(
-            "--method planarity goes by angles or by distances: --angle and --tolerance are not given together",
-        );
-    }
-    Ok(())
-}
-
-/// Refuses what has no effect on uniform refinement.
-fn uniform(arguments: &RefineArguments) -> anyhow::Result<()> {
-    if arguments.method != Method::Uniform {
-        return Ok(());
-    }
-    if arguments.angle.is_some() {
-        return usage("--angle has no effect with --method uniform, which divides every face");
-    }
-    if arguments.seam.is_some() {
-        return usage(
-            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
-        );
-    }
     Ok(())
 }
 
@@ -316,19 +286,15 @@ pub(super) fn files(arguments: &RefineArguments) -> anyhow::Result<()> {
         }
         written.push(output);
     }
-    let beside_mesh = written.len();
+    let after_mesh = written.len();
     if let Some(picture) = &arguments.picture {
         picture::check_name(picture)?;
         written.push(picture);
     }
-    if let Some(proof) = &arguments.proof {
-        output::check_writable(proof)?;
-        written.push(proof);
+    for path in arguments.proof.iter().chain(&arguments.report) {
+        output::check_writable(path)?;
+        written.push(path);
     }
-    if let Some(report) = &arguments.report {
-        output::check_writable(report)?;
-        written.push(report);
-    }
-    output::check_replaced(&written[beside_mesh..], &[arguments.input()], None)?;
+    output::check_replaced(&written[after_mesh..], &[arguments.input()], None)?;
     output::check_once(&written)
 }

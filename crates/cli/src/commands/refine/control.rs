@@ -1,82 +1,73 @@
 //! The control mesh of a refinement: what was read, with the tags that options put on it, made to interpolate if asked.
 
-use std::time::{Duration, Instant};
+use limitmesh::mesh::{ConcaveCorners, Diagnosis};
+use limitmesh::{Mesh, Triangles};
 
-use limitmesh::Mesh;
-
-use super::interpolation;
+use super::super::interpolation;
 use super::nearness::Nearness;
 use crate::arguments::{Featured, RefineArguments, Way};
 use crate::bulk::{Bulk, Shown};
 use crate::format::counted;
 use crate::progress::Progress;
 use crate::report::InterpolationReport;
-use limitmesh::mesh::Diagnosis;
 
 /// What is refined, and what it is compared with.
 pub(super) struct Control {
-    pub(super) featured: Featured,
+    pub(super) mesh: Mesh,
+    /// The corners of 180° and more that were divided, with the faces that they divided.
+    pub(super) concave: ConcaveCorners,
     pub(super) diagnosis: Diagnosis,
-    /// The mesh that was read.
-    pub(super) before: Before,
-    /// How it is shown, and its area and volume then.
+    /// The input's face of each face of the mesh that was read.
+    pub(super) faces: Vec<u32>,
+    /// The mesh that was read, where somebody asks how far the result is from it.
+    surface: Option<Surface>,
+    /// How far the limits of the control points are from the vertices at most, where they were moved for that.
+    pub(super) residual: f64,
+    /// How the mesh is shown, and the area and volume of the mesh that was read as it is shown.
     pub(super) shown: Shown,
     pub(super) bulk: Bulk,
     pub(super) interpolation: Option<InterpolationReport>,
-    /// What lengths are given in per cent of.
+    /// Lengths in per cent are of this.
     pub(super) diagonal: f64,
-    /// How long control points took.
-    pub(super) took: Duration,
 }
 
-/// The mesh that was read, before corners were divided and control points moved.
-pub(super) struct Before {
-    /// Where somebody asks how far the result is from it.
-    pub(super) surface: Option<BeforeSurface>,
-    /// The input's face of each face.
+/// Positions and triangles of a mesh.
+struct Surface {
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// A mesh that was read, with the input's face of each of its faces.
+pub(super) struct Read {
+    pub(super) mesh: Mesh,
+    pub(super) diagnosis: Diagnosis,
     pub(super) faces: Vec<u32>,
-    /// How far the limits of the control points are from its vertices at most, where they were moved for that.
-    pub(super) residual: Option<f64>,
-}
-
-/// Positions and triangles of the mesh that was read.
-pub(super) struct BeforeSurface {
-    pub(super) positions: Vec<[f64; 3]>,
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) shown: Shown,
 }
 
 impl Control {
-    /// Of a mesh with the input's face of each of its faces. Lengths in per cent are of `diagonal`, or of the mesh's own.
+    /// The control mesh of what was read. Lengths in per cent are of `diagonal`, or of the mesh's own.
     ///
     /// # Errors
     /// There is no control mesh that interpolates as asked.
     pub(super) fn new(
-        (mesh, mut diagnosis, faces): (Mesh, Diagnosis, Vec<u32>),
-        shown: Shown,
+        read: Read,
         diagonal: Option<f64>,
         arguments: &RefineArguments,
         progress: &Progress,
     ) -> anyhow::Result<Self> {
-        let start = Instant::now();
-        let bulk = Bulk::as_shown(&mesh, &shown);
-        let is_compared = arguments.way() == Way::Exact && !arguments.exact.no_input_distance;
-        let surface = is_compared.then(|| BeforeSurface {
-            positions: mesh.positions().to_vec(),
-            triangles: mesh.triangles().to_vec(),
+        let bulk = Bulk::as_shown(&read.mesh, &read.shown);
+        let is_compared = arguments.way() == Way::Exact && !arguments.shared_topology;
+        let surface = is_compared.then(|| Surface {
+            positions: read.mesh.positions().to_vec(),
+            triangles: read.mesh.triangles().to_vec(),
         });
-        let featured = arguments.features.apply(mesh)?;
-        for note in [along_needles(&featured), divided_corners(&featured)]
-            .into_iter()
-            .flatten()
-        {
-            progress.note(note);
-        }
+        let featured = arguments.features.apply(read.mesh)?;
+        let notes = [needles_in_words(&featured), corners_in_words(&featured)];
+        progress.notes(notes.into_iter().flatten());
+        let mut diagnosis = read.diagnosis;
         diagnosis.concave_corners = featured.concave.corners.clone();
-        let Featured {
-            mesh,
-            mut concave,
-            along_needles,
-        } = featured;
+        let (mesh, mut concave) = (featured.mesh, featured.concave);
         let diagonal = diagonal.unwrap_or_else(|| mesh.diagonal());
         let (mesh, interpolation) = match Nearness::of(arguments, &mesh, diagonal)? {
             Some(near) => {
@@ -85,58 +76,52 @@ impl Control {
                 (mesh, None)
             }
             None if arguments.interpolation.is_led() => {
-                let asked = (arguments.interpolation, arguments.build.unit);
-                interpolation::apply(mesh, asked, arguments.scheme()?, progress)?
+                let unit = arguments.build.unit;
+                let scheme = arguments.scheme()?;
+                interpolation::apply(mesh, arguments.interpolation, unit, scheme, progress)?
             }
             None => (mesh, None),
         };
-        let featured = Featured {
+        Ok(Self {
             mesh,
             concave,
-            along_needles,
-        };
-        let before = Before {
-            surface,
-            faces,
-            residual: interpolation.as_ref().map(|report| report.residual),
-        };
-        let took = start.elapsed();
-        Ok(Self {
-            featured,
             diagnosis,
-            before,
-            shown,
+            faces: read.faces,
+            surface,
+            residual: interpolation.as_ref().map_or(0.0, |report| report.residual),
+            shown: read.shown,
             bulk,
             interpolation,
             diagonal,
-            took,
+        })
+    }
+
+    /// The mesh that was read, where somebody asks how far the result is from it.
+    pub(super) fn surface(&self) -> Option<Triangles<'_>> {
+        let own = self.surface.as_ref()?;
+        Some(Triangles {
+            positions: &own.positions,
+            triangles: &own.triangles,
         })
     }
 }
 
-/// Tells about edges that are not sharp though their faces meet at more than the crease angle.
-fn along_needles(control: &Featured) -> Option<String> {
-    let edges = counted(control.along_needles, "edge", "edges");
-    let are = if control.along_needles == 1 {
-        "is"
-    } else {
-        "are"
-    };
+/// A note about edges that are not sharp though their faces meet at more than the crease angle.
+fn needles_in_words(control: &Featured) -> Option<String> {
+    let edges = counted(
+        control.along_needles,
+        "edge along needles is",
+        "edges along needles are",
+    );
     (control.along_needles > 0)
-        .then(|| format!("{edges} along needles {are} not sharp: the faces beyond these decide"))
+        .then(|| format!("{edges} not sharp: the faces beyond the needles decide"))
 }
 
-/// Tells about sharp edges that divide corners of 180° and more.
-fn divided_corners(control: &Featured) -> Option<String> {
+/// A note about sharp edges that divide corners of 180° and more.
+fn corners_in_words(control: &Featured) -> Option<String> {
     let concave = &control.concave;
     let corners = counted(concave.corners.count, "corner", "corners");
-    let edges = counted(concave.edges, "sharp edge", "sharp edges");
-    let divide = if concave.edges == 1 {
-        "divides"
-    } else {
-        "divide"
-    };
-    (concave.edges > 0).then(|| {
-        format!("{edges} {divide} {corners} of 180° or more, so that flat faces stay flat")
-    })
+    let divide = counted(concave.edges, "sharp edge divides", "sharp edges divide");
+    (concave.edges > 0)
+        .then(|| format!("{divide} {corners} of 180° or more, so that flat faces stay flat"))
 }

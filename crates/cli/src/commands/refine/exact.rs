@@ -1,52 +1,107 @@
-//! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is said of it.
+//! Exact refinement: from the goals on the command line to the mesh, its certified distance, and what is reported of it.
 
-use limitmesh::progress::Stage;
-use limitmesh::refine::{Exact, ExactStop, InputDistance, exact_observed, turned_over_triangles};
-use limitmesh::{Mesh, Triangles};
+use std::ops::ControlFlow;
 
-use super::super::channels::Channels;
+use limitmesh::progress::{Progress as At, Stage};
+use limitmesh::refine::{Exact, ExactStop, exact_observed, turned_over_triangles};
+
 use super::super::normals::Normals;
-use super::carried::Trail;
-use super::control::{Before, BeforeSurface};
-use super::goals::{Goals, unit_in_words, written};
+use super::goals::Goals;
 use super::input_distance;
-use super::provenance::Provenance;
-use super::{Refined, view_report};
-use crate::arguments::{Featured, RefineArguments};
+use super::refined::Refined;
+use super::rounding::{rounded, rounding};
+use super::task::Task;
+use super::trail::Trail;
 use crate::failure::Outcome;
 use crate::format::{bytes, counted, thousands, upper_bound};
-use crate::progress::{Phases, Progress};
+use crate::progress::Phases;
 use crate::report::refinement::exact_stop_name;
 use crate::report::{
-    CameraReport, ErrorReport, ExactParametersReport, InputDistanceReport, MethodReport,
-    ParametersReport, RoundEntry,
+    CameraReport, ErrorReport, ExactParametersReport, IntervalReport, MethodReport,
+    ParametersReport, RoundEntry, ViewReport,
 };
 
-/// A part of the distance that rounding makes up and that is told.
+/// A note says that rounding makes up such a part of the distance.
 const NOTED: f64 = 0.01;
 
 /// Refines until the goals are met or a cap is reached.
-///
-/// `before` is the mesh that was read.
-pub(super) fn run(
-    (
-        Featured {
-            mesh: control,
-            concave,
-            ..
-        },
-        before,
-        channels,
-    ): (&Featured, &Before, &Channels),
-    goals: &Goals,
-    arguments: &RefineArguments,
-    progress: &Progress,
-) -> anyhow::Result<Refined> {
+pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
+    let (control, arguments, unit) = (task.control, task.arguments, task.unit());
     let mut rounds: Vec<RoundEntry> = Vec::new();
-    let phases = arguments.exact.optimize.then(Phases::default);
-    let (mut last, mut show) = (0, progress.observer_in_phases(phases));
-    let mut observer = |at: &limitmesh::progress::Progress| {
-        // Where refinement tries two ways, the second starts again; the report counts on.
+    task.begin();
+    let options = goals.options(task);
+    let mut observer = watch(task, &mut rounds);
+    let mut found = exact_observed(task.mesh(), task.scheme()?, &options, &mut observer)?;
+    drop(observer);
+    let moved = input_distance::measured(task, &found, goals)?;
+    let rounding = rounding(arguments, found.mesh.positions());
+    let note = round(&mut found, rounding, goals);
+    task.progress.notes(note);
+    let diagonal = control.diagonal;
+    let moved = moved.map(|moved| {
+        let moved = moved.rounded(rounding);
+        IntervalReport::new(moved.lower, moved.upper, diagonal)
+    });
+    let error = ErrorReport::new(&found.error, diagonal);
+    let attributes = goals.attributes.reached(&found);
+    let mut achieved = achieved(&found, &error, goals, task);
+    achieved.extend(goals.attributes.achieved(&attributes, &unit));
+    match &moved {
+        Some(moved) if goals.near.is_some() => achieved.insert(0, moved.near_in_words(&unit)),
+        Some(moved) => achieved.extend(input_distance::in_words(moved, &error, goals, task)),
+        None => {}
+    }
+    let inverted = match control.surface() {
+        Some(read) if goals.near.is_some() => {
+            turned_over_triangles(read, &found, &control.concave.parts)
+        }
+        _ => found.inverted_triangles(),
+    };
+    let outcome = match (outcome(&found, goals, task), goals.near) {
+        (Outcome::Done, Some(near)) => near.outcome(moved.as_ref(), inverted, arguments),
+        (outcome, _) => outcome,
+    };
+    let channels = task.channels.refined(task.mesh(), &found, task.scheme()?)?;
+    let normals = task.wants_normals().then(|| Normals::of_exact(&mut found));
+    let report = MethodReport {
+        rounds,
+        error: Some(error),
+        input_distance: moved,
+        pixels: found.pixels.filter(|pixels| pixels.is_finite()),
+        open_cones: arguments.angle.map(|_| found.open_cones),
+        attributes,
+        ..MethodReport::new(found.levels, exact_stop_name(found.stop))
+    };
+    let provenance = task.provenance(&found.origins, &found.parents);
+    let trail = match task.is_traced || arguments.proof.is_some() {
+        true => Trail {
+            origins: found.origins,
+            parents: found.parents,
+            sides: found.is_optimized.then_some(found.side_origins),
+        },
+        false => Trail::default(),
+    };
+    let how = counted(found.levels, "level", "levels");
+    Ok(Refined {
+        normals,
+        channels,
+        trail,
+        provenance,
+        achieved,
+        inverted: Some(inverted),
+        ..Refined::new(found.mesh, how, report, outcome)
+    })
+}
+
+/// Shows how far refinement is, and keeps its rounds.
+fn watch<'a>(
+    task: &Task<'a>,
+    rounds: &'a mut Vec<RoundEntry>,
+) -> impl FnMut(&At) -> ControlFlow<()> + use<'a> {
+    let phases = task.arguments.exact.optimize.then(Phases::default);
+    let (mut last, mut show) = (0, task.progress.observer_in_phases(phases));
+    move |at: &At| {
+        // Where refinement tries two methods, the second starts again; the report counts on.
         if at.stage == Stage::Refining && at.done > 0 && at.done != last {
             last = at.done;
             rounds.push(RoundEntry {
@@ -55,131 +110,15 @@ pub(super) fn run(
             });
         }
         show(at)
-    };
-    progress.stage(format!(
-        "refining {}",
-        counted(control.face_count(), "triangle", "triangles")
-    ));
-    let options = goals.options(arguments);
-    let mut found = exact_observed(control, arguments.scheme()?, &options, &mut observer)?;
-    let moved = input_distance::measured(
-        (control, before, &concave.parts),
-        &found,
-        goals,
-        arguments,
-        progress,
-    )?;
-    let rounding = written(arguments).map_or(0.0, |(format, options)| {
-        limitmesh_io::rounding(format, &options, found.mesh.positions())
-    });
-    if let Some(note) = round(&mut found, rounding, goals) {
-        progress.note(note);
     }
-    let moved = moved.map(|moved| {
-        let InputDistance { lower, upper } = moved.rounded(rounding);
-        InputDistanceReport::new(lower, upper, goals.diagonal)
-    });
-    let error = ErrorReport::new(&found.error, goals.diagonal);
-    let mut achieved = achieved(&found, &error, goals, arguments);
-    let attributes = goals.attributes.reached(&found);
-    achieved.extend(
-        goals
-            .attributes
-            .achieved(&attributes, &unit_in_words(arguments.build.unit)),
-    );
-    match (&moved, goals.near) {
-        (Some(moved), Some(_)) => {
-            achieved.insert(0, moved.near_in_words(&unit_in_words(arguments.build.unit)))
-        }
-        (Some(moved), None) => {
-            achieved.extend(input_distance::in_words(
-                moved, &error, control, goals, arguments,
-            ));
-        }
-        (None, _) => {}
-    }
-    let inverted = match &before.surface {
-        Some(BeforeSurface {
-            positions,
-            triangles,
-        }) if goals.near.is_some() => turned_over_triangles(
-            Triangles {
-                positions,
-                triangles,
-            },
-            &found,
-            &concave.parts,
-        ),
-        _ => found.inverted_triangles(),
-    };
-    let outcome = match outcome(&found, control, goals, arguments) {
-        Outcome::Done => goals.near.map_or(Outcome::Done, |near| {
-            near.outcome(moved.as_ref(), inverted, arguments)
-        }),
-        short => short,
-    };
-    let channels = channels.refined(control, &found, arguments.scheme()?)?;
-    let wanted = written(arguments).is_some_and(|(format, _)| Normals::are_held(format))
-        || arguments.picture.is_some();
-    let normals = wanted.then(|| Normals::of_exact(&mut found));
-    let Exact {
-        mesh,
-        origins,
-        parents,
-        is_optimized,
-        side_origins,
-        pixels,
-        open_cones,
-        stop,
-        levels,
-        ..
-    } = found;
-    let places = (&before.faces[..], &concave.parts);
-    let provenance = arguments
-        .exact
-        .provenance
-        .then(|| Provenance::new(&origins, parents.clone(), places));
-    let sides = is_optimized.then_some(side_origins);
-    let trail = if goals.keeps_origins || arguments.proof.is_some() {
-        Trail {
-            origins,
-            parents,
-            sides,
-        }
-    } else {
-        Trail::default()
-    };
-    Ok(Refined {
-        mesh,
-        normals,
-        channels,
-        trail,
-        provenance,
-        achieved,
-        inverted: Some(inverted),
-        how: counted(levels, "level", "levels"),
-        report: MethodReport {
-            rounds,
-            error: Some(error),
-            input_distance: moved,
-            pixels: pixels.filter(|pixels| pixels.is_finite()),
-            open_cones: goals.angle_degrees.map(|_| open_cones),
-            attributes,
-            ..MethodReport::new(levels, exact_stop_name(stop))
-        },
-        outcome,
-    })
 }
 
 /// Counts what writing rounds among the distance; a note where that is much of it.
 fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     let proven = found.error.upper;
-    found.error.upper += rounding;
-    found.error.lower = (found.error.lower - rounding).max(0.0);
-    let is_beyond = goals
-        .length
-        .is_some_and(|length| proven <= length && found.error.upper > length);
-    if is_beyond && found.stop == ExactStop::Met {
+    found.error = rounded(found.error, rounding);
+    let is_beyond = |length: f64| proven <= length && found.error.upper > length;
+    if goals.length.is_some_and(is_beyond) && found.stop == ExactStop::Met {
         found.stop = ExactStop::Rounding;
     }
     (rounding > NOTED * found.error.upper).then(|| {
@@ -194,33 +133,31 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 const EXACT: f64 = 1e-6;
 
 /// What was reached, in sentences of a line each.
-fn achieved(
-    found: &Exact,
-    error: &ErrorReport,
-    goals: &Goals,
-    arguments: &RefineArguments,
-) -> Vec<String> {
-    let mut lines = error.in_words(&unit_in_words(arguments.build.unit));
+fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) -> Vec<String> {
+    let arguments = task.arguments;
+    let mut lines = vec![error.in_words(&task.unit())];
     if error.upper.is_none() {
-        lines.push(unproven(goals).to_owned());
+        let is_asked = goals.length.is_some() || arguments.exact.triangles.is_some();
+        let why = match is_asked {
+            true => "(no bound was found)",
+            false => {
+                "(no distance was asked for, and what is proven is far more than was found: --tolerance proves one)"
+            }
+        };
+        lines.push(why.to_owned());
     } else if !error.certified {
-        let scheme = arguments
-            .scheme
-            .in_quarters()
-            .map_or("", |name| name.scheme().name());
+        let scheme = arguments.scheme.name();
         lines.push(format!(
             "(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"
         ));
     }
-    let is_exact = error
-        .upper
-        .is_some_and(|upper| upper <= EXACT * goals.diagonal);
+    let is_exact = |upper: f64| upper <= EXACT * task.control.diagonal;
     if found.levels == 0
         && !found.is_optimized
         && found.stop == ExactStop::Met
         && goals.length.is_some()
         && goals.near.is_none()
-        && !is_exact
+        && !error.upper.is_some_and(is_exact)
     {
         lines.push(
             "(no face was divided: all are near enough as they are; a smaller --tolerance makes it rounder)"
@@ -237,7 +174,7 @@ fn achieved(
     if found.unfolded > 0 {
         let regions = counted(found.unfolded, "flat region", "flat regions");
         lines.push(format!(
-            "{regions} would fold by the scheme's rules: what the rim encloses stands there"
+            "{regions} would fold by the scheme's rules: what the rim encloses takes their place"
         ));
     }
     let is_reached = matches!(found.stop, ExactStop::Met | ExactStop::Triangles);
@@ -260,22 +197,15 @@ pub(super) fn open_cones(found: &Exact) -> Option<String> {
     })
 }
 
-/// Why no distance is certified.
-fn unproven(goals: &Goals) -> &'static str {
-    if goals.length.is_none() && goals.triangles.is_none() {
-        "(no distance was asked for, and what is proven is far more than was found: --tolerance proves one)"
-    } else {
-        "(no bound was found)"
-    }
-}
-
 /// What was asked for, defaults filled in.
-pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> ParametersReport {
-    let options = goals.options(arguments);
+pub(super) fn parameters(task: &Task<'_>, goals: &Goals) -> ParametersReport {
+    let (arguments, options) = (task.arguments, goals.options(task));
+    let own = &arguments.exact;
+    let (length, diagonal) = (goals.length, task.control.diagonal);
     ParametersReport {
-        angle_degrees: goals.angle_degrees,
+        angle_degrees: arguments.angle,
         within: goals.near.map(|near| near.within),
-        view: view_report(arguments),
+        view: ViewReport::of(arguments),
         exact: Some(ExactParametersReport {
             pixels: goals.pixels,
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
@@ -283,74 +213,54 @@ pub(super) fn parameters(arguments: &RefineArguments, goals: &Goals) -> Paramete
             optimize: options.optimize,
             divide_flat: arguments.divides_flat(),
             max_memory: options.max_memory,
-            ..ExactParametersReport::new(
-                goals.length,
-                goals.diagonal,
-                options.max_levels,
-                &arguments.exact,
-            )
+            ..ExactParametersReport::new(length, diagonal, options.max_levels, own)
         }),
         ..ParametersReport::common(arguments)
     }
 }
 
 /// Whether a cap ended the refinement before the goals were met, and what was reached.
-fn outcome(found: &Exact, control: &Mesh, goals: &Goals, arguments: &RefineArguments) -> Outcome {
-    let triangles = found.mesh.face_count();
-    let cap = match found.stop {
-        ExactStop::TriangleCap => {
-            format!("--max-triangles {}", thousands(arguments.max_triangles()))
-        }
-        ExactStop::MemoryCap => {
-            format!(
-                "--max-memory {}",
-                bytes(arguments.exact.max_memory.unwrap_or_default())
-            )
-        }
-        ExactStop::LevelCap => format!("--max-levels {}", goals.options(arguments).max_levels),
-        _ => String::new(),
+fn outcome(found: &Exact, goals: &Goals, task: &Task<'_>) -> Outcome {
+    let (arguments, exact) = (task.arguments, &task.arguments.exact);
+    let (most, triangles) = (arguments.max_triangles(), found.mesh.face_count());
+    let control = task.mesh().face_count();
+    let missed = || goals.in_words(found, arguments);
+    let cap = match (found.stop, exact.max_memory) {
+        (ExactStop::MemoryCap, Some(most)) => format!("--max-memory {}", bytes(most)),
+        (ExactStop::LevelCap, _) => format!("--levels {}", goals.options(task).max_levels),
+        _ => format!("--max-triangles {}", thousands(most)),
     };
     let why = match found.stop {
-        ExactStop::TriangleCap | ExactStop::MemoryCap if triangles > arguments.max_triangles() => {
+        // With goals that are met by as many triangles as there are in any case, too.
+        ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::Met if triangles > most => {
             format!("the control mesh has more than {cap} already")
         }
-        // What is met with as many triangles as there are in any case.
-        ExactStop::Met if triangles > arguments.max_triangles() => {
-            let most = thousands(arguments.max_triangles());
-            format!("the control mesh has more than --max-triangles {most} already")
-        }
-        ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control.face_count() => {
+        ExactStop::TriangleCap | ExactStop::MemoryCap if triangles == control => {
             format!(
                 "{} would take more than {cap}, and nothing was divided",
-                goals.in_words(found)
+                missed()
             )
         }
         ExactStop::TriangleCap | ExactStop::MemoryCap | ExactStop::LevelCap => {
-            format!("{cap} was reached before {}", goals.in_words(found))
+            format!("{cap} was reached before {}", missed())
         }
-        ExactStop::Triangles | ExactStop::Met
-            if goals.triangles.is_some_and(|wanted| triangles > wanted) =>
-        {
-            let wanted = thousands(goals.triangles.unwrap_or_default());
-            if arguments.exact.optimize {
-                format!("no more edges could be collapsed before --triangles {wanted}")
-            } else {
-                format!(
+        ExactStop::Rounding => format!("{} is finer than rounding leaves certain", missed()),
+        ExactStop::Triangles | ExactStop::Met => {
+            let Some(wanted) = exact.triangles.filter(|&wanted| triangles > wanted) else {
+                return Outcome::Done;
+            };
+            let wanted = thousands(wanted);
+            match exact.optimize {
+                true => format!("no more edges could be collapsed before --triangles {wanted}"),
+                false => format!(
                     "the control mesh has {} already, more than --triangles {wanted}; --optimize goes below",
-                    thousands(control.face_count())
-                )
+                    thousands(control)
+                ),
             }
         }
-        ExactStop::Rounding => format!(
-            "{} is finer than rounding leaves certain",
-            goals.in_words(found)
-        ),
         _ => return Outcome::Done,
     };
-    let written = format!(
-        "{} was written with {}",
-        arguments.output_name(),
-        counted(triangles, "triangle", "triangles")
-    );
-    Outcome::StoppedShort(format!("{why}\n  {written}"))
+    let written = counted(triangles, "triangle", "triangles");
+    let name = arguments.output_name();
+    Outcome::StoppedShort(format!("{why}\n  {name} was written with {written}"))
 }

@@ -1,81 +1,64 @@
-//! How far a refined mesh is from the mesh that was read: what the library proves of it, with faces that were divided and triangles that reach
-//! over several, and what is said of that.
+//! How far a refined mesh is from the mesh that was read: what the library proves of it, with faces that were divided and triangles that
+//! reach over several, and the lines about that.
 
 use std::borrow::Cow;
 
 use limitmesh::mesh::FaceParts;
 use limitmesh::part::Look;
 use limitmesh::refine::{Exact, ExactOptions, InputDistance, Origin, exact_observed};
-use limitmesh::{FaceId, Mesh, Triangles};
+use limitmesh::{FaceId, Mesh};
 
-use super::INTERPOLATE;
-use super::control::{Before, BeforeSurface};
-use super::goals::{Goals, unit_in_words};
-use crate::arguments::{MOST_EXACT, RefineArguments};
+use super::goals::Goals;
+use super::refined::INTERPOLATE;
+use super::task::Task;
+use crate::arguments::MOST_EXACT;
 use crate::format::{counted, number};
-use crate::progress::Progress;
-use crate::report::{ErrorReport, InputDistanceReport};
+use crate::report::{ErrorReport, IntervalReport};
 use crate::vector::{cross, dot, length};
 
-/// Share of the diagonal that a mesh may be off by that stands for the limit surface, where triangles reach over several control
-/// faces.
-const STAND_IN: f64 = 5e-4;
+/// Where triangles reach over several control faces, a mesh approximates the limit surface within this share of the diagonal.
+const BETWEEN: f64 = 5e-4;
 
 /// How far the result is from the mesh that was read; `None` where nobody asks, or nothing is proven.
 ///
 /// # Errors
 /// Coordinates too large to be measured, or somebody asked to stop.
 pub(super) fn measured(
-    (control, before, parts): (&Mesh, &Before, &FaceParts),
+    task: &Task<'_>,
     found: &Exact,
     goals: &Goals,
-    arguments: &RefineArguments,
-    progress: &Progress,
 ) -> anyhow::Result<Option<InputDistance>> {
-    let Some(BeforeSurface {
-        positions,
-        triangles,
-    }) = &before.surface
-    else {
+    let control = task.control;
+    let Some(input) = control.surface() else {
         return Ok(None);
     };
-    let input = Triangles {
-        positions,
-        triangles,
-    };
-    let residual = before.residual.unwrap_or(0.0);
+    let (parts, residual) = (&control.concave.parts, control.residual);
+    let observer = &mut task.progress.observer();
     let origins = on_whole(parts, found);
-    let narrowed = |moved: InputDistance| {
-        let meshes = [input, found.mesh.as_triangles()];
-        let observer = &mut progress.observer();
-        match goals.near {
-            Some(near) => moved.decided(meshes, near.within, observer),
-            None => moved.narrowed(meshes, goals.expected(Some(found.error.upper)), observer),
+    let moved = match InputDistance::new(input, found, &origins, residual)? {
+        Some(moved) => moved,
+        None if !found.error.certified => return Ok(None),
+        None => {
+            // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
+            let most = BETWEEN * control.diagonal;
+            let tolerance = goals.near.map_or(most, |near| most.min(near.tolerance));
+            let options = ExactOptions::default()
+                .tolerance(tolerance)
+                .max_triangles(Some(MOST_EXACT));
+            let between = exact_observed(task.mesh(), task.scheme()?, &options, observer)?;
+            let apart = between.error.upper + found.error.upper;
+            let own = on_whole(parts, &between);
+            match InputDistance::new(input, &between, &own, residual)? {
+                Some(moved) => moved.of_other(input, found, &origins, apart)?,
+                None => return Ok(None),
+            }
         }
     };
-    if let Some(moved) = InputDistance::new(input, found, &origins, residual)? {
-        return Ok(Some(narrowed(moved)?));
-    }
-    if !found.error.certified {
-        return Ok(None);
-    }
-    // Triangles that reach over several control faces: the limit surface lies between, with another mesh near it.
-    let most = STAND_IN * goals.diagonal;
-    let tolerance = goals.near.map_or(most, |near| most.min(near.tolerance));
-    let options = ExactOptions::default()
-        .tolerance(tolerance)
-        .max_triangles(Some(MOST_EXACT));
-    let between = exact_observed(
-        control,
-        arguments.scheme()?,
-        &options,
-        &mut progress.observer(),
-    )?;
-    let apart = between.error.upper + found.error.upper;
-    let moved = InputDistance::new(input, &between, &on_whole(parts, &between), residual)?;
-    Ok(moved
-        .map(|moved| narrowed(moved.of_other(input, found, &origins, apart)?))
-        .transpose()?)
+    let meshes = [input, found.mesh.as_triangles()];
+    Ok(Some(match goals.near {
+        Some(near) => moved.decided(meshes, near.within, observer)?,
+        None => moved.narrowed(meshes, goals.expected(Some(found.error.upper)), observer)?,
+    }))
 }
 
 /// Where vertices came from, on faces that were divided where they are whole.
@@ -83,33 +66,32 @@ fn on_whole<'a>(parts: &FaceParts, found: &'a Exact) -> Cow<'a, [Origin]> {
     if parts.is_empty() {
         return Cow::Borrowed(&found.origins);
     }
-    let origins = found
-        .origins
-        .iter()
-        .map(|origin| parts.on_whole(origin.face, origin.barycentric));
-    origins
-        .map(|(face, barycentric)| Origin { face, barycentric })
-        .collect()
+    let whole = |origin: &Origin| {
+        let (face, barycentric) = parts.on_whole(origin.face, origin.barycentric);
+        Origin { face, barycentric }
+    };
+    found.origins.iter().map(whole).collect()
 }
 
 /// How far the result is from the mesh that was read, if that is farther than it is from the limit surface, and what would
 /// keep it nearer.
 pub(super) fn in_words(
-    moved: &InputDistanceReport,
+    moved: &IntervalReport,
     error: &ErrorReport,
-    control: &Mesh,
     goals: &Goals,
-    arguments: &RefineArguments,
+    task: &Task<'_>,
 ) -> Vec<String> {
     if moved.upper <= goals.expected(error.upper) {
         return Vec::new();
     }
-    let mut lines = vec![moved.in_words(&unit_in_words(arguments.build.unit))];
+    let (arguments, control) = (task.arguments, task.mesh());
+    let mut lines = vec![moved.in_words(&task.unit())];
     if lies_in_a_plane(control) {
         // All that can move is the outline.
-        let is_open =
-            arguments.features.boundary.is_none() && control.topology().boundary_edge_count() > 0;
-        lines.extend(is_open.then(|| "(--boundary fixed would keep the outline)".to_owned()));
+        let is_open = control.topology().boundary_edge_count() > 0;
+        if arguments.features.boundary.is_none() && is_open {
+            lines.push("(--boundary fixed would keep the outline)".to_owned());
+        }
         return lines;
     }
     let is_decided = arguments.features.angle().is_some() || !control.tags().creases.is_empty();
@@ -119,16 +101,12 @@ pub(super) fn in_words(
             "edge that looks",
             "edges that look",
         );
+        let degrees = number(part.degrees);
         lines.push(format!(
-            "(--crease-angle {} would keep {edges} sharp)",
-            number(part.degrees)
+            "(--crease-angle {degrees} would keep {edges} sharp)"
         ));
     }
-    if arguments
-        .interpolation
-        .within(goals.diagonal, arguments.build.unit)
-        .is_ok_and(|within| within.is_none())
-    {
+    if !arguments.interpolation.is_led() {
         lines.push(INTERPOLATE.to_owned());
     }
     lines

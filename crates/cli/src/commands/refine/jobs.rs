@@ -5,16 +5,21 @@ use std::path::{Path, PathBuf, is_separator};
 
 use anyhow::Context;
 use clap::ValueEnum;
+use limitmesh_io::Format;
 
+use super::check;
 use crate::arguments::{FileFormat, RefineArguments, Unit};
 use crate::failure::{self, Outcome, usage};
 use crate::input;
 
-/// The same command for each input by itself, with names of files for what was a folder.
+/// A command for one input, and the format that it writes; none for a dry run without a name.
+pub(super) type Job = (RefineArguments, Option<Format>);
+
+/// The command for each input by itself, with names of files for what was a folder.
 ///
 /// # Errors
 /// Several inputs for one file, or an input without a name for a folder.
-pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
+fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
     let is_unit = |input: &&PathBuf| {
         let name = input.to_str().unwrap_or_default();
         name == "%" || <Unit as ValueEnum>::from_str(name, false).is_ok()
@@ -30,18 +35,11 @@ pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArgu
             "'{unit}' is no file; a length has its unit right behind the number, such as 0.1{unit}"
         ));
     }
-    let RefineArguments {
-        output,
-        report,
-        picture,
-        proof,
-        ..
-    } = arguments;
     let named = [
-        ("--output", output),
-        ("--report", report),
-        ("--picture", picture),
-        ("--proof", proof),
+        ("--output", &arguments.output),
+        ("--report", &arguments.report),
+        ("--picture", &arguments.picture),
+        ("--proof", &arguments.proof),
     ];
     if arguments.inputs.len() > 1
         && let Some((option, _)) = named
@@ -62,16 +60,12 @@ pub(super) fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArgu
 
 fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArguments> {
     let extension = || {
-        Ok(
-            match (
-                arguments.to.map(FileFormat::format),
-                input::builtin_name(input),
-            ) {
-                (Some(to), _) => to.extension(),
-                (None, Some(_)) => "ply",
-                (None, None) => input::format_of(input, arguments.build.from)?.extension(),
-            },
-        )
+        let to = arguments.to.map(FileFormat::format);
+        Ok(match (to, input::builtin_name(input)) {
+            (Some(to), _) => to.extension(),
+            (None, Some(_)) => "ply",
+            (None, None) => input::format_of(input, arguments.build.from)?.extension(),
+        })
     };
     let place = |path: &Option<PathBuf>, extension: &dyn Fn() -> anyhow::Result<&'static str>| {
         path.as_deref().map(|path| {
@@ -96,7 +90,7 @@ fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArgume
     })
 }
 
-/// Whether a name stands for a folder: it ends with a slash, or there is one.
+/// Whether a name is that of a folder: it ends with a slash, or there is one.
 fn is_folder(path: &Path) -> bool {
     ends_with_separator(path) || path.is_dir()
 }
@@ -143,25 +137,37 @@ fn stem(input: &Path) -> anyhow::Result<&OsStr> {
     }
 }
 
-/// Makes the folders that are named with a slash at the end.
+/// The jobs of a command line with the formats that they write, after all checks of the arguments.
 ///
 /// # Errors
-/// One cannot be made.
-pub(super) fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
+/// The arguments make no sense, by themselves or together.
+pub(super) fn planned(arguments: &RefineArguments) -> anyhow::Result<Vec<Job>> {
+    let jobs = jobs(arguments)?;
+    check::together(arguments, &jobs)?;
+    let with_format = |job: RefineArguments| {
+        let format = check::options(&job)?;
+        Ok((job, format))
+    };
+    jobs.into_iter().map(with_format).collect()
+}
+
+/// Makes the folders that are named, and checks that all files can be written.
+///
+/// # Errors
+/// One cannot be.
+pub(super) fn make_ready(arguments: &RefineArguments, jobs: &[Job]) -> anyhow::Result<()> {
+    make_folders(arguments)?;
+    jobs.iter().try_for_each(|(job, _)| check::files(job))
+}
+
+/// Makes the folders that are named with a slash at the end.
+fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
     let mesh = arguments
         .output
         .as_ref()
         .filter(|_| !arguments.exact.dry_run);
-    let RefineArguments {
-        report,
-        picture,
-        proof,
-        ..
-    } = arguments;
-    for folder in [mesh, report.as_ref(), picture.as_ref(), proof.as_ref()]
-        .into_iter()
-        .flatten()
-    {
+    let others = [&arguments.report, &arguments.picture, &arguments.proof];
+    for folder in others.into_iter().flatten().chain(mesh) {
         if ends_with_separator(folder) {
             std::fs::create_dir_all(folder)
                 .with_context(|| format!("the folder {} cannot be made", folder.display()))?;
@@ -171,14 +177,13 @@ pub(super) fn make_folders(arguments: &RefineArguments) -> anyhow::Result<()> {
 }
 
 /// Does all, goes on after one that fails, and says in the end how many did.
-pub(super) fn each<T>(
-    jobs: Vec<(RefineArguments, T)>,
-    mut run: impl FnMut(&RefineArguments, T) -> anyhow::Result<Outcome>,
+pub(super) fn each(
+    jobs: &[Job],
+    run: impl Fn(&RefineArguments, Option<Format>) -> anyhow::Result<Outcome>,
 ) -> anyhow::Result<Outcome> {
-    let count = jobs.len();
-    let (mut failed, mut short) = (0, 0);
-    for (job, with) in jobs {
-        match run(&job, with) {
+    let (count, mut failed, mut short) = (jobs.len(), 0, 0);
+    for (job, format) in jobs {
+        match run(job, *format) {
             Ok(Outcome::Done) => {}
             Ok(Outcome::StoppedShort(why)) => {
                 short += 1;
@@ -193,10 +198,10 @@ pub(super) fn each<T>(
     }
     anyhow::ensure!(
         failed == 0,
-        "{failed} of {count} inputs failed, as told above"
+        "{failed} of {count} inputs failed, as reported above"
     );
     Ok(match short {
         0 => Outcome::Done,
-        _ => Outcome::StoppedShort(format!("{short} of {count} inputs, as told above")),
+        _ => Outcome::StoppedShort(format!("{short} of {count} inputs, as reported above")),
     })
 }

@@ -4,14 +4,15 @@ use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
 use limitmesh::refine::{WithinOptions, within_observed};
 
-use super::goals::{most_rounding, unit_in_words, with_room};
+use super::rounding::{most_rounding, with_room};
 use crate::arguments::RefineArguments;
 use crate::failure::Outcome;
 use crate::format::{counted, number, upper_bound};
 use crate::progress::Progress;
-use crate::report::InputDistanceReport;
+use crate::report::IntervalReport;
 
-/// Parts of the distance that collapsing edges takes beside refining: the triangles that are left are compared with the input by way of others.
+/// Collapsing edges takes so many parts of the distance where refining takes one: what is left is compared with the input by way of
+/// other triangles.
 const COLLAPSING: f64 = 3.0;
 
 /// How near the input the result has to be, in the mesh's unit.
@@ -23,7 +24,7 @@ pub(super) struct Nearness {
 }
 
 impl Nearness {
-    /// What is asked for of a mesh, lengths in per cent being of `diagonal`; none where nothing is.
+    /// The nearness that is asked for of a mesh, if any. Lengths in per cent are of `diagonal`.
     ///
     /// # Errors
     /// The length has a unit, and the mesh's is not known.
@@ -37,10 +38,8 @@ impl Nearness {
         };
         let within = within.length(diagonal, arguments.build.unit)?;
         let kept = with_room(within, most_rounding(arguments, mesh));
-        Ok(Some(Self {
-            within,
-            tolerance: WithinOptions::usual_tolerance(kept, diagonal),
-        }))
+        let tolerance = WithinOptions::usual_tolerance(kept, diagonal);
+        Ok(Some(Self { within, tolerance }))
     }
 
     /// The control mesh whose limit surface is so near a mesh, and where its faces are on those of that mesh.
@@ -53,21 +52,17 @@ impl Nearness {
         arguments: &RefineArguments,
         progress: &Progress,
     ) -> anyhow::Result<(Mesh, FaceParts)> {
-        let refining = if arguments.exact.optimize {
-            COLLAPSING * self.tolerance
+        let times = if arguments.exact.optimize {
+            COLLAPSING
         } else {
-            self.tolerance
+            1.0
         };
         let options = WithinOptions::default()
             .within(with_room(self.within, most_rounding(arguments, mesh)))
-            .tolerance(Some(refining))
+            .tolerance(Some(times * self.tolerance))
             .max_triangles(Some(arguments.max_triangles()));
-        let found = within_observed(
-            mesh,
-            arguments.scheme()?,
-            &options,
-            &mut progress.observer(),
-        )?;
+        let scheme = arguments.scheme()?;
+        let found = within_observed(mesh, scheme, &options, &mut progress.observer())?;
         if found.sharpened > 0 {
             let edges = counted(found.sharpened, "edge stays", "edges stay");
             progress.note(format!(
@@ -80,34 +75,30 @@ impl Nearness {
     /// Whether the result is as near as it has to be, and none of its triangles turned over where that is refused.
     pub(super) fn outcome(
         self,
-        moved: Option<&InputDistanceReport>,
+        moved: Option<&IntervalReport>,
         inverted: usize,
         arguments: &RefineArguments,
     ) -> Outcome {
-        let unit = unit_in_words(arguments.build.unit);
-        let written = format!("\n  {} was written", arguments.output_name());
-        match moved {
-            Some(moved) if moved.upper <= self.within => {}
-            Some(moved) => {
-                return Outcome::StoppedShort(format!(
-                    "--within {}{unit} could not be kept: the result is within {}{unit} of the input{written}",
-                    number(self.within),
-                    upper_bound(moved.upper)
-                ));
+        let asked = format!(
+            "--within {}{}",
+            number(self.within),
+            arguments.build.unit_in_words()
+        );
+        let why = match moved {
+            Some(moved) if moved.upper <= self.within => {
+                if !arguments.build.strict || inverted == 0 {
+                    return Outcome::Done;
+                }
+                let triangles = counted(inverted, "triangle is", "triangles are");
+                format!("{triangles} turned over, which --strict refuses")
             }
-            None => {
-                return Outcome::StoppedShort(format!(
-                    "--within {}{unit} could not be proven{written}",
-                    number(self.within)
-                ));
-            }
-        }
-        if arguments.build.strict && inverted > 0 {
-            let triangles = counted(inverted, "triangle is", "triangles are");
-            return Outcome::StoppedShort(format!(
-                "{triangles} turned over, which --strict refuses{written}"
-            ));
-        }
-        Outcome::Done
+            Some(moved) => format!(
+                "{asked} could not be kept: the result is within {}{} of the input",
+                upper_bound(moved.upper),
+                arguments.build.unit_in_words()
+            ),
+            None => format!("{asked} could not be proven"),
+        };
+        Outcome::StoppedShort(format!("{why}\n  {} was written", arguments.output_name()))
     }
 }

@@ -3,20 +3,20 @@
 use std::path::Path;
 
 use anyhow::Context;
-use limitmesh::{Mesh, Triangles};
+use limitmesh::Triangles;
 use limitmesh_check::proof::Proof as Claim;
 use limitmesh_check::{mesh::Mesh as Plain, read, verdict};
 use limitmesh_io::{Format, Proof};
 
-use super::Refined;
-use super::carried::Trail;
+use super::refined::Refined;
+use super::task::Task;
 use crate::arguments::{RefineArguments, Way};
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, upper_bound};
 use crate::input;
 use crate::output;
 
-/// What is tried, as multiples of what refinement certifies. Where that came from a search, or is next to nothing, triangles prove a little less.
+/// Multiples of the certified distance that are tried. Where that came from a search, or is next to nothing, triangles prove a little less.
 const TRIED: [f64; 18] = [
     1.0, 1.1, 1.25, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 16.0, 32.0, 64.0,
 ];
@@ -61,51 +61,57 @@ pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyh
     Ok(())
 }
 
-/// What a proof says.
-pub(super) struct Proven {
-    /// The length, if one was proven.
-    pub(super) within: Option<f64>,
-    /// What is said of that.
-    pub(super) note: Option<String>,
-    pub(super) outcome: Outcome,
-}
-
 /// Writes the proof of a result that was written, as soon as a length is confirmed: at best what was certified, at worst the tolerance.
+///
+/// The result's report has that length then, and a note says it. Without a proof, the result stopped short.
 ///
 /// # Errors
 /// A file cannot be read or written, or there can be no proof of this result.
-pub(super) fn write(
-    path: &Path,
-    control: &Mesh,
-    refined: &Refined,
-    arguments: &RefineArguments,
-) -> anyhow::Result<Proven> {
+pub(super) fn write(path: &Path, refined: &mut Refined, task: &Task<'_>) -> anyhow::Result<()> {
+    match proven(path, refined, task)? {
+        Ok(within) => {
+            if let Some(error) = &mut refined.report.error {
+                error.proven = Some(within).filter(|&within| error.upper != Some(within));
+                let why = match error.proven {
+                    Some(_) => {
+                        ": more than is certified, since a search over several triangles is in no proof"
+                    }
+                    None => "",
+                };
+                let (path, within) = (path.display(), upper_bound(within));
+                task.progress.note(format!(
+                    "{path}: proves {within}{why}, as limitmesh-check confirms"
+                ));
+            }
+        }
+        Err(why) => {
+            if let Outcome::Done = refined.outcome {
+                refined.outcome = Outcome::StoppedShort(format!("no proof was written: {why}"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The length that a proof confirms, once it is written, or why there is none.
+fn proven(path: &Path, refined: &Refined, task: &Task<'_>) -> anyhow::Result<Result<f64, String>> {
+    let (arguments, control) = (task.arguments, task.mesh());
     let written = arguments.output.as_deref().unwrap_or(Path::new(""));
     let result = read_plain(written)
         .with_context(|| format!("{} cannot be read again", written.display()))?;
-    let Trail {
-        origins, parents, ..
-    } = &refined.trail;
-    let none = |why: String| {
-        let text = format!("no proof was written: {why}");
-        Ok(Proven {
-            within: None,
-            note: None,
-            outcome: Outcome::StoppedShort(text),
-        })
-    };
+    let (origins, parents) = (&refined.trail.origins, &refined.trail.parents);
     if result.positions.len() != origins.len() || result.triangles.len() != parents.len() {
-        return none(format!(
+        return Ok(Err(format!(
             "vertices stand several times in {}",
             written.display()
-        ));
+        )));
     }
     let Some(scheme) = arguments.scheme()?.loop_family() else {
-        return none("of this scheme".into());
+        return Ok(Err("the scheme has none".to_owned()));
     };
     let own = Plain {
         positions: control.positions().to_vec(),
-        triangles: control.as_triangles().triangles.to_vec(),
+        triangles: control.triangles().to_vec(),
     };
     let is_file = input::builtin_name(arguments.input()).is_none();
     let proof = Proof {
@@ -120,45 +126,28 @@ pub(super) fn write(
         parents,
     };
     let Some(upper) = refined.report.error.as_ref().and_then(|error| error.upper) else {
-        return none("no distance is certified".into());
+        return Ok(Err("no distance is certified".to_owned()));
     };
     let mut refused = Vec::new();
     for within in TRIED.map(|times| times * upper) {
         let bytes = match proof.to_bytes(within) {
             Ok(bytes) => bytes,
-            Err(why) => return none(why.to_string()),
+            Err(why) => return Ok(Err(why.to_string())),
         };
         let claim = Claim::read(&bytes).map_err(anyhow::Error::msg)?;
         refused = verdict::refused(&own, &result, &claim, within).map_err(anyhow::Error::msg)?;
         if refused.is_empty() {
             output::write_file(path, &bytes)?;
-            let why = match within > upper {
-                true => {
-                    ": more than is certified, since a search over several triangles is in no proof"
-                }
-                false => "",
-            };
-            let note = format!(
-                "{}: proves {}{why}, as limitmesh-check confirms",
-                path.display(),
-                upper_bound(within)
-            );
-            return Ok(Proven {
-                within: Some(within),
-                note: Some(note),
-                outcome: Outcome::Done,
-            });
+            return Ok(Ok(within));
         }
     }
     let count = counted(refused.len(), "triangle is", "triangles are");
+    let most = upper_bound(TRIED[TRIED.len() - 1] * upper);
     let example = refused
         .first()
-        .map(|(t, what)| format!(": triangle {t} {what}"))
-        .unwrap_or_default();
-    none(format!(
-        "{count} not proven within {}{example}",
-        upper_bound(TRIED[TRIED.len() - 1] * upper)
-    ))
+        .map(|(t, what)| format!(": triangle {t} {what}"));
+    let example = example.unwrap_or_default();
+    Ok(Err(format!("{count} not proven within {most}{example}")))
 }
 
 /// A mesh as the checker reads it.

@@ -4,20 +4,13 @@
 use limitmesh::front::{Demand, Front, MOST_LEVELS, Measure, Snapshot};
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactStop, Origin, Traced};
-use limitmesh::scheme::Scheme;
-use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
-use limitmesh_io::Format;
+use limitmesh::{FaceId, HalfEdgeId, LimitSurface};
 
-use super::super::channels::Channels;
 use super::super::normals::Normals;
-use super::carried::Trail;
-use super::control::Before;
-use super::goals::unit_in_words;
-use super::provenance::Provenance;
-use super::{Refined, capped};
-use crate::arguments::{Extent, Featured, Method, RefineArguments};
+use super::refined::{Refined, capped};
+use super::task::Task;
+use crate::arguments::{Extent, Method, RefineArguments};
 use crate::format::{counted, number};
-use crate::progress::Progress;
 use crate::report::refinement::{ExactParametersReport, exact_stop_name};
 use crate::report::{MethodReport, ParametersReport};
 
@@ -27,7 +20,7 @@ const USUAL_ANGLE: f64 = 10.0;
 /// The vertex error where nothing else is asked, in per cent of the diagonal: the exact method's distance.
 const USUAL_PERCENT: f64 = 0.1;
 
-/// What is asked, and what of.
+/// What is asked.
 struct Goal {
     measure: Measure,
     /// In the measure's unit.
@@ -38,42 +31,28 @@ struct Goal {
 
 impl Goal {
     fn of(arguments: &RefineArguments, diagonal: f64) -> anyhow::Result<Self> {
-        let (angle, exact) = (arguments.angle, &arguments.exact);
-        let length = |extent: Extent| extent.length(diagonal, arguments.build.unit);
+        let exact = &arguments.exact;
         // The most triangles alone are as many as the least limit takes.
-        let is_counted = exact.triangles.is_some();
-        Ok(match (arguments.method, exact.tolerance) {
-            (Method::VertexError, tolerance) => {
-                let usual = (!is_counted).then_some(Extent::Percent(USUAL_PERCENT));
-                let tolerance = tolerance.or(usual).map(length).transpose()?;
-                let limit = tolerance.unwrap_or(0.0);
-                Self {
-                    measure: Measure::VertexError,
-                    limit,
-                    angle_degrees: None,
-                    tolerance,
-                }
-            }
-            (_, Some(tolerance)) => {
-                let tolerance = length(tolerance)?;
-                let measure = Measure::PlanarityDistance;
-                Self {
-                    measure,
-                    limit: tolerance,
-                    angle_degrees: None,
-                    tolerance: Some(tolerance),
-                }
-            }
-            (_, None) => {
-                let angle_degrees = angle.or((!is_counted).then_some(USUAL_ANGLE));
-                let limit = angle_degrees.unwrap_or(0.0).to_radians();
-                Self {
-                    measure: Measure::PlanarityAngle,
-                    limit,
-                    angle_degrees,
-                    tolerance: None,
-                }
-            }
+        let has_usual = exact.triangles.is_none();
+        let usual = Some(Extent::Percent(USUAL_PERCENT));
+        let tolerance = match arguments.method {
+            Method::VertexError => exact.tolerance.or(usual.filter(|_| has_usual)),
+            _ => exact.tolerance,
+        };
+        let tolerance = tolerance
+            .map(|extent| extent.length(diagonal, arguments.build.unit))
+            .transpose()?;
+        let angle = arguments.angle.or(has_usual.then_some(USUAL_ANGLE));
+        let (measure, limit, angle_degrees) = match (arguments.method, tolerance) {
+            (Method::VertexError, tolerance) => (Measure::VertexError, tolerance, None),
+            (_, Some(_)) => (Measure::PlanarityDistance, tolerance, None),
+            (_, None) => (Measure::PlanarityAngle, angle.map(f64::to_radians), angle),
+        };
+        Ok(Self {
+            measure,
+            limit: limit.unwrap_or(0.0),
+            angle_degrees,
+            tolerance,
         })
     }
 
@@ -93,26 +72,18 @@ impl Goal {
 
     /// What was reached, in words.
     fn in_words(&self, worst: f64, unit: &str) -> String {
-        match self.measure {
-            Measure::PlanarityAngle => {
-                let degrees = number(worst.to_degrees());
-                format!(
-                    "planar to {degrees}° at corners and middles of edges, by samples; no distance is proven"
-                )
-            }
+        let length = number(worst);
+        let reached = match self.measure {
+            Measure::PlanarityAngle => format!(
+                "planar to {}° at corners and middles of edges, by samples",
+                number(worst.to_degrees())
+            ),
             Measure::PlanarityDistance => {
-                let worst = number(worst);
-                format!(
-                    "planar to {worst}{unit} in the middles of edges, by samples; no distance is proven"
-                )
+                format!("planar to {length}{unit} in the middles of edges, by samples")
             }
-            _ => {
-                let worst = number(worst);
-                format!(
-                    "control points are within {worst}{unit} of their limits; no distance is proven"
-                )
-            }
-        }
+            _ => format!("control points are within {length}{unit} of their limits"),
+        };
+        format!("{reached}; no distance is proven")
     }
 }
 
@@ -122,50 +93,43 @@ pub(super) fn parameters(
     diagonal: f64,
 ) -> anyhow::Result<ParametersReport> {
     let goal = Goal::of(arguments, diagonal)?;
-    let max_levels = most_levels(arguments) as usize;
+    let levels = most_levels(arguments) as usize;
+    let own = &arguments.exact;
     Ok(ParametersReport {
         angle_degrees: goal.angle_degrees,
         exact: Some(ExactParametersReport::new(
             goal.tolerance,
             diagonal,
-            max_levels,
-            &arguments.exact,
+            levels,
+            own,
         )),
         ..ParametersReport::common(arguments)
     })
 }
 
-/// Levels at most.
 fn most_levels(arguments: &RefineArguments) -> u32 {
-    arguments
-        .exact
-        .max_levels
-        .map_or(MOST_LEVELS, |levels| levels as u32)
+    arguments.levels.map_or(MOST_LEVELS, |levels| levels as u32)
 }
 
 /// The limit normals of the control mesh's surface at the vertices, by side where edges are sharp.
-fn normals(found: &Snapshot, control: &Mesh, scheme: &dyn Scheme) -> anyhow::Result<Normals> {
-    let surface = LimitSurface::new(control, scheme)?;
+fn normals(found: &Snapshot, task: &Task<'_>) -> anyhow::Result<Normals> {
+    let surface = LimitSurface::new(task.mesh(), task.scheme()?)?;
     let place = |origin: &Origin| (FaceId(origin.face), origin.barycentric);
     if found.mesh.tags().creases.is_empty() {
         let places: Vec<_> = found.origins.iter().map(place).collect();
-        let normals = surface
-            .at_all(&places)
-            .into_iter()
-            .map(|point| point.normal);
-        return Ok(Normals::ByVertex(normals.collect()));
+        let points = surface.at_all(&places).into_iter();
+        return Ok(Normals::ByVertex(
+            points.map(|point| point.normal).collect(),
+        ));
     }
     // A control face that a corner is not of has no points.
     let nowhere = Origin {
         face: u32::MAX,
         barycentric: [0.0; 3],
     };
+    let control = task.mesh().triangles();
     let corners = (0..3 * found.mesh.face_count() as u32).map(HalfEdgeId);
-    let origin = |h| {
-        found
-            .corner_origin(control.triangles(), h)
-            .unwrap_or(nowhere)
-    };
+    let origin = |h| found.corner_origin(control, h).unwrap_or(nowhere);
     let places: Vec<_> = corners.map(|h| place(&origin(h))).collect();
     let points = surface.at_all(&places);
     Ok(Normals::BySide(SplitSurface::new(&found.mesh, |h| {
@@ -174,69 +138,35 @@ fn normals(found: &Snapshot, control: &Mesh, scheme: &dyn Scheme) -> anyhow::Res
 }
 
 /// Divides nodes until all meet the criterion.
-pub(super) fn run(
-    (control, before, diagonal): (&Featured, &Before, f64),
-    channels: &Channels,
-    arguments: &RefineArguments,
-    format: Format,
-    progress: &Progress,
-) -> anyhow::Result<Refined> {
-    let goal = Goal::of(arguments, diagonal)?;
-    let scheme = arguments.scheme()?;
-    progress.stage(format!(
-        "refining {}",
-        counted(control.mesh.face_count(), "triangle", "triangles")
-    ));
-    let mut front = Front::measured_by_observed(
-        &control.mesh,
-        scheme,
-        goal.measure,
-        &mut progress.observer(),
-    )?;
-    let most = arguments
-        .exact
-        .triangles
-        .unwrap_or(usize::MAX)
-        .min(arguments.max_triangles());
+pub(super) fn run(task: &Task<'_>) -> anyhow::Result<Refined> {
+    let arguments = task.arguments;
+    let goal = Goal::of(arguments, task.control.diagonal)?;
+    let scheme = task.scheme()?;
+    task.begin();
+    let observer = &mut task.progress.observer();
+    let mut front = Front::measured_by_observed(task.mesh(), scheme, goal.measure, observer)?;
+    let most = arguments.exact.triangles.unwrap_or(usize::MAX);
     let demand = Demand::tolerance(goal.limit)
-        .triangles(most)
+        .triangles(most.min(arguments.max_triangles()))
         .max_levels(most_levels(arguments));
-    front.update_observed(&demand, &mut progress.observer())?;
-    let (worst, levels, stop) = (
-        front.worst(),
-        front.depth() as usize,
-        goal.stop(&front, arguments),
-    );
+    front.update_observed(&demand, observer)?;
+    let (worst, levels) = (front.worst(), front.depth() as usize);
+    let stop = goal.stop(&front, arguments);
     let found = front.snapshot()?;
     drop(front);
-    let channels = channels.refined(&control.mesh, &found, arguments.scheme()?)?;
-    let wanted = Normals::are_held(format) || arguments.picture.is_some();
-    let normals = if wanted {
-        Some(normals(&found, &control.mesh, scheme)?)
-    } else {
-        None
-    };
-    let Snapshot {
-        mesh,
-        origins,
-        parents,
-        ..
-    } = found;
-    let places = (&before.faces[..], &control.concave.parts);
-    let provenance = arguments
-        .exact
-        .provenance
-        .then(|| Provenance::new(&origins, parents, places));
+    let normals = task.wants_normals().then(|| normals(&found, task));
+    let report = MethodReport::new(levels, exact_stop_name(stop));
+    let outcome = capped(&found.mesh, stop, arguments);
     Ok(Refined {
-        normals,
-        channels,
-        provenance,
-        trail: Trail::default(),
-        achieved: vec![goal.in_words(worst, &unit_in_words(arguments.build.unit))],
-        inverted: None,
-        how: counted(levels, "level", "levels"),
-        outcome: capped(&mesh, stop, arguments),
-        report: MethodReport::new(levels, exact_stop_name(stop)),
-        mesh,
+        normals: normals.transpose()?,
+        channels: task.channels.refined(task.mesh(), &found, scheme)?,
+        provenance: task.provenance(&found.origins, &found.parents),
+        achieved: vec![goal.in_words(worst, &task.unit())],
+        ..Refined::new(
+            found.mesh,
+            counted(levels, "level", "levels"),
+            report,
+            outcome,
+        )
     })
 }

@@ -1,42 +1,19 @@
 //! √3-subdivision: uniform steps, and adaptive refinement to an angle, an estimated distance or a number of triangles.
 
-use limitmesh::Mesh;
-use limitmesh::mesh::Channel;
-use limitmesh::refine::{Refinement, UniformOptions};
-use limitmesh::sqrt3::{Sqrt3, Sqrt3Options, adaptive_observed, uniform_observed};
-use limitmesh_io::Format;
+use limitmesh::refine::UniformOptions;
+use limitmesh::sqrt3::{Sqrt3Options, adaptive_observed, uniform_observed};
 
-use super::super::channels::Channels;
 use super::super::normals::Normals;
-use super::carried::Trail;
-use super::control::Before;
-use super::goals::unit_in_words;
-use super::provenance::Provenance;
+use super::refined::{Refined, capped};
 use super::stepwise;
-use super::{Refined, capped};
-use crate::arguments::{Extent, Featured, RefineArguments};
+use super::task::Task;
+use crate::arguments::{Extent, RefineArguments};
 use crate::format::counted;
-use crate::progress::Progress;
 use crate::report::refinement::{ErrorReport, ExactParametersReport, exact_stop_name};
 use crate::report::{MethodReport, ParametersReport};
 
 /// The tolerance where there is no other goal, in per cent of the diagonal: that of the exact method.
 const USUAL_PERCENT: f64 = 0.1;
-
-/// Leaves out what the input carries, and says so.
-pub(super) fn without_channels(channels: Vec<Channel>, progress: &Progress) -> Vec<Channel> {
-    if !channels.is_empty() {
-        let names: Vec<&str> = channels
-            .iter()
-            .map(|channel| channel.name.as_str())
-            .collect();
-        progress.note(format!(
-            "left out: {} (--scheme sqrt3 carries no values)",
-            names.join("; ")
-        ));
-    }
-    Vec::new()
-}
 
 /// What was asked for of adaptive refinement, defaults filled in.
 pub(super) fn parameters(
@@ -44,12 +21,13 @@ pub(super) fn parameters(
     diagonal: f64,
 ) -> anyhow::Result<ParametersReport> {
     let goals = goals(arguments, diagonal)?;
+    let (tolerance, levels) = (goals.tolerance, goals.max_levels);
     Ok(ParametersReport {
         angle_degrees: arguments.angle,
         exact: Some(ExactParametersReport::new(
-            goals.tolerance,
+            tolerance,
             diagonal,
-            goals.max_levels,
+            levels,
             &arguments.exact,
         )),
         ..ParametersReport::common(arguments)
@@ -61,110 +39,69 @@ fn goals(arguments: &RefineArguments, diagonal: f64) -> anyhow::Result<Sqrt3Opti
     let exact = &arguments.exact;
     let usual = (arguments.angle.is_none() && exact.triangles.is_none())
         .then_some(Extent::Percent(USUAL_PERCENT));
-    let tolerance = exact
-        .tolerance
-        .or(usual)
-        .map(|extent| extent.length(diagonal, arguments.build.unit));
+    let length = |extent: Extent| extent.length(diagonal, arguments.build.unit);
     let options = Sqrt3Options::default()
         .angle(arguments.angle.map(f64::to_radians))
-        .tolerance(tolerance.transpose()?)
+        .tolerance(exact.tolerance.or(usual).map(length).transpose()?)
         .triangles(exact.triangles)
         .max_triangles(Some(arguments.max_triangles()))
         .origins(exact.provenance);
-    Ok(exact
-        .max_levels
-        .map_or(options, |levels| options.max_levels(levels)))
+    Ok(match arguments.levels {
+        Some(levels) => options.max_levels(levels),
+        None => options,
+    })
 }
 
-/// Divides what fails, by its centre, the worst first. `before` tells the input's faces, `diagonal` what lengths in per cent are of.
-pub(super) fn to_goals(
-    (control, before, diagonal): (&Featured, &Before, f64),
-    arguments: &RefineArguments,
-    format: Format,
-    progress: &Progress,
-) -> anyhow::Result<Refined> {
+/// Divides what fails, by its centre, the worst first.
+pub(super) fn to_goals(task: &Task<'_>) -> anyhow::Result<Refined> {
+    let (arguments, diagonal) = (task.arguments, task.control.diagonal);
     let options = goals(arguments, diagonal)?;
-    progress.stage(format!(
-        "refining {}",
-        counted(control.mesh.face_count(), "triangle", "triangles")
-    ));
-    let found = adaptive_observed(&control.mesh, &options, &mut progress.observer())?;
-    let Sqrt3 {
-        mesh,
-        normals,
-        origins,
-        parents,
-        levels,
-        estimated_distance,
-        stop,
-        ..
-    } = found;
-    let error =
-        estimated_distance.map(|distance| ErrorReport::estimated(distance, diagonal, &mesh));
-    let unit = unit_in_words(arguments.build.unit);
+    task.begin();
+    let found = adaptive_observed(task.mesh(), &options, &mut task.progress.observer())?;
+    let mesh = found.mesh;
+    let error = found
+        .estimated_distance
+        .map(|distance| ErrorReport::estimated(distance, diagonal, &mesh));
     let achieved = error
-        .as_ref()
-        .map_or_else(Vec::new, |error| error.in_words(&unit));
-    let places = (&before.faces[..], &control.concave.parts);
-    let provenance = arguments
-        .exact
-        .provenance
-        .then(|| Provenance::new(&origins, parents, places));
-    let wanted = Normals::are_held(format) || arguments.picture.is_some();
+        .iter()
+        .map(|error| error.in_words(&task.unit()))
+        .collect();
+    let report = MethodReport {
+        error,
+        ..MethodReport::new(found.levels, exact_stop_name(found.stop))
+    };
+    let how = counted(found.levels, "level", "levels") + " of √3-subdivision";
+    let outcome = capped(&mesh, found.stop, arguments);
     Ok(Refined {
-        normals: wanted.then(|| Normals::of_sides(&mesh, normals)),
-        channels: Channels::default(),
-        provenance,
-        trail: Trail::default(),
+        normals: task
+            .wants_normals()
+            .then(|| Normals::of_sides(&mesh, found.normals)),
+        provenance: task.provenance(&found.origins, &found.parents),
         achieved,
-        inverted: None,
-        how: counted(levels, "level", "levels") + " of √3-subdivision",
-        outcome: capped(&mesh, stop, arguments),
-        report: MethodReport {
-            error,
-            ..MethodReport::new(levels, exact_stop_name(stop))
-        },
-        mesh,
+        ..Refined::new(mesh, how, report, outcome)
     })
 }
 
 /// Refines by steps, and moves the vertices to the limit if asked.
-pub(super) fn by_steps(
-    control: &Mesh,
-    arguments: &RefineArguments,
-    format: Format,
-    progress: &Progress,
-) -> anyhow::Result<Refined> {
+pub(super) fn by_steps(task: &Task<'_>) -> anyhow::Result<Refined> {
+    let arguments = task.arguments;
     let levels = stepwise::levels(arguments);
-    let wanted = Normals::are_held(format) || arguments.picture.is_some();
     let options = UniformOptions::default()
         .levels(levels)
         .limit(arguments.limit)
-        .normals(wanted)
+        .normals(task.wants_normals())
         .max_triangles(Some(arguments.max_triangles()));
-    let mut observer = stepwise::watch(levels, progress);
-    let Refinement {
-        mesh,
-        normals,
-        steps,
-        stop,
-        ..
-    } = uniform_observed(control, &options, &mut observer)?;
-    let normals = normals.map(|sided| Normals::of_sides(&mesh, sided));
+    let mut observer = stepwise::watch(levels, task.progress);
+    let found = uniform_observed(task.mesh(), &options, &mut observer)?;
+    let (mesh, steps) = (found.mesh, found.steps);
+    let how = counted(
+        steps.len(),
+        "step of √3-subdivision",
+        "steps of √3-subdivision",
+    );
+    let outcome = stepwise::outcome(arguments, &mesh, &steps, found.stop);
     Ok(Refined {
-        normals,
-        channels: Channels::default(),
-        provenance: None,
-        trail: Trail::default(),
-        achieved: Vec::new(),
-        inverted: None,
-        how: counted(
-            steps.len(),
-            "step of √3-subdivision",
-            "steps of √3-subdivision",
-        ),
-        outcome: stepwise::outcome(arguments, &mesh, &steps, stop),
-        report: stepwise::report(&steps, stop),
-        mesh,
+        normals: found.normals.map(|sided| Normals::of_sides(&mesh, sided)),
+        ..Refined::new(mesh, how, stepwise::report(&steps, found.stop), outcome)
     })
 }

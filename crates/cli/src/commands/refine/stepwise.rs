@@ -5,22 +5,22 @@ use std::ops::ControlFlow;
 use limitmesh::Mesh;
 use limitmesh::criterion::{Criterion, LimitNormal, NeighbourNormal};
 use limitmesh::limit::LimitTable;
+use limitmesh::progress::Progress as At;
 use limitmesh::refine::{
     Refinement, StepReport, StepwiseOptions, Stop, UniformOptions, stepwise_observed, uniform,
     uniform_observed,
 };
-use limitmesh_io::Format;
 
-use super::super::channels::Channels;
 use super::super::normals::Normals;
-use super::carried::Trail;
-use super::{Refined, view, view_report};
+use super::refined::Refined;
+use super::task::Task;
+use super::trail::Trail;
 use crate::arguments::{Method, RefineArguments, Seam};
 use crate::failure::Outcome;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
 use crate::report::refinement::stop_name;
-use crate::report::{MethodReport, ParametersReport, StepEntry};
+use crate::report::{MethodReport, ParametersReport, StepEntry, ViewReport};
 
 /// The angle where none is given, in degrees: the paper's middle one.
 const USUAL_ANGLE: f64 = 10.0;
@@ -33,51 +33,32 @@ pub(super) fn levels(arguments: &RefineArguments) -> usize {
 }
 
 /// Refines, and moves the vertices to the limit if asked.
-pub(super) fn run(
-    (control, channels, keeps_origins): (Mesh, &Channels, bool),
-    arguments: &RefineArguments,
-    format: Option<Format>,
-    progress: &Progress,
-) -> anyhow::Result<Refined> {
-    let is_traced = keeps_origins || !channels.all().is_empty();
-    let refined = refine(&control, is_traced, arguments, progress)?;
+pub(super) fn run(task: &Task<'_>) -> anyhow::Result<Refined> {
+    let (arguments, control) = (task.arguments, task.mesh());
+    let refined = refine(task)?;
     // Where nothing moves, values stay what they are, too.
     let is_same = refined.mesh.positions() == control.positions() && !arguments.limit;
-    let channels = if is_same {
-        channels.clone()
-    } else {
-        channels.refined(&control, &refined, arguments.scheme()?)?
+    let channels = match is_same {
+        true => task.channels.clone(),
+        false => task.channels.refined(control, &refined, task.scheme()?)?,
     };
-    drop(control);
-    let Refinement {
-        mesh,
-        steps,
-        stop,
-        origins,
-        parents,
-        ..
-    } = refined;
-    let (mesh, normals) = finish(mesh, arguments, format, progress)?;
-    let early = if stop == Stop::Satisfied {
-        ", no face is divisible any more"
-    } else {
-        ""
+    let (steps, stop) = (refined.steps, refined.stop);
+    let (mesh, normals) = finish(task, refined.mesh)?;
+    let early = match stop {
+        Stop::Satisfied => ", no face is divisible any more",
+        _ => "",
     };
+    let how = counted(steps.len(), "step", "steps") + early;
+    let outcome = outcome(arguments, &mesh, &steps, stop);
     Ok(Refined {
         normals,
         channels,
-        provenance: None,
         trail: Trail {
-            origins,
-            parents,
+            origins: refined.origins,
+            parents: refined.parents,
             sides: None,
         },
-        achieved: Vec::new(),
-        inverted: None,
-        how: counted(steps.len(), "step", "steps") + early,
-        outcome: outcome(arguments, &mesh, &steps, stop),
-        report: report(&steps, stop),
-        mesh,
+        ..Refined::new(mesh, how, report(&steps, stop), outcome)
     })
 }
 
@@ -94,18 +75,14 @@ pub(super) fn report(steps: &[StepReport], stop: Stop) -> MethodReport {
 }
 
 /// Shows each of at most so many steps as it begins.
-pub(super) fn watch(
-    levels: usize,
-    progress: &Progress,
-) -> impl FnMut(&limitmesh::progress::Progress) -> ControlFlow<()> {
+pub(super) fn watch(levels: usize, progress: &Progress) -> impl FnMut(&At) -> ControlFlow<()> {
     let mut shown = None;
     move |at| {
         if at.done < levels && shown.replace(at.done) != Some(at.done) {
+            let (stage, step) = (at.stage, at.done + 1);
             let faces = counted(at.triangles, "triangle", "triangles");
             progress.stage(format!(
-                "{}: step {} of at most {levels}, from {faces}",
-                at.stage,
-                at.done + 1
+                "{stage}: step {step} of at most {levels}, from {faces}"
             ));
         }
         progress.answer(at)
@@ -113,41 +90,41 @@ pub(super) fn watch(
 }
 
 /// Runs the method asked for.
-fn refine(
-    control: &Mesh,
-    keeps_origins: bool,
-    arguments: &RefineArguments,
-    progress: &Progress,
-) -> anyhow::Result<Refinement> {
+fn refine(task: &Task<'_>) -> anyhow::Result<Refinement> {
+    let (arguments, scheme) = (task.arguments, task.scheme()?);
     let levels = levels(arguments);
-    let mut observer = watch(levels, progress);
-    let scheme = arguments.scheme()?;
+    let mut observer = watch(levels, task.progress);
+    let is_traced = task.is_traced || !task.channels.all().is_empty();
     let cap = Some(arguments.max_triangles());
-    let Some(criterion) = criterion(arguments) else {
-        let options = UniformOptions::default()
-            .levels(levels)
-            .origins(keeps_origins)
-            .max_triangles(cap);
-        return Ok(uniform_observed(control, scheme, &options, &mut observer)?);
-    };
-    let options = StepwiseOptions::default()
-        .levels(levels)
-        .seam(arguments.seam.unwrap_or_default().rule())
-        .origins(keeps_origins)
-        .max_triangles(cap);
-    Ok(stepwise_observed(
-        control,
-        scheme,
-        criterion.as_ref(),
-        &options,
-        &mut observer,
-    )?)
+    Ok(match criterion(arguments) {
+        None => {
+            let options = UniformOptions::default()
+                .levels(levels)
+                .origins(is_traced)
+                .max_triangles(cap);
+            uniform_observed(task.mesh(), scheme, &options, &mut observer)?
+        }
+        Some(criterion) => {
+            let options = StepwiseOptions::default()
+                .levels(levels)
+                .seam(arguments.seam.unwrap_or_default().rule())
+                .origins(is_traced)
+                .max_triangles(cap);
+            stepwise_observed(
+                task.mesh(),
+                scheme,
+                criterion.as_ref(),
+                &options,
+                &mut observer,
+            )?
+        }
+    })
 }
 
-/// What marks the faces that a step divides; none where it divides all.
+/// The criterion that marks the faces that a step divides; none where it divides all.
 fn criterion(arguments: &RefineArguments) -> Option<Box<dyn Criterion>> {
     let angle = arguments.angle.unwrap_or(USUAL_ANGLE).to_radians();
-    match (arguments.method, view(arguments)) {
+    match (arguments.method, arguments.viewer()) {
         (Method::Amresh, _) => Some(Box::new(NeighbourNormal::new(angle))),
         (Method::LimitNormal, Some(view)) => Some(Box::new(LimitNormal::new(angle).view(view))),
         (Method::LimitNormal, None) => Some(Box::new(LimitNormal::new(angle))),
@@ -158,24 +135,21 @@ fn criterion(arguments: &RefineArguments) -> Option<Box<dyn Criterion>> {
 /// Takes limit normals where the output or the picture shows them, then moves the vertices to the limit if asked.
 ///
 /// In this order: the normals of the moved vertices are those of the limit surface that they now lie on.
-fn finish(
-    mesh: Mesh,
-    arguments: &RefineArguments,
-    format: Option<Format>,
-    progress: &Progress,
-) -> anyhow::Result<(Mesh, Option<Normals>)> {
-    let scheme = arguments.scheme()?;
-    let wanted = format.is_some_and(Normals::are_held) || arguments.picture.is_some();
-    let sided = match wanted.then(|| LimitTable::new(scheme).sided_normals(&mesh)) {
+fn finish(task: &Task<'_>, mesh: Mesh) -> anyhow::Result<(Mesh, Option<Normals>)> {
+    let scheme = task.scheme()?;
+    let sided = match task
+        .wants_normals()
+        .then(|| LimitTable::new(scheme).sided_normals(&mesh))
+    {
         Some(Err(why)) => {
-            progress.note(format!("no limit normals: {why}"));
+            task.progress.note(format!("no limit normals: {why}"));
             None
         }
         sided => sided.and_then(Result::ok),
     };
     let mut mesh = mesh;
-    if arguments.limit {
-        progress.stage("moving the vertices to the limit");
+    if task.arguments.limit {
+        task.progress.stage("moving the vertices to the limit");
         let options = UniformOptions::default().levels(0).limit(true);
         mesh = uniform(&mesh, scheme, &options)?.mesh;
     }
@@ -190,12 +164,13 @@ pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
         angle_degrees: adaptive.then(|| arguments.angle.unwrap_or(USUAL_ANGLE)),
         levels: Some(levels(arguments)),
         seam: adaptive.then(|| arguments.seam.unwrap_or(Seam::All)),
-        view: view_report(arguments),
+        view: ViewReport::of(arguments),
         limit: arguments.limit,
         ..ParametersReport::common(arguments)
     }
 }
 
+/// Whether the cap left a step undone.
 pub(super) fn outcome(
     arguments: &RefineArguments,
     mesh: &Mesh,

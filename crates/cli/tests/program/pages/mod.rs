@@ -3,7 +3,6 @@
 
 mod commands;
 mod links;
-mod models;
 mod reports;
 
 use std::path::{Path, PathBuf};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{folder, run};
+use crate::common::{folder, json_of, run};
 use crate::kept::root;
 
 #[test]
@@ -92,7 +92,7 @@ fn reports_are_as_the_schema_says() {
         ("models --json", &[], "ModelEntry"),
     ];
     for (command, paths, name) in printed {
-        check(&schema, name, &run(command, paths).expect(0).json());
+        check(&schema, name, &json_of(command, paths));
     }
 }
 

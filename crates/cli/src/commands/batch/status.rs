@@ -20,14 +20,14 @@ pub(crate) struct Line<'a> {
     /// The file that was written; null of what is no job.
     pub(super) output: Option<&'a str>,
     #[serde(flatten)]
-    pub(super) told: Told,
+    pub(super) status: JobStatus,
 }
 
 /// What became of a job.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "status", rename_all = "kebab-case")]
-pub(super) enum Told {
+pub(super) enum JobStatus {
     /// All goals are met.
     Done {
         /// The size of the file; null for a dry run.
@@ -49,14 +49,14 @@ pub(super) enum Told {
     /// There is no result.
     Failed {
         /// What went wrong.
-        error: ErrorTold,
+        error: JobError,
     },
 }
 
 /// Why a job failed.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
-pub(super) struct ErrorTold {
+pub(super) struct JobError {
     /// What is to be mended.
     pub(super) kind: Kind,
     /// The limit that it passed: seconds or bytes.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::Value;
 
-use super::kept;
+use super::made;
 use super::schema::{BATCH_LINE, REPORTS, schema};
 
 const BEGINNING: &str = "\
@@ -31,9 +31,9 @@ This page and the schema are generated from the program: do not edit them.
 #[test]
 fn the_page_and_the_schema_are_those_of_the_types() {
     let schema = schema();
-    kept::check("docs/reports.md", page(&schema).as_bytes());
+    made::check("docs/reports.md", page(&schema).as_bytes());
     let text = serde_json::to_string_pretty(&schema).unwrap();
-    kept::check("docs/reports.schema.json", format!("{text}\n").as_bytes());
+    made::check("docs/reports.schema.json", format!("{text}\n").as_bytes());
 }
 
 fn page(schema: &Value) -> String {

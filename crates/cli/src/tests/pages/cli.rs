@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::{Arg, Command, CommandFactory};
 
-use super::kept;
+use super::made;
 use crate::arguments::Arguments;
 
 const BEGINNING: &str = "\
@@ -18,7 +18,7 @@ This page is generated from the program: do not edit it.
 
 #[test]
 fn the_page_lists_the_command_line() {
-    kept::check("docs/cli.md", page().as_bytes());
+    made::check("docs/cli.md", page().as_bytes());
 }
 
 fn page() -> String {
@@ -156,7 +156,10 @@ fn call(argument: &Arg) -> String {
             .collect::<Vec<_>>()
             .join(" ")
     });
-    format!("{} {values}", names.join(", ")).trim().to_owned()
+    match argument.is_require_equals_set() {
+        true => format!("{}[={values}]", names.join(", ")),
+        false => format!("{} {values}", names.join(", ")).trim().to_owned(),
+    }
 }
 
 /// Help as Markdown, on as many lines as it has, without spaces at their ends; what would be formatting is escaped.

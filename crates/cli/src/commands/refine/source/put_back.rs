@@ -1,24 +1,24 @@
 //! The refined triangles of a mesh back into its asset, primitive by primitive.
 //!
-//! A vertex of the file stands for each vertex of the surface and each combination of values there. What morph targets add to positions
+//! The file has a vertex for each vertex of the surface and each combination of values there. What morph targets add to positions
 //! is a smooth channel, so that limit(base + Σ w t) = limit(base) + Σ w limit(t) at every vertex; what they add to normals is the
 //! limit normal of base plus target minus the base's. Tangents, where the input had some, are found anew by the texture coordinates that
 //! come out.
 
 use anyhow::Context;
 use limitmesh::mesh::{Channel, Domain, Semantic};
-use limitmesh::scheme::Scheme;
 use limitmesh::{FaceId, LimitSurface, Mesh};
 use limitmesh_io::Asset;
 use limitmesh_io::gltf::{
     CornerAttribute, Geometry, MeshSoup, Part, VertexAttribute, WithTangents,
 };
 
-use super::super::channels::Channels;
-use super::Refined;
-use super::carried::{Carried, Vertices};
+use super::super::refined::Refined;
+use super::carried::Carried;
+use super::vertices::Vertices;
 use super::weights::{Weights, weights};
 use crate::arguments::SchemeName;
+use crate::commands::channels::Channels;
 
 /// Numbers of a value at most that vertices of a file can have.
 pub(super) const MOST_WIDE: usize = 4;
@@ -49,11 +49,14 @@ pub(super) struct PutBack<'a> {
     pub(super) channels: &'a Channels,
     pub(super) refined: &'a Refined,
     pub(super) carried: &'a Carried<'a>,
+    /// How many times larger the refined mesh is than the asset's.
+    pub(super) scale: f64,
+    pub(super) scheme: SchemeName,
 }
 
-/// What is to be said of a mesh that was put back.
+/// Notes on a mesh that was put back.
 #[derive(Default)]
-pub(super) struct Told {
+pub(super) struct PutNotes {
     pub(super) notes: Vec<String>,
     /// Names of attributes that could not be found anew.
     pub(super) left_out: Vec<String>,
@@ -70,70 +73,45 @@ struct Numbered {
 }
 
 impl PutBack<'_> {
-    /// Replaces the mesh's primitives by the triangles that came of them, and attributes by their values there. The refined mesh is
-    /// `stretch` times as large as the asset's. Gives what is to be said of it.
+    /// Replaces the mesh's primitives by the triangles that they became, and attributes by their values there.
     ///
     /// # Errors
     /// A morph target or weights have no limit, or the asset does not take the geometry.
-    pub(super) fn put(
-        &self,
-        asset: &mut Asset,
-        mesh: usize,
-        (stretch, scheme): (f64, SchemeName),
-    ) -> anyhow::Result<Told> {
+    pub(super) fn put(&self, asset: &mut Asset, mesh: usize) -> anyhow::Result<PutNotes> {
         let Some(normals) = &self.refined.normals else {
             anyhow::bail!("no normals were found")
         };
         let (surface, normals) = normals.surface(&self.refined.mesh);
-        let count = self
-            .own
-            .parts
-            .iter()
-            .map(|part| part.targets.len())
-            .max()
-            .unwrap_or(0);
-        let mut moved_normals = Vec::with_capacity(count);
-        for target in 0..count {
-            let is_asked = self
-                .own
-                .parts
-                .iter()
-                .any(|part| self.has_normals(part, target));
-            let found = match self.displacement(target).filter(|_| is_asked) {
-                Some(channel) => {
-                    let asked = (surface.triangles, normals.len());
-                    Some(self.moved_normals(channel, asked, (stretch, scheme.scheme()))?)
-                }
-                None => None,
-            };
-            moved_normals.push(found);
+        let parts = &self.own.parts;
+        let count = parts.iter().map(|part| part.targets.len()).max();
+        let mut moved_normals = Vec::new();
+        for target in 0..count.unwrap_or_default() {
+            let is_asked = parts.iter().any(|part| self.has_normals(part, target));
+            let channel = self.displacement(target).filter(|_| is_asked);
+            let moved = |own| self.moved_normals(own, surface.triangles, normals.len());
+            moved_normals.push(channel.map(moved).transpose()?);
         }
-        let weights = self.weights(scheme)?;
+        let weights = self.weights()?;
         let notes = weights.as_ref().map(Weights::notes).unwrap_or_default();
-        let mut told = Told {
+        let mut notes = PutNotes {
             notes,
             left_out: Vec::new(),
         };
         for (number, part) in self.own.parts.iter().enumerate() {
             let channels: Vec<&Channel> = self.decisive(number).collect();
             let is_skinned = part.attributes.iter().any(|name| name == "JOINTS_0");
-            let moving = weights
-                .as_ref()
-                .filter(|_| is_skinned)
-                .map(|weights| &weights.joints[..]);
+            let weights = weights.as_ref().filter(|_| is_skinned);
+            let moving = weights.map(|weights| &weights.joints[..]);
             let mut vertices = Vertices::new(&channels, moving, surface.positions.len());
             let numbered = self.numbered(part, surface.triangles, &mut vertices);
             // A primitive of which nothing is left, as it had no area, stays as it is.
             if numbered.triangles.is_empty() {
                 continue;
             }
-            let at = |v: &u32| surface.positions[*v as usize].map(|x| x / stretch);
-            let positions: Vec<[f64; 3]> = numbered.surface.iter().map(at).collect();
-            let directions: Vec<[f64; 3]> = numbered
-                .surface
-                .iter()
-                .map(|&v| unit(normals[v as usize]))
-                .collect();
+            let own = || numbered.surface.iter().map(|&v| v as usize);
+            let at = |v: usize| surface.positions[v].map(|x| x / self.scale);
+            let positions: Vec<[f64; 3]> = own().map(at).collect();
+            let directions: Vec<[f64; 3]> = own().map(|v| unit(normals[v])).collect();
             let mut attributes = Vec::new();
             let mut targets: Vec<Vec<VertexAttribute>> = vec![Vec::new(); part.targets.len()];
             for (target, own) in targets.iter_mut().enumerate() {
@@ -141,7 +119,8 @@ impl PutBack<'_> {
                 let names = &part.targets[target];
                 let has = |name: &str| names.iter().any(|own| own == name);
                 if has("NORMAL") && !has("POSITION") {
-                    told.left_out
+                    notes
+                        .left_out
                         .push("NORMAL of morph targets that move nothing".to_owned());
                 }
                 if self.has_normals(part, target) {
@@ -150,11 +129,8 @@ impl PutBack<'_> {
                 }
             }
             for attribute in vertices.into_attributes() {
-                let table = self
-                    .own
-                    .attributes
-                    .iter()
-                    .find(|table| table.name == attribute.name);
+                let mut tables = self.own.attributes.iter();
+                let table = tables.find(|table| table.name == attribute.name);
                 match table.and_then(|table| Some((table, targets.get_mut(table.target?)?))) {
                     Some((table, own)) => {
                         own.push(VertexAttribute {
@@ -176,12 +152,12 @@ impl PutBack<'_> {
                 attributes: &attributes,
                 targets: &targets,
             };
-            let tangents =
-                self.with_tangents(&geometry, (&*asset, mesh, part), &mut told.left_out)?;
+            let left_out = &mut notes.left_out;
+            let tangents = self.with_tangents(&geometry, asset, mesh, part, left_out)?;
             let geometry = tangents.as_ref().map_or(geometry, WithTangents::geometry);
             asset.replace(mesh, part.primitive, &geometry)?;
         }
-        Ok(told)
+        Ok(notes)
     }
 
     /// The geometry with tangents, for itself and for each target that had some, if the primitive had them; those that there cannot be are
@@ -189,7 +165,9 @@ impl PutBack<'_> {
     fn with_tangents(
         &self,
         geometry: &Geometry<'_>,
-        (asset, mesh, part): (&Asset, usize, &Part),
+        asset: &Asset,
+        mesh: usize,
+        part: &Part,
         left_out: &mut Vec<String>,
     ) -> anyhow::Result<Option<WithTangents>> {
         let has = |names: &[String]| names.iter().any(|name| name == "TANGENT");
@@ -216,56 +194,45 @@ impl PutBack<'_> {
     }
 
     /// The weights of the refined mesh's joints, if it has a skin and its vertices know where they are from.
-    fn weights(&self, scheme: SchemeName) -> anyhow::Result<Option<Weights>> {
+    fn weights(&self) -> anyhow::Result<Option<Weights>> {
         let origins = &self.carried.trail.origins;
         if origins.is_empty() || self.own.influences.is_empty() {
             return Ok(None);
         }
         let lists = self.carried.influences(self.control, &self.own.influences);
         // The butterfly's masks reach farther than a ring.
-        let rules = (scheme.scheme(), scheme != SchemeName::Butterfly);
-        weights(self.control, &lists, rules, origins).map(Some)
+        let is_near = self.scheme != SchemeName::Butterfly;
+        weights(self.control, &lists, self.scheme.scheme(), is_near, origins).map(Some)
     }
 
     /// Channels of the refined mesh that a primitive has and for whose values vertices of the file differ: all but displacements, of which
     /// a vertex of the surface has one each.
     fn decisive(&self, part: usize) -> impl Iterator<Item = &Channel> {
         self.refined.channels.all().iter().filter(move |channel| {
-            let table = self
-                .own
-                .attributes
-                .iter()
-                .find(|table| table.name == channel.name);
+            let mut tables = self.own.attributes.iter();
+            let table = tables.find(|table| table.name == channel.name);
             table.is_some_and(|table| table.is_in[part] && !table.is_displacement())
         })
     }
 
     /// Whether a target is to say how normals change: where it did, and where it moves vertices, whose normals do not follow by themselves.
     fn has_normals(&self, part: &Part, target: usize) -> bool {
-        let has = |name: &str| {
-            part.targets
-                .get(target)
-                .is_some_and(|names| names.iter().any(|own| own == name))
-        };
+        let names = part.targets.get(target);
+        let has = |name: &str| names.is_some_and(|names| names.iter().any(|own| own == name));
         has("NORMAL") || has("POSITION") && self.displacement(target).is_some()
     }
 
     /// The table of a target's displacements.
     fn table(&self, target: usize) -> Option<&CornerAttribute> {
-        self.own
-            .attributes
-            .iter()
-            .find(|table| table.target == Some(target) && table.is_displacement())
+        let mut tables = self.own.attributes.iter();
+        tables.find(|table| table.target == Some(target) && table.is_displacement())
     }
 
     /// The control mesh's channel of a target's displacements, unless these are all zero.
     fn displacement(&self, target: usize) -> Option<&Channel> {
         let table = self.table(target)?;
-        let channel = self
-            .channels
-            .all()
-            .iter()
-            .find(|channel| channel.name == table.name)?;
+        let mut channels = self.channels.all().iter();
+        let channel = channels.find(|channel| channel.name == table.name)?;
         channel.values.iter().any(|&x| x != 0.0).then_some(channel)
     }
 
@@ -304,16 +271,10 @@ impl PutBack<'_> {
         numbered: &Numbered,
     ) -> Option<VertexAttribute> {
         let table = self.table(target).filter(|table| table.is_in[part])?;
-        let channel = self
-            .refined
-            .channels
-            .all()
-            .iter()
-            .find(|channel| channel.name == table.name)?;
-        let values = numbered
-            .corners
-            .iter()
-            .flat_map(|&corner| channel.value(corner as usize));
+        let mut channels = self.refined.channels.all().iter();
+        let channel = channels.find(|channel| channel.name == table.name)?;
+        let corners = numbered.corners.iter();
+        let values = corners.flat_map(|&corner| channel.value(corner as usize));
         Some(added("POSITION", values.copied().collect()))
     }
 
@@ -321,17 +282,15 @@ impl PutBack<'_> {
     fn moved_normals(
         &self,
         displacement: &Channel,
-        (triangles, count): (&[[u32; 3]], usize),
-        (stretch, scheme): (f64, &dyn Scheme),
+        triangles: &[[u32; 3]],
+        count: usize,
     ) -> anyhow::Result<Vec<[f64; 3]>> {
-        let positions = moved_positions(self.control, displacement, stretch);
+        let positions = moved_positions(self.control, displacement, self.scale);
         let name = &displacement.name;
-        let moved = self
-            .control
-            .clone()
-            .with_positions(positions)
-            .with_context(|| name.clone())?;
-        let limit = LimitSurface::new(&moved, scheme).with_context(|| name.clone())?;
+        let moved = self.control.clone().with_positions(positions);
+        let moved = moved.with_context(|| name.clone())?;
+        let limit =
+            LimitSurface::new(&moved, self.scheme.scheme()).with_context(|| name.clone())?;
         // A corner for each vertex, those of one face together.
         let mut is_met = vec![false; count];
         let mut wanted = Vec::with_capacity(count);
@@ -357,17 +316,15 @@ impl PutBack<'_> {
     }
 }
 
-/// Where a displacement moves the vertices of a mesh that is `stretch` times as large as the asset's.
-pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, stretch: f64) -> Vec<[f64; 3]> {
+/// Where a displacement moves the vertices of a mesh that is `scale` times as large as the asset's.
+pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, scale: f64) -> Vec<[f64; 3]> {
     let mut positions = mesh.positions().to_vec();
     let mut is_moved = vec![false; positions.len()];
     for (corner, &v) in mesh.triangles().as_flattened().iter().enumerate() {
         if !std::mem::replace(&mut is_moved[v as usize], true) {
             let own = displacement.value(corner);
-            positions[v as usize]
-                .iter_mut()
-                .zip(own)
-                .for_each(|(x, d)| *x += stretch * d);
+            let moved = positions[v as usize].iter_mut().zip(own);
+            moved.for_each(|(x, d)| *x += scale * d);
         }
     }
     positions

@@ -23,7 +23,7 @@ pub(super) type Joints = [(u32, f64); MOST_JOINTS];
 /// Weights this far below 0 are roundings of 0.
 const ROUNDING: f64 = 1e-12;
 
-/// The share of weights from which it is told that it was left out.
+/// A note names a share of weights that was left out from here on.
 const NOTED: f64 = 0.01;
 
 /// The weights of a refined mesh.
@@ -63,7 +63,8 @@ impl Weights {
 pub(super) fn weights(
     control: &Mesh,
     lists: &[Vec<(u32, f64)>],
-    (scheme, is_near): (&dyn Scheme, bool),
+    scheme: &dyn Scheme,
+    is_near: bool,
     places: &[Origin],
 ) -> anyhow::Result<Weights> {
     let all: BTreeSet<u32> = lists.iter().flatten().map(|&(joint, _)| joint).collect();
@@ -145,15 +146,15 @@ fn moved_faces(mesh: &Mesh, weights: &[[f64; 3]], is_near: bool) -> Vec<bool> {
     if !is_near {
         return vec![true; mesh.face_count()];
     }
-    let mut is_beside = vec![false; has_one.len()];
+    let mut is_adjacent = vec![false; has_one.len()];
     for corners in mesh.triangles() {
         if corners.iter().any(|&v| has_one[v as usize]) {
-            corners.iter().for_each(|&v| is_beside[v as usize] = true);
+            corners.iter().for_each(|&v| is_adjacent[v as usize] = true);
         }
     }
     mesh.triangles()
         .iter()
-        .map(|corners| corners.iter().any(|&v| is_beside[v as usize]))
+        .map(|corners| corners.iter().any(|&v| is_adjacent[v as usize]))
         .collect()
 }
 

@@ -15,7 +15,7 @@ impl Selection {
     /// Without names all of them; with names of meshes and of materials those that have one of either.
     ///
     /// # Errors
-    /// Nothing has a name that was given, or no mesh of these names has a primitive of these materials; it is told what there is.
+    /// Nothing has a name that was given, or no mesh of these names has a primitive of these materials; the message says what there is.
     pub(super) fn new(asset: &Asset, arguments: &AssetArguments) -> anyhow::Result<Self> {
         let Contents { meshes, .. } = asset.contents()?;
         let mesh_names: Vec<String> = meshes

@@ -2,7 +2,8 @@
 //! `docs/reports.schema.json` from the types of the reports.
 
 mod cli;
-#[path = "../../tests/program/kept.rs"]
+#[path = "../../../tests/program/kept.rs"]
 mod kept;
+mod made;
 mod reports;
 pub(crate) mod schema;

@@ -1,0 +1,3 @@
+//! Tests that look into the program.
+
+pub(crate) mod pages;
