@@ -17,8 +17,9 @@ use crate::refine::exact_result::ExactStop;
 /// Values that are tried.
 const MOST_TRIES: usize = 16;
 
-/// The part of the budget that may be left (one in so many), and fewer triangles than this in any case.
+/// The part of the budget that may be left (one in so many), that of what undivided faces leave of it, and fewer triangles than this in any case.
 const LEFT: usize = 32;
+const LEFT_OF_ROOM: usize = 8;
 const LEFT_AT_LEAST: usize = 12;
 
 /// Values nearer to each other than this, as a ratio, are as good as each other: bounds are within some per cent of the truth.
@@ -166,7 +167,11 @@ impl<'e, 'a> Search<'e, 'a> {
     }
 
     fn narrow(&mut self) -> Result<(), RefineError> {
-        let enough = self.most - (self.most / LEFT).max(LEFT_AT_LEAST).min(self.most);
+        let room = self.most.saturating_sub(self.undivided as usize);
+        let left = (self.most / LEFT)
+            .min(room / LEFT_OF_ROOM)
+            .max(LEFT_AT_LEAST);
+        let enough = self.most.saturating_sub(left);
         let mut first = self.first()?;
         for _ in 0..MOST_TRIES {
             let is_full = self.best.state.triangles >= enough;
