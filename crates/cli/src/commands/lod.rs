@@ -406,7 +406,8 @@ fn write(
             write_levels(
                 &arguments.output,
                 format,
-                (&name, &levels),
+                &name,
+                &levels,
                 asset,
                 options.unit,
             )

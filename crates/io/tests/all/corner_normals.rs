@@ -69,10 +69,10 @@ fn corners_without_a_normal_are_refused() {
     };
     assert_eq!(
         refused(&CORNERS[..1]),
-        "there are corner normals of 1 triangles for 2: each triangle needs three"
+        "there are 1 corner normals for 2 triangles: each needs one"
     );
     assert_eq!(
         refused(&[[0; 3], [0, 2, 0]]),
-        "triangle 1 has normal 2, but there are 2"
+        "triangle 1 names normal 2, but there are 2"
     );
 }

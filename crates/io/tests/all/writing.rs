@@ -300,15 +300,15 @@ fn what_does_not_fit_together_is_refused() {
     };
     assert_eq!(
         message(Format::Ply, &triangle().normals(&NORMALS[..2])),
-        "there are 2 normals for 3 vertices: each vertex needs one"
+        "there are 2 normals for 3 vertices: each needs one"
     );
     assert_eq!(
         message(Format::Stl, &triangle().colours(&[])),
-        "there are 0 colours for 3 vertices: each vertex needs one"
+        "there are 0 colours for 3 vertices: each needs one"
     );
     assert_eq!(
         message(Format::Obj, &triangle().quality(&[0.0; 4])),
-        "there are 4 quality values for 3 vertices: each vertex needs one"
+        "there are 4 quality values for 3 vertices: each needs one"
     );
     let beyond = Output::new(Triangles {
         positions: &POSITIONS,
@@ -316,7 +316,7 @@ fn what_does_not_fit_together_is_refused() {
     });
     assert_eq!(
         message(Format::Stl, &beyond),
-        "triangle 1 names vertex 3, but there are 3 vertices"
+        "triangle 1 names vertex 3, but there are 3"
     );
     let creases = [CreaseTag {
         vertices: [1, 9],
@@ -324,7 +324,7 @@ fn what_does_not_fit_together_is_refused() {
     }];
     assert_eq!(
         message(Format::Obj, &triangle().creases(&creases)),
-        "crease tag 0 names vertex 9, but there are 3 vertices"
+        "crease tag 0 names vertex 9, but there are 3"
     );
     let corners = [CornerTag {
         vertex: 3,
@@ -332,7 +332,7 @@ fn what_does_not_fit_together_is_refused() {
     }];
     assert_eq!(
         message(Format::Obj, &triangle().corners(&corners)),
-        "corner tag 0 names vertex 3, but there are 3 vertices"
+        "corner tag 0 names vertex 3, but there are 3"
     );
     let positions = [POSITIONS[0], [0.0, f64::NAN, 0.0], POSITIONS[2]];
     let output = Output::new(Triangles {
@@ -512,7 +512,7 @@ fn properties_that_do_not_fit_are_refused() {
     assert!(refused(Property::numbers("few", &zeros[1..]), false).contains("needs one"));
     let mut infinite = zeros.clone();
     infinite[1] = f64::INFINITY;
-    assert!(refused(Property::numbers("far", &infinite), false).contains("element 1 is inf"));
+    assert!(refused(Property::numbers("far", &infinite), false).contains("vertex 1 is inf"));
 }
 
 #[test]
@@ -576,7 +576,7 @@ fn a_refused_output_leaves_the_earlier_file() {
         triangles: &TRIANGLES,
     });
     let error = write(&path, &output, &WriteOptions::default()).unwrap_err();
-    assert!(matches!(error, WriteError::NotFinite { vertex: 1, .. }));
+    assert!(matches!(error, WriteError::NotFinite { element: 1, .. }));
     assert_eq!(fs::read(&path).unwrap(), b"earlier");
     assert_eq!(names(folder.path()), ["mesh.stl"]);
 }
