@@ -112,10 +112,8 @@ pub(crate) fn bounding_box(points: impl IntoIterator<Item = [f64; 3]>) -> Option
 /// by the closed form for symmetric matrices of three rows (Smith 1961).
 pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     let m = linear(m);
-    let size = m
-        .as_flattened()
-        .iter()
-        .fold(0.0f64, |most, x| most.max(x.abs()));
+    let size = m.as_flattened().iter();
+    let size = size.fold(0.0f64, |most, x| most.max(x.abs()));
     if size == 0.0 || !size.is_finite() {
         return size;
     }

@@ -4,7 +4,8 @@ use crate::channels::NORMALS;
 use crate::error::WriteError;
 use crate::format::Format;
 use crate::output::{Output, Property, PropertyValues};
-use limitmesh::mesh::{Channel, Triangles};
+use crate::reading::MOST;
+use limitmesh::mesh::Channel;
 
 /// Whether something is held, and how exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,217 +53,173 @@ impl Capacity {
 
     /// The channels of an output that files have a place for.
     pub(crate) fn held<'a>(&self, output: &Output<'a>) -> Vec<&'a Channel> {
-        output
-            .channels
-            .iter()
-            .filter(|channel| self.holds(channel))
-            .collect()
+        let all = output.channels.iter().filter(|channel| self.holds(channel));
+        all.collect()
     }
 
     /// Checks that the parts of an output fit together and into files of this format.
     pub(crate) fn check(&self, output: &Output<'_>, format: Format) -> Result<(), WriteError> {
+        let vertices = output.surface.positions.len();
+        let triangles = output.surface.triangles.len();
+        let capacity = self;
         let check = Check {
-            capacity: self,
+            capacity,
             output,
             format,
+            vertices,
+            triangles,
         };
-        check.counts()?;
-        check.indices()?;
-        check.numbers()?;
-        check.rounding()?;
-        check.channels()?;
-        check.names()?;
-        if self.properties {
-            let Triangles {
-                positions,
-                triangles,
-            } = output.surface;
-            let taken = [
-                "x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "quality",
-            ]
-            .as_slice();
-            check.properties(output.vertex_properties, taken, positions.len(), "vertex")?;
-            let taken = &["vertex_indices"];
-            check.properties(output.face_properties, taken, triangles.len(), "triangle")?;
-        }
-        Ok(())
+        check.all().map_err(|problem| WriteError::Unfit { problem })
     }
 }
+
+/// Nothing, or a problem in words.
+type Checked = Result<(), String>;
 
 struct Check<'a> {
     capacity: &'a Capacity,
     output: &'a Output<'a>,
     format: Format,
+    /// How many there are.
+    vertices: usize,
+    triangles: usize,
 }
 
 impl Check<'_> {
-    fn counts(&self) -> Result<(), WriteError> {
-        let Triangles {
-            positions,
-            triangles,
-        } = self.output.surface;
-        let (vertices, normals) = (
-            positions.len(),
-            self.output.vertex_normals().map(<[_]>::len),
-        );
-        each_needs_one("normals", normals, vertices, "vertices")?;
+    fn all(&self) -> Checked {
+        self.counts()?;
+        self.indices()?;
+        self.numbers()?;
+        self.rounding()?;
+        self.channels()?;
+        if self.capacity.properties {
+            let names = ["x", "y", "z", "nx", "ny", "nz"];
+            let names = [&names[..], &["red", "green", "blue", "quality"]].concat();
+            let (vertices, triangles) = (self.vertices, self.triangles);
+            self.properties(self.output.vertex_properties, &names, vertices, "vertices")?;
+            let names = ["vertex_indices"];
+            self.properties(self.output.face_properties, &names, triangles, "triangles")?;
+        }
+        Ok(())
+    }
+
+    fn counts(&self) -> Checked {
+        let (output, vertices, triangles) = (self.output, self.vertices, self.triangles);
+        each_needs_one("normals", output.vertex_normals(), vertices, "vertices")?;
+        each_needs_one("colours", output.colours, vertices, "vertices")?;
+        each_needs_one("quality values", output.quality, vertices, "vertices")?;
         each_needs_one(
-            "colours",
-            self.output.colours.map(<[_]>::len),
-            vertices,
-            "vertices",
+            "corner normals",
+            output.corner_normals,
+            triangles,
+            "triangles",
         )?;
-        let quality = self.output.quality.map(<[_]>::len);
-        each_needs_one("quality values", quality, vertices, "vertices")?;
-        let corners = self.output.corner_normals.map(<[_]>::len);
-        each_needs_one("corner normals", corners, triangles.len(), "triangles")?;
-        let normals = self.output.normals.map_or(0, <[_]>::len);
-        let counts = [
-            ("vertices", vertices),
-            ("triangles", triangles.len()),
-            ("normals", normals),
-        ];
-        let (limit, format) = (u32::MAX, self.format);
-        match counts
-            .into_iter()
-            .find(|&(_, count)| count > limit as usize)
-        {
-            Some((what, count)) => Err(WriteError::TooMany {
-                what,
-                count,
-                limit,
-                format,
-            }),
-            None => Ok(()),
+        let normals = output.normals.map_or(0, <[_]>::len);
+        let most = vertices.max(triangles).max(normals);
+        match most > MOST {
+            true => Err(format!(
+                "{most} elements are too many: files count to {MOST}"
+            )),
+            false => Ok(()),
         }
     }
 
-    fn indices(&self) -> Result<(), WriteError> {
-        let Output {
-            creases, corners, ..
-        } = self.output;
-        let Triangles {
-            positions,
-            triangles,
-        } = self.output.surface;
-        let vertices = positions.len();
-        all_exist("triangle", triangles, "vertex", vertices)?;
-        let ends: Vec<[u32; 2]> = creases.iter().map(|tag| tag.vertices).collect();
-        all_exist("crease tag", &ends, "vertex", vertices)?;
-        let tagged: Vec<[u32; 1]> = corners.iter().map(|tag| [tag.vertex]).collect();
-        all_exist("corner tag", &tagged, "vertex", vertices)?;
-        let normals = self.output.normals.map_or(0, <[_]>::len);
+    fn indices(&self) -> Checked {
+        let output = self.output;
         all_exist(
             "triangle",
-            self.output.corner_normals.unwrap_or_default(),
+            output.surface.triangles,
+            "vertex",
+            self.vertices,
+        )?;
+        let ends: Vec<_> = output.creases.iter().map(|tag| tag.vertices).collect();
+        all_exist("crease tag", &ends, "vertex", self.vertices)?;
+        let tagged: Vec<_> = output.corners.iter().map(|tag| [tag.vertex]).collect();
+        all_exist("corner tag", &tagged, "vertex", self.vertices)?;
+        let corners = output.corner_normals.unwrap_or_default();
+        all_exist(
+            "triangle",
+            corners,
             "normal",
-            normals,
+            output.normals.map_or(0, <[_]>::len),
         )
     }
 
     /// Refuses what the readers of files refuse: NaN and infinity, also where they come of rounding to `f32`.
-    fn numbers(&self) -> Result<(), WriteError> {
-        let Capacity {
-            coordinates,
-            normals,
-            properties,
-            ..
-        } = *self.capacity;
-        let positions = self.output.surface.positions.as_flattened();
-        self.finite("position", positions, 3, coordinates, "vertex")?;
-        let own = self.output.normals.unwrap_or_default().as_flattened();
-        self.finite("normal", own, 3, normals, "vertex")?;
-        let held = if properties { Held::Double } else { Held::No };
+    fn numbers(&self) -> Checked {
+        let (capacity, output) = (self.capacity, self.output);
+        let positions = output.surface.positions.as_flattened();
+        self.finite("position of vertex", positions, 3, capacity.coordinates)?;
+        let normals = output.normals.unwrap_or_default().as_flattened();
+        self.finite("normal of vertex", normals, 3, capacity.normals)?;
+        let quality = output.quality.filter(|_| capacity.properties);
         self.finite(
-            "quality",
-            self.output.quality.unwrap_or_default(),
+            "quality of vertex",
+            quality.unwrap_or_default(),
             1,
-            held,
-            "vertex",
+            Held::Double,
         )
     }
 
-    fn finite(
-        &self,
-        what: &str,
-        values: &[f64],
-        width: usize,
-        held: Held,
-        of: &'static str,
-    ) -> Result<(), WriteError> {
-        let failing = match held {
+    fn finite(&self, what: &str, values: &[f64], width: usize, held: Held) -> Checked {
+        let at = match held {
             Held::No => None,
             Held::Single => first_failing(values, |&x| (x as f32).is_finite()),
             Held::Double => first_failing(values, |x| x.is_finite()),
         };
-        let Some(at) = failing else { return Ok(()) };
-        let (what, element, value, format) = (what.to_owned(), at / width, values[at], self.format);
-        Err(WriteError::NotFinite {
-            what,
-            of,
-            element,
-            value,
-            format,
-        })
+        let Some(at) = at else { return Ok(()) };
+        let (element, value, format) = (at / width, values[at], self.format);
+        Err(format!(
+            "{what} {element} is {value}: {format} files hold finite numbers only"
+        ))
     }
 
     /// Refuses triangles of which none is left when coordinates are rounded.
-    fn rounding(&self) -> Result<(), WriteError> {
-        let Triangles {
-            positions,
-            triangles,
-        } = self.output.surface;
+    fn rounding(&self) -> Checked {
+        let positions = self.output.surface.positions;
         let is_left = |round: fn(f64) -> f64| {
             let at = |vertex: u32| positions[vertex as usize].map(round);
-            let mut corners = triangles.iter().map(|triangle| triangle.map(at));
-            corners.any(|[a, b, c]| a != b && b != c && c != a)
+            let mut triangles = self.output.surface.triangles.iter();
+            triangles.any(|triangle| {
+                let [a, b, c] = triangle.map(at);
+                a != b && b != c && c != a
+            })
         };
-        if self.capacity.coordinates == Held::Single
-            && !triangles.is_empty()
-            && !is_left(|x| f64::from(x as f32))
-            && is_left(|x| x)
-        {
-            let (triangles, format) = (triangles.len(), self.format);
-            return Err(WriteError::Rounded { triangles, format });
+        let is_single = self.capacity.coordinates == Held::Single;
+        if !is_single || is_left(|x| f64::from(x as f32)) || !is_left(|x| x) {
+            return Ok(());
         }
-        Ok(())
+        let (format, triangles) = (self.format, self.triangles);
+        Err(format!(
+            "{format} files round coordinates so much that none of {triangles} triangles keeps three different corners: coordinates must \
+             differ by more than a ten millionth of the greatest, and by more than 1e-45; PLY, OBJ and OFF files hold them as they are"
+        ))
     }
 
-    fn channels(&self) -> Result<(), WriteError> {
-        let Triangles {
-            positions,
-            triangles,
-        } = self.output.surface;
-        for channel in self.capacity.held(self.output) {
-            channel.check(positions.len(), 3 * triangles.len(), triangles.len())?;
-            if channel.value_count() == 0 && !positions.is_empty() {
-                let name = channel.name.clone();
-                return Err(WriteError::NoValues { name });
+    /// Refuses channels that do not fit, and names that would be several lines.
+    fn channels(&self) -> Checked {
+        let (capacity, output) = (self.capacity, self.output);
+        let (vertices, triangles) = (self.vertices, self.triangles);
+        for channel in capacity.held(output) {
+            let fits = channel.check(vertices, 3 * triangles, triangles);
+            fits.map_err(|error| error.to_string())?;
+            if channel.value_count() == 0 && vertices > 0 {
+                return Err(format!("channel {} has no values", channel.name));
             }
         }
-        Ok(())
-    }
-
-    /// Refuses names that would be several lines.
-    fn names(&self) -> Result<(), WriteError> {
-        let Output {
-            channels,
-            material_libraries,
-            texture_files,
-            ..
-        } = self.output;
-        let labels = channels.iter().flat_map(|channel| &channel.labels);
-        let names = labels
-            .chain(*material_libraries)
-            .filter(|_| self.capacity.names_on_lines);
-        let pictures = texture_files.iter().filter(|_| self.capacity.properties);
+        let labels = output.channels.iter().flat_map(|channel| &channel.labels);
+        let names = labels.chain(output.material_libraries);
+        let names = names.filter(|_| capacity.names_on_lines);
+        let pictures = output.texture_files.iter().filter(|_| capacity.properties);
         match names
             .chain(pictures)
             .find(|name| name.contains(['\n', '\r']))
         {
             Some(name) => {
-                let (name, format) = (name.clone(), self.format);
-                Err(WriteError::LineBreak { name, format })
+                let format = self.format;
+                Err(format!(
+                    "the name {name:?} has a line break, which {format} files cannot hold"
+                ))
             }
             None => Ok(()),
         }
@@ -270,28 +227,31 @@ impl Check<'_> {
 
     fn properties(
         &self,
-        properties: &[Property<'_>],
+        all: &[Property<'_>],
         taken: &[&str],
         elements: usize,
-        of: &'static str,
-    ) -> Result<(), WriteError> {
-        for (i, property) in properties.iter().enumerate() {
+        of: &str,
+    ) -> Checked {
+        for (i, property) in all.iter().enumerate() {
             let name = property.name;
-            let visible = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic());
-            let is_known = properties[..i].iter().any(|other| other.name == name);
-            if !visible || taken.contains(&name) || is_known {
-                let name = name.to_owned();
-                return Err(WriteError::PropertyName { name });
+            let is_visible = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic());
+            let is_known = all[..i].iter().any(|other| other.name == name);
+            if !is_visible || is_known || taken.contains(&name) {
+                let need = "needs a name of visible ASCII characters that nothing else has";
+                return Err(format!("property '{name}' {need}"));
             }
             let what = format!("numbers of property '{name}'");
-            let all = if of == "vertex" {
-                "vertices"
-            } else {
-                "triangles"
-            };
-            each_needs_one(&what, Some(property.count()), elements, all)?;
-            if let PropertyValues::Numbers(values) = property.values {
-                self.finite(&format!("property '{name}'"), values, 1, Held::Double, of)?;
+            match property.values {
+                PropertyValues::Integers(own) => each_needs_one(&what, Some(own), elements, of)?,
+                PropertyValues::Numbers(own) => {
+                    each_needs_one(&what, Some(own), elements, of)?;
+                    self.finite(
+                        &format!("property '{name}' of element"),
+                        own,
+                        1,
+                        Held::Double,
+                    )?;
+                }
             }
         }
         Ok(())
@@ -299,45 +259,25 @@ impl Check<'_> {
 }
 
 /// Refuses another count than the number of elements.
-fn each_needs_one(
-    what: &str,
-    count: Option<usize>,
-    elements: usize,
-    of: &'static str,
-) -> Result<(), WriteError> {
-    let Some(count) = count.filter(|&count| count != elements) else {
-        return Ok(());
-    };
-    let what = what.to_owned();
-    Err(WriteError::Count {
-        what,
-        count,
-        elements,
-        of,
-    })
+fn each_needs_one<T>(what: &str, all: Option<&[T]>, elements: usize, of: &str) -> Checked {
+    match all.map_or(elements, <[_]>::len) {
+        count if count == elements => Ok(()),
+        count => Err(format!(
+            "there are {count} {what} for {elements} {of}: each needs one"
+        )),
+    }
 }
 
 /// Refuses groups of indices of which one is not below a count.
-fn all_exist<const N: usize>(
-    what: &'static str,
-    groups: &[[u32; N]],
-    of: &'static str,
-    count: usize,
-) -> Result<(), WriteError> {
+fn all_exist<const N: usize>(what: &str, groups: &[[u32; N]], of: &str, count: usize) -> Checked {
     let exists = |&named: &u32| (named as usize) < count;
     let Some(index) = first_failing(groups, |group| group.iter().all(exists)) else {
         return Ok(());
     };
-    match groups[index].iter().find(|named| !exists(named)) {
-        Some(&named) => Err(WriteError::OutOfRange {
-            what,
-            index,
-            of,
-            named,
-            count,
-        }),
-        None => Ok(()),
-    }
+    let named = groups[index].iter().copied().fold(0, u32::max);
+    Err(format!(
+        "{what} {index} names {of} {named}, but there are {count}"
+    ))
 }
 
 /// Items that are checked together.

@@ -53,10 +53,9 @@ pub(crate) fn by_vertex(channel: &Channel, vertices: usize, triangles: &[[u32; 3
         }
     }
     // Vertices in no triangle have the first value there is.
-    indices
-        .iter_mut()
-        .filter(|index| **index == NONE)
-        .for_each(|index| *index = 0);
+    for index in indices.iter_mut().filter(|index| **index == NONE) {
+        *index = 0;
+    }
     let torn = is_torn.into_iter().filter(|&is_torn| is_torn).count();
     ByVertex { indices, torn }
 }

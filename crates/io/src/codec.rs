@@ -7,6 +7,9 @@ use limitmesh::mesh::PolygonSoup;
 use std::io::Write;
 use std::path::Path;
 
+/// Writes an output that was checked to the file at a path, and to others beside it.
+pub(crate) type WriteFile = fn(&Path, &Output<'_>, &WriteOptions) -> Result<(), WriteError>;
+
 /// A format, as the functions that read and write all formats know it.
 pub(crate) struct Codec {
     /// Whether bytes begin as files of the format do, in text if there are texts.
@@ -17,5 +20,5 @@ pub(crate) struct Codec {
     /// Writes an output that was checked, as one file.
     pub(crate) write: fn(&mut dyn Write, &Output<'_>, &WriteOptions) -> Result<(), WriteError>,
     /// Writes several files that belong together, if the format has any.
-    pub(crate) write_file: Option<fn(&Path, &Output<'_>, &WriteOptions) -> Result<(), WriteError>>,
+    pub(crate) write_file: Option<WriteFile>,
 }

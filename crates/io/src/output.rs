@@ -144,12 +144,4 @@ impl<'a> Property<'a> {
         let values = PropertyValues::Numbers(values);
         Self { name, values }
     }
-
-    /// How many there are.
-    pub(crate) fn count(&self) -> usize {
-        match self.values {
-            PropertyValues::Integers(values) => values.len(),
-            PropertyValues::Numbers(values) => values.len(),
-        }
-    }
 }

@@ -42,9 +42,8 @@ impl<'w> Pieces<'w> {
                 (start..count.min(start + ELEMENTS)).for_each(|at| element(piece, at));
             };
             fill_each(&mut pieces, fill);
-            pieces
-                .iter()
-                .try_for_each(|piece| self.writer.write_all(&piece.0))?;
+            let mut all = pieces.iter();
+            all.try_for_each(|piece| self.writer.write_all(&piece.0))?;
         }
         Ok(())
     }

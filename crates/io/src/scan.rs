@@ -209,11 +209,8 @@ fn is_blank(byte: u8) -> bool {
 
 /// A name of several words, with one blank between them.
 pub(crate) fn joined(words: &[&[u8]]) -> String {
-    words
-        .iter()
-        .map(|word| names::read(word))
-        .collect::<Vec<_>>()
-        .join(" ")
+    let all = words.iter().map(|word| names::read(word));
+    all.collect::<Vec<_>>().join(" ")
 }
 
 /// A word as a number at full precision, NaN and infinity included.

@@ -61,9 +61,8 @@ const PIECE: usize = 1 << 22;
 
 /// Writes bytes so that a program may end on the way.
 pub(crate) fn write_in_pieces(writer: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
-    bytes
-        .chunks(PIECE)
-        .try_for_each(|piece| writer.write_all(piece))
+    let mut found = bytes.chunks(PIECE);
+    found.try_for_each(|piece| writer.write_all(piece))
 }
 
 /// Writes what `fill` gives to a file, whole or not at all, as [`write_whole`] does.
@@ -199,10 +198,8 @@ impl Unfinished {
         let open = |path: &Path| options.open(path);
         let mut register = register();
         let mut name = tempfile::Builder::new();
-        let file = name
-            .prefix(".limitmesh-")
-            .suffix(".tmp")
-            .make_in(folder, open)?;
+        let file = name.prefix(".limitmesh-").suffix(".tmp");
+        let file = file.make_in(folder, open)?;
         let (file, path) = file.keep().map_err(|error| error.error)?;
         register.unfinished.push(path.clone());
         Ok(Self { file, path, target })

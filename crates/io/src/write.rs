@@ -82,9 +82,8 @@ pub fn write_as(
         return write_file(path, output, options);
     }
     let is_device = std::fs::metadata(path).is_ok_and(|there| !there.is_file());
-    let named = output
-        .materials
-        .filter(|_| capacity.names_files && !is_device);
+    let named = output.materials;
+    let named = named.filter(|_| capacity.names_files && !is_device);
     let files = named.into_iter().flat_map(|found| {
         let files = found.files.iter();
         files.map(|file| (file.as_path(), found.folder.join(file)))

@@ -81,10 +81,8 @@ impl Asset {
     /// A mesh as it is called in messages: `meshes[2] 'Wheel'`.
     pub fn mesh_name(&self, mesh: usize) -> String {
         let at = self.mesh_at(mesh);
-        let name = at
-            .as_ref()
-            .and_then(At::name)
-            .map(|name| format!(" '{}'", shortened(name)));
+        let found = at.as_ref().and_then(At::name);
+        let name = found.map(|name| format!(" '{}'", shortened(name)));
         format!("meshes[{mesh}]{}", name.unwrap_or_default())
     }
 
@@ -238,8 +236,8 @@ impl Asset {
             return Ok(Vec::new());
         };
         let of = |primitive: &At<'_>| {
-            primitive
-                .get("material")
+            let found = primitive.get("material");
+            found
                 .map(|own| own.number_in(&root, "materials"))
                 .transpose()
         };
@@ -251,9 +249,8 @@ impl Asset {
     /// # Errors
     /// A material, a texture or an image breaks the rules, or a picture's file cannot be read.
     pub fn base_colours(&self) -> Result<Vec<BaseColour>, ReadError> {
-        self.source
-            .base_colours()
-            .map_err(|flaw| self.in_file(flaw))
+        let found = self.source.base_colours();
+        found.map_err(|flaw| self.in_file(flaw))
     }
 
     /// The name of the texture coordinates by which a primitive's normal map lies, and so its tangents: those that its material names, or
@@ -294,10 +291,8 @@ impl Asset {
     /// The names of extensions that said something of triangles and vertices that were replaced, and go with these when the document is
     /// written.
     pub fn left_out(&self) -> Vec<String> {
-        Rest::of(&self.source.json, &self.changes)
-            .left_out
-            .into_iter()
-            .collect()
+        let found = Rest::of(&self.source.json, &self.changes).left_out;
+        found.into_iter().collect()
     }
 }
 

@@ -102,10 +102,8 @@ impl Asset {
     fn primitive_contents(&self, at: &At<'_>) -> Result<PrimitiveContents> {
         let root = self.source.root();
         let count = |accessor: At<'_>| {
-            accessor
-                .item_of(&root, "accessors")?
-                .require("count")?
-                .count()
+            let found = accessor.item_of(&root, "accessors")?.require("count")?;
+            found.count()
         };
         let names = |at: At<'_>| Ok(at.members()?.map(|(name, _)| name.to_owned()).collect());
         let attributes = at.require("attributes")?;

@@ -46,11 +46,8 @@ pub(super) fn write(
 
 fn document(output: &Output<'_>, unit: Option<LengthUnit>, pictures: Pictures) -> Result<Asset> {
     let groups = Groups::of(output);
-    let names = groups
-        .names
-        .iter()
-        .map(String::as_str)
-        .filter(|name| !name.is_empty());
+    let all = groups.names.iter().map(String::as_str);
+    let names = all.filter(|name| !name.is_empty());
     let names: Vec<&str> = names.collect();
     let looks = Looks::of(&names, Some(output), pictures)?;
     let folder = output.materials.map(|found| found.folder.as_path());

@@ -43,11 +43,8 @@ pub(super) struct Gone {
 impl Gone {
     /// What goes of a document.
     pub(super) fn of(json: &Value) -> Self {
-        let own = json
-            .get("extensions")
-            .and_then(Value::as_object)
-            .into_iter()
-            .flatten();
+        let own = json.get("extensions").and_then(Value::as_object);
+        let own = own.into_iter().flatten();
         let (root, kept): (Vec<_>, Vec<_>) = own.partition(|(_, value)| names_some(value));
         let root: Vec<String> = root.into_iter().map(|(name, _)| name.clone()).collect();
         let mut names: BTreeSet<String> = root.iter().cloned().chain([LOD.to_owned()]).collect();

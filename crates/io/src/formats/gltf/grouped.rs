@@ -85,10 +85,8 @@ pub(super) fn attributes<'a>(output: &Output<'a>) -> Vec<Attribute<'a>> {
     let held = capacity().held(output).into_iter();
     for channel in held.filter(|own| own.domain != Domain::Face && own.value_count() > 0) {
         let numbered = |kind: &str| {
-            let count = named
-                .iter()
-                .filter(|own| own.name.starts_with(kind))
-                .count();
+            let all = named.iter().filter(|own| own.name.starts_with(kind));
+            let count = all.count();
             format!("{kind}{count}")
         };
         let name = match channel.semantic {
@@ -179,21 +177,19 @@ impl Part {
                 others.push(NOWHERE);
             }
             vertices.push(vertex);
-            let own = channels.iter().zip(&mut values);
-            own.for_each(|(own, values)| values.push(index(own.channel)));
+            for (own, values) in channels.iter().zip(&mut values) {
+                values.push(index(own.channel));
+            }
             new
         };
-        let triangles = triangles
-            .iter()
-            .map(|&t| [0, 1, 2].map(|corner| number(t, corner)));
+        let all = triangles.iter();
+        let triangles = all.map(|&t| [0, 1, 2].map(|corner| number(t, corner)));
         let triangles = triangles.collect();
-        vertices
-            .iter()
-            .for_each(|&vertex| known[vertex as usize] = NOWHERE);
-        let attributes = channels
-            .iter()
-            .zip(&values)
-            .map(|(own, values)| attribute(own, values));
+        for &vertex in vertices.iter() {
+            known[vertex as usize] = NOWHERE;
+        }
+        let attributes = channels.iter().zip(&values);
+        let attributes = attributes.map(|(own, values)| attribute(own, values));
         let attributes = attributes.collect();
         Self {
             vertices,

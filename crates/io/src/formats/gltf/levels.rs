@@ -65,13 +65,9 @@ impl<'a> DetailLevel<'a> {
             .zip(["places", "normals"])
         {
             if own.len() != elements {
-                let (what, count) = (format!("{what} on the coarser level"), own.len());
-                return Err(WriteError::Count {
-                    what,
-                    count,
-                    elements,
-                    of: "vertices",
-                });
+                let what = format!("{} {what} on the coarser level", own.len());
+                let problem = format!("there are {what} for {elements} vertices: each needs one");
+                return Err(WriteError::Unfit { problem });
             }
         }
         Ok(())
@@ -93,10 +89,8 @@ pub fn write_levels(
     unit: Option<LengthUnit>,
 ) -> std::result::Result<(), WriteError> {
     levels.iter().try_for_each(|level| level.check(format))?;
-    let groups: Vec<Groups> = levels
-        .iter()
-        .map(|level| Groups::of(&level.output))
-        .collect();
+    let groups = levels.iter().map(|level| Groups::of(&level.output));
+    let groups: Vec<Groups> = groups.collect();
     let written = Document {
         name,
         levels,
@@ -227,11 +221,8 @@ impl<'a> Document<'a> {
             Ok(array(all))
         };
         let used = (self.levels.len() > 1).then(|| quoted(LOD));
-        let mut materials: Vec<String> = top
-            .items("materials")?
-            .into_iter()
-            .map(str::to_owned)
-            .collect();
+        let all = top.items("materials")?.into_iter().map(str::to_owned);
+        let mut materials: Vec<String> = all.collect();
         materials.extend(looks.materials.iter().map(Value::to_string));
         let mut changes = vec![
             ("scene", Some("0".to_owned())),

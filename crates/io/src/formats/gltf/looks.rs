@@ -61,9 +61,8 @@ impl Looks {
             looks.materials = names.iter().map(named).collect();
             return Ok(looks);
         };
-        let has_places = attributes(output)
-            .iter()
-            .any(|own| own.name == "TEXCOORD_0");
+        let mut has_places = attributes(output).into_iter();
+        let has_places = has_places.any(|own| own.name == "TEXCOORD_0");
         // Of several of one name the last holds, as later statements do.
         let materials = found.materials.iter().map(|own| (own.name.as_str(), own));
         let described: HashMap<&str, &Material> = materials.collect();

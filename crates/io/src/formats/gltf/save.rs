@@ -39,10 +39,8 @@ impl Asset {
     /// # Errors
     /// As for [`Self::write`]; or there is no such way, as from one drive to another.
     pub fn write_linked(&self, path: &Path, format: Format) -> Result<Vec<PathBuf>, WriteError> {
-        let from = self
-            .path
-            .as_ref()
-            .map(|from| way(folder_of(path), folder_of(from)));
+        let found = self.path.as_ref();
+        let from = found.map(|from| way(folder_of(path), folder_of(from)));
         let way = from.transpose().map_err(WriteError::of(path))?;
         self.write_with(path, format, way.as_deref())
     }
@@ -123,9 +121,8 @@ fn name_of_bytes(path: &Path, files: &BTreeSet<PathBuf>) -> String {
 
 fn glb(container: &Container) -> Result<Vec<u8>, WriteError> {
     let problem = "it would have 4 GiB or more, which its 32-bit length cannot count";
-    container
-        .to_glb()
-        .ok_or_else(|| Flaw::saying("the GLB", problem).into())
+    let found = container.to_glb();
+    found.ok_or_else(|| Flaw::saying("the GLB", problem).into())
 }
 
 /// The way from a folder to another as a URI has it, with a slash at its end; nothing if they are one.

@@ -39,9 +39,8 @@ impl WithTangents {
             };
             let found = base.moved(own).tangents()?;
             let pairs = found.iter().zip(&tangents);
-            let tangents = pairs
-                .map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i]))
-                .collect();
+            let tangents = pairs.map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i]));
+            let tangents = tangents.collect();
             added.push(Added { target, tangents });
         }
         Some(Self::split(geometry, geometry.normals?, &tangents, &added))
@@ -75,10 +74,8 @@ impl WithTangents {
         let (mut sources, mut corners): (Vec<u32>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut number = |corner: usize, vertex: u32| {
             let known = &mut copies[vertex as usize];
-            let found = known
-                .iter()
-                .copied()
-                .find(|&own| is_same(corners[own as usize], corner));
+            let mut found = known.iter().copied();
+            let found = found.find(|&own| is_same(corners[own as usize], corner));
             found.unwrap_or_else(|| {
                 let new = sources.len() as u32;
                 known.push(new);
@@ -102,10 +99,8 @@ impl WithTangents {
         let at = |points: &[[f64; 3]]| sources.iter().map(|&v| points[v as usize]).collect();
         let mut attributes: Vec<VertexAttribute> = geometry.attributes.iter().map(rows).collect();
         attributes.push(attribute(corners.iter().map(|&corner| tangents[corner])));
-        let targets = geometry
-            .targets
-            .iter()
-            .map(|own| own.iter().map(rows).collect());
+        let all = geometry.targets.iter();
+        let targets = all.map(|own| own.iter().map(rows).collect());
         let mut targets: Vec<Vec<VertexAttribute>> = targets.collect();
         for own in added {
             let added = corners.iter().map(|&corner| own.tangents[corner]);

@@ -58,9 +58,8 @@ impl List {
     /// Whether a corner names a value that there is not: which others are meant is anybody's guess then.
     pub(super) fn is_wrong(&self) -> bool {
         let count = self.values.len() as u32;
-        self.corners
-            .iter()
-            .any(|&index| index >= count && index != NONE)
+        let mut all = self.corners.iter();
+        all.any(|&index| index >= count && index != NONE)
     }
 
     /// Whether it becomes a channel.
@@ -88,15 +87,11 @@ impl List {
         let (is_bare, zero) = (self.bare_corners(corners) > 0, self.values.len() as u32);
         let mut indices = self.corners;
         indices.resize(corners, NONE);
-        indices
-            .iter_mut()
-            .filter(|index| **index == NONE)
-            .for_each(|index| *index = zero);
-        let values = self
-            .values
-            .iter()
-            .flat_map(|value| &value[..arity])
-            .copied();
+        for index in indices.iter_mut().filter(|index| **index == NONE) {
+            *index = zero;
+        }
+        let all = self.values.iter().flat_map(|value| &value[..arity]);
+        let values = all.copied();
         let zeros = std::iter::repeat_n(0.0, if is_bare { arity } else { 0 });
         let channel = Channel::new(name, semantic, Domain::Corner, arity);
         Some(channel.with(values.chain(zeros).collect(), indices))
@@ -140,11 +135,8 @@ impl Attributes {
         if !self.colours.is_empty() {
             self.colours.resize(vertices, None);
             // Programs show vertices without a colour white.
-            let values = self
-                .colours
-                .iter()
-                .flat_map(|own| own.unwrap_or([1.0; 3]))
-                .collect();
+            let values = self.colours.iter().flat_map(|own| own.unwrap_or([1.0; 3]));
+            let values = values.collect();
             let (name, semantic) = (channels::COLOUR, Semantic::Colour);
             found.push(by_element(name, semantic, Domain::Vertex, 3, values));
         }

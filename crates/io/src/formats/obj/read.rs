@@ -148,10 +148,8 @@ impl Reader<'_> {
     fn vertex(&mut self) -> Result<()> {
         let index = self.soup.positions.len();
         check_count(index as u64 + 1, "vertices", self.scanner.place())?;
-        let point = self
-            .scanner
-            .point()
-            .map_err(|flaw| flaw.element("vertex", index))?;
+        let found = self.scanner.point();
+        let point = found.map_err(|flaw| flaw.element("vertex", index))?;
         self.soup.positions.push(point);
         self.more_numbers(index);
         Ok(())

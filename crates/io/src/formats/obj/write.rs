@@ -109,9 +109,8 @@ fn vertices(
 fn face(out: &mut Piece, output: &Output<'_>, textures: Option<&Channel>, at: usize) {
     let triangle = &output.surface.triangles[at];
     out.bytes(b"f");
-    let normals = output
-        .corner_normals
-        .map_or(triangle, |corners| &corners[at]);
+    let normals = output.corner_normals;
+    let normals = normals.map_or(triangle, |corners| &corners[at]);
     for (corner, (&vertex, &normal)) in triangle.iter().zip(normals).enumerate() {
         // There may be 2³² − 1 vertices, so that the last one's number fits.
         out.integer(vertex + 1);
@@ -138,10 +137,8 @@ fn change_of_label(out: &mut Piece, keyword: &[u8], channel: &Channel, triangle:
     if triangle > 0 && channel.indices[triangle - 1] == number {
         return;
     }
-    let name = channel
-        .labels
-        .get(number as usize)
-        .map_or("", String::as_str);
+    let name = channel.labels.get(number as usize);
+    let name = name.map_or("", String::as_str);
     // What comes before the first name has none.
     if triangle > 0 || !name.is_empty() {
         named(out, keyword, name);

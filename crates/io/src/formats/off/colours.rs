@@ -78,10 +78,8 @@ impl Colours {
             (true, _) => GREY,
             _ => own[i] / most,
         };
-        let values = self
-            .values
-            .iter()
-            .flat_map(|own| (0..arity).map(|i| usual(own, i)));
+        let all = self.values.iter();
+        let values = all.flat_map(|own| (0..arity).map(|i| usual(own, i)));
         let channel = by_element(name, Semantic::Colour, domain, arity, values.collect());
         Ok(Some(channel.stored(storage)))
     }

@@ -15,9 +15,8 @@ pub(super) struct Keyword<'a> {
 
 /// Reads a word as the keyword of an OFF file, such as `STCNOFF`, `coff` or `OFF216`; `None` for any other word.
 pub(super) fn keyword(word: &[u8]) -> Option<Keyword<'_>> {
-    let at = word
-        .windows(3)
-        .position(|three| three.eq_ignore_ascii_case(b"OFF"))?;
+    let mut at = word.windows(3);
+    let at = at.position(|three| three.eq_ignore_ascii_case(b"OFF"))?;
     let (mut letters, off, glued) = (&word[..at], &word[at..at + 3], &word[at + 3..]);
     if !glued.iter().all(u8::is_ascii_digit) {
         return None;

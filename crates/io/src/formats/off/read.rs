@@ -33,10 +33,8 @@ fn scanner(bytes: &[u8]) -> Scanner<'_> {
 
 /// Whether the first word is the keyword.
 pub(super) fn begins(bytes: &[u8]) -> bool {
-    scanner(bytes)
-        .first_word()
-        .and_then(keyword::keyword)
-        .is_some()
+    let found = scanner(bytes).first_word().and_then(keyword::keyword);
+    found.is_some()
 }
 
 /// What stands before the vertices.

@@ -55,10 +55,8 @@ impl VertexColumns {
             words = rest;
         }
         if let Some(textures) = &mut self.textures {
-            let start = words
-                .len()
-                .saturating_sub(TEXTURE_COORDINATE)
-                .min(COLOUR_NUMBERS);
+            let start = words.len().saturating_sub(TEXTURE_COORDINATE);
+            let start = start.min(COLOUR_NUMBERS);
             let (colour, own) = words.split_at(start);
             textures.read(&own[..own.len().min(TEXTURE_COORDINATE)], vertex);
             words = colour;

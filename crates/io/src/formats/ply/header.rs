@@ -116,24 +116,20 @@ pub(super) struct Element {
 impl Element {
     /// Least bytes that one such element takes in the file.
     pub(super) fn least_size(&self, encoding: Encoding) -> usize {
-        self.properties
-            .iter()
-            .map(|p| p.kind.least_size(encoding))
-            .sum()
+        let all = self.properties.iter().map(|p| p.kind.least_size(encoding));
+        all.sum()
     }
 
     /// Whether every such element takes equally many bytes in a binary file.
     pub(super) fn has_fixed_size(&self) -> bool {
-        self.properties
-            .iter()
-            .all(|p| matches!(p.kind, Kind::Scalar(_)))
+        let mut own = self.properties.iter();
+        own.all(|p| matches!(p.kind, Kind::Scalar(_)))
     }
 
     /// The place of the property with one of these names.
     pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
-        self.properties
-            .iter()
-            .position(|p| names.contains(&p.name.as_str()))
+        let mut all = self.properties.iter();
+        all.position(|p| names.contains(&p.name.as_str()))
     }
 
     /// Whether it has all these properties.
@@ -192,10 +188,8 @@ impl Header {
             }
         };
         let normals = has_normals.then(|| "normals".to_owned());
-        normals
-            .into_iter()
-            .chain(elements().filter_map(extra))
-            .collect()
+        let all = normals.into_iter().chain(elements().filter_map(extra));
+        all.collect()
     }
 }
 
@@ -211,9 +205,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header> {
     let mut texture_files = Vec::new();
     loop {
         let line = lines.next()?;
-        let words = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|word| !word.is_empty());
+        let words = line.split(u8::is_ascii_whitespace);
+        let words = words.filter(|word| !word.is_empty());
         let words: Vec<&[u8]> = words.collect();
         match *words.as_slice() {
             // Blanks are part of the name.

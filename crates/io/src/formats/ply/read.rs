@@ -285,9 +285,8 @@ fn read_strips<S: Source>(
 
 #[inline]
 fn vertex_index(index: i64, vertices: usize, source: &impl Source) -> Result<u32> {
-    let found = u32::try_from(index)
-        .ok()
-        .filter(|&index| (index as usize) < vertices);
+    let found = u32::try_from(index).ok();
+    let found = found.filter(|&index| (index as usize) < vertices);
     found.ok_or_else(|| {
         let expected = format!("a vertex index below {vertices} (the number of vertices)");
         Flaw::new(source.place(), index, expected)
@@ -304,10 +303,8 @@ fn skip_element<S: Source>(element: &Element, source: &mut S) -> Result<()> {
         return Ok(());
     }
     each(element, source, |source| {
-        element
-            .properties
-            .iter()
-            .try_for_each(|own| skip_property(own.kind, source))
+        let mut all = element.properties.iter();
+        all.try_for_each(|own| skip_property(own.kind, source))
     })
 }
 

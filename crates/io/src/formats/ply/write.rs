@@ -27,10 +27,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
                 .iter()
                 .for_each(|x| out.bytes(&x.to_le_bytes())),
         }
-        columns
-            .vertices
-            .iter()
-            .for_each(|own| own.write(out, vertex, source, ascii));
+        for own in columns.vertices.iter() {
+            own.write(out, vertex, source, ascii);
+        }
         if ascii {
             out.end_line();
         }
@@ -46,10 +45,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
                 .iter()
                 .for_each(|v| out.bytes(&v.to_le_bytes())),
         }
-        columns
-            .faces
-            .iter()
-            .for_each(|own| own.write(out, face, face, ascii));
+        for own in columns.faces.iter() {
+            own.write(out, face, face, ascii);
+        }
         if let Some(channel) = columns.textures {
             match ascii {
                 true => out.integer(6),
@@ -58,9 +56,9 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
             for value in (3 * face..3 * face + 3).map(|corner| channel.value(corner)) {
                 // A texture of one number has its other at 0.
                 let v = value.get(1).copied().unwrap_or(0.0);
-                [value[0], v]
-                    .iter()
-                    .for_each(|&x| single(out, x as f32, ascii));
+                for x in [value[0], v] {
+                    single(out, x as f32, ascii);
+                }
             }
         }
         if ascii {

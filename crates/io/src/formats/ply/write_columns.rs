@@ -65,9 +65,8 @@ impl<'a> Columns<'a> {
             values,
         };
         for (axis, name) in ["nx", "ny", "nz"].iter().enumerate() {
-            let values = output
-                .vertex_normals()
-                .map(|all| Values::Normals(all, axis));
+            let values = output.vertex_normals();
+            let values = values.map(|all| Values::Normals(all, axis));
             found
                 .vertices
                 .extend(values.map(|own| column(name, Storage::Single, own)));
@@ -113,10 +112,8 @@ impl<'a> Columns<'a> {
         {
             (count, triangles) = (sources.len(), own);
             if channel.domain == Domain::Vertex {
-                let indices = sources
-                    .iter()
-                    .map(|&v| channel.indices[v as usize])
-                    .collect();
+                let all = sources.iter().map(|&v| channel.indices[v as usize]);
+                let indices = all.collect();
                 return add(&mut self.vertices, channel, indices, &VERTEX_NAMES);
             }
         }

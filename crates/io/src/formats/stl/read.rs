@@ -29,19 +29,14 @@ pub(crate) fn is_binary(bytes: &[u8]) -> bool {
 
 /// The facet count of a binary file; `None` if the bytes end before it.
 fn facet_count(bytes: &[u8]) -> Option<u32> {
-    bytes
-        .get(80..HEADER)?
-        .try_into()
-        .ok()
-        .map(u32::from_le_bytes)
+    let found = bytes.get(80..HEADER)?.try_into().ok();
+    found.map(u32::from_le_bytes)
 }
 
 /// Whether a text begins as an ASCII file does: `solid` and, after its line, `facet` or `endsolid`.
 pub(super) fn begins(bytes: &[u8]) -> bool {
-    let text = bytes
-        .strip_prefix(BYTE_ORDER_MARK)
-        .unwrap_or(bytes)
-        .trim_ascii_start();
+    let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+    let text = text.trim_ascii_start();
     let begins = |text: &[u8], word: &[u8]| {
         text.get(..word.len())
             .is_some_and(|own| own.eq_ignore_ascii_case(word))
@@ -196,7 +191,6 @@ impl Text<'_> {
 
 fn is_facet_keyword(word: &[u8]) -> bool {
     let keywords = ["vertex", "endloop", "endfacet", "facet", "endsolid"];
-    keywords
-        .iter()
-        .any(|own| word.eq_ignore_ascii_case(own.as_bytes()))
+    let mut all = keywords.iter();
+    all.any(|own| word.eq_ignore_ascii_case(own.as_bytes()))
 }

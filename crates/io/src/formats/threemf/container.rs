@@ -78,9 +78,8 @@ impl Container {
         let file = archive.by_index(part).map_err(|why| flaw(&why))?;
         let most = MOST_BYTES.min(ALWAYS.saturating_add(MOST_TIMES * self.bytes.len() as u64));
         let mut bytes = Vec::new();
-        file.take(most - *read + 1)
-            .read_to_end(&mut bytes)
-            .map_err(|why| flaw(&why))?;
+        let found = file.take(most - *read + 1).read_to_end(&mut bytes);
+        found.map_err(|why| flaw(&why))?;
         *read += bytes.len() as u64;
         if *read > most {
             let problem = format!(

@@ -38,10 +38,7 @@ pub(super) fn write(surface: Triangles<'_>, unit: LengthUnit) -> Result<Vec<u8>,
 
 /// The text of the one model.
 fn model(writer: &mut dyn Write, surface: Triangles<'_>, unit: LengthUnit) -> io::Result<()> {
-    let Triangles {
-        positions,
-        triangles,
-    } = surface;
+    let (positions, triangles) = (surface.positions, surface.triangles);
     let mut out = Pieces::new(writer);
     let (unit, version) = (unit.name(), env!("CARGO_PKG_VERSION"));
     let head = format!(

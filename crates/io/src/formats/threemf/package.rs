@@ -135,10 +135,8 @@ impl Package {
             let numbers = (0..own.objects.len()).filter(has_mesh);
             objects.extend(numbers.map(|object| Address { model, object }));
         }
-        let numbers = objects
-            .iter()
-            .enumerate()
-            .map(|(number, &address)| (address, number));
+        let numbers = objects.iter().enumerate();
+        let numbers = numbers.map(|(number, &address)| (address, number));
         let of_address: HashMap<Address, usize> = numbers.collect();
         let find = |model: usize, own: &Use| {
             let model = match &own.part {
@@ -158,10 +156,8 @@ impl Package {
             Some(part) => Some((part, container.text(part, &mut read)?)),
             None => None,
         };
-        let volumes = settings
-            .iter()
-            .flat_map(|(_, text)| volumes::parse(text))
-            .collect();
+        let all = settings.iter().flat_map(|(_, text)| volumes::parse(text));
+        let volumes = all.collect();
         Ok(Self {
             path: None,
             container,
@@ -252,9 +248,9 @@ impl Package {
             found.is_joined = true;
         }
         found.soup.positions = positions;
-        triangles
-            .iter()
-            .for_each(|triangle| found.soup.faces.push(triangle));
+        for triangle in triangles.iter() {
+            found.soup.faces.push(triangle);
+        }
         let text = |at: &std::ops::Range<u32>| &model.text[at.start as usize..at.end as usize];
         let mut names = BTreeSet::new();
         found.is_uniform = volumes.len() < 2;
@@ -280,9 +276,8 @@ impl Package {
             .iter()
             .enumerate()
             .flat_map(|(object, placements)| {
-                let positions = self
-                    .mesh(object)
-                    .map_or(&[][..], |(_, _, mesh)| &mesh.positions);
+                let found = self.mesh(object);
+                let positions = found.map_or(&[][..], |(_, _, mesh)| &mesh.positions);
                 let of = |m| positions.iter().map(move |&p| affine::apply(m, p));
                 placements.iter().flat_map(of)
             });
@@ -391,9 +386,8 @@ impl Package {
     pub fn to_bytes(&self) -> Result<Vec<u8>, WriteError> {
         let mut texts = BTreeMap::new();
         let replaced = || {
-            self.replaced
-                .iter()
-                .map(|(&object, new)| (self.objects[object], new))
+            let all = self.replaced.iter();
+            all.map(|(&object, new)| (self.objects[object], new))
         };
         for (number, model) in self.models.iter().enumerate() {
             let own = replaced().filter(|(address, _)| address.model == number);

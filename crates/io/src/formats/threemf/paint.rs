@@ -37,10 +37,8 @@ pub(super) fn is_paint(name: &str) -> bool {
 
 /// Whether a code is more than one colour for the whole triangle.
 pub(super) fn is_divided(code: &str) -> bool {
-    code.bytes()
-        .last()
-        .and_then(digit)
-        .is_none_or(|node| node & 3 != 0)
+    let found = code.bytes().last().and_then(digit);
+    found.is_none_or(|node| node & 3 != 0)
 }
 
 /// The code of the leaf at a point, empty where there is no paint; none if the tree cannot be read.
@@ -120,10 +118,8 @@ fn inside([a, b, c]: [Point; 3], p: Point) -> f64 {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
     let whole = area(a, b, c);
-    [area(p, b, c), area(a, p, c), area(a, b, p)]
-        .into_iter()
-        .map(|part| part / whole)
-        .fold(f64::INFINITY, f64::min)
+    let all = [area(p, b, c), area(a, p, c), area(a, b, p)].into_iter();
+    all.map(|part| part / whole).fold(f64::INFINITY, f64::min)
 }
 
 fn digit(byte: u8) -> Option<u8> {

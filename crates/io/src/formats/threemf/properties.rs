@@ -44,18 +44,15 @@ pub(super) fn varies_within(text: &str) -> bool {
 }
 
 fn is_divided_paint(own: &Attribute<'_>) -> bool {
-    let local = own
-        .name
-        .rsplit_once(':')
-        .map_or(own.name, |(_, local)| local);
+    let found = own.name.rsplit_once(':');
+    let local = found.map_or(own.name, |(_, local)| local);
     paint::is_paint(local) && paint::is_divided(own.value)
 }
 
 /// A triangle's attributes but for its corners, to be compared.
 pub(super) fn beside_corners(text: &str) -> impl Iterator<Item = &str> {
-    attributes(text)
-        .filter(|own| !is_corner(own))
-        .map(|own| own.text)
+    let all = attributes(text).filter(|own| !is_corner(own));
+    all.map(|own| own.text)
 }
 
 /// Adds the attributes, each with a blank before it, that a triangle inherits from one with this text.
@@ -68,10 +65,8 @@ pub(super) fn inherit(
 ) {
     let value = |own: Attribute<'_>| own.value.to_owned();
     let all = CORNERS.map(|name| attributes(text).find(|own| own.name == name).map(value));
-    let differ = all
-        .iter()
-        .flatten()
-        .any(|value| Some(value) != all[0].as_ref());
+    let mut differ = all.iter().flatten();
+    let differ = differ.any(|value| Some(value) != all[0].as_ref());
     let is_whole = source.corners == Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     for own in attributes(text).filter(|own| !is_corner(own) && keeps(own.name)) {
         let varies = differ && CORNERS.contains(&own.name) || is_divided_paint(&own);

@@ -60,10 +60,8 @@ impl Walk<'_> {
             ));
         }
         let Some(address) = (self.find)(model, own) else {
-            let part = own
-                .part
-                .as_ref()
-                .map_or(String::new(), |part| format!(" of {part}"));
+            let found = own.part.as_ref();
+            let part = found.map_or(String::new(), |part| format!(" of {part}"));
             return flaw(format!("there is no object {}{part}", own.object));
         };
         let here = product(outer, &own.transform);

@@ -33,9 +33,8 @@ impl<'a> Element<'a> {
         let content: &str = tag;
         // What was read from a text borrows from it.
         let start = offset(content, text);
-        let whole = text
-            .get(start..start.wrapping_add(content.len()))
-            .unwrap_or_default();
+        let whole = text.get(start..start.wrapping_add(content.len()));
+        let whole = whole.unwrap_or_default();
         let (name, attributes) = whole.split_at(tag.name().as_ref().len().min(whole.len()));
         let local = name.rsplit_once(':').map_or(name, |(_, local)| local);
         Self {
@@ -48,9 +47,8 @@ impl<'a> Element<'a> {
 
     /// An attribute by its whole name.
     pub(super) fn attribute(&self, name: &str) -> Option<&'a str> {
-        attributes(self.attributes)
-            .find(|own| own.name == name)
-            .map(|own| own.value)
+        let found = attributes(self.attributes).find(|own| own.name == name);
+        found.map(|own| own.value)
     }
 
     /// The prefix of its name with the colon.
@@ -61,9 +59,8 @@ impl<'a> Element<'a> {
     /// An attribute by its name without a prefix.
     pub(super) fn local_attribute(&self, local: &str) -> Option<&'a str> {
         let is_own = |name: &str| name.rsplit_once(':').map_or(name, |(_, own)| own) == local;
-        attributes(self.attributes)
-            .find(|own| is_own(own.name))
-            .map(|own| own.value)
+        let found = attributes(self.attributes).find(|own| is_own(own.name));
+        found.map(|own| own.value)
     }
 
     /// Where the text has the attributes.

@@ -93,9 +93,8 @@ pub(crate) fn draco(
     for (&name, &is_normalized) in is_normalized {
         contract = contract.with_attribute(name, 0, is_normalized);
     }
-    let geometry = extension
-        .decode(stream, &contract)
-        .map_err(|error| failed(&error))?;
+    let geometry = extension.decode(stream, &contract);
+    let geometry = geometry.map_err(|error| failed(&error))?;
     let mut attributes = BTreeMap::new();
     for own in geometry.attributes() {
         let component = Component::of(own.component_type().to_gltf() as usize)
@@ -109,15 +108,10 @@ pub(crate) fn draco(
         let values = layout.decode(own.bytes(), layout.size());
         attributes.insert(own.semantic().to_owned(), layout.numbers(values));
     }
-    let bytes = geometry
-        .indices()
-        .map_or(&[][..], |indices| indices.bytes());
-    let indices = bytes
-        .as_chunks::<4>()
-        .0
-        .iter()
-        .map(|&four| u32::from_le_bytes(four))
-        .collect();
+    let found = geometry.indices();
+    let bytes = found.map_or(&[][..], |indices| indices.bytes());
+    let indices = bytes.as_chunks::<4>().0.iter();
+    let indices = indices.map(|&four| u32::from_le_bytes(four)).collect();
     Ok(Compressed {
         attributes,
         indices,

@@ -23,25 +23,20 @@ pub(crate) const LISTS: [&str; 2] = ["extensionsUsed", "extensionsRequired"];
 
 /// The items of an array; none where there is none.
 pub(crate) fn items<'a>(object: &'a Value, key: &str) -> &'a [Value] {
-    object
-        .get(key)
-        .and_then(Value::as_array)
-        .map_or(&[], Vec::as_slice)
+    let found = object.get(key).and_then(Value::as_array);
+    found.map_or(&[], Vec::as_slice)
 }
 
 /// The items of an array, to be changed; none where there is none.
 pub(crate) fn items_mut<'a>(object: &'a mut Value, key: &str) -> &'a mut [Value] {
-    object
-        .get_mut(key)
-        .and_then(Value::as_array_mut)
-        .map_or(&mut [], Vec::as_mut_slice)
+    let found = object.get_mut(key).and_then(Value::as_array_mut);
+    found.map_or(&mut [], Vec::as_mut_slice)
 }
 
 /// The primitives of all meshes.
 pub(crate) fn primitives(json: &Value) -> impl Iterator<Item = &Value> {
-    items(json, "meshes")
-        .iter()
-        .flat_map(|mesh| items(mesh, "primitives"))
+    let all = items(json, "meshes").iter();
+    all.flat_map(|mesh| items(mesh, "primitives"))
 }
 
 /// A number of an item, if it is one.

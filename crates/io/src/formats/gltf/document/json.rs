@@ -105,10 +105,8 @@ impl<'a> At<'a> {
     pub(crate) fn item_of<'d>(&self, root: &At<'d>, array: &str) -> Result<At<'d>> {
         let (index, list) = (self.count()?, root.get(array));
         let items = list.as_ref().and_then(|list| list.value.as_array());
-        let item = list
-            .as_ref()
-            .filter(|_| items.is_some())
-            .and_then(|list| list.item(index));
+        let all = list.as_ref().filter(|_| items.is_some());
+        let item = all.and_then(|list| list.item(index));
         item.ok_or_else(|| {
             let count = items.map_or(0, Vec::len);
             let expected = format!("an index below {count} (the number of {array})");
@@ -144,13 +142,10 @@ impl<'a> At<'a> {
 
     /// As many numbers as asked for.
     pub(crate) fn numbers<const N: usize>(&self) -> Result<[f64; N]> {
-        let numbers = self
-            .items()?
-            .map(|at| at.number())
-            .collect::<Result<Vec<f64>>>()?;
-        numbers
-            .try_into()
-            .map_err(|_| self.unexpected(format!("{N} numbers")))
+        let numbers = self.items()?.map(|at| at.number());
+        let numbers = numbers.collect::<Result<Vec<f64>>>()?;
+        let found = numbers.try_into();
+        found.map_err(|_| self.unexpected(format!("{N} numbers")))
     }
 
     /// [`Self::numbers`] of a member that may be missing.
@@ -170,9 +165,8 @@ impl<'a> At<'a> {
     /// True or false; false where the member is missing.
     pub(crate) fn flag(&self, key: &str) -> Result<bool> {
         let flag = |at: Self| {
-            at.value
-                .as_bool()
-                .ok_or_else(|| at.unexpected("true or false"))
+            let found = at.value.as_bool();
+            found.ok_or_else(|| at.unexpected("true or false"))
         };
         self.get(key).map_or(Ok(false), flag)
     }

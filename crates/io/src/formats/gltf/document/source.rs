@@ -134,9 +134,8 @@ impl Source {
             Uri::File(file) => {
                 let bytes = self.file(&file).and_then(|path| {
                     let mut bytes = Vec::new();
-                    std::fs::File::open(path)?
-                        .take(most as u64)
-                        .read_to_end(&mut bytes)?;
+                    let mut found = std::fs::File::open(path)?.take(most as u64);
+                    found.read_to_end(&mut bytes)?;
                     Ok(bytes)
                 });
                 bytes.map_err(|why| {

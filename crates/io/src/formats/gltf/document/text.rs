@@ -114,11 +114,8 @@ impl<'a> Members<'a> {
 
     /// The text of a member's value. Of several with one key the last counts, as it does when the document is read.
     pub(crate) fn get(&self, key: &str) -> Option<&'a str> {
-        self.0
-            .iter()
-            .rev()
-            .find(|(own, _)| own == key)
-            .map(|&(_, text)| text)
+        let all = self.0.iter().rev().find(|(own, _)| own == key);
+        all.map(|&(_, text)| text)
     }
 
     /// The texts of the items of an array; none where there is none.

@@ -52,7 +52,7 @@ impl Changes {
             false => Unused::default(),
         };
         let idle = Idle::of(source, self, &rest, &unused);
-        let mut new = Cow::Borrowed(&self.appended.bytes);
+        let mut new = Cow::Borrowed(self.appended.bytes.as_slice());
         let mut starts = idle.append_to(&mut new);
         let Placed {
             buffer,
@@ -126,8 +126,8 @@ impl Changes {
                 let place = format!("meshes[{mesh}].primitives[{primitive}]");
                 Flaw::saying(place, "there is no such primitive")
             };
-            let all = Members::of(meshes.get(mesh).ok_or_else(missing)?)?.items("primitives")?;
-            let old = all.get(primitive).copied().ok_or_else(missing)?;
+            let found = Members::of(meshes.get(mesh).ok_or_else(missing)?)?.items("primitives")?;
+            let old = found.get(primitive).copied().ok_or_else(missing)?;
             let members = Members::of(old)?;
             let targets: Vec<String> = new.targets.iter().map(object).collect();
             let targets = (!targets.is_empty()).then(|| format!("[{}]", targets.join(",")));
@@ -262,9 +262,8 @@ impl Source {
     /// those of images if they `are_linked`.
     pub(crate) fn files(&self, is_taken: bool, are_linked: bool) -> BTreeSet<PathBuf> {
         let mut found = BTreeSet::new();
-        let first = items(&self.json, "buffers")
-            .iter()
-            .take(usize::from(is_taken));
+        let first = items(&self.json, "buffers").iter();
+        let first = first.take(usize::from(is_taken));
         let images = items(&self.json, "images").iter().filter(|_| are_linked);
         let passed_over: Vec<&Value> = first.chain(images).collect();
         let mut waiting = vec![&self.json];

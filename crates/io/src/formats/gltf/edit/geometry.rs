@@ -113,9 +113,8 @@ impl Appended {
         }
         let mut add = |all: &[VertexAttribute], place: &str| -> Result<NewAttributes> {
             let mut number = |own| self.attribute(own, positions.len(), place);
-            all.iter()
-                .map(|own| Ok((own.name.clone(), number(own)?)))
-                .collect()
+            let found = all.iter().map(|own| Ok((own.name.clone(), number(own)?)));
+            found.collect()
         };
         attributes.extend(add(others, &format!("{place}.attributes"))?);
         let targets = targets.iter().enumerate().map(|(number, target)| {
@@ -277,10 +276,8 @@ fn bounds(values: &[f64], width: usize) -> Bounds {
 }
 
 fn floats(rows: &[[f32; 3]]) -> Vec<u8> {
-    rows.as_flattened()
-        .iter()
-        .flat_map(|x| x.to_le_bytes())
-        .collect()
+    let all = rows.as_flattened().iter().flat_map(|x| x.to_le_bytes());
+    all.collect()
 }
 
 /// Of length 1 after rounding, as near as can be; upwards where there is no direction.

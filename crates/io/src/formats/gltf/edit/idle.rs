@@ -118,11 +118,8 @@ impl Idle {
             return false;
         }
         let plain = compressed.into_iter().map(|number| {
-            let bytes = source
-                .view(&At::root(&Value::from(number)))
-                .ok()?
-                .bytes
-                .to_vec();
+            let found = source.view(&At::root(&Value::from(number))).ok()?.bytes;
+            let bytes = found.to_vec();
             Some(PlainView { number, bytes })
         });
         let Some(plain) = plain.collect::<Option<Vec<_>>>() else {
@@ -134,7 +131,7 @@ impl Idle {
     }
 
     /// Appends the bytes of views that become plain; gives where each starts.
-    pub(crate) fn append_to(&self, bytes: &mut Cow<'_, Vec<u8>>) -> Vec<usize> {
+    pub(crate) fn append_to(&self, bytes: &mut Cow<'_, [u8]>) -> Vec<usize> {
         let mut append = |own: &PlainView| {
             let bytes = bytes.to_mut();
             bytes.resize(bytes.len().next_multiple_of(4), 0);
@@ -219,10 +216,8 @@ fn is_quantized(json: &Value, primitive: &Value) -> bool {
                 return false;
             };
             // What is broken is not quantised.
-            let kind = accessor
-                .get("componentType")
-                .and_then(Value::as_u64)
-                .unwrap_or(FLOAT);
+            let kind = accessor.get("componentType").and_then(Value::as_u64);
+            let kind = kind.unwrap_or(FLOAT);
             let is_normalized = accessor.get("normalized").is_some_and(|own| own == true);
             match name.split_once('_').map_or(name, |(kind, _)| kind) {
                 "POSITION" | "NORMAL" | "TANGENT" => kind != FLOAT,

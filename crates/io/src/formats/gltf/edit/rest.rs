@@ -174,9 +174,8 @@ fn take(object: &mut Value, goes: impl Fn(&str, &Value) -> bool) -> Vec<String> 
 /// The numbers of the primitives in the groups of a mesh.
 fn grouped(extension: &Value) -> impl Iterator<Item = usize> {
     let groups = items(extension, "primitiveGroups").iter();
-    groups
-        .flat_map(|group| items(group, "primitives"))
-        .filter_map(index)
+    let all = groups.flat_map(|group| items(group, "primitives"));
+    all.filter_map(index)
 }
 
 /// Takes from a primitive the sets of features that go by the numbers of its vertices, and the extension if it has no others; gives what is

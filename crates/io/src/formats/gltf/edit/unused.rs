@@ -75,10 +75,8 @@ impl Unused {
         let mut used = used_accessors(rest, &primitives(rest).collect::<Vec<_>>());
         used.extend(&named.numbers);
         let of = |used: &BTreeSet<usize>| -> BTreeSet<usize> {
-            used.iter()
-                .filter_map(|&i| all.get(i))
-                .flat_map(views_of)
-                .collect()
+            let own = used.iter().filter_map(|&i| all.get(i)).flat_map(views_of);
+            own.collect()
         };
         let mut needed = of(&used);
         let images = items(rest, "images").iter();
@@ -122,10 +120,8 @@ impl Unused {
 
     /// Where a byte of the first buffer is after the cuts.
     fn moved(&self, at: usize) -> usize {
-        let before = self
-            .cuts
-            .iter()
-            .map(|cut| at.min(cut.end) - at.min(cut.start));
+        let before = self.cuts.iter();
+        let before = before.map(|cut| at.min(cut.end) - at.min(cut.start));
         at - before.sum::<usize>()
     }
 

@@ -14,10 +14,8 @@ pub(super) struct Named<'a> {
 
 /// The attributes of a primitive and of its morph targets.
 pub(super) fn attributes(primitive: &Value) -> impl Iterator<Item = Named<'_>> {
-    let own = primitive
-        .get("attributes")
-        .into_iter()
-        .map(|own| (own, false));
+    let all = primitive.get("attributes").into_iter();
+    let own = all.map(|own| (own, false));
     let all = own.chain(items(primitive, "targets").iter().map(|own| (own, true)));
     all.flat_map(|(own, is_of_target)| {
         let members = own.as_object().into_iter().flatten();

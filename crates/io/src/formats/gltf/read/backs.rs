@@ -28,9 +28,8 @@ impl Backs {
         let faces = Faces::of(primitives, kinds);
         let mut sheets = Sheets::of(&faces, Poses::new(primitives));
         let backs = sheets.backs(&faces);
-        let none = primitives
-            .iter()
-            .map(|primitive| vec![0; primitive.triangles.len()]);
+        let none = primitives.iter();
+        let none = none.map(|primitive| vec![0; primitive.triangles.len()]);
         let mut found = Self {
             sheets: none.collect(),
         };
@@ -53,10 +52,8 @@ impl Backs {
 
     /// How many triangles of a primitive are in backs.
     pub(super) fn count(&self, part: usize) -> usize {
-        self.sheets[part]
-            .iter()
-            .filter(|&&sheet| sheet != 0)
-            .count()
+        let all = self.sheets[part].iter().filter(|&&sheet| sheet != 0);
+        all.count()
     }
 
     /// Gives each sheet vertices of its own, and says of all vertices in which back they are.
@@ -234,12 +231,10 @@ impl Sheets {
     /// The roots of sheets that are backs of others: of two the one with fewer vertices, or the later one.
     fn backs(&mut self, faces: &Faces<'_>) -> BTreeSet<u32> {
         let folds = std::mem::take(&mut self.folds);
-        let folds = folds
-            .into_iter()
-            .map(|pair| pair.map(|face| self.of_face.root(face)));
-        let folds = folds
-            .filter(|[a, b]| a != b)
-            .map(|[a, b]| [a.min(b), a.max(b)]);
+        let all = folds.into_iter();
+        let folds = all.map(|pair| pair.map(|face| self.of_face.root(face)));
+        let all = folds.filter(|[a, b]| a != b);
+        let folds = all.map(|[a, b]| [a.min(b), a.max(b)]);
         let pairs: BTreeSet<[u32; 2]> = folds.collect();
         let wanted: BTreeSet<u32> = pairs.iter().flatten().copied().collect();
         let mut vertices: BTreeMap<u32, BTreeSet<u32>> = BTreeMap::new();

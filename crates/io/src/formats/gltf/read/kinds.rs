@@ -72,17 +72,14 @@ impl Kinds {
             );
             return Err(Flaw::new("the joining of vertices", met, expected));
         }
-        let is_skinned = primitives
-            .iter()
-            .any(|primitive| !primitive.influences.is_empty());
+        let mut is_skinned = primitives.iter();
+        let is_skinned = is_skinned.any(|primitive| !primitive.influences.is_empty());
         let with_skins = |kinds: &ByVertex| match skins_count && is_skinned {
             true => joints_alike(kinds, primitives, distance),
             false => Ok(kinds.clone()),
         };
-        let nothing = primitives
-            .iter()
-            .map(|own| vec![0; own.positions.len()])
-            .collect();
+        let nothing = primitives.iter().map(|own| vec![0; own.positions.len()]);
+        let nothing = nothing.collect();
         let position = |own: Local| primitives[own.part].positions[own.vertex as usize];
         let places = alike(&nothing, distance, position)?;
         let targets = if morphs_count {
@@ -171,8 +168,8 @@ fn alike(kinds: &ByVertex, distance: f64, point: impl Fn(Local) -> [f64; 3]) -> 
 /// diagonal.
 fn joints_alike(kinds: &ByVertex, primitives: &[Primitive], distance: f64) -> Result<ByVertex> {
     let influences = |own: Local| {
-        let all = primitives[own.part].influences.get(own.vertex as usize);
-        all.into_iter().flatten().copied()
+        let found = primitives[own.part].influences.get(own.vertex as usize);
+        found.into_iter().flatten().copied()
     };
     if distance == 0.0 {
         let key = |own| influences(own).map(|(joint, weight)| (joint, bits(weight)));
@@ -180,10 +177,8 @@ fn joints_alike(kinds: &ByVertex, primitives: &[Primitive], distance: f64) -> Re
     }
     let all = primitives.iter().flat_map(|primitive| &primitive.positions);
     let [low, high] = bounding_box(all.copied()).unwrap_or_default();
-    let diagonal = (0..3)
-        .map(|i| (high[i] - low[i]).powi(2))
-        .sum::<f64>()
-        .sqrt();
+    let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
+    let diagonal = diagonal.sqrt();
     let share = if diagonal > 0.0 {
         distance / diagonal
     } else {
@@ -192,10 +187,8 @@ fn joints_alike(kinds: &ByVertex, primitives: &[Primitive], distance: f64) -> Re
     let joints = divided(kinds, |own| {
         influences(own).map(|own| own.0).collect::<Vec<_>>()
     });
-    let lengths = primitives
-        .iter()
-        .flat_map(|own| &own.influences)
-        .map(Vec::len);
+    let lengths = primitives.iter().flat_map(|own| &own.influences);
+    let lengths = lengths.map(Vec::len);
     // Three weights at a time are a point.
     (0..lengths.max().unwrap_or(0))
         .step_by(3)
@@ -211,10 +204,8 @@ fn joints_alike(kinds: &ByVertex, primitives: &[Primitive], distance: f64) -> Re
 fn divided<K: Eq + Hash>(kinds: &ByVertex, key: impl Fn(Local) -> K) -> ByVertex {
     // Numbers go by who comes first, so that the hash does not show; its seed differs from run to run, as that of the standard one.
     let mut known = HashMap::with_hasher(RandomState::default());
-    let mut numbers: ByVertex = kinds
-        .iter()
-        .map(|own| Vec::with_capacity(own.len()))
-        .collect();
+    let numbers = kinds.iter().map(|own| Vec::with_capacity(own.len()));
+    let mut numbers: ByVertex = numbers.collect();
     for (kind, own) in vertices(kinds) {
         let next = known.len() as u32;
         numbers[own.part].push(*known.entry((kind, key(own))).or_insert(next));

@@ -30,11 +30,8 @@ pub struct BaseTexture {
 impl Source {
     /// The base colours of all materials.
     pub(crate) fn base_colours(&self) -> Result<Vec<BaseColour>> {
-        self.root()
-            .list("materials")?
-            .iter()
-            .map(|own| self.base_colour(own))
-            .collect()
+        let all = self.root().list("materials")?.into_iter();
+        all.map(|own| self.base_colour(&own)).collect()
     }
 
     fn base_colour(&self, material: &At<'_>) -> Result<BaseColour> {
@@ -45,9 +42,8 @@ impl Source {
             });
         };
         let factor = model.numbers_or("baseColorFactor", [1.0; 4])?;
-        let texture = model
-            .get("baseColorTexture")
-            .map(|info| self.base_texture(&info));
+        let texture = model.get("baseColorTexture");
+        let texture = texture.map(|info| self.base_texture(&info));
         Ok(BaseColour {
             factor,
             texture: texture.transpose()?.flatten(),
@@ -83,9 +79,8 @@ impl Source {
     /// The set of texture coordinates by which a material's normal map lies: the first without one.
     pub(crate) fn tangent_set(&self, material: usize) -> Result<usize> {
         let materials = self.root().list("materials")?;
-        let map = materials
-            .get(material)
-            .and_then(|own| own.get("normalTexture"));
+        let map = materials.get(material);
+        let map = map.and_then(|own| own.get("normalTexture"));
         map.map_or(Ok(0), |map| texture_set(&map))
     }
 }

@@ -131,10 +131,8 @@ struct Joiner<'a> {
 
 impl<'a> Joiner<'a> {
     fn new(primitives: &'a [Primitive], kinds: &'a Kinds) -> Self {
-        let names = primitives
-            .iter()
-            .zip(&kinds.all)
-            .map(|(own, kinds)| Names::of(own, kinds));
+        let names = primitives.iter().zip(&kinds.all);
+        let names = names.map(|(own, kinds)| Names::of(own, kinds));
         let names: Vec<Names> = names.collect();
         let (mut first, mut count) = (Vec::with_capacity(names.len()), 0);
         for names in &names {
@@ -215,10 +213,8 @@ impl<'a> Joiner<'a> {
 
     /// Makes corners of the ends of edges that the soup shares with what is not in it.
     fn mark_borders(&mut self, ends: &[Local]) {
-        let mut ends: Vec<u32> = ends
-            .iter()
-            .map(|own| self.vertex(own.part, own.vertex))
-            .collect();
+        let all = ends.iter().map(|own| self.vertex(own.part, own.vertex));
+        let mut ends: Vec<u32> = all.collect();
         ends.sort_unstable();
         ends.dedup();
         let corner = |vertex| CornerTag {

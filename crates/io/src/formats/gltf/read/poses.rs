@@ -41,9 +41,8 @@ impl<'a> Poses<'a> {
     ) -> bool {
         let rest = vertices.map(|own| self.primitives[own.part].positions[own.vertex as usize]);
         let influences = |own: &Local| {
-            self.primitives[own.part]
-                .influences
-                .get(own.vertex as usize)
+            let found = &self.primitives[own.part].influences;
+            found.get(own.vertex as usize)
         };
         let moved = |target: usize, weight: f64, points: [[f64; 3]; N]| {
             std::array::from_fn(|i| self.added(vertices[i], target, weight, points[i]))
@@ -74,9 +73,6 @@ impl<'a> Poses<'a> {
 
 /// The most morph targets that a primitive has.
 pub(super) fn target_count(primitives: &[Primitive]) -> usize {
-    primitives
-        .iter()
-        .map(|primitive| primitive.targets.len())
-        .max()
-        .unwrap_or(0)
+    let all = primitives.iter().map(|primitive| primitive.targets.len());
+    all.max().unwrap_or(0)
 }

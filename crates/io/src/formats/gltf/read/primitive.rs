@@ -235,11 +235,8 @@ impl Source {
         }
         let view = self.view(&extension.require("bufferView")?)?;
         let found = codecs::draco(&extension, view.bytes, &is_normalized, self.room())?;
-        let bytes = found
-            .attributes
-            .values()
-            .map(|numbers| 8 * numbers.values.len())
-            .sum();
+        let bytes = found.attributes.values();
+        let bytes = bytes.map(|numbers| 8 * numbers.values.len()).sum();
         self.take_room(&extension, bytes)?;
         Ok(Some(found))
     }
@@ -268,17 +265,13 @@ fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
         Mode::Triangles => corners.as_chunks::<3>().0.to_vec(),
         Mode::Strip => {
             let turned = |i: usize| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]];
-            (0..corners.len().saturating_sub(2))
-                .map(turned)
-                .filter(has_area)
-                .collect()
+            let all = (0..corners.len().saturating_sub(2)).map(turned);
+            all.filter(has_area).collect()
         }
         Mode::Fan => {
             let turned = |i: usize| [corners[i + 1], corners[i + 2], corners[0]];
-            (0..corners.len().saturating_sub(2))
-                .map(turned)
-                .filter(has_area)
-                .collect()
+            let all = (0..corners.len().saturating_sub(2)).map(turned);
+            all.filter(has_area).collect()
         }
     }
 }

@@ -133,9 +133,8 @@ impl Scene {
 
     /// How the scene that is shown has a mesh; once as it is if the document has no nodes.
     pub(crate) fn shown(&self, mesh: usize) -> impl Iterator<Item = &Placement> {
-        self.of(mesh)
-            .filter(|own| own.is_shown)
-            .map(|own| &own.placement)
+        let all = self.of(mesh).filter(|own| own.is_shown);
+        all.map(|own| &own.placement)
     }
 }
 
@@ -150,9 +149,9 @@ impl Source {
                 placement: Placement::Rigid(IDENTITY),
                 is_shown: true,
             };
-            placements
-                .iter_mut()
-                .for_each(|all| all.push(placed.clone()));
+            for all in placements.iter_mut() {
+                all.push(placed.clone());
+            }
             return Ok(Scene { placements });
         }
         let tree = self.tree(&nodes)?;
@@ -244,9 +243,8 @@ impl Source {
     fn joints(&self, skin: &At<'_>, tree: &Tree) -> Result<Vec<Affine>> {
         let root = self.root();
         let skin = skin.item_of(&root, "skins")?;
-        let inverse = skin
-            .get("inverseBindMatrices")
-            .map(|own| self.numbers(&own, None));
+        let inverse = skin.get("inverseBindMatrices");
+        let inverse = inverse.map(|own| self.numbers(&own, None));
         let inverse = inverse.transpose()?;
         let mut matrices = Vec::new();
         for (i, joint) in skin.list("joints")?.iter().enumerate() {

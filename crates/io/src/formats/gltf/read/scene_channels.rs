@@ -84,10 +84,8 @@ impl SceneChannels {
 
     /// The scene's channel of a name, with values at all corners so far.
     fn channel(&mut self, name: &str, semantic: Semantic, arity: usize) -> &mut Channel {
-        let known = self
-            .channels
-            .iter()
-            .position(|channel| channel.name == name);
+        let mut known = self.channels.iter();
+        let known = known.position(|channel| channel.name == name);
         let at = known.unwrap_or_else(|| {
             let mut channel = Channel::new(name, semantic, Domain::Corner, arity);
             pad(&mut channel, self.corners);
