@@ -7,7 +7,7 @@ use limitmesh::mesh::PolygonSoup;
 use std::io::Write;
 use std::path::Path;
 
-/// Writes an output that was checked to the file at a path, and to others beside it.
+/// Writes an output that was checked to the file at a path, and other files that belong to it.
 pub(crate) type WriteFile = fn(&Path, &Output<'_>, &WriteOptions) -> Result<(), WriteError>;
 
 /// A format, as the functions that read and write all formats know it.
