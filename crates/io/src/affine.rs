@@ -89,14 +89,31 @@ pub(crate) fn largest<'a>(all: impl Iterator<Item = &'a Affine>) -> &'a Affine {
         .map_or(&IDENTITY, |(m, _)| m)
 }
 
+/// A stretch by which lengths can be divided: 1 in the place of what nothing shows, or not as anything that is finite.
+pub(crate) fn usable(stretch: f64) -> f64 {
+    if stretch > 0.0 && stretch.is_finite() {
+        stretch
+    } else {
+        1.0
+    }
+}
+
+/// The corners of the box around points; `None` if there are none.
+pub(crate) fn bounding_box(points: impl IntoIterator<Item = [f64; 3]>) -> Option<[[f64; 3]; 2]> {
+    let boxes = points.into_iter().map(|point| [point; 2]);
+    boxes.reduce(|[low, high], [p, _]| {
+        let ends = |i: usize| [low[i].min(p[i]), high[i].max(p[i])];
+        let [x, y, z] = [0, 1, 2].map(ends);
+        [[x[0], y[0], z[0]], [x[1], y[1], z[1]]]
+    })
+}
+
 /// How many times longer it makes vectors at most: the greatest singular value M, √λ of the greatest eigenvalue of MᵀM,
 /// by the closed form for symmetric matrices of three rows (Smith 1961).
 pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     let m = linear(m);
-    let size = m
-        .as_flattened()
-        .iter()
-        .fold(0.0f64, |most, x| most.max(x.abs()));
+    let size = m.as_flattened().iter();
+    let size = size.fold(0.0f64, |most, x| most.max(x.abs()));
     if size == 0.0 || !size.is_finite() {
         return size;
     }

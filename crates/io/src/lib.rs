@@ -30,29 +30,39 @@
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
 mod affine;
-mod below;
+mod capacity;
 pub mod channels;
+mod codec;
+mod content;
 mod error;
+mod files;
+mod flaw;
 mod format;
-pub mod gltf;
+mod formats;
 mod mtl;
 mod names;
+mod output;
+mod pieces;
 mod proof;
 mod read;
+mod reading;
 mod scan;
-pub mod threemf;
+mod unit;
+mod whole;
 mod write;
 
-pub use channels::{MATERIAL, TEXTURE, holds, values_lost};
-pub use error::{Flaw, Place, ReadError, WriteError};
+pub use channels::{MATERIAL, TEXTURE};
+pub use error::{ReadError, WriteError};
+pub use flaw::{Flaw, Place};
 pub use format::{Format, UnknownFormat};
-pub use gltf::Asset;
+pub use formats::gltf::Asset;
+pub use formats::threemf::Package;
+pub use formats::{gltf, splits_vertices, threemf};
 pub use mtl::{Material, MaterialLibraries, Picture, Problem};
+pub use output::{Output, Property, PropertyValues, WriteOptions};
 pub use proof::{Proof, ProofError};
 pub use read::{read, read_as, read_bytes};
-pub use threemf::Package;
-pub use write::{
-    Abandoned, Output, Property, PropertyValues, WriteOptions, abandon_unfinished, check_writable,
-    finished_files, rounding, splits_vertices, write, write_as, write_to, write_whole,
-    write_whole_with,
+pub use whole::{
+    Abandoned, abandon_unfinished, check_writable, finished_files, write_whole, write_whole_with,
 };
+pub use write::{holds, rounding, values_lost, write, write_as, write_to};

@@ -3,9 +3,9 @@
 //! `newmtl`, `Kd`, `d`, `Tr` and `map_Kd` are followed; of other statements that name pictures, these alone. A library that is missing or
 //! damaged costs what it would have said, and nothing else. Files are reached below the OBJ file's folder only.
 
-use crate::below::file_below;
+use crate::files::{file_below, folder_of};
 use crate::names;
-use crate::scan::{Scanner, Syntax, number};
+use crate::scan::{Scanner, joined, number};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read};
@@ -90,7 +90,7 @@ impl MaterialLibraries {
     /// Nothing yet, for a file.
     fn of_file(file: &Path) -> Self {
         Self {
-            folder: file.parent().unwrap_or(Path::new("")).to_owned(),
+            folder: folder_of(file).to_owned(),
             ..Self::default()
         }
     }
@@ -105,19 +105,19 @@ impl MaterialLibraries {
 
     /// A file that is named in a folder, if it can be read.
     fn find(&mut self, folder: &Path, name: &str) -> Option<PathBuf> {
-        match self.below(folder, name) {
-            Ok(file) => {
-                self.files.insert(file.clone());
-                Some(file)
-            }
-            Err(why) => {
-                self.problems.insert(Problem {
-                    name: name.to_owned(),
-                    reason: why.to_string(),
-                });
-                None
-            }
-        }
+        let file = self.below(folder, name);
+        let file = self.unless_refused(name, file)?;
+        self.files.insert(file.clone());
+        Some(file)
+    }
+
+    /// What was found by a name; notes why it cannot be read.
+    fn unless_refused<T>(&mut self, name: &str, found: io::Result<T>) -> Option<T> {
+        let noted = found.map_err(|why| {
+            let (name, reason) = (name.to_owned(), why.to_string());
+            self.problems.insert(Problem { name, reason })
+        });
+        noted.ok()
     }
 
     /// A file that is named in a folder, by its path from the OBJ file's.
@@ -145,37 +145,24 @@ impl MaterialLibraries {
     }
 
     fn library(&mut self, file: &Path, name: &str) {
-        let bytes = match std::fs::read(self.folder.join(file)) {
-            Ok(bytes) => bytes,
-            Err(why) => {
-                self.problems.insert(Problem {
-                    name: name.to_owned(),
-                    reason: why.to_string(),
-                });
-                return;
-            }
+        let bytes = std::fs::read(self.folder.join(file));
+        let Some(bytes) = self.unless_refused(name, bytes) else {
+            return;
         };
         let first = self.materials.len();
-        let folder = file.parent().unwrap_or(Path::new(""));
-        let mut scanner = Scanner::new(
-            &bytes,
-            Syntax {
-                comments: true,
-                continuations: true,
-            },
-        );
+        let mut scanner = Scanner::of_statements(&bytes);
         while let Some(keyword) = scanner.first_word() {
             let words: Vec<&[u8]> = std::iter::from_fn(|| scanner.word()).collect();
             if keyword.eq_ignore_ascii_case(b"newmtl") {
-                let name = joined(&words);
+                let (name, colour) = (joined(&words), [1.0; 3]);
                 self.materials.push(Material {
                     name,
-                    colour: [1.0; 3],
+                    colour,
                     opacity: 1.0,
                     picture: None,
                 });
             } else if self.materials.len() > first {
-                self.follow(&names::read(keyword), &words, folder);
+                self.follow(&names::read(keyword), &words, folder_of(file));
             }
             scanner.next_line();
         }
@@ -207,20 +194,18 @@ impl MaterialLibraries {
 
     fn follow_picture(&mut self, keyword: &str, words: &[&[u8]], folder: &Path) {
         let (options, name) = words.split_at(length_of_options(words));
-        let file = if name.is_empty() {
-            None
-        } else {
-            self.find(folder, &joined(name))
-        };
+        let name = (!name.is_empty()).then(|| joined(name));
+        let file = name.and_then(|name| self.find(folder, &name));
         if !keyword.eq_ignore_ascii_case("map_kd") {
             self.left_out.insert(keyword.to_owned());
             return;
         }
         let options = options.iter().filter(|word| arguments(word).is_some());
-        self.left_out
-            .extend(options.map(|option| format!("{keyword} {}", names::read(option))));
+        let options = options.map(|option| format!("{keyword} {}", names::read(option)));
+        self.left_out.extend(options);
+        let kind = |file: &Path| mime_type(&self.folder.join(file));
         let picture = file.map(|file| Picture {
-            mime_type: mime_type(&self.folder.join(&file)),
+            mime_type: kind(&file),
             file,
         });
         if let Some(material) = self.materials.last_mut() {
@@ -251,22 +236,10 @@ const OTHERS: [&str; 15] = [
     "anisor",
 ];
 
-/// A name of several words.
-fn joined(words: &[&[u8]]) -> String {
-    words
-        .iter()
-        .map(|word| names::read(word))
-        .collect::<Vec<_>>()
-        .join(" ")
-}
-
 /// The first number, from 0 to 1: options such as `-halo` may stand before it.
 fn share(words: &[&[u8]]) -> Option<f64> {
-    words
-        .iter()
-        .find_map(|word| number(word))
-        .filter(|x| x.is_finite())
-        .map(|x| x.clamp(0.0, 1.0))
+    let first = words.iter().find_map(|word| number(word));
+    first.filter(|x| x.is_finite()).map(|x| x.clamp(0.0, 1.0))
 }
 
 /// Red, green and blue; one number is a grey.
@@ -306,14 +279,11 @@ fn mime_type(path: &Path) -> Option<&'static str> {
     File::open(path)
         .and_then(|mut file| file.read_exact(&mut first))
         .ok()?;
-    let kinds = [
-        (&b"\x89PNG\r\n\x1a\n"[..], "image/png"),
-        (&b"\xFF\xD8\xFF"[..], "image/jpeg"),
-    ];
-    kinds
-        .into_iter()
-        .find(|(start, _)| first.starts_with(start))
-        .map(|(_, kind)| kind)
+    match first {
+        [b'\x89', b'P', b'N', b'G', b'\r', b'\n', b'\x1a', b'\n'] => Some("image/png"),
+        [0xFF, 0xD8, 0xFF, ..] => Some("image/jpeg"),
+        _ => None,
+    }
 }
 
 #[cfg(test)]

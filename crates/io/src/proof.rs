@@ -9,8 +9,8 @@ use sha2::{Digest, Sha256};
 /// Weights are multiples of one in so many.
 const WHOLE: f64 = (1u64 << 30) as f64;
 
-/// The byte of a place beside two that are known, and sixths of the edge between them and of that edge turned by 60°.
-const BESIDE: [(u8, [i64; 2]); 6] = [
+/// The byte of a place adjacent to two that are known, and sixths of the edge between them and of that edge turned by 60°.
+const ADJACENT: [(u8, [i64; 2]); 6] = [
     (153, [0, 6]),
     (154, [3, 3]),
     (155, [0, 12]),
@@ -70,29 +70,15 @@ impl Proof<'_> {
         if self.holds_control {
             varint(&mut bytes, control.positions.len() as u64);
             varint(&mut bytes, control.triangles.len() as u64);
-            bytes.extend(
-                control
-                    .positions
-                    .iter()
-                    .flatten()
-                    .flat_map(|x| x.to_le_bytes()),
-            );
-            bytes.extend(
-                control
-                    .triangles
-                    .iter()
-                    .flatten()
-                    .flat_map(|v| v.to_le_bytes()),
-            );
+            bytes.extend(numbers(control));
         } else {
             bytes.extend([0, 0]);
         }
         let tags = self.control.tags();
         varint(&mut bytes, tags.creases.len() as u64);
         for tag in &tags.creases {
-            tag.vertices
-                .iter()
-                .for_each(|&v| varint(&mut bytes, v.into()));
+            varint(&mut bytes, tag.vertices[0].into());
+            varint(&mut bytes, tag.vertices[1].into());
             bytes.extend(tag.sharpness.to_le_bytes());
         }
         varint(&mut bytes, tags.corners.len() as u64);
@@ -107,9 +93,9 @@ impl Proof<'_> {
 
     fn add_parents(&self, bytes: &mut Vec<u8>) {
         let mut counts = vec![0u64; self.control.face_count()];
-        self.parents
-            .iter()
-            .for_each(|&parent| counts[parent as usize] += 1);
+        for &parent in self.parents.iter() {
+            counts[parent as usize] += 1;
+        }
         for run in counts.chunk_by(|a, b| a == b) {
             match run.len() {
                 1 => varint(bytes, 2 * run[0]),
@@ -126,41 +112,33 @@ impl Proof<'_> {
         let mut is_known = vec![false; self.result.positions.len()];
         for (t, (triangle, &parent)) in self.result.triangles.iter().zip(self.parents).enumerate() {
             let place = |v: u32| {
-                let origin = self
-                    .origins
-                    .get(v as usize)
-                    .and_then(|origin| origin.in_face(faces, parent));
+                let found = self.origins.get(v as usize);
+                let origin = found.and_then(|origin| origin.in_face(faces, parent));
                 let origin = origin.ok_or(ProofError::SeveralFaces(t))?;
                 let weights = [1, 2].map(|i| origin.barycentric[i] * WHOLE);
-                let is_whole = weights.iter().all(|weight| weight.fract() == 0.0);
-                if is_whole {
-                    Ok(weights.map(|weight| weight as i64))
-                } else {
-                    Err(ProofError::TooDeep(t))
+                match weights.iter().all(|weight| weight.fract() == 0.0) {
+                    true => Ok(weights.map(|weight| weight as i64)),
+                    false => Err(ProofError::TooDeep(t)),
                 }
             };
-            let places = [
-                place(triangle[0])?,
-                place(triangle[1])?,
-                place(triangle[2])?,
-            ];
+            let [a, b, c] = *triangle;
+            let places = [place(a)?, place(b)?, place(c)?];
             for corner in 0..3 {
-                let [v, a, b] = [0, 1, 2].map(|i| triangle[(corner + i) % 3] as usize);
-                if core::mem::replace(&mut is_known[v], true) {
+                let corners = [0, 1, 2].map(|i| (corner + i) % 3);
+                let [v, a, b] = corners.map(|corner| triangle[corner] as usize);
+                if std::mem::replace(&mut is_known[v], true) {
                     continue;
                 }
-                let beside = (is_known[a] && is_known[b])
-                    .then(|| {
-                        beside(
-                            places[corner],
-                            places[(corner + 1) % 3],
-                            places[(corner + 2) % 3],
-                        )
-                    })
-                    .flatten();
-                match beside.or_else(|| in_sixteenths(places[corner])) {
+                let [own, next, last] = corners.map(|corner| places[corner]);
+                let are_known = is_known[a] && is_known[b];
+                let code = if are_known {
+                    adjacent(own, next, last)
+                } else {
+                    None
+                };
+                match code.or_else(|| in_sixteenths(own)) {
                     Some(code) => bytes.push(code),
-                    None => in_full(bytes, places[corner]),
+                    None => in_full(bytes, own),
                 }
             }
         }
@@ -168,12 +146,12 @@ impl Proof<'_> {
     }
 }
 
-/// The byte of a place beside two others, if there is one.
-fn beside(place: [i64; 2], a: [i64; 2], b: [i64; 2]) -> Option<u8> {
+/// The byte of a place adjacent to two others, if there is one.
+fn adjacent(place: [i64; 2], a: [i64; 2], b: [i64; 2]) -> Option<u8> {
     let [i, j] = [b[0] - a[0], b[1] - a[1]];
     let sixths = [6 * (place[0] - a[0]), 6 * (place[1] - a[1])];
     let is_there = |&&(_, [p, q]): &&(u8, [i64; 2])| sixths == [p * i - q * j, p * j + q * (i + j)];
-    BESIDE.iter().find(is_there).map(|&(code, _)| code)
+    ADJACENT.iter().find(is_there).map(|&(code, _)| code)
 }
 
 /// The byte of a place whose weights are sixteenths.
@@ -187,9 +165,8 @@ fn in_sixteenths(place: [i64; 2]) -> Option<u8> {
 fn in_full(bytes: &mut Vec<u8>, place: [i64; 2]) {
     let spare = (place[0] | place[1]).trailing_zeros().min(30);
     bytes.extend([IN_FULL, 30 - spare as u8]);
-    place
-        .iter()
-        .for_each(|weight| varint(bytes, (weight >> spare) as u64));
+    varint(bytes, (place[0] >> spare) as u64);
+    varint(bytes, (place[1] >> spare) as u64);
 }
 
 fn varint(bytes: &mut Vec<u8>, mut value: u64) {
@@ -200,23 +177,27 @@ fn varint(bytes: &mut Vec<u8>, mut value: u64) {
     bytes.push(value as u8);
 }
 
+/// The little-endian bytes of a mesh's coordinates and corners.
+fn numbers(mesh: Triangles<'_>) -> impl Iterator<Item = u8> {
+    let coordinates = mesh.positions.iter().flatten();
+    let corners = mesh.triangles.iter().flatten();
+    let coordinates = coordinates.flat_map(|x| x.to_le_bytes());
+    coordinates.chain(corners.flat_map(|v| v.to_le_bytes()))
+}
+
 /// How proofs know meshes.
 fn digest(mesh: Triangles<'_>) -> String {
     let mut hash = Sha256::new();
-    [mesh.positions.len(), mesh.triangles.len()]
-        .iter()
-        .for_each(|&n| hash.update((n as u32).to_le_bytes()));
-    // Zero is written without its sign.
-    mesh.positions
-        .iter()
-        .flatten()
-        .for_each(|x| hash.update((x + 0.0).to_le_bytes()));
-    mesh.triangles
-        .iter()
-        .flatten()
-        .for_each(|v| hash.update(v.to_le_bytes()));
-    hash.finalize()
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    for count in [mesh.positions.len(), mesh.triangles.len()] {
+        hash.update((count as u32).to_le_bytes());
+    }
+    for x in mesh.positions.as_flattened() {
+        // Zero is written without its sign.
+        hash.update((x + 0.0).to_le_bytes());
+    }
+    for v in mesh.triangles.as_flattened() {
+        hash.update(v.to_le_bytes());
+    }
+    let bytes = hash.finalize();
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

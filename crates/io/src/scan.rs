@@ -2,9 +2,12 @@
 //!
 //! Works on bytes, so that comments and names may be in any encoding. Lines end with LF, CR LF or CR.
 
-use crate::error::{Flaw, Place};
-use crate::format::BYTE_ORDER_MARK;
+use crate::flaw::{Flaw, Place, Result, quoted};
+use crate::names;
 use memchr::memchr2;
+
+/// What some editors put before text in UTF-8.
+pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// What a text format has besides words and lines.
 #[derive(Clone, Copy, Default)]
@@ -27,26 +30,33 @@ pub(crate) struct Scanner<'a> {
 impl<'a> Scanner<'a> {
     /// At the beginning of `bytes`, after a byte order mark of UTF-8 if there is one.
     pub(crate) fn new(bytes: &'a [u8], syntax: Syntax) -> Self {
-        let at = if bytes.starts_with(BYTE_ORDER_MARK) {
-            BYTE_ORDER_MARK.len()
-        } else {
-            0
-        };
+        let has_mark = bytes.starts_with(BYTE_ORDER_MARK);
+        let at = if has_mark { BYTE_ORDER_MARK.len() } else { 0 };
         Self {
-            bytes,
-            at,
-            line: 1,
             syntax,
+            ..Self::starting_at(bytes, at, 1)
         }
+    }
+
+    /// At the beginning of a text with comments, whose lines may go on after a backslash.
+    pub(crate) fn of_statements(bytes: &'a [u8]) -> Self {
+        Self::new(
+            bytes,
+            Syntax {
+                comments: true,
+                continuations: true,
+            },
+        )
     }
 
     /// At byte `at`, which stands in line `line`.
     pub(crate) fn starting_at(bytes: &'a [u8], at: usize, line: usize) -> Self {
+        let syntax = Syntax::default();
         Self {
             bytes,
             at,
             line,
-            syntax: Syntax::default(),
+            syntax,
         }
     }
 
@@ -99,6 +109,11 @@ impl<'a> Scanner<'a> {
             }
             return Some(word);
         }
+    }
+
+    /// The words that are left of this line, as a name with one blank between them.
+    pub(crate) fn rest_of_line(&mut self) -> String {
+        joined(&std::iter::from_fn(|| self.word()).collect::<Vec<_>>())
     }
 
     /// Goes to the beginning of the next line.
@@ -162,7 +177,7 @@ impl<'a> Scanner<'a> {
 
     /// A flaw here: `word` (or the end of the line or text) where `expected` should stand.
     #[cold]
-    pub(crate) fn unexpected(&self, word: Option<&[u8]>, expected: impl AsRef<str>) -> Flaw {
+    pub(crate) fn unexpected(&self, word: Option<&[u8]>, expected: impl std::fmt::Display) -> Flaw {
         let found = match word {
             Some(word) => quoted(word),
             None if self.is_at_end() => "the end of the file".to_owned(),
@@ -173,22 +188,17 @@ impl<'a> Scanner<'a> {
 
     /// The next word of this line as a finite number; `what` names it for the error.
     #[inline]
-    pub(crate) fn finite_number(&mut self, what: &str) -> Result<f64, Flaw> {
+    pub(crate) fn finite_number(&mut self, what: &str) -> Result<f64> {
         let word = self.word();
-        match word.and_then(number) {
-            Some(value) if value.is_finite() => Ok(value),
-            _ => Err(self.unexpected(word, format!("a finite number for {what}"))),
-        }
+        let value = word.and_then(finite);
+        value.ok_or_else(|| self.unexpected(word, format!("a finite number for {what}")))
     }
 
     /// The next three words of this line as a point.
     #[inline]
-    pub(crate) fn point(&mut self) -> Result<[f64; 3], Flaw> {
-        Ok([
-            self.finite_number("x")?,
-            self.finite_number("y")?,
-            self.finite_number("z")?,
-        ])
+    pub(crate) fn point(&mut self) -> Result<[f64; 3]> {
+        let (x, y) = (self.finite_number("x")?, self.finite_number("y")?);
+        Ok([x, y, self.finite_number("z")?])
     }
 }
 
@@ -197,10 +207,22 @@ fn is_blank(byte: u8) -> bool {
     byte <= b' ' && byte != b'\n' && byte != b'\r'
 }
 
+/// A name of several words, with one blank between them.
+pub(crate) fn joined(words: &[&[u8]]) -> String {
+    let all = words.iter().map(|word| names::read(word));
+    all.collect::<Vec<_>>().join(" ")
+}
+
 /// A word as a number at full precision, NaN and infinity included.
 #[inline]
 pub(crate) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A word as a finite number at full precision.
+#[inline]
+pub(crate) fn finite(word: &[u8]) -> Option<f64> {
+    number(word).filter(|value| value.is_finite())
 }
 
 /// A word as a whole number.
@@ -216,19 +238,8 @@ pub(crate) fn integer(word: &[u8]) -> Option<i64> {
         return None;
     }
     let mut value = 0i64;
-    for &digit in digits {
-        if !digit.is_ascii_digit() {
-            return None;
-        }
-        value = value * 10 + i64::from(digit - b'0');
+    for digit in digits {
+        value = value * 10 + i64::from(digit.checked_sub(b'0').filter(|&digit| digit < 10)?);
     }
     Some(if negative { -value } else { value })
-}
-
-/// A word as it may stand in a message: in quotes, on one line, shortened if long.
-pub(crate) fn quoted(word: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(&word[..word.len().min(LONGEST)]);
-    let more = if word.len() > LONGEST { "…" } else { "" };
-    format!("'{}{more}'", text.escape_debug())
 }

@@ -353,7 +353,7 @@ fn write_document(
     let path = &arguments.output;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let unit = unit.options(WriteOptions::default()).unit;
-    let write = || write_levels(path, format, (&name, &levels), asset, unit);
+    let write = || write_levels(path, format, &name, &levels, asset, unit);
     interrupt::whole_or_not(path, write).context("levels of detail")
 }
 

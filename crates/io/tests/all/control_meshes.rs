@@ -1,8 +1,7 @@
 //! Control meshes of the shared models against the numbers in their `MODELS.md`, which were computed from the
 //! files by other means. The folder is named by `LIMITMESH_MODELS`.
 
-#![allow(clippy::unwrap_used)]
-
+use super::support::shared;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -50,20 +49,8 @@ const MODELS: [Row; 34] = [
     ("defects/mannequin_flipped.off", 839, 1, 1, 1, 0),
 ];
 
-fn models() -> Option<String> {
-    let folder = std::env::var("LIMITMESH_MODELS").ok();
-    if folder.is_none() {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
-    }
-    folder
-}
-
-fn build(folder: &str, name: &str, weld: Weld) -> (Mesh, Diagnosis) {
-    let soup = limitmesh_io::read(Path::new(folder).join(name)).unwrap();
+fn build(folder: &Path, name: &str, weld: Weld) -> (Mesh, Diagnosis) {
+    let soup = limitmesh_io::read(folder.join(name)).unwrap();
     let (mesh, diagnosis) = Mesh::from_soup(&soup, &BuildOptions::default().weld(weld)).unwrap();
     mesh.validate().unwrap();
     (mesh, diagnosis)
@@ -116,7 +103,7 @@ fn loops_and_components(mesh: &Mesh) -> (usize, usize) {
 
 #[test]
 fn shared_models_have_the_topology_on_record() {
-    let Some(folder) = models() else { return };
+    let Some(folder) = shared("") else { return };
     for (name, faces, characteristic, boundary_loops, components, non_manifold) in MODELS {
         // The record counts the vertices as stored, but those of STL by position.
         let weld = if name.ends_with("stl") {
@@ -144,7 +131,7 @@ fn shared_models_have_the_topology_on_record() {
 
 #[test]
 fn shared_defects_are_found() {
-    let Some(folder) = models() else { return };
+    let Some(folder) = shared("") else { return };
     let findings = |name: &str| {
         let (_, diagnosis) = build(&folder, name, Weld::Exact);
         let found = diagnosis
@@ -184,7 +171,7 @@ fn shared_defects_are_found() {
         "fish_cage.obj",
         "featuretype.stl",
     ] {
-        let soup = limitmesh_io::read(Path::new(&folder).join(name)).unwrap();
+        let soup = limitmesh_io::read(folder.join(name)).unwrap();
         Mesh::from_soup(&soup, &BuildOptions::default().strict(true)).unwrap();
     }
 }
@@ -192,7 +179,7 @@ fn shared_defects_are_found() {
 /// The same head with a fifth of its faces reversed becomes the head again, with these faces named.
 #[test]
 fn reversed_faces_are_turned_back() {
-    let Some(folder) = models() else { return };
+    let Some(folder) = shared("") else { return };
     let (head, _) = build(&folder, "mannequin.off", Weld::Exact);
     let (repaired, diagnosis) = build(&folder, "defects/mannequin_flipped.off", Weld::Exact);
     assert_eq!(repaired.positions(), head.positions());
@@ -206,8 +193,7 @@ fn reversed_faces_are_turned_back() {
         mesh.triangles().iter().map(|&t| lowest_first(t)).collect()
     };
     assert_eq!(rotated(&repaired), rotated(&head));
-    let soup =
-        limitmesh_io::read(Path::new(&folder).join("defects/mannequin_flipped.off")).unwrap();
+    let soup = limitmesh_io::read(folder.join("defects/mannequin_flipped.off")).unwrap();
     let reversed = soup
         .faces
         .iter()

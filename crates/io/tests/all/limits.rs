@@ -1,6 +1,7 @@
 //! Uniform refinement to the limit, on the shared models (the folder in `LIMITMESH_MODELS`): what levels done together give
 //! is what steps and the stencils of vertices give.
 
+use super::support::shared;
 use std::path::PathBuf;
 
 use limitmesh::Mesh;
@@ -20,18 +21,11 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn limits_of_shared_models_agree_with_stencils() {
-    let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from) else {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
-        return;
-    };
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+    let Some(folder) = shared("") else { return };
+    let files = std::fs::read_dir(folder)
         .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+        .map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = files.collect();
     files.sort();
     let mut met = 0;
     for file in files.iter().filter(|file| file.is_file()) {

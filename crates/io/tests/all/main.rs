@@ -1,5 +1,11 @@
 //! Files read and written, in one program but for the test of memory, which needs an allocator of its own.
 
+#![allow(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "helpers of tests fail as the tests do"
+)]
+
 mod control_meshes;
 mod corner_normals;
 mod formats;
@@ -9,5 +15,6 @@ mod malformed;
 mod models;
 mod ply_seams;
 mod ply_types;
+mod support;
 mod threemf;
 mod writing;

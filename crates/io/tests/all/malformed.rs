@@ -1,133 +1,64 @@
 //! Damaged files: each error names the place, what was expected and what was found, and none makes room for
 //! what the file does not hold.
 
-#![allow(
-    clippy::panic,
-    clippy::unwrap_used,
-    reason = "helpers of tests fail as the tests do"
-)]
-
-use limitmesh_io::{Format, read, read_bytes};
+use super::support::{cases, read, refused};
+use limitmesh_io::Format;
 
 #[track_caller]
 fn refuses(format: Format, bytes: impl AsRef<[u8]>, message: &str) {
-    match read_bytes(bytes.as_ref(), format) {
-        Ok(soup) => panic!(
-            "read {} vertices, {} faces",
-            soup.positions.len(),
-            soup.faces.len()
-        ),
-        Err(error) => assert_eq!(error.to_string(), message),
+    assert_eq!(refused(bytes, format), message);
+}
+
+/// Refuses what `file` makes of the first column of a table with the message in the second.
+#[track_caller]
+fn refuses_all(format: Format, table: &str, file: impl Fn(&str) -> String) {
+    for [text, message] in cases(table) {
+        refuses(format, file(&text), &message);
     }
 }
 
 #[test]
 fn obj() {
-    let refuses = |text: &str, message: &str| refuses(Format::Obj, text, message);
-    refuses(
-        "v 0 0\n",
-        "OBJ line 1, vertex 0: expected a finite number for z, found the end of the line",
-    );
-    refuses(
-        "v 0 0 0\nv 1",
-        "OBJ line 2, vertex 1: expected a finite number for y, found the end of the file",
-    );
-    refuses(
-        "v 0 0 0\n\nv 1 x 2\n",
-        "OBJ line 3, vertex 1: expected a finite number for y, found 'x'",
-    );
-    refuses(
-        "v inf 0 0\n",
-        "OBJ line 1, vertex 0: expected a finite number for x, found 'inf'",
-    );
-    refuses(
-        "v 0 -NaN 0\n",
-        "OBJ line 1, vertex 0: expected a finite number for y, found '-NaN'",
-    );
-    refuses(
-        "v 0 0 1e999\n",
-        "OBJ line 1, vertex 0: expected a finite number for z, found '1e999'",
-    );
-    refuses(
-        "v 0 0,5 1\n",
-        "OBJ line 1, vertex 0: expected a finite number for y, found '0,5'",
-    );
+    let table = r"
+        v 0 0\n | OBJ line 1, vertex 0: expected a finite number for z, found the end of the line
+        v 0 0 0\nv 1 | OBJ line 2, vertex 1: expected a finite number for y, found the end of the file
+        v 0 0 0\n\nv 1 x 2\n | OBJ line 3, vertex 1: expected a finite number for y, found 'x'
+        v inf 0 0\n | OBJ line 1, vertex 0: expected a finite number for x, found 'inf'
+        v 0 -NaN 0\n | OBJ line 1, vertex 0: expected a finite number for y, found '-NaN'
+        v 0 0 1e999\n | OBJ line 1, vertex 0: expected a finite number for z, found '1e999'
+        v 0 0,5 1\n | OBJ line 1, vertex 0: expected a finite number for y, found '0,5'
+        v 0 0 0\nf 1 1 1\nf 1 3 2\nv 0 0 0\n | OBJ line 3: a face names vertex 3, but the last vertex is 2 (faces count from 1)
+        v 0 0 0\nf 1 1 1\nf 1 1 \\n4294967295\n | OBJ line 4: a face names vertex 4294967295, but the last vertex is 1 (faces count from 1)
+        # nothing\nf 1 2 3\n | OBJ line 3: expected at least one vertex (v X Y Z), found the end of the file";
+    refuses_all(Format::Obj, table, str::to_owned);
     let form = "expected a vertex index from 1, or one from -1 to -1, counting back from the latest vertex";
-    for word in [
+    let integers = [
         "0",
         "-2",
-        "x",
-        "1.5",
-        "/1",
         "99999999999999999999",
         "4294967296",
         "-9223372036854775808",
-    ] {
-        refuses(
-            &format!("v 0 0 0\nf 1 {word} 1\n"),
-            &format!("OBJ line 2, face 0: {form}, found '{word}'"),
-        );
+    ];
+    for word in integers.iter().chain(&["x", "1.5", "/1"]) {
+        let message = format!("OBJ line 2, face 0: {form}, found '{word}'");
+        refuses(Format::Obj, format!("v 0 0 0\nf 1 {word} 1\n"), &message);
     }
-    refuses(
-        "v 0 0 0\nf 1 1 1\nf 1 3 2\nv 0 0 0\n",
-        "OBJ line 3: a face names vertex 3, but the last vertex is 2 (faces count from 1)",
-    );
-    refuses(
-        "v 0 0 0\nf 1 1 1\nf 1 1 \\\n4294967295\n",
-        "OBJ line 4: a face names vertex 4294967295, but the last vertex is 1 (faces count from 1)",
-    );
-    refuses(
-        "# nothing\nf 1 2 3\n",
-        "OBJ line 3: expected at least one vertex (v X Y Z), found the end of the file",
-    );
 }
 
 #[test]
 fn obj_tags() {
-    let refuses = |tag: &str, message: &str| {
-        refuses(
-            Format::Obj,
-            format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{tag}\n"),
-            message,
-        );
-    };
-    refuses(
-        "t crease 2/1/0 1 3 10",
-        "OBJ line 5: a tag names vertex 3, but the last vertex is 2 (tags count from 0)",
-    );
-    refuses(
-        "t crease 2/1/0 1 -1 10",
-        "OBJ line 5: expected a vertex index from 0 in a tag, found '-1'",
-    );
-    refuses(
-        "t crease 2/1/0 1 2",
-        "OBJ line 5: expected a sharpness of at least 0, found the end of the line",
-    );
-    refuses(
-        "t corner 1/1/0 1 -2",
-        "OBJ line 5: expected a sharpness of at least 0, found '-2'",
-    );
-    refuses(
-        "t corner 1/1/0 1 nan",
-        "OBJ line 5: expected a sharpness of at least 0, found 'nan'",
-    );
-    refuses(
-        "t corner x",
-        "OBJ line 5: expected the tag's counts, as in 2/1/0, found 'x'",
-    );
-    refuses(
-        "t corner 1",
-        "OBJ line 5: expected the tag's counts, as in 2/1/0, found '1'",
-    );
-    refuses(
-        "t crease 3/1/0 0 1 2 10",
-        "OBJ line 5: the tag has 3 vertices and 1 sharpnesses; each tagged place needs 2 of the former, \
-         and one of the latter for all or for each",
-    );
-    refuses(
-        "t crease 999999999999/1/0 0 1 2 10",
-        "OBJ line 5: expected a vertex index from 0 in a tag, found the end of the line",
-    );
+    let table = r"
+        t crease 2/1/0 1 3 10 | OBJ line 5: a tag names vertex 3, but the last vertex is 2 (tags count from 0)
+        t crease 2/1/0 1 -1 10 | OBJ line 5: expected a vertex index from 0 in a tag, found '-1'
+        t crease 2/1/0 1 2 | OBJ line 5: expected a sharpness of at least 0, found the end of the line
+        t corner 1/1/0 1 -2 | OBJ line 5: expected a sharpness of at least 0, found '-2'
+        t corner 1/1/0 1 nan | OBJ line 5: expected a sharpness of at least 0, found 'nan'
+        t corner x | OBJ line 5: expected the tag's counts, as in 2/1/0, found 'x'
+        t corner 1 | OBJ line 5: expected the tag's counts, as in 2/1/0, found '1'
+        t crease 3/1/0 0 1 2 10 | OBJ line 5: the tag has 3 vertices and 1 sharpnesses; each tagged place needs 2 of the former, and one of the latter for all or for each
+        t crease 999999999999/1/0 0 1 2 10 | OBJ line 5: expected a vertex index from 0 in a tag, found the end of the line";
+    let file = |tag: &str| format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n{tag}\n");
+    refuses_all(Format::Obj, table, file);
 }
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
@@ -153,133 +84,53 @@ fn ply_headers_of_hundreds_of_thousands_of_lines() {
 
 #[test]
 fn ply_headers() {
-    let refuses = |text: &str, message: &str| refuses(Format::Ply, text, message);
-    refuses(
-        "ply\n",
-        "PLY line 2: expected end_header, found the end of the file",
-    );
-    refuses(
-        "plx\n",
-        "PLY line 1: expected the word ply alone on the first line, found 'plx'",
-    );
-    refuses(
-        "ply\nformat ascii 2.0\nend_header\n",
-        "PLY line 2: expected version 1.0, found '2.0'",
-    );
-    refuses(
-        "ply\nformat binary 1.0\n",
-        "PLY line 2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'",
-    );
-    refuses(
-        "ply\nend_header\n",
-        "PLY line 2: the header names no format, such as ascii 1.0",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nend_header\n",
-        "PLY line 3: the header has no element vertex",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex -1\n",
-        "PLY line 3: expected the number of elements, found '-1'",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 4294967296\n",
-        "PLY line 3: expected at most 4294967295 elements 'vertex', found 4294967296",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nproperty float x\n",
-        "PLY line 3: a property stands before the first element",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 0\nproperty half x\n",
-        "PLY line 4: expected a type: char, uchar, short, ushort, int, uint, float or double, or int8 to \
-         uint32, float32 or float64, found 'half'",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 0\nproperty list float int l\n",
-        "PLY line 4: expected an integer type for the length of a list, found 'float'",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float x\n",
-        "PLY line 5: the element has a second property 'x'",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n",
-        "PLY line 4: the header has a second element 'vertex'",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float z\nend_header\n",
-        "PLY line 3: element vertex has no number y",
-    );
-    refuses(
-        &format!(
-            "ply\nformat ascii 1.0\nelement vertex 0\n{XYZ}element face 0\nproperty int vertex_index\nend_header\n"
-        ),
-        "PLY line 7: property vertex_index of element face is no list of integers",
-    );
-    refuses(
-        &format!("ply\nformat ascii 1.0\nelement vertex 0\n{XYZ}element face 0\nend_header\n"),
-        "PLY line 7: element face has no list vertex_indices",
-    );
-    refuses(
-        "ply\nformat ascii 1.0\nvertices 7\n",
-        "PLY line 3: expected format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or \
-         end_header, found 'vertices 7'",
-    );
+    let table = r"
+        ply\n | PLY line 2: expected end_header, found the end of the file
+        plx\n | PLY line 1: expected the word ply alone on the first line, found 'plx'
+        ply\nformat ascii 2.0\nend_header\n | PLY line 2: expected version 1.0, found '2.0'
+        ply\nformat binary 1.0\n | PLY line 2: expected ascii, binary_little_endian or binary_big_endian, found 'binary'
+        ply\nend_header\n | PLY line 2: the header names no format, such as ascii 1.0
+        ply\nformat ascii 1.0\nend_header\n | PLY line 3: the header has no element vertex
+        ply\nformat ascii 1.0\nelement vertex -1\n | PLY line 3: expected the number of elements, found '-1'
+        ply\nformat ascii 1.0\nelement vertex 4294967296\n | PLY line 3: expected at most 4294967295 elements 'vertex', found 4294967296
+        ply\nformat ascii 1.0\nproperty float x\n | PLY line 3: a property stands before the first element
+        ply\nformat ascii 1.0\nelement vertex 0\nproperty half x\n | PLY line 4: expected a type: char, uchar, short, ushort, int, uint, float or double, or int8 to uint32, float32 or float64, found 'half'
+        ply\nformat ascii 1.0\nelement vertex 0\nproperty list float int l\n | PLY line 4: expected an integer type for the length of a list, found 'float'
+        ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float x\n | PLY line 5: the element has a second property 'x'
+        ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\n | PLY line 4: the header has a second element 'vertex'
+        ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float z\nend_header\n | PLY line 3: element vertex has no number y
+        ply\nformat ascii 1.0\nvertices 7\n | PLY line 3: expected format NAME 1.0, element NAME COUNT, property TYPE NAME, comment or end_header, found 'vertices 7'";
+    refuses_all(Format::Ply, table, str::to_owned);
+    let faces = r"
+        property int vertex_index\n | PLY line 7: property vertex_index of element face is no list of integers
+         | PLY line 7: element face has no list vertex_indices";
+    refuses_all(Format::Ply, faces, |property| {
+        let start = format!("ply\nformat ascii 1.0\nelement vertex 0\n{XYZ}element face 0\n");
+        format!("{start}{property}end_header\n")
+    });
 }
 
 #[test]
 fn ply_text() {
     let header =
         format!("ply\nformat ascii 1.0\nelement vertex 3\n{XYZ}element face 2\n{FACE}end_header\n");
-    let refuses =
-        |body: &str, message: &str| refuses(Format::Ply, format!("{header}{body}"), message);
-    refuses(
-        "0 0 0\n1 0\n0 1 0\n",
-        "PLY line 11, vertex 1: expected a number, found the end of the line",
-    );
-    refuses(
-        "0 0 0\n1 0 0 5\n0 1 0\n",
-        "PLY line 11, vertex 1: expected the end of the line after the last property, found '5'",
-    );
-    refuses(
-        "0 0 0\n1 0 nan\n0 1 0\n",
-        "PLY line 11, vertex 1: expected a finite number for z, found NaN",
-    );
-    refuses(
-        "0 0 0\n1 0 0\n1 0 -\n",
-        "PLY line 12, vertex 2: expected a number, found '-'",
-    );
-    let vertices = "0 0 0\n1 0 0\n0 1 0\n";
-    let with = |faces: &str, message: &str| refuses(&format!("{vertices}{faces}"), message);
-    with(
-        "3 0 1 2\n",
-        "PLY line 14, face 1: expected an integer, found the end of the file",
-    );
-    with(
-        "3 0 1 2\n3 0 1",
-        "PLY line 14, face 1: expected a number, found the end of the file",
-    );
-    with(
-        "3 0 1 2\n3 0 1 2.0\n",
-        "PLY line 14, face 1: expected an integer, found '2.0'",
-    );
-    with(
-        "3 0 1 2\n-3 0 1 2\n",
-        "PLY line 14, face 1: expected the length of a list, found -3",
-    );
-    with(
-        "3 0 1 3\n3 0 1 2\n",
-        "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found 3",
-    );
-    with(
-        "3 0 1 -1\n3 0 1 2\n",
-        "PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found -1",
-    );
-    with(
-        "4000000000 0 1\n3 0 1 2\n",
-        "PLY line 13, face 0: expected a number, found the end of the line",
-    );
+    let vertices = r"
+        0 0 0\n1 0\n0 1 0\n | PLY line 11, vertex 1: expected a number, found the end of the line
+        0 0 0\n1 0 0 5\n0 1 0\n | PLY line 11, vertex 1: expected the end of the line after the last property, found '5'
+        0 0 0\n1 0 nan\n0 1 0\n | PLY line 11, vertex 1: expected a finite number for z, found NaN
+        0 0 0\n1 0 0\n1 0 -\n | PLY line 12, vertex 2: expected a number, found '-'";
+    refuses_all(Format::Ply, vertices, |body| format!("{header}{body}"));
+    let faces = r"
+        3 0 1 2\n | PLY line 14, face 1: expected an integer, found the end of the file
+        3 0 1 2\n3 0 1 | PLY line 14, face 1: expected a number, found the end of the file
+        3 0 1 2\n3 0 1 2.0\n | PLY line 14, face 1: expected an integer, found '2.0'
+        3 0 1 2\n-3 0 1 2\n | PLY line 14, face 1: expected the length of a list, found -3
+        3 0 1 3\n3 0 1 2\n | PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found 3
+        3 0 1 -1\n3 0 1 2\n | PLY line 13, face 0: expected a vertex index below 3 (the number of vertices), found -1
+        4000000000 0 1\n3 0 1 2\n | PLY line 13, face 0: expected a number, found the end of the line";
+    refuses_all(Format::Ply, faces, |body| {
+        format!("{header}0 0 0\n1 0 0\n0 1 0\n{body}")
+    });
 }
 
 #[test]
@@ -294,110 +145,63 @@ fn ply_binary() {
         bytes.extend(faces);
         refuses(Format::Ply, bytes, &message);
     };
-    let promise = "3 elements vertex of 12 bytes each, as line 3 promises";
+    let promise = "expected 3 elements vertex of 12 bytes each, as line 3 promises";
+    let met = "found 20 bytes up to the end of the file";
     with(
         &[0.0; 5],
         &[],
-        format!(
-            "PLY byte {begin}, vertex 1: expected {promise}, found 20 bytes up to the end of the file"
-        ),
+        format!("PLY byte {begin}, vertex 1: {promise}, {met}"),
     );
     let not_finite = [0.0, 0.0, 0.0, 0.0, f32::NEG_INFINITY, 0.0, 0.0, 0.0, 0.0];
-    let after = begin + 20;
+    let (place, expected) = (begin + 20, "expected a finite number for y, found -inf");
     with(
         &not_finite,
         &[],
-        format!("PLY byte {after}, vertex 1: expected a finite number for y, found -inf"),
+        format!("PLY byte {place}, vertex 1: {expected}"),
     );
-    let faces = begin + 36;
-    let (end, from) = (faces + 1, faces + 1);
-    with(
-        &[0.0; 9],
-        &[3],
-        format!(
-            "PLY byte {end}, face 0: expected 12 bytes from byte {from}, found the end of the file"
-        ),
-    );
+    let (faces, end) = (begin + 36, "found the end of the file");
+    let (place, from) = (faces + 1, faces + 1);
+    let message = format!("PLY byte {place}, face 0: expected 12 bytes from byte {from}, {end}");
+    with(&[0.0; 9], &[3], message);
     let face = [3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0];
-    let cut = [&face[..], &face[..10]].concat();
-    let (end, from) = (faces + 23, faces + 14);
-    with(
-        &[0.0; 9],
-        &cut,
-        format!(
-            "PLY byte {end}, face 1: expected 12 bytes from byte {from}, found the end of the file"
-        ),
-    );
+    let (place, from) = (faces + 23, faces + 14);
+    let message = format!("PLY byte {place}, face 1: expected 12 bytes from byte {from}, {end}");
+    with(&[0.0; 9], &[&face[..], &face[..10]].concat(), message);
     let mut beyond = [face, face].concat();
-    beyond[25] = 0xff;
-    beyond[22] = 1;
-    let index = 0xff00_0001_u32.cast_signed();
-    let place = faces + 26;
+    (beyond[25], beyond[22]) = (0xff, 1);
+    let (place, index) = (faces + 26, 0xff00_0001_u32.cast_signed());
+    let expected = "expected a vertex index below 3 (the number of vertices)";
     with(
         &[0.0; 9],
         &beyond,
-        format!(
-            "PLY byte {place}, face 1: expected a vertex index below 3 (the number of vertices), found {index}"
-        ),
+        format!("PLY byte {place}, face 1: {expected}, found {index}"),
     );
 }
 
 #[test]
 fn stl_text() {
-    let refuses = |text: &str, message: &str| refuses(Format::Stl, text, message);
-    refuses(
-        "solid x\n",
-        "STL line 2: expected facet or endsolid, found the end of the file",
-    );
-    refuses(
-        "solid\nfacet\nouter\nloop\nvertex 0 0 0\nvertex 1 0 0",
-        "STL line 6, facet 0: expected vertex, found the end of the file",
-    );
     let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    refuses(
-        &format!("solid\n{facet}"),
-        "STL line 9: expected facet or endsolid, found the end of the file",
-    );
-    refuses(
-        &format!("solid\n{facet}endsolid\nend"),
-        "STL line 10: expected solid, found 'end'",
-    );
-    let with = |from: &str, to: &str, message: &str| {
+    let whole = r"
+        solid x\n | STL line 2: expected facet or endsolid, found the end of the file
+        solid\nfacet\nouter\nloop\nvertex 0 0 0\nvertex 1 0 0 | STL line 6, facet 0: expected vertex, found the end of the file
+        solid\n@ | STL line 9: expected facet or endsolid, found the end of the file
+        solid\n@endsolid\nend | STL line 10: expected solid, found 'end'";
+    refuses_all(Format::Stl, whole, |text| text.replace('@', facet));
+    let replaced = r"
+        1 0 0\nv | 1 0\nv | STL line 12, facet 1: expected a finite number for z, found the end of the line
+        1 0 0\nv | 1 infinity 0\nv | STL line 12, facet 1: expected a finite number for y, found 'infinity'
+        vertex 0 1 0\n |  | STL line 13, facet 1: expected vertex, found 'endloop'
+        endloop | vertex 1 1 0\nendloop | STL line 14, facet 1: expected endloop, found 'vertex'
+        outer loop\n |  | STL line 10, facet 1: expected outer loop, found 'vertex'
+        endfacet\n |  | STL line 15, facet 1: expected endfacet, found 'endsolid'";
+    for [from, to, message] in cases(replaced) {
+        let changed = facet.replacen(&from, &to, 1);
         refuses(
-            &format!("solid\n{facet}{}endsolid\n", facet.replacen(from, to, 1)),
-            message,
+            Format::Stl,
+            format!("solid\n{facet}{changed}endsolid\n"),
+            &message,
         );
-    };
-    with(
-        "1 0 0\nv",
-        "1 0\nv",
-        "STL line 12, facet 1: expected a finite number for z, found the end of the line",
-    );
-    with(
-        "1 0 0\nv",
-        "1 infinity 0\nv",
-        "STL line 12, facet 1: expected a finite number for y, found 'infinity'",
-    );
-    with(
-        "vertex 0 1 0\n",
-        "",
-        "STL line 13, facet 1: expected vertex, found 'endloop'",
-    );
-    with(
-        "endloop",
-        "vertex 1 1 0\nendloop",
-        "STL line 14, facet 1: expected endloop, found 'vertex'",
-    );
-    with(
-        "outer loop\n",
-        "",
-        "STL line 10, facet 1: expected outer loop, found 'vertex'",
-    );
-    with(
-        "endfacet\n",
-        "",
-        "STL line 15, facet 1: expected endfacet, found 'endsolid'",
-    );
+    }
 }
 
 #[test]
@@ -408,151 +212,81 @@ fn stl_binary() {
         bytes.resize(84 + length, 0);
         bytes
     };
-    let refuses = |bytes: &[u8], message: &str| refuses(Format::Stl, bytes, message);
-    refuses(
-        b"no such thing",
-        "STL byte 13: expected 'solid', or the 84 bytes that begin a binary file, found the end of the file",
-    );
-    refuses(
-        &binary(3, 149),
-        "STL byte 233, facet 2: expected 3 facets of 50 bytes, as byte 80 promises, found the end of the file",
-    );
-    refuses(
-        &binary(u32::MAX, 100),
-        "STL byte 184, facet 2: expected 4294967295 facets of 50 bytes, as byte 80 promises, found the end of the file",
-    );
-    refuses(
-        &binary(0, 100),
-        "STL byte 80: the file promises no facet, but 100 bytes follow",
-    );
-    let mut bytes = binary(2, 100);
-    bytes[84 + 50 + 12 + 8..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
-    refuses(
-        &bytes,
-        "STL byte 154, facet 1: expected a finite number, found NaN",
-    );
+    let mut broken = binary(2, 100);
+    broken[84 + 50 + 12 + 8..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    let messages = r"
+        byte 13: expected 'solid', or the 84 bytes that begin a binary file, found the end of the file
+        byte 233, facet 2: expected 3 facets of 50 bytes, as byte 80 promises, found the end of the file
+        byte 184, facet 2: expected 4294967295 facets of 50 bytes, as byte 80 promises, found the end of the file
+        byte 80: the file promises no facet, but 100 bytes follow
+        byte 154, facet 1: expected a finite number, found NaN";
+    let none = b"no such thing".to_vec();
+    let files = [
+        none,
+        binary(3, 149),
+        binary(u32::MAX, 100),
+        binary(0, 100),
+        broken,
+    ];
+    for (bytes, [message]) in files.iter().zip(cases(messages)) {
+        refuses(Format::Stl, bytes, &format!("STL {message}"));
+    }
 }
 
 #[test]
 fn off() {
-    let refuses = |text: &str, message: &str| refuses(Format::Off, text, message);
-    refuses("OFX\n", "OFF line 1: expected the keyword OFF, found 'OFX'");
-    refuses("OFF BINARY\n", "OFF line 1: binary OFF files are not read");
-    refuses(
-        "4OFF\n1 1 0\n",
-        "OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found '4OFF'",
-    );
-    refuses(
-        "nOFF\n3\n1 1 0\n",
-        "OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found 'nOFF'",
-    );
-    refuses(
-        "OFF\n",
-        "OFF line 2: expected the number of vertices, found the end of the file",
-    );
-    refuses(
-        "OFF\nx 1 0\n",
-        "OFF line 2: expected the number of vertices, found 'x'",
-    );
-    refuses(
-        "OFF\n3 -1 0\n",
-        "OFF line 2: expected the number of faces, found '-1'",
-    );
-    refuses(
-        "OFF\n3\n",
-        "OFF line 2: expected the number of faces, found the end of the line",
-    );
-    refuses(
-        "OFF\n5000000000 1 0\n",
-        "OFF line 2: expected at most 4294967295 vertices, found 5000000000",
-    );
-    refuses(
-        "OFF\n3 1 0\n0 0 0\n1 0 0\n",
-        "OFF line 5, vertex 2: expected a finite number for x, found the end of the file",
-    );
-    let with = |body: &str, message: &str| refuses(&format!("OFF\n3 2 0\n{body}"), message);
-    with(
-        "0.0 0 0\n1 0 0\n1.25 0.25\n3 0 1 2\n",
-        "OFF line 5, vertex 2: expected a finite number for z, found the end of the line",
-    );
-    with(
-        "0.0 0 0\n1 0 0\n1.25 0.25 nan\n3 0 1 2\n",
-        "OFF line 5, vertex 2: expected a finite number for z, found 'nan'",
-    );
-    let with = |faces: &str, message: &str| with(&format!("0 0 0\n1 0 0\n0 1 0\n{faces}"), message);
-    with(
-        "3 0 1 2\n",
-        "OFF line 7, face 1: expected the face's number of corners, found the end of the file",
-    );
-    with(
-        "3 0 1 2\n3 0 1\n",
-        "OFF line 7, face 1: expected 3 vertex indices, found the end of the line",
-    );
-    with(
-        "3 0 1 2\n3 0 1",
-        "OFF line 7, face 1: expected 3 vertex indices, found the end of the file",
-    );
-    with(
-        "3 0 1 3\n3 0 1 2\n",
-        "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '3'",
-    );
-    with(
-        "3 0 1 -1\n3 0 1 2\n",
-        "OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '-1'",
-    );
-    with(
-        "3 0 1 x\n3 0 1 2\n",
-        "OFF line 6, face 0: expected 3 vertex indices, found 'x'",
-    );
-    with(
-        "-3 0 1 x\n3 0 1 2\n",
-        "OFF line 6, face 0: expected the face's number of corners, found '-3'",
-    );
-    with(
-        "999999999999 0 1 2\n3 0 1 2\n",
-        "OFF line 6, face 0: expected 999999999999 vertex indices, found the end of the line",
-    );
+    let headers = r"
+        OFX\n | OFF line 1: expected the keyword OFF, found 'OFX'
+        OFF BINARY\n | OFF line 1: binary OFF files are not read
+        4OFF\n1 1 0\n | OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found '4OFF'
+        nOFF\n3\n1 1 0\n | OFF line 1: expected three coordinates a vertex (OFF, COFF, NOFF, STOFF), found 'nOFF'
+        OFF\n | OFF line 2: expected the number of vertices, found the end of the file
+        OFF\nx 1 0\n | OFF line 2: expected the number of vertices, found 'x'
+        OFF\n3 -1 0\n | OFF line 2: expected the number of faces, found '-1'
+        OFF\n3\n | OFF line 2: expected the number of faces, found the end of the line
+        OFF\n5000000000 1 0\n | OFF line 2: expected at most 4294967295 vertices, found 5000000000
+        OFF\n3 1 0\n0 0 0\n1 0 0\n | OFF line 5, vertex 2: expected a finite number for x, found the end of the file";
+    refuses_all(Format::Off, headers, str::to_owned);
+    let vertices = r"
+        0.0 0 0\n1 0 0\n1.25 0.25\n3 0 1 2\n | OFF line 5, vertex 2: expected a finite number for z, found the end of the line
+        0.0 0 0\n1 0 0\n1.25 0.25 nan\n3 0 1 2\n | OFF line 5, vertex 2: expected a finite number for z, found 'nan'";
+    refuses_all(Format::Off, vertices, |body| format!("OFF\n3 2 0\n{body}"));
+    let faces = r"
+        3 0 1 2\n | OFF line 7, face 1: expected the face's number of corners, found the end of the file
+        3 0 1 2\n3 0 1\n | OFF line 7, face 1: expected 3 vertex indices, found the end of the line
+        3 0 1 2\n3 0 1 | OFF line 7, face 1: expected 3 vertex indices, found the end of the file
+        3 0 1 3\n3 0 1 2\n | OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '3'
+        3 0 1 -1\n3 0 1 2\n | OFF line 6, face 0: expected a vertex index below 3 (the number of vertices), found '-1'
+        3 0 1 x\n3 0 1 2\n | OFF line 6, face 0: expected 3 vertex indices, found 'x'
+        -3 0 1 x\n3 0 1 2\n | OFF line 6, face 0: expected the face's number of corners, found '-3'
+        999999999999 0 1 2\n3 0 1 2\n | OFF line 6, face 0: expected 999999999999 vertex indices, found the end of the line";
+    refuses_all(Format::Off, faces, |body| {
+        format!("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n{body}")
+    });
 }
 
 /// Headers that promise billions are refused at once: what they promise would take tens of gigabytes.
 #[test]
 fn counts_beyond_the_file() {
-    let ply = |encoding: &str| {
-        format!(
-            "ply\nformat {encoding} 1.0\nelement vertex 4294967295\n{XYZ}element face 4294967295\n{FACE}end_header\n0 0 0\n"
-        )
-    };
-    let faces = format!(
-        "ply\nformat ascii 1.0\nelement vertex 1\n{XYZ}element face 4294967295\n{FACE}end_header\n0 0 0\n1 0\n"
-    );
-    let skipped = format!(
-        "ply\nformat binary_big_endian 1.0\nelement x 4294967295\n{FACE}element vertex 0\n{XYZ}end_header\n"
-    );
-    refuses(
-        Format::Ply,
-        ply("ascii"),
-        "PLY line 11, vertex 1: expected a number, found the end of the file",
-    );
-    refuses(
-        Format::Ply,
-        ply("binary_big_endian"),
-        "PLY byte 184, vertex 0: expected 4294967295 elements vertex of 12 \
-         bytes each, as line 3 promises, found 6 bytes up to the end of the file",
-    );
-    refuses(
-        Format::Ply,
-        faces,
-        "PLY line 12, face 1: expected an integer, found the end of the file",
-    );
-    refuses(
-        Format::Ply,
-        skipped,
-        "PLY byte 172, x 0: expected 1 bytes from byte 172, found the end of the file",
-    );
+    let most = u32::MAX;
+    let table = r"
+        ascii | element vertex @\n^element face @\n~end_header\n0 0 0\n | PLY line 11, vertex 1: expected a number, found the end of the file
+        binary_big_endian | element vertex @\n^element face @\n~end_header\n0 0 0\n | PLY byte 184, vertex 0: expected @ elements vertex of 12 bytes each, as line 3 promises, found 6 bytes up to the end of the file
+        ascii | element vertex 1\n^element face @\n~end_header\n0 0 0\n1 0\n | PLY line 12, face 1: expected an integer, found the end of the file
+        binary_big_endian | element x @\n~element vertex 0\n^end_header\n | PLY byte 172, x 0: expected 1 bytes from byte 172, found the end of the file";
+    for [encoding, text, message] in cases(&table.replace('@', &most.to_string())) {
+        let text = text.replace('^', XYZ).replace('~', FACE);
+        refuses(
+            Format::Ply,
+            format!("ply\nformat {encoding} 1.0\n{text}"),
+            &message,
+        );
+    }
+    let message = "OFF line 4, vertex 1: expected a finite number for x, found the end of the file";
     refuses(
         Format::Off,
-        "OFF\n4294967295 4294967295 0\n0 0 0\n",
-        "OFF line 4, vertex 1: expected a finite number for x, found the end of the file",
+        format!("OFF\n{most} {most} 0\n0 0 0\n"),
+        message,
     );
 }
 
@@ -563,12 +297,7 @@ fn billions_of_nothing() {
         let text = format!(
             "ply\nformat {encoding} 1.0\nelement x 4294967295\nelement vertex 0\n{XYZ}end_header\n"
         );
-        assert!(
-            read_bytes(text.as_bytes(), Format::Ply)
-                .unwrap()
-                .positions
-                .is_empty()
-        );
+        assert!(read(text, Format::Ply).positions.is_empty());
     }
 }
 
@@ -618,7 +347,11 @@ fn content_under_another_name() {
 #[test]
 fn files_that_cannot_be_read() {
     let folder = tempfile::tempdir().unwrap();
-    let message = |name: &str| read(folder.path().join(name)).unwrap_err().to_string();
+    let message = |name: &str| {
+        limitmesh_io::read(folder.path().join(name))
+            .unwrap_err()
+            .to_string()
+    };
     std::fs::create_dir(folder.path().join("folder.obj")).unwrap();
     std::fs::write(folder.path().join("empty.ply"), b"").unwrap();
     std::fs::write(folder.path().join("ply.obj"), b"ply\n").unwrap();
@@ -646,9 +379,7 @@ fn files_that_cannot_be_read() {
 #[test]
 fn long_and_unprintable_words_are_shortened() {
     let text = format!("v 0 0 \u{7}\u{e9}{}\n", "y".repeat(1000));
-    let message = read_bytes(text.as_bytes(), Format::Obj)
-        .unwrap_err()
-        .to_string();
+    let message = refused(text, Format::Obj);
     assert!(
         message.contains("found '\\u{7}é") || message.contains("found 'é"),
         "{message}"
@@ -666,7 +397,7 @@ fn devices_that_never_end_are_refused() {
             .join("endless")
             .with_extension(format.extension());
         std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-        let error = read(&path).unwrap_err().to_string();
+        let error = limitmesh_io::read(&path).unwrap_err().to_string();
         assert!(
             error.contains("endless") && error.contains("it is a device"),
             "{error}"

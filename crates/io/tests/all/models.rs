@@ -1,20 +1,7 @@
 //! The shared models, read and compared with the counts of their list. Needs the folder in `LIMITMESH_MODELS`.
 
-use limitmesh_io::{Output, WriteOptions, read, write};
-use std::path::PathBuf;
-
-/// The folder, or `None` after saying that the test is skipped.
-fn folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from);
-    if folder.is_none() {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
-    }
-    folder
-}
+use super::support::{output, shared, triangles};
+use limitmesh_io::{WriteOptions, read, write};
 
 /// Stored vertices, faces, creases and corners of each file, from the list that comes with the models. An STL
 /// file stores three vertices a facet.
@@ -57,7 +44,7 @@ const COUNTS: [(&str, usize, usize, usize, usize); 34] = [
 
 #[test]
 fn every_model_has_the_counts_of_the_list() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("") else { return };
     for (name, vertices, faces, creases, corners) in COUNTS {
         let soup = read(folder.join(name)).unwrap_or_else(|error| panic!("{error}"));
         let met = (
@@ -73,7 +60,7 @@ fn every_model_has_the_counts_of_the_list() {
 /// The sharp edges of the files are edges of their faces if tags count from 0, and not if they count from 1.
 #[test]
 fn tags_count_vertices_from_zero() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("") else { return };
     for name in [
         "rook_creased.obj",
         "mechpart_creased.obj",
@@ -101,17 +88,16 @@ fn tags_count_vertices_from_zero() {
         );
     }
     let icosahedra = read(folder.join("loop_icos_semisharp.obj")).unwrap();
-    let corners: Vec<_> = icosahedra
+    let corners = icosahedra
         .corners
         .iter()
-        .map(|tag| (tag.vertex, tag.sharpness))
-        .collect();
-    assert_eq!(corners, [(4, 2.5), (16, 4.5)]);
+        .map(|tag| (tag.vertex, tag.sharpness));
+    assert_eq!(corners.collect::<Vec<_>>(), [(4, 2.5), (16, 4.5)]);
 }
 
 #[test]
 fn polygons_keep_their_sizes() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("") else { return };
     let soup = read(folder.join("fish_cage.obj")).unwrap();
     let of_size = |n| soup.faces.iter().filter(|face| face.len() == n).count();
     assert_eq!([of_size(3), of_size(4), of_size(5)], [8, 100, 4]);
@@ -121,24 +107,27 @@ fn polygons_keep_their_sizes() {
 
 #[test]
 fn damaged_files_say_where() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("") else { return };
     let message = |name: &str| read(folder.join(name)).unwrap_err().to_string();
-    let truncated = message("defects/sphere_truncated.ply");
-    assert!(
-        truncated.contains("sphere_truncated.ply: PLY byte 4411, face "),
-        "{truncated}"
-    );
-    let not_finite = message("defects/inf_nan.obj");
-    assert!(
-        not_finite.contains("OBJ line 1, vertex 0: expected a finite number for x, found 'inf'"),
-        "{not_finite}"
-    );
+    for (name, words) in [
+        (
+            "sphere_truncated.ply",
+            "sphere_truncated.ply: PLY byte 4411, face ",
+        ),
+        (
+            "inf_nan.obj",
+            "OBJ line 1, vertex 0: expected a finite number for x, found 'inf'",
+        ),
+    ] {
+        let said = message(&format!("defects/{name}"));
+        assert!(said.contains(words), "{said}");
+    }
 }
 
 /// What is read is written in every format and read again: equal in all but STL, where it is equal as `f32`.
 #[test]
 fn models_survive_every_format() {
-    let Some(folder) = folder() else { return };
+    let Some(folder) = shared("") else { return };
     let target = tempfile::tempdir().unwrap();
     for name in [
         "skull_low.obj",
@@ -150,11 +139,8 @@ fn models_survive_every_format() {
         // What was left out is not written here, nor what else there is beside the shape.
         soup.left_out.clear();
         soup.channels.clear();
-        let triangles: Vec<[u32; 3]> = soup.faces.iter().map(|f| f.try_into().unwrap()).collect();
-        let output = Output::new(limitmesh::Triangles {
-            positions: &soup.positions,
-            triangles: &triangles,
-        });
+        let triangles = triangles(&soup);
+        let output = output(&soup.positions, &triangles);
         for extension in ["obj", "ply", "off"] {
             let path = target.path().join("copy").with_extension(extension);
             write(&path, &output, &WriteOptions::default()).unwrap();
@@ -166,7 +152,8 @@ fn models_survive_every_format() {
             .faces
             .iter()
             .flatten()
-            .map(|&v| soup.positions[v as usize].map(|x| f64::from(x as f32)));
+            .map(|&v| soup.positions[v as usize]);
+        let corners = corners.map(|p| p.map(|x| f64::from(x as f32)));
         assert!(
             read(&path).unwrap().positions.into_iter().eq(corners),
             "{name} as stl"

@@ -1,21 +1,18 @@
 //! Seams in PLY files: texture coordinates are written where the file had them that they came from, at vertices or at corners.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests fail as the tests do")]
+use super::support::{channel, output, read, text, written};
+use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
+use limitmesh_io::{Format, Property, splits_vertices};
 
-use limitmesh::mesh::{Channel, Domain, Semantic, Storage, Triangles};
-use limitmesh_io::{Format, Output, Property, WriteOptions, read_bytes, splits_vertices, write_to};
-
-/// Two triangles that share an edge.
-const SURFACE: Triangles<'_> = Triangles {
-    positions: &[
-        [0.0, 0.0, 0.0],
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [1.0, 1.0, 0.0],
-        [9.0, 9.0, 9.0],
-    ],
-    triangles: &[[0, 1, 2], [2, 1, 3]],
-};
+/// Two triangles that share an edge, and a vertex of none.
+const POSITIONS: [[f64; 3]; 5] = [
+    [0.0; 3],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [9.0; 3],
+];
+const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [2, 1, 3]];
 
 /// By corner, with a seam at vertex 2 alone: at vertex 1 two values are as good as equal.
 fn textures(name: &str) -> Channel {
@@ -32,18 +29,6 @@ fn textures(name: &str) -> Channel {
         .with(values.concat(), (0..6).collect())
 }
 
-fn written(output: &Output<'_>, ascii: bool) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    write_to(
-        &mut bytes,
-        Format::Ply,
-        output,
-        &WriteOptions::default().ascii(ascii),
-    )
-    .unwrap();
-    bytes
-}
-
 #[test]
 fn vertices_stand_for_each_value_that_files_had_at_vertices() {
     for name in ["s,t", "u,v", "texture_u,texture_v"] {
@@ -55,30 +40,20 @@ fn vertices_stand_for_each_value_that_files_had_at_vertices() {
             .stored(Storage::Byte)
             .with(vec![1.0, 0.0, 0.0, 0.0, 0.0, 1.0], vec![0, 0, 0, 0, 1, 1]);
         let channels = [textures(name), heat, red];
-        assert!(splits_vertices(
-            &channels,
-            SURFACE.triangles,
-            SURFACE.positions.len()
-        ));
-        let normals = [
-            [0.0, 0.0, 1.0],
-            [0.0, 1.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [0.0, 0.0, -1.0],
-            [0.0, -1.0, 0.0],
-        ];
+        assert!(splits_vertices(&channels, &TRIANGLES, POSITIONS.len()));
+        let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let normals = [z, y, x, [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]];
         let (quality, parts) = ([0.5, 1.5, 2.5, 3.5, 4.5], [3, 4, 5, 6, 7]);
         let properties = [
             Property::integers("part", &parts),
             Property::numbers("twice", &quality),
         ];
-        let output = Output::new(SURFACE)
+        let own = output(&POSITIONS, &TRIANGLES)
             .normals(&normals)
-            .quality(&quality)
-            .vertex_properties(&properties);
-        let output = output.channels(&channels);
-        let text = String::from_utf8(written(&output, true)).unwrap();
-        let (header, body) = text.split_once("end_header\n").unwrap();
+            .quality(&quality);
+        let own = own.vertex_properties(&properties).channels(&channels);
+        let file = text(Format::Ply, &own);
+        let (header, body) = file.split_once("end_header\n").unwrap();
         for part in name.split(',') {
             assert!(
                 header.contains(&format!("property float {part}\n")),
@@ -100,11 +75,11 @@ fn vertices_stand_for_each_value_that_files_had_at_vertices() {
         assert_eq!(body, expected);
         // What is read is what was given, corner by corner, in both forms.
         for ascii in [true, false] {
-            let soup = read_bytes(&written(&output, ascii), Format::Ply).unwrap();
-            let own = soup.channels.iter().find(|own| own.name == name).unwrap();
+            let soup = read(written(Format::Ply, &own, ascii), Format::Ply);
+            let found = channel(&soup, name);
             for (corner, &v) in soup.faces.iter().flatten().enumerate() {
-                assert_eq!(own.value(v as usize), channels[0].value(corner));
-                let place = SURFACE.positions[SURFACE.triangles.as_flattened()[corner] as usize];
+                assert_eq!(found.value(v as usize), channels[0].value(corner));
+                let place = POSITIONS[TRIANGLES.as_flattened()[corner] as usize];
                 assert_eq!(soup.positions[v as usize], place);
             }
         }
@@ -112,40 +87,34 @@ fn vertices_stand_for_each_value_that_files_had_at_vertices() {
 }
 
 #[test]
-fn without_seams_vertices_stand_once() {
-    let mut smooth = textures("s,t");
-    smooth.indices[3] = 2;
-    let text = String::from_utf8(written(
-        &Output::new(SURFACE).channels(&[smooth.clone()]),
-        true,
-    ))
-    .unwrap();
-    assert!(
-        text.contains("element vertex 5\n") && text.contains("property float t\n"),
-        "{text}"
-    );
+fn without_seams_vertices_stand_once_and_lists_by_corner_stay_lists() {
+    let smooth = |name: &str| {
+        let mut channel = textures(name);
+        channel.indices[3] = 2;
+        channel
+    };
     assert!(!splits_vertices(
-        &[smooth],
-        SURFACE.triangles,
-        SURFACE.positions.len()
+        &[smooth("s,t")],
+        &TRIANGLES,
+        POSITIONS.len()
     ));
-}
-
-#[test]
-fn lists_by_corner_stay_lists() {
-    let mut smooth = textures("texcoord");
-    smooth.indices[3] = 2;
-    for channel in [textures("texcoord"), smooth] {
-        let text =
-            String::from_utf8(written(&Output::new(SURFACE).channels(&[channel]), true)).unwrap();
-        assert!(
-            text.contains("element vertex 5\n") && !text.contains("property float s\n"),
-            "{text}"
+    for channel in [smooth("s,t"), textures("texcoord"), smooth("texcoord")] {
+        let is_list = channel.name == "texcoord";
+        let file = text(
+            Format::Ply,
+            &output(&POSITIONS, &TRIANGLES).channels(&[channel]),
         );
-        assert!(
-            text.contains("property list uchar float texcoord\n"),
-            "{text}"
+        assert!(file.contains("element vertex 5\n"), "{file}");
+        assert_eq!(file.contains("property float t\n"), !is_list, "{file}");
+        assert_eq!(
+            file.contains("property list uchar float texcoord\n"),
+            is_list,
+            "{file}"
         );
-        assert!(text.contains("\n3 0 1 2 6 0 0 1 0 0 0.5\n"), "{text}");
+        assert_eq!(
+            file.contains("\n3 0 1 2 6 0 0 1 0 0 0.5\n"),
+            is_list,
+            "{file}"
+        );
     }
 }

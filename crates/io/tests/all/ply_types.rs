@@ -1,10 +1,8 @@
 //! PLY files keep the types of what they hold, and the names of their pictures, through reading and writing.
 
-#![allow(clippy::unwrap_used)]
-
-use limitmesh::Triangles;
+use super::support::{self, channel, output, unwritten};
 use limitmesh::mesh::PolygonSoup;
-use limitmesh_io::{Format, Output, WriteOptions, read_bytes, write_to};
+use limitmesh_io::Format;
 
 /// One column of each type there is, at both ends of its range.
 const TYPES: &str = "\
@@ -35,27 +33,12 @@ end_header
 ";
 
 fn read(bytes: &[u8]) -> PolygonSoup {
-    read_bytes(bytes, Format::Ply).unwrap()
+    support::read(bytes, Format::Ply)
 }
 
 fn written(soup: &PolygonSoup, ascii: bool) -> Vec<u8> {
-    let triangles = [[0, 1, 2]];
-    let surface = Triangles {
-        positions: &soup.positions,
-        triangles: &triangles,
-    };
-    let output = Output::new(surface)
-        .channels(&soup.channels)
-        .texture_files(&soup.texture_files);
-    let mut bytes = Vec::new();
-    write_to(
-        &mut bytes,
-        Format::Ply,
-        &output,
-        &WriteOptions::default().ascii(ascii),
-    )
-    .unwrap();
-    bytes
+    let own = output(&soup.positions, &[[0, 1, 2]]).channels(&soup.channels);
+    support::written(Format::Ply, &own.texture_files(&soup.texture_files), ascii)
 }
 
 /// The text comes back to the byte but for the line that names the program; the binary form holds the same.
@@ -70,9 +53,8 @@ fn types_and_pictures_are_kept() {
     let header = binary
         .windows(11)
         .position(|bytes| bytes == b"end_header\n")
-        .unwrap()
-        + 11;
-    assert_eq!(binary.len() - header, 3 * (24 + 26) + 15);
+        .unwrap();
+    assert_eq!(binary.len() - header - 11, 3 * (24 + 26) + 15);
     assert_eq!(written(&read(&binary), true), text.as_bytes());
 }
 
@@ -88,10 +70,9 @@ fn what_a_type_cannot_hold_is_written_as_a_double() {
     for value in [0.5, 256.0, -1.0] {
         soup.channels[place].values[1] = value;
         let text = String::from_utf8(written(&soup, true)).unwrap();
-        assert!(
-            text.contains("property double b\n") && text.contains("property char a\n"),
-            "{text}"
-        );
+        for line in ["property double b\n", "property char a\n"] {
+            assert!(text.contains(line), "{text}");
+        }
         assert_eq!(read(text.as_bytes()).channels[place].values[1], value);
     }
 }
@@ -108,35 +89,19 @@ fn colours_of_two_bytes_are_kept() {
     let text = text.replace("-128 0 -32768 0", "0 7 65535 0");
     let text = text.replace("127 255 32767 65535", "127 255 32767 0");
     let soup = read(text.as_bytes());
-    let colour = soup
-        .channels
-        .iter()
-        .find(|channel| channel.name == "red,green,blue")
-        .unwrap();
+    let colour = channel(&soup, "red,green,blue");
     assert_eq!(colour.values[..3], [0.0, 7.0 / 65535.0, 1.0]);
     let again = String::from_utf8(written(&soup, true)).unwrap();
-    assert!(
-        again.contains("property ushort green\n") && again.contains("0 7 65535"),
-        "{again}"
-    );
+    for line in ["property ushort green\n", "0 7 65535"] {
+        assert!(again.contains(line), "{again}");
+    }
 }
 
 /// A name with a line break would be a line of the header.
 #[test]
 fn names_of_pictures_with_line_breaks_are_refused() {
-    let mut soup = read(TYPES.as_bytes());
-    soup.texture_files = vec!["a\nelement face 7".to_owned()];
-    let surface = Triangles {
-        positions: &soup.positions,
-        triangles: &[[0, 1, 2]],
-    };
-    let output = Output::new(surface).texture_files(&soup.texture_files);
-    let error = write_to(
-        &mut Vec::new(),
-        Format::Ply,
-        &output,
-        &WriteOptions::default(),
-    )
-    .unwrap_err();
-    assert!(error.to_string().contains("line break"), "{error}");
+    let soup = read(TYPES.as_bytes());
+    let names = ["a\nelement face 7".to_owned()];
+    let own = output(&soup.positions, &[[0, 1, 2]]).texture_files(&names);
+    assert!(unwritten(Format::Ply, &own).contains("line break"));
 }

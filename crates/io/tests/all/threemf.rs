@@ -1,12 +1,10 @@
 //! 3MF packages: what is read of them, that nothing but triangles changes, and what is refused; witnesses are archives and texts put
 //! together and taken apart here.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
-
-use std::io::{Cursor, Read, Write};
-
+use super::support::{cases, output, read, refused, triangles, written};
 use limitmesh_io::threemf::{LengthUnit, NewTriangles, Source};
-use limitmesh_io::{Format, Output, Package, WriteOptions, read_bytes, write_to};
+use limitmesh_io::{Format, Package, read_bytes};
+use std::io::{Cursor, Read, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -19,12 +17,8 @@ fn archive(parts: &[(&str, &[u8])]) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     for (i, (name, bytes)) in parts.iter().enumerate() {
         let method = [CompressionMethod::Deflated, CompressionMethod::Stored][i % 2];
-        writer
-            .start_file(
-                *name,
-                SimpleFileOptions::default().compression_method(method),
-            )
-            .unwrap();
+        let options = SimpleFileOptions::default().compression_method(method);
+        writer.start_file(*name, options).unwrap();
         writer.write_all(bytes).unwrap();
     }
     writer.finish().unwrap().into_inner()
@@ -75,13 +69,10 @@ fn values(text: &str, tag: &str, key: &str) -> Vec<String> {
     let tags = text
         .split('<')
         .filter(|own| own.starts_with(&format!("{tag} ")));
-    let value = |own: &str| {
-        let found = own.split_once(&format!(" {key}=\""));
-        found.map_or_else(String::new, |(_, rest)| {
-            rest.split('"').next().unwrap().to_owned()
-        })
-    };
-    tags.map(value).collect()
+    let rest = |own: &str| Some(own.split_once(&format!(" {key}=\""))?.1.to_owned());
+    let value = |rest: String| rest.split('"').next().unwrap().to_owned();
+    tags.map(|own| rest(own).map_or_else(String::new, value))
+        .collect()
 }
 
 /// A tetrahedron's vertices and triangles, the first with `first` in its tag.
@@ -127,7 +118,7 @@ fn what_is_built_is_read() {
         (3, 0)
     );
     assert_eq!((contents.items, contents.assemblies), (2, 1));
-    let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
+    let soup = read(&bytes, Format::ThreeMf);
     assert_eq!((soup.positions.len(), soup.faces.len()), (12, 12));
     // The last vertex, (-0.5, 0, 3): as it is scaled, then turned about z, moved and scaled, then as it is.
     assert_eq!(soup.positions[3], [-1.0, 0.0, 109.0]);
@@ -275,25 +266,10 @@ fn objects_of_other_parts_are_found() {
 #[test]
 fn triangles_become_packages() {
     let positions = [[0.1, 0.2, 0.3], [1e-300, -2.0, 1e21], [3.0, 4.0, 5.0]];
-    let triangles = [[0, 1, 2]];
-    let output = Output::new(limitmesh::mesh::Triangles {
-        positions: &positions,
-        triangles: &triangles,
-    });
-    let write = || {
-        let mut bytes = Vec::new();
-        write_to(
-            &mut bytes,
-            Format::ThreeMf,
-            &output,
-            &WriteOptions::default(),
-        )
-        .unwrap();
-        bytes
-    };
+    let write = || written(Format::ThreeMf, &output(&positions, &[[0, 1, 2]]), false);
     let bytes = write();
     assert_eq!(bytes, write());
-    let soup = read_bytes(&bytes, Format::ThreeMf).unwrap();
+    let soup = read(&bytes, Format::ThreeMf);
     assert_eq!(
         (soup.positions.as_slice(), soup.faces.len()),
         (&positions[..], 1)
@@ -302,14 +278,6 @@ fn triangles_become_packages() {
         values(&text(&bytes, "3D/3dmodel.model"), "vertex", "z")[1],
         "1e+21"
     );
-}
-
-/// What a package with this model is refused with.
-fn refused(bytes: Vec<u8>) -> String {
-    match read_bytes(&bytes, Format::ThreeMf) {
-        Ok(_) => panic!("it was read"),
-        Err(error) => error.to_string(),
-    }
 }
 
 #[test]
@@ -322,115 +290,63 @@ fn flaws_name_their_place() {
         )
     };
     let whole = object(&mesh);
-    let cases: [(String, &str); 24] = [
-        (
-            object(&mesh.replace("v3=\"1\"/>", "v3=\"9\"/>")),
-            "line 10, column 5, object 1: expected a vertex below 4 (their number so far), found v3='9'",
-        ),
-        (
-            object(&mesh.replace("v3=\"1\"/>", "/>")),
-            "object 1: v3 is missing: expected a vertex below 4",
-        ),
-        (
-            object(&mesh.replace("v3=\"1\"/>", "v3=\"-1\"/>")),
-            "found v3='-1'",
-        ),
-        (
-            object(&mesh.replace("y=\"+2\"", "y=\"2m\"")),
-            "line 7, column 35, object 1: expected a finite number, found y='2m'",
-        ),
-        (
-            object(&mesh.replace("y=\"+2\"", "y=\"1e999\"")),
-            "found y='1e999'",
-        ),
-        (
-            object(&mesh.replace("y=\"+2\"", "y=\"NaN\"")),
-            "found y='NaN'",
-        ),
-        (
-            object(&mesh.replace("</triangles>", "</triangle>")),
-            "not well-formed XML",
-        ),
-        (whole.replace("</model>", ""), "3D/3dmodel.model"),
-        (
-            whole.replace("\"inch\"", "\"furlong\""),
-            "the unit 'furlong' is unknown; known are micron, millimeter",
-        ),
-        (whole.replace("</model>", "</modell>"), "well-formed XML"),
-        (
-            whole.replace("model", "modell"),
-            "expected one element model, found the element modell",
-        ),
+    // What is replaced by what, and what is said of it.
+    let table = r#"
+        v3="1"/> | v3="9"/> | line 10, column 5, object 1: expected a vertex below 4 (their number so far), found v3='9'
+        v3="1"/> | /> | object 1: v3 is missing: expected a vertex below 4
+        v3="1"/> | v3="-1"/> | found v3='-1'
+        y="+2" | y="2m" | line 7, column 35, object 1: expected a finite number, found y='2m'
+        y="+2" | y="1e999" | found y='1e999'
+        y="+2" | y="NaN" | found y='NaN'
+        </triangles> | </triangle> | not well-formed XML
+        </model> |  | 3D/3dmodel.model
+        "inch" | "furlong" | the unit 'furlong' is unknown; known are micron, millimeter
+        </model> | </modell> | well-formed XML
+        model | modell | expected one element model, found the element modell
+        <!-- kept --> | <!DOCTYPE x [<!ENTITY y "z">]> | 3MF allows no document type
+        objectid="1" | objectid="2" | there is no object 2
+        objectid="1" | objectid="1" q:path="/x.model" | there is no object 1 of /x.model
+        objectid="1" | objectid="one" | expected a whole number, found objectid='one'
+        objectid="1" | objectid="1" transform="1 0 0" | expected twelve finite numbers
+        objectid="1" | objectid="1" transform="1 0 0 0 1 0 0 0 1 0 0 inf" | twelve finite numbers
+        <object id="1" | <object | id is missing: expected a whole number
+        </object> | </object><object id="1"/> | there is a second object 1
+        </mesh> | </mesh><mesh></mesh> | the object has a second mesh
+        </mesh> | <triangles/></mesh> | the mesh has a second list of triangles"#;
+    let replaced = cases(table).into_iter();
+    let replaced = replaced.map(|[from, to, words]| (whole.replace(&from, &to), words));
+    let used = |id: usize| format!("<component objectid=\"{id}\"/>");
+    let own = format!(
+        "<object id=\"1\"><components>{}</components></object>",
+        used(1)
+    );
+    let doubled = (2..40).fold("<object id=\"1\"/>".to_owned(), |all, id| {
+        let own = used(id - 1).repeat(2);
+        format!("{all}<object id=\"{id}\"><components>{own}</components></object>")
+    });
+    let others = [
         (String::new(), "it has no element model"),
         (
-            whole.replace("<!-- kept -->", "<!DOCTYPE x [<!ENTITY y \"z\">]>"),
-            "3MF allows no document type",
-        ),
-        (
-            whole.replace("objectid=\"1\"", "objectid=\"2\""),
-            "there is no object 2",
-        ),
-        (
-            whole.replace("objectid=\"1\"", "objectid=\"1\" q:path=\"/x.model\""),
-            "there is no object 1 of /x.model",
-        ),
-        (
-            whole.replace("objectid=\"1\"", "objectid=\"one\""),
-            "expected a whole number, found objectid='one'",
-        ),
-        (
-            whole.replace("objectid=\"1\"", "objectid=\"1\" transform=\"1 0 0\""),
-            "expected twelve finite numbers",
-        ),
-        (
-            whole.replace(
-                "objectid=\"1\"",
-                "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 inf\"",
-            ),
-            "twelve finite numbers",
-        ),
-        (
-            whole.replace("<object id=\"1\"", "<object"),
-            "id is missing: expected a whole number",
-        ),
-        (
-            whole.replace("</object>", "</object><object id=\"1\"/>"),
-            "there is a second object 1",
-        ),
-        (
-            object(&format!("{mesh}{mesh}")),
-            "the object has a second mesh",
-        ),
-        (
-            object(&mesh.replace("</mesh>", "<triangles/></mesh>")),
-            "the mesh has a second list of triangles",
-        ),
-        (
-            model(
-                "<object id=\"1\"><components><component objectid=\"1\"/></components></object>",
-                "<item objectid=\"1\"/>",
-            ),
+            model(&own, "<item objectid=\"1\"/>"),
             "more than 64 components are within each other",
         ),
         (
-            model(
-                &(2..40).fold("<object id=\"1\"/>".to_owned(), |all, id| {
-                    let own = format!("<component objectid=\"{}\"/>", id - 1).repeat(2);
-                    format!("{all}<object id=\"{id}\"><components>{own}</components></object>")
-                }),
-                "<item objectid=\"39\"/>",
-            ),
+            model(&doubled, "<item objectid=\"39\"/>"),
             "with all components there are more than 1000000 objects",
         ),
     ];
-    for (model, words) in cases {
-        let said = refused(package(&model, &[]));
-        assert!(
-            said.contains(words) && said.contains("3MF 3D/3dmodel.model"),
-            "{said}\nwithout\n{words}"
-        );
+    let others = others.map(|(model, words)| (model, words.to_owned()));
+    for (model, words) in replaced.chain(others) {
+        let said = refused(package(&model, &[]), Format::ThreeMf);
+        let is_said = said.contains(&words) && said.contains("3MF 3D/3dmodel.model");
+        assert!(is_said, "{said}\nwithout\n{words}");
     }
     let rels = |text: &str| archive(&[("_rels/.rels", text.as_bytes())]);
+    let broken = package("\u{fffd}", &[]);
+    let broken = broken
+        .iter()
+        .map(|&b| if b == 0xBF { 0xFF } else { b })
+        .collect();
     for (bytes, words) in [
         (
             b"PK\x03\x04 and no more".to_vec(),
@@ -454,15 +370,9 @@ fn flaws_name_their_place() {
             "named as 3MF, but the content looks like",
         ),
         (Vec::new(), "the file is empty"),
-        (
-            package("\u{fffd}", &[])
-                .iter()
-                .map(|&b| if b == 0xBF { 0xFF } else { b })
-                .collect(),
-            "it cannot be unpacked",
-        ),
+        (broken, "it cannot be unpacked"),
     ] {
-        let said = refused(bytes);
+        let said = refused(bytes, Format::ThreeMf);
         assert!(said.contains(words), "{said}\nwithout\n{words}");
     }
 }
@@ -481,7 +391,7 @@ fn packages_that_swell_are_refused() {
     (0..64).for_each(|_| writer.write_all(&blanks).unwrap());
     let bytes = writer.finish().unwrap().into_inner();
     let most = ((100 * bytes.len()) >> 20) + 32;
-    let said = refused(bytes);
+    let said = refused(bytes, Format::ThreeMf);
     let expected = format!("3D/3dmodel.model: with this part the models have more than {most} MiB");
     assert!(said.contains(&expected), "{said}");
 }
@@ -517,21 +427,21 @@ fn damaged_packages_are_errors_or_meshes() {
         "<vertices>",
         "9999999999",
         "-",
-        "\u{feff}",
-        "<triangles/>",
     ];
+    let marks = [&marks[..], &["\u{feff}", "<triangles/>"]].concat();
+    let boundary = |text: &str, at: usize| {
+        (0..=at)
+            .rev()
+            .find(|&at| text.is_char_boundary(at))
+            .unwrap()
+    };
     let mut read = 0;
     for _ in 0..4000 {
         let mut text = whole.clone();
         for _ in 0..1 + random(3) {
-            let at = (0..)
-                .map(|_| random(text.len()))
-                .find(|&at| text.is_char_boundary(at))
-                .unwrap();
-            let end = (at..=(at + random(20)).min(text.len()))
-                .rev()
-                .find(|&end| text.is_char_boundary(end))
-                .unwrap();
+            let (at, length) = (random(text.len()), random(20));
+            let at = boundary(&text, at);
+            let end = boundary(&text, (at + length).min(text.len()));
             text.replace_range(at..end, marks[random(marks.len())]);
         }
         let bytes = package(&text, &[("Metadata/Slic3r_PE_model.config", config)]);
@@ -546,12 +456,7 @@ fn damaged_packages_are_errors_or_meshes() {
         );
         for object in 0..package.object_count() {
             let own = package.object(object, true);
-            let triangles: Vec<[u32; 3]> = own
-                .soup
-                .faces
-                .iter()
-                .map(|face| face.try_into().unwrap())
-                .collect();
+            let triangles = triangles(&own.soup);
             let centre = Some([[0.4, 0.3, 0.3], [0.3, 0.4, 0.3], [0.3, 0.3, 0.4]]);
             let source = |face: usize| Source {
                 face,

@@ -33,7 +33,7 @@ fn written(
 ) -> Result<(tempfile::TempDir, PathBuf), WriteError> {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("levels.glb");
-    write_levels(&path, Format::Glb, ("square", levels), of, None).map(|()| (folder, path))
+    write_levels(&path, Format::Glb, "square", levels, of, None).map(|()| (folder, path))
 }
 
 #[track_caller]
@@ -56,7 +56,7 @@ fn what_does_not_fit_together_is_refused() {
     });
     assert_eq!(
         complaint(DetailLevel::new(beyond)),
-        "triangle 0 names vertex 4, but there are 4 vertices"
+        "triangle 0 names vertex 4, but there are 4"
     );
     assert!(
         complaint(DetailLevel::new(square().normals(&UP[1..])))
