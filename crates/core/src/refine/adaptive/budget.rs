@@ -28,8 +28,9 @@ const NEAR: f64 = 1.01;
 /// Once hardly anything is left of the budget, the value is at most so many times one that does not fit.
 const PROMISED: f64 = 1.04;
 
-/// The part of the budget that is aimed at.
+/// The part of the budget that is aimed at, or of what undivided faces leave of it.
 const AIM: f64 = 0.99;
+const AIM_OF_ROOM: f64 = 0.9;
 
 /// Results beyond the budget are counted up to so many more triangles (one in so many): then the next guess is better.
 const COUNTED_BEYOND: usize = 2;
@@ -229,7 +230,7 @@ impl<'e, 'a> Search<'e, 'a> {
         if self.engine.control.criteria.is_some() {
             return Ok(None);
         }
-        let expected = heights::expected(self.engine, AIM * self.most as f64)?;
+        let expected = heights::expected(self.engine, self.aim())?;
         Ok(expected.filter(|&value| {
             value < self.high.value && self.low.is_none_or(|low| value > low.value)
         }))
@@ -237,7 +238,7 @@ impl<'e, 'a> Search<'e, 'a> {
 
     /// The value that is tried next.
     fn next(&mut self) -> f64 {
-        let wanted = self.divided(AIM * self.most as f64);
+        let wanted = self.divided(self.aim());
         let high = self.high;
         let Some(low) = self.low else {
             let times = (wanted / self.divided(high.triangles)).powf(1.0 / self.power);
@@ -255,9 +256,15 @@ impl<'e, 'a> Search<'e, 'a> {
         high.value * (-span * down).exp()
     }
 
+    /// The number of triangles that is aimed at.
+    fn aim(&self) -> f64 {
+        let most = self.most as f64;
+        (AIM * most).max(self.undivided + AIM_OF_ROOM * (most - self.undivided))
+    }
+
     /// Triangles beyond those of undivided faces.
     fn divided(&self, triangles: f64) -> f64 {
-        (triangles - self.undivided).max(0.02 * self.undivided)
+        (triangles - self.undivided).max(1.0)
     }
 }
 
