@@ -133,13 +133,11 @@ pub(super) fn write(
         if refused.is_empty() {
             output::write_file(path, &bytes)?;
             let why = match within > upper {
-                true => {
-                    ": more than is certified, since a search over several triangles is in no proof"
-                }
+                true => " (less is certified, by a search that no proof holds)",
                 false => "",
             };
             let note = format!(
-                "{}: proves {}{why}, as limitmesh-check confirms",
+                "{}: proves {}, as limitmesh-check confirms{why}",
                 path.display(),
                 upper_bound(within)
             );
