@@ -16,7 +16,7 @@ vertices of RESULT come from. Where it holds the control mesh, CONTROL may be le
 Meshes are OBJ, OFF or PLY files of triangles.
 
   --at LENGTH          checks another length than that of the proof, in the unit of the meshes
-  --control FILE.obj   writes the control mesh that the proof holds, to be looked at
+  --control FILE.obj   writes the control mesh that the proof holds into a new file
   --version
 
 Exit code: 0 confirmed, 1 refused, 2 unreadable.";
@@ -44,6 +44,13 @@ fn obj(mesh: &Mesh) -> String {
     text
 }
 
+/// Writes a file that is not there yet, whole or not at all.
+fn write_new(file: &str, text: &str) -> std::io::Result<()> {
+    let mut new = std::fs::File::create_new(file)?;
+    let written = new.write_all(text.as_bytes());
+    written.inspect_err(|_| _ = std::fs::remove_file(file))
+}
+
 fn run() -> Result<(bool, String), String> {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
     match words.first().map(String::as_str) {
@@ -59,7 +66,7 @@ fn run() -> Result<(bool, String), String> {
     let at = taken(&mut words, "--at")?;
     let number = |at: String| {
         at.parse()
-            .map_err(|_| format!("--at {at}: no number, which has no unit"))
+            .map_err(|_| format!("--at {at}: not a number; lengths are in the unit of the meshes"))
     };
     let at = at.map(number).transpose()?;
     let shown = taken(&mut words, "--control")?;
@@ -82,12 +89,21 @@ fn run() -> Result<(bool, String), String> {
             ));
         }
     };
-    if let Some(file) = shown {
-        std::fs::write(&file, obj(&control)).map_err(|error| format!("{file}: {error}"))?;
-    }
     let within = at.unwrap_or(proof.within);
     let refused = verdict::refused(&control, &result, &proof, within)
         .map_err(|what| format!("{name}: {what}"))?;
+    // By now it is known that the proof is about this mesh.
+    match (shown, &proof.held) {
+        (Some(file), Some(held)) => {
+            write_new(&file, &obj(held)).map_err(|error| format!("{file}: {error}"))?;
+        }
+        (Some(_), None) => {
+            return Err(format!(
+                "{name} holds no control mesh that --control could write"
+            ));
+        }
+        (None, _) => {}
+    }
     let [triangles, faces] = [&result, &control].map(|mesh| mesh.triangles.len());
     let mut text = match refused.len() {
         0 => format!(
@@ -103,7 +119,7 @@ fn run() -> Result<(bool, String), String> {
         .for_each(|(t, what)| text += &format!("\n  triangle {t} {what}"));
     if refused.len() > NAMED {
         text += &format!(
-            "\n  and {} more; the first triangle is triangle 0",
+            "\n  and {} more (triangles are counted from 0)",
             refused.len() - NAMED
         );
     }

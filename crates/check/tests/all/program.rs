@@ -20,6 +20,32 @@ fn obj(mesh: &Mesh) -> String {
     vertices.chain(faces).collect()
 }
 
+/// A proof with a control mesh in the place of the two zeros that say that it holds none.
+fn holding(control: &Mesh, proof: &[u8]) -> Vec<u8> {
+    let head = proof
+        .windows(5)
+        .position(|window| window == b"\nend\n")
+        .unwrap()
+        + 5;
+    // Numbers below 128 are one byte.
+    let mut held = vec![control.positions.len() as u8, control.triangles.len() as u8];
+    held.extend(
+        control
+            .positions
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_le_bytes()),
+    );
+    held.extend(
+        control
+            .triangles
+            .iter()
+            .flatten()
+            .flat_map(|v| v.to_le_bytes()),
+    );
+    [&proof[..head], &held, &proof[head + 2..]].concat()
+}
+
 /// Runs the program in a folder; its exit code and what it says.
 fn run(folder: &PathBuf, words: &[&str]) -> (Option<i32>, String) {
     let ran = Command::new(env!("CARGO_BIN_EXE_limitmesh-check"))
@@ -73,7 +99,7 @@ fn three_files_are_confirmed_or_refused() {
         (&["control.obj"], "usage"),
         (
             &["control.obj", "result.obj", "result.proof", "--at", "x"],
-            "no number",
+            "not a number",
         ),
         (
             &["control.obj", "result.obj", "result.proof", "--at", "0"],
@@ -94,8 +120,21 @@ fn three_files_are_confirmed_or_refused() {
             "{words:?}: {code:?}, {said}"
         );
     }
-    // The control mesh can be looked at, and is the same then.
+    // A control mesh that the proof holds can be looked at, in a file that was not there before.
     let (code, said) = run(&folder, &[&files[..], &["--control", "shown.obj"]].concat());
+    assert!(
+        code == Some(2) && said.contains("holds no control mesh"),
+        "{said}"
+    );
+    write("held.proof", &holding(&cage.control, &cage.proof(within)));
+    let held = ["result.obj", "held.proof", "--control"];
+    let (code, said) = run(&folder, &[&held[..], &["result.obj"]].concat());
+    assert!(code == Some(2) && said.contains("result.obj: "), "{said}");
+    assert_eq!(
+        std::fs::read(folder.join("result.obj")).unwrap(),
+        obj(&cage.mesh).as_bytes()
+    );
+    let (code, said) = run(&folder, &[&held[..], &["shown.obj"]].concat());
     assert_eq!(code, Some(0), "{said}");
     let shown = limitmesh_check::read::mesh(
         "shown.obj",

@@ -73,14 +73,12 @@ pub(super) fn write(path: &Path, refined: &mut Refined, task: &Task<'_>) -> anyh
             if let Some(error) = &mut refined.report.error {
                 error.proven = Some(within).filter(|&within| error.upper != Some(within));
                 let why = match error.proven {
-                    Some(_) => {
-                        ": more than is certified, since a search over several triangles is in no proof"
-                    }
+                    Some(_) => " (less is certified, by a search that no proof holds)",
                     None => "",
                 };
                 let (path, within) = (path.display(), upper_bound(within));
                 task.progress.note(format!(
-                    "{path}: proves {within}{why}, as limitmesh-check confirms"
+                    "{path}: proves {within}, as limitmesh-check confirms{why}"
                 ));
             }
         }
