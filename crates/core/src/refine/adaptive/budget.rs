@@ -218,7 +218,7 @@ impl<'e, 'a> Search<'e, 'a> {
                     value,
                     triangles: found.state.triangles as f64,
                 };
-                (self.best, self.low) = (found, None);
+                (self.best, self.low) = (found, self.low.filter(|low| low.value < value));
                 return Ok(());
             }
         }
