@@ -16,6 +16,7 @@ use super::neighbours::sharp_edges;
 use super::quadtree::{self, Edges, Place};
 use super::state::State;
 use super::{Engine, sides};
+use crate::index::VertexId;
 use crate::parallel;
 use crate::progress::{Cancelled, Stage};
 use crate::refine::RefineError;
@@ -26,6 +27,9 @@ const SURELY: f64 = 1.5;
 
 /// Distances at irregular vertices fall by this part each time at least.
 const HALVED: f64 = 0.5;
+
+/// Edges at a vertex around which distances fall by a quarter each time.
+const REGULAR: u32 = 6;
 
 /// What fails by more times than this says nothing of those below it.
 const MOST_TIMES: f64 = 64.0;
@@ -268,19 +272,19 @@ impl Engine<'_> {
             let is_all = bulges.keep(face, &mut found, emission) || is_other;
             state.measured[face as usize].replace(found, is_all);
         })?;
-        if self.trusts() {
-            self.distrust(state, emission)?;
-        }
         // What cannot be balanced was not measured.
         let mut failing = if is_alone {
             bulges.failing()
         } else {
             Vec::new()
         };
-        watch.each(&mut state.measured, |face| {
-            failing.append(&mut face.failing)
-        })?;
         state.bulges = bulges;
+        state.take_failing(&mut failing, watch)?;
+        // Triangles that fail may be why others keep less than is assumed of them; they are divided first.
+        if failing.is_empty() && self.trusts() {
+            self.distrust(state, emission)?;
+            state.take_failing(&mut failing, watch)?;
+        }
         Ok(failing)
     }
 
@@ -351,14 +355,10 @@ impl Engine<'_> {
             };
             is_split |= self.split_below(state, place, levels, dirty)?;
         }
-        if self.is_balanced && has_heights {
+        if has_heights {
             for &(place, value) in failing {
-                is_split |= self.split_towards_corner(
-                    state,
-                    place,
-                    value / goal.allowed(place.face),
-                    dirty,
-                )?;
+                let times = value / goal.allowed(place.face);
+                is_split |= self.split_towards_corner(state, place, times, dirty)?;
             }
         }
         Ok(is_split)
@@ -412,6 +412,11 @@ impl Engine<'_> {
         else {
             return Ok(false);
         };
+        let vertex = VertexId(self.control.mesh.triangles()[place.face as usize][child]);
+        let (valence, _) = self.control.mesh.topology().valence_and_openness(vertex);
+        if !self.is_balanced && valence <= REGULAR {
+            return Ok(false);
+        }
         let mut is_split = false;
         let mut left = if times <= MOST_TIMES {
             HALVED * times

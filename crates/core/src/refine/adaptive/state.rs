@@ -11,7 +11,7 @@ use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::{Allowance, Extent, Goal};
 use super::measured::Measured;
-use super::quadtree::{Piece, Trees};
+use super::quadtree::{Piece, Place, Trees};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -97,6 +97,15 @@ impl State {
         (0..self.faces())
             .map(|face| self.worst_of(face))
             .fold(0.0, f64::max)
+    }
+
+    /// Moves the leaves that fail to a list.
+    pub(super) fn take_failing(
+        &mut self,
+        failing: &mut Vec<(Place, f64)>,
+        watch: &SharedWatch<'_>,
+    ) -> Result<(), Cancelled> {
+        watch.each(&mut self.measured, |face| failing.append(&mut face.failing))
     }
 
     /// The greatest value of a triangle of a control face.
