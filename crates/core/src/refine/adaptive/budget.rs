@@ -1,10 +1,8 @@
 //! The finest mesh that a number of triangles allows: the least value whose result fits.
 //!
 //! Each value has a result of its own, the same that a tolerance would have, so that a number of
-//! triangles proves what a tolerance proves with as many. Counts follow a power of the value; the search narrows what is left between one
-//! that fits and one that does not. A small budget is then spent to the last face.
-
-mod heights;
+//! triangles proves what a tolerance proves with as many. The first is found by guesses, of which nothing is verified; the
+//! search then narrows what is left between one that fits and one that does not. A small budget is then spent to the last face.
 
 use super::Engine;
 use super::judge::Goal;
@@ -14,8 +12,9 @@ use crate::mesh::MeshError;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
 
-/// Values that are tried.
+/// Values that are verified, and those whose triangles are guessed before.
 const MOST_TRIES: usize = 16;
+const MOST_GUESSES: usize = 8;
 
 /// The part of the budget that may be left (one in so many), that of what undivided faces leave of it, and fewer triangles than this in any case.
 const LEFT: usize = 32;
@@ -25,28 +24,25 @@ const LEFT_AT_LEAST: usize = 12;
 /// Values nearer to each other than this, as a ratio, are as good as each other: bounds are within some per cent of the truth.
 const NEAR: f64 = 1.01;
 
-/// Once hardly anything is left of the budget, the value is at most so many times one that does not fit.
-const PROMISED: f64 = 1.04;
-
 /// The part of the budget that is aimed at, or of what undivided faces leave of it.
-const AIM: f64 = 0.99;
+const AIM: f64 = 0.985;
 const AIM_OF_ROOM: f64 = 0.9;
 
-/// Results beyond the budget are counted up to so many more triangles (one in so many): then the next guess is better.
+/// A guess that is off what is aimed at by no more than this part of it is good enough.
+const AIMED: f64 = 0.02;
+
+/// Results beyond the budget are counted up to so many more triangles (one in so many), guesses up to so many times as many.
 const COUNTED_BEYOND: usize = 2;
+const GUESSED_BEYOND: usize = 4;
 
 /// What has more triangles than could be counted has about so many times the budget.
 const UNCOUNTED: f64 = 2.0;
 
-/// Powers of the reciprocal of the value with which triangles grow.
-const POWERS: (f64, f64) = (0.4, 3.0);
+/// What is verified has about so many triangles for each that was guessed.
+const FOR_A_GUESS: f64 = 1.05;
 
-/// From one value to the next they fall by so many times at least, and at most.
-const LEAST_APART: f64 = 1.1;
+/// From one value to the next they change by so many times at most.
 const MOST_APART: f64 = 16.0;
-
-/// Of the ends between which is looked further a guess keeps away by this part of what lies between, as a logarithm.
-const AWAY: f64 = 0.1;
 
 /// What fails so many times over is as bad as any that has no number.
 const COARSEST: f64 = 1e12;
@@ -54,19 +50,19 @@ const COARSEST: f64 = 1e12;
 /// Faces are divided evenly only where that takes all of the budget but for so many triangles (one in so many).
 const NEARLY_ALL: usize = 16;
 
-/// Values below what fits, as ratios, that are tried for small budgets.
-const EVENER: [f64; 2] = [1.16, 1.08];
-
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
 
+/// Triangles that a face takes on which some of the budget is spent, at most on the average.
+const FOR_A_FACE: usize = 2;
+
 /// Results that are made to spend what is left.
-const MOST_FILLS: usize = 6;
+const MOST_FILLS: usize = 3;
 
 /// Faces on which that is spent come within a value that is less by this at least: a difference that takes triangles.
 const FILLED_APART: f64 = 1.1;
 
-/// A value, and how many triangles its result has.
+/// A value, and how many triangles it takes.
 #[derive(Clone, Copy)]
 struct Tried {
     value: f64,
@@ -87,18 +83,13 @@ pub(super) fn search(
     }
     let mut search = Search::new(engine, floor, most)?;
     search.narrow()?;
-    search.even_out()?;
-    let Search {
-        best, high, low, ..
-    } = search;
-    let less = low
-        .map_or(0.0, |low| low.value)
-        .min(high.value / FILLED_APART)
+    let less = (search.between.high / FILLED_APART)
+        .min(search.between.low)
         .max(floor);
-    let best = if most < EXACT && less > 0.0 {
-        fill(engine, best, high.value, less, most)?
+    let best = if search.is_full() || most >= EXACT || less == 0.0 {
+        search.best
     } else {
-        best
+        fill(engine, search.best, search.between.high, less, most)?
     };
     Ok((best, cap))
 }
@@ -114,20 +105,53 @@ pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Verified>,
     engine.verified(State::even(goal, faces, levels)?, most)
 }
 
+/// The values between which a number of triangles is looked for.
+#[derive(Clone)]
+struct Between {
+    /// The triangles of undivided faces.
+    undivided: f64,
+    /// The least value with few enough triangles; the greatest with too many, 0 where there is none.
+    high: f64,
+    low: f64,
+    last: Tried,
+}
+
+impl Between {
+    /// The value that is tried next for so many triangles: triangles grow like the reciprocal of the value, about.
+    fn next(&self, aim: f64) -> f64 {
+        let divided = |triangles: f64| (triangles - self.undivided).max(1.0);
+        let times = divided(aim) / divided(self.last.triangles);
+        let value = self.last.value / times.clamp(1.0 / MOST_APART, MOST_APART);
+        if self.holds(value) {
+            value
+        } else {
+            (self.high * self.low).sqrt()
+        }
+    }
+
+    fn holds(&self, value: f64) -> bool {
+        self.low < value && value < self.high
+    }
+
+    /// Takes what a value gives.
+    fn take(&mut self, tried: Tried, fits: bool) {
+        self.last = tried;
+        match fits {
+            true => self.high = tried.value,
+            false => self.low = tried.value,
+        }
+    }
+}
+
 /// The narrowing of values to the least one that fits.
 struct Search<'e, 'a> {
     engine: &'e Engine<'a>,
     most: usize,
-    undivided: f64,
-    floor: f64,
-    /// The least value whose result fits, and that.
-    high: Tried,
+    between: Between,
+    /// What the least value that fits gives.
     best: Verified,
-    /// The greatest value whose result does not.
-    low: Option<Tried>,
     /// Below this no value makes a difference.
     least: f64,
-    power: f64,
 }
 
 impl<'e, 'a> Search<'e, 'a> {
@@ -149,122 +173,81 @@ impl<'e, 'a> Search<'e, 'a> {
             COARSEST
         };
         let triangles = best.state.triangles as f64;
-        let low = (floor > 0.0).then_some(Tried {
-            value: floor,
-            triangles: UNCOUNTED * most as f64,
-        });
         let rounding = if has_criteria { 0.0 } else { engine.rounding };
+        let between = Between {
+            undivided: triangles,
+            high: value,
+            low: floor,
+            last: Tried { value, triangles },
+        };
         Ok(Self {
             engine,
             most,
-            undivided: triangles,
-            floor,
-            high: Tried { value, triangles },
+            between,
             best,
-            low,
             least: rounding.max(f64::MIN_POSITIVE),
-            power: 1.0,
         })
     }
 
     fn narrow(&mut self) -> Result<(), RefineError> {
-        let room = self.most.saturating_sub(self.undivided as usize);
-        let left = (self.most / LEFT)
-            .min(room / LEFT_OF_ROOM)
-            .max(LEFT_AT_LEAST);
-        let enough = self.most.saturating_sub(left);
-        let mut first = self.first()?;
-        for _ in 0..MOST_TRIES {
-            let is_full = self.best.state.triangles >= enough;
-            let near = if is_full { PROMISED } else { NEAR };
-            let is_near = self
-                .low
-                .is_some_and(|low| self.high.value <= low.value * near);
-            if is_near || self.high.value <= self.least {
-                return Ok(());
-            }
-            let value = first.take().unwrap_or_else(|| self.next());
-            if !(value < self.high.value && self.low.is_none_or(|low| value > low.value)) {
-                return Ok(());
-            }
-            let counted = self.most.saturating_add(self.most / COUNTED_BEYOND);
-            let found = self.engine.refined(Goal::Within(value), counted)?;
-            let known = found
-                .as_ref()
-                .map_or(UNCOUNTED * self.most as f64, |found| {
-                    found.state.triangles as f64
-                });
-            let tried = Tried {
-                value,
-                triangles: known,
-            };
-            match found.filter(|found| found.state.triangles <= self.most) {
-                Some(found) => (self.best, self.high) = (found, tried),
-                None => self.low = Some(tried),
-            }
-        }
-        Ok(())
-    }
-
-    /// Tries a little less than what does not fit: a finer division that is more even may have fewer triangles.
-    fn even_out(&mut self) -> Result<(), RefineError> {
-        for times in EVENER {
-            let value = self.high.value / times;
-            if self.most < EXACT
-                && value > self.floor.max(self.least)
-                && let Some(found) = self.engine.refined(Goal::Within(value), self.most)?
-            {
-                self.high = Tried {
-                    value,
-                    triangles: found.state.triangles as f64,
-                };
-                (self.best, self.low) = (found, self.low.filter(|low| low.value < value));
-                return Ok(());
-            }
-        }
-        Ok(())
-    }
-
-    /// The value that the heights of undivided faces let expect.
-    fn first(&self) -> Result<Option<f64>, RefineError> {
-        if self.engine.control.criteria.is_some() {
-            return Ok(None);
-        }
-        let expected = heights::expected(self.engine, self.aim())?;
-        Ok(expected.filter(|&value| {
-            value < self.high.value && self.low.is_none_or(|low| value > low.value)
-        }))
-    }
-
-    /// The value that is tried next.
-    fn next(&mut self) -> f64 {
-        let wanted = self.divided(self.aim());
-        let high = self.high;
-        let Some(low) = self.low else {
-            let times = (wanted / self.divided(high.triangles)).powf(1.0 / self.power);
-            return high.value / times.clamp(LEAST_APART, MOST_APART);
-        };
-        let (few, many) = (self.divided(high.triangles), self.divided(low.triangles));
-        let span = (high.value / low.value).ln();
-        self.power = ((many / few).ln() / span).clamp(POWERS.0, POWERS.1);
-        let down = (wanted / few).ln() / (many / few).ln();
-        let down = if down.is_finite() {
-            down.clamp(AWAY, 1.0 - AWAY)
-        } else {
-            0.5
-        };
-        high.value * (-span * down).exp()
-    }
-
-    /// The number of triangles that is aimed at.
-    fn aim(&self) -> f64 {
+        let undivided = self.between.undivided;
         let most = self.most as f64;
-        (AIM * most).max(self.undivided + AIM_OF_ROOM * (most - self.undivided))
+        let aim = (AIM * most).max(undivided + AIM_OF_ROOM * (most - undivided));
+        let counted = self.most.saturating_add(self.most / COUNTED_BEYOND);
+        let mut first = self.guess(aim / FOR_A_GUESS)?;
+        for _ in 0..MOST_TRIES {
+            let near = (NEAR * self.between.low).max(self.least);
+            if self.is_full() || self.between.high <= near {
+                return Ok(());
+            }
+            let (value, found) = match first.take() {
+                Some((value, state)) => (value, self.engine.verified(state, counted)?),
+                None => {
+                    let value = self.between.next(aim);
+                    if !self.between.holds(value) {
+                        return Ok(());
+                    }
+                    (value, self.engine.refined(Goal::Within(value), counted)?)
+                }
+            };
+            let triangles = found.as_ref().map(|found| found.state.triangles as f64);
+            let triangles = triangles.unwrap_or(UNCOUNTED * most);
+            let tried = Tried { value, triangles };
+            let found = found.filter(|found| found.state.triangles <= self.most);
+            self.between.take(tried, found.is_some());
+            if let Some(found) = found {
+                self.best = found;
+            }
+        }
+        Ok(())
     }
 
-    /// Triangles beyond those of undivided faces.
-    fn divided(&self, triangles: f64) -> f64 {
-        (triangles - self.undivided).max(1.0)
+    /// Whether hardly anything is left of the budget.
+    fn is_full(&self) -> bool {
+        let room = self.most.saturating_sub(self.between.undivided as usize);
+        let left = (self.most / LEFT).min(room / LEFT_OF_ROOM);
+        self.best.state.triangles + left.max(LEFT_AT_LEAST) >= self.most
+    }
+
+    /// The division for about the number of triangles that is aimed at, and its value; `None` where there are none between.
+    fn guess(&self, aim: f64) -> Result<Option<(f64, State)>, RefineError> {
+        let counted = self.most.saturating_mul(GUESSED_BEYOND);
+        let (mut between, mut last) = (self.between.clone(), None);
+        for _ in 0..MOST_GUESSES {
+            let value = between.next(aim);
+            if !between.holds(value) {
+                break;
+            }
+            let found = self.engine.guessed(Goal::Within(value), counted)?;
+            let triangles = found.as_ref().map_or(counted, |state| state.triangles) as f64;
+            let tried = Tried { value, triangles };
+            last = found.map(|state| (value, state));
+            if (triangles / aim - 1.0).abs() < AIMED || value <= self.least {
+                break;
+            }
+            between.take(tried, triangles <= aim);
+        }
+        Ok(last)
     }
 }
 
@@ -283,18 +266,19 @@ fn fill(
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let (mut best, mut fits, mut fails) = (best, 0, order.len() + 1);
     for _ in 0..MOST_FILLS {
-        if fits + 1 >= fails {
+        let left = most - best.state.triangles;
+        let next = (fits + left / FOR_A_FACE).min(fits.midpoint(fails));
+        if left < LEFT_AT_LEAST || next == fits {
             break;
         }
-        let middle = fits.midpoint(fails).max(fits + 1);
         let mut is_marked = vec![false; order.len()];
         order
             .iter()
-            .take(middle)
+            .take(next)
             .for_each(|&(_, face)| is_marked[face as usize] = true);
         match engine.refined(Goal::Partly(value, less, is_marked), most)? {
-            Some(found) => (best, fits) = (found, middle),
-            None => fails = middle,
+            Some(found) => (best, fits) = (found, next),
+            None => fails = next,
         }
     }
     Ok(best)

@@ -52,6 +52,16 @@ impl Engine<'_> {
         }
     }
 
+    /// Divides as guesses have it, nothing of which is verified; `None` if there are more than `most`.
+    pub(super) fn guessed(&self, goal: Goal, most: usize) -> Result<Option<State>, RefineError> {
+        let Some(mut state) = self.divided(goal, most)? else {
+            return Ok(None);
+        };
+        let faces = state.covers.len();
+        self.cover(&mut state, &mut Dirty::all(faces))?;
+        Ok(Some(state))
+    }
+
     /// The same from a state on.
     pub(super) fn verified(
         &self,
