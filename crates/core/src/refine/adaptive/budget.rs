@@ -24,6 +24,9 @@ const LEFT_AT_LEAST: usize = 12;
 /// Values nearer to each other than this, as a ratio, are as good as each other: bounds are within some per cent of the truth.
 const NEAR: f64 = 1.01;
 
+/// Once hardly anything is left of a small budget, the value is at most so many times one that does not fit.
+const PROMISED: f64 = 1.04;
+
 /// The part of the budget that is aimed at, or of what undivided faces leave of it.
 const AIM: f64 = 0.985;
 const AIM_OF_ROOM: f64 = 0.9;
@@ -54,10 +57,13 @@ const NEARLY_ALL: usize = 16;
 const EXACT: usize = 20_000;
 
 /// Triangles that a face takes on which some of the budget is spent, at most on the average.
-const FOR_A_FACE: usize = 2;
+const FOR_A_FACE: usize = 3;
 
 /// Results that are made to spend what is left.
-const MOST_FILLS: usize = 3;
+const MOST_FILLS: usize = 6;
+
+/// They may leave this part of the budget (one in so many).
+const LEFT_UNFILLED: usize = 64;
 
 /// Faces on which that is spent come within a value that is less by this at least: a difference that takes triangles.
 const FILLED_APART: f64 = 1.1;
@@ -83,13 +89,12 @@ pub(super) fn search(
     }
     let mut search = Search::new(engine, floor, most)?;
     search.narrow()?;
-    let less = (search.between.high / FILLED_APART)
-        .min(search.between.low)
-        .max(floor);
-    let best = if search.is_full() || most >= EXACT || less == 0.0 {
-        search.best
+    let Between { high, low, .. } = search.between;
+    let best = if most < EXACT && low > 0.0 {
+        let less = low.min(high / FILLED_APART).max(floor);
+        fill(engine, search.best, high, less, most)?
     } else {
-        fill(engine, search.best, search.between.high, less, most)?
+        search.best
     };
     Ok((best, cap))
 }
@@ -196,10 +201,13 @@ impl<'e, 'a> Search<'e, 'a> {
         let counted = self.most.saturating_add(self.most / COUNTED_BEYOND);
         let mut first = self.guess(aim / FOR_A_GUESS)?;
         for _ in 0..MOST_TRIES {
-            let near = (NEAR * self.between.low).max(self.least);
-            if self.is_full() || self.between.high <= near {
+            let is_full = self.is_full();
+            let near = if is_full { PROMISED } else { NEAR };
+            let is_near = self.between.high <= (near * self.between.low).max(self.least);
+            if is_near || is_full && self.most >= EXACT {
                 return Ok(());
             }
+            let aim = if is_full { most } else { aim };
             let (value, found) = match first.take() {
                 Some((value, state)) => (value, self.engine.verified(state, counted)?),
                 None => {
@@ -268,7 +276,7 @@ fn fill(
     for _ in 0..MOST_FILLS {
         let left = most - best.state.triangles;
         let next = (fits + left / FOR_A_FACE).min(fits.midpoint(fails));
-        if left < LEFT_AT_LEAST || next == fits {
+        if left < (most / LEFT_UNFILLED).max(LEFT_AT_LEAST) || next == fits {
             break;
         }
         let mut is_marked = vec![false; order.len()];
