@@ -28,6 +28,9 @@ const SURELY: f64 = 1.5;
 /// Distances at irregular vertices fall by this part each time at least.
 const HALVED: f64 = 0.5;
 
+/// The split of a leaf that fails leaves this part of its distance, where not all of that is due to the corner.
+const FIRST: f64 = 0.25;
+
 /// Edges at a vertex around which distances fall by a quarter each time.
 const REGULAR: u32 = 6;
 
@@ -429,7 +432,7 @@ impl Engine<'_> {
         }
         let mut is_split = false;
         let mut left = if times <= MOST_TIMES {
-            HALVED * times
+            FIRST * times
         } else {
             0.0
         };
