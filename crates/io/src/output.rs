@@ -33,7 +33,7 @@ pub struct Output<'a> {
     pub vertex_properties: &'a [Property<'a>],
     /// Further properties of the triangles. PLY holds them.
     pub face_properties: &'a [Property<'a>],
-    /// What corners and faces carry: see [`holds`](crate::holds). PLY may have vertices several times for it: see [`splits_vertices`].
+    /// What corners and faces carry: see [`holds`](crate::holds). PLY may have vertices several times for it: see [`splits_vertices`](crate::splits_vertices).
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
