@@ -1,8 +1,8 @@
 //! The control mesh as all passes see it: limits at its vertices, the surface over its faces, what is sharp or flat, and what is asked.
 
-use super::backs::BackFaces;
+use super::back_faces::BackFaces;
 use super::demands::Demands;
-use super::flat::FlatRegions;
+use super::flat::regions::FlatRegions;
 use super::quadtree::Edges;
 use super::surface::SurfacePiece;
 use crate::criterion::Criteria;

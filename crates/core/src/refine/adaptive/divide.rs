@@ -9,8 +9,9 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Engine;
 use super::control::Control;
-use super::judge::{Allowance, Extent, Fate, Goal, Judge, Seen, Verdict};
+use super::judge::{Goal, Judge, Verdict};
 use super::quadtree::{Edges, LEAF, MOST_LEVELS, PROVEN, Piece, Place, Trees};
+use super::seen::{Allowance, Extent, Fate, Seen};
 use super::surface::Ground;
 use crate::certificate::{CellRows, Marks, Pieces};
 use crate::parallel::IsStopped;

@@ -25,17 +25,18 @@ mod flattened;
 mod gaps;
 mod joined;
 mod merge;
+pub(super) mod regions;
 mod replace;
 mod strips;
 mod unfolded;
 
+use regions::{FlatRegions, Plane};
 pub(super) use replace::Assembled;
 pub(super) use strips::Net;
-use unfolded::is_unfolded;
+use unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 
 use super::chains::Chains;
 use super::control::Control;
-use super::demands::Demands;
 use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
@@ -43,7 +44,6 @@ use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
-use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
@@ -52,9 +52,6 @@ const IN_PLANE: f64 = 2e-7;
 
 /// The same as a part of the tolerance.
 const OF_TOLERANCE: f64 = 1e-3;
-
-/// Heights over a plane are known to this part of the greatest coordinate.
-const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
@@ -66,51 +63,8 @@ const WEIGHT: usize = 16;
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
 
-/// The same where each takes some tenths of a millisecond, and how many may take that.
+/// Faces that one call takes together where each takes some tenths of a millisecond.
 const UNFOLDED: usize = 16;
-const MOST_UNFOLDED: usize = 4096;
-
-/// A plane through a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
-    point: DVec3,
-    normal: DVec3,
-}
-
-impl Plane {
-    fn height(&self, point: DVec3) -> f64 {
-        (point - self.point).dot(self.normal)
-    }
-}
-
-/// The flat regions of a control mesh.
-#[derive(Default)]
-pub(super) struct FlatRegions {
-    /// By control face, its region; [`NONE`] where it is not flat. Empty without regions.
-    of_face: Vec<u32>,
-    /// By region, its faces, ascending, and its plane.
-    regions: Vec<(Vec<u32>, Plane)>,
-    /// The control faces over which there may be strips.
-    straight: Vec<u32>,
-    /// How far the surface, and so what stands for it, is off the planes at most.
-    off_planes: f64,
-    /// Whether regions are what their rims enclose, also where the surface folds.
-    unfolds: bool,
-    /// By region, whether its triangles are judged by the rim alone.
-    by_rim: Vec<bool>,
-    /// By region, whether what its limit curves enclose is its surface, or stands for it where that folds; none unless that is asked for.
-    is_enclosed: Vec<bool>,
-    /// By region, the first of those with which it is judged together.
-    joined: Vec<u32>,
-    /// How far beyond its rim the surface over such a region may reach for all that was proven.
-    beyond_rims: f64,
-    /// Such regions of which nothing was found that could be triangulated, with the chords of their rims by control face.
-    gaps: Mutex<BTreeMap<u32, BTreeMap<u32, u32>>>,
-    /// By control face, whether it is part of a region or there may be strips over it; empty where there are neither.
-    is_merged: Vec<bool>,
-    /// So many leaves of such a face count as one while faces are divided.
-    weight: usize,
-}
 
 impl FlatRegions {
     /// Finds the regions.
@@ -332,81 +286,6 @@ impl FlatRegions {
         Ok(by_rim)
     }
 
-    /// Whether a face is part of a region that is judged by its rim alone.
-    pub(super) fn is_its_rim(&self, face: u32) -> bool {
-        self.region(face)
-            .is_some_and(|region| self.by_rim[region as usize])
-    }
-
-    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or what the rim encloses
-    /// stands for it wherever that can be triangulated.
-    pub(super) fn is_within_rim(&self, face: u32) -> bool {
-        self.is_its_rim(face)
-            || self
-                .region(face)
-                .is_some_and(|region| self.is_enclosed[region as usize])
-    }
-
-    /// The first control faces of regions for whose surface what their rims enclose is taken, ascending.
-    pub(super) fn within_rims(&self, demands: &Demands) -> Vec<u32> {
-        let is_taken = |&region: &u32| {
-            self.is_enclosed[region as usize] && !demands.judges_by_triangles(region)
-        };
-        let taken = (0..self.regions.len() as u32).filter(is_taken);
-        let mut first: Vec<u32> = taken
-            .map(|region| self.regions[region as usize].0[0])
-            .collect();
-        first.sort_unstable();
-        first
-    }
-
-    /// How far what is handed out may be from what was judged, at most: triangles of a region, and vertices of a straight line, are as
-    /// far off as those in whose place they come, on either side.
-    pub(super) fn allowance(&self) -> f64 {
-        3.0 * self.off_planes + self.beyond_rims
-    }
-
-    /// How far the surface, and what stands for it, is off the planes at most.
-    pub(super) fn off_planes(&self) -> f64 {
-        self.off_planes
-    }
-
-    /// Whether there are neither regions nor places for strips.
-    pub(super) fn are_none(&self) -> bool {
-        self.regions.is_empty() && self.straight.is_empty()
-    }
-
-    /// Whether there may be strips, so that only what is emitted tells how many triangles stay.
-    pub(super) fn has_strips(&self) -> bool {
-        !self.straight.is_empty()
-    }
-
-    /// Control faces that are part of regions, or over which there may be strips.
-    pub(super) fn merged_faces(&self) -> usize {
-        self.is_merged
-            .iter()
-            .filter(|&&is_merged| is_merged)
-            .count()
-    }
-
-    /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
-    /// to stay.
-    pub(super) fn weight(&self, face: u32) -> usize {
-        if self.is_merged.get(face as usize).copied().unwrap_or(false) {
-            self.weight
-        } else {
-            1
-        }
-    }
-
-    /// The region of a face.
-    pub(super) fn region(&self, face: u32) -> Option<u32> {
-        self.of_face
-            .get(face as usize)
-            .copied()
-            .filter(|&region| region != NONE)
-    }
-
     /// Triangles of a plan: `own` gives those of a face that is not flat.
     pub(super) fn count(
         &self,
@@ -487,27 +366,4 @@ fn may_be_flat(
         other.distance_squared(normal) <= ALIKE * ALIKE
     };
     normal != DVec3::ZERO && beside.all(is_alike)
-}
-
-/// How far the surface over a face is off a plane at most; `None` where that is more than `most`.
-fn height_over(
-    (control, edges): (&Control<'_>, &Edges<'_>),
-    face: u32,
-    plane: &Plane,
-    most: f64,
-) -> Option<f64> {
-    // Nearly all faces are told apart by the vertices around them, which are among the control points.
-    let open = control.open(face);
-    let is_off = |h: u32| {
-        let twin = edges.twin(h).filter(|_| !open[h as usize % 3]);
-        twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
-    };
-    if (3 * face..3 * face + 3).any(is_off) {
-        return None;
-    }
-    let mut height = 0.0f64;
-    control
-        .patch(face)
-        .for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
-    (height <= most).then_some(height)
 }

@@ -11,15 +11,17 @@ use std::collections::HashSet;
 
 use smallvec::SmallVec;
 
-use super::backs::{BackFaces, Behind, looks_away};
+use super::back_faces::BackFaces;
+use super::backs::{Behind, looks_away};
 use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::judge::{DIVISIONS, Goal, ROUNDED, Seen};
+use super::judge::{Goal, ROUNDED};
 use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
 use super::quadtree::Place;
+use super::seen::{DIVISIONS, Seen};
 use super::surface::GeneralPiece;
 use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,

@@ -11,6 +11,7 @@
 //! 4. [`probe`]: the certified interval;
 //! 5. [`flat`]: regions whose surface lies in a plane, triangulated from their rims.
 
+mod back_faces;
 mod backs;
 mod balance;
 mod budget;
@@ -41,6 +42,7 @@ mod quadtree;
 mod result;
 mod rim;
 mod rounds;
+mod seen;
 mod sides;
 mod state;
 mod surface;
@@ -63,11 +65,11 @@ use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
-use backs::BackFaces;
+use back_faces::BackFaces;
 use caps::{may_do_with_fewer, once, without_gaps};
 use control::Control;
 use demands::{Demands, Functions, surfaces_of};
-use flat::FlatRegions;
+use flat::regions::FlatRegions;
 use judge::Goal;
 use quadtree::{Edges, Place};
 

@@ -3,7 +3,8 @@
 
 use super::super::Engine;
 use super::super::control::Control;
-use super::super::judge::{Allowance, Goal, Seen};
+use super::super::judge::Goal;
+use super::super::seen::{Allowance, Seen};
 use super::Divider;
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;

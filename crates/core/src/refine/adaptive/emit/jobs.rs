@@ -4,9 +4,11 @@ use super::super::quadtree::{Place, is_split};
 use super::super::rim::Rim;
 use super::super::surface::Surface;
 use super::super::walk::Walk;
+use super::emission::{Emission, fraction};
+use super::emitter::Emitter;
+use super::job::{Job, Vertices, split_off};
 use super::kept::Kept;
-use super::leaf_writer::{Vertices, Writer, split_off};
-use super::{Emission, Emitter, fraction};
+use super::leaf_writer::Writer;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
@@ -15,19 +17,6 @@ use crate::refine::exact_result::Origin;
 
 /// Triangles that one call writes, about.
 const JOB: u32 = 8192;
-
-/// Consecutive control faces, and the parts of the arrays that are theirs.
-pub(super) struct Job<'a> {
-    is_new: bool,
-    pub(super) faces: core::ops::Range<u32>,
-    on_edges: Vertices<'a>,
-    pub(super) inside: Vertices<'a>,
-    pub(super) first_triangle: u32,
-    pub(super) triangles: &'a mut [[u32; 3]],
-    pub(super) twins: &'a mut [u32],
-    pub(super) parents: &'a mut [u32],
-    pub(super) borders: &'a mut [u32],
-}
 
 pub(super) fn jobs<'a>(
     emitter: &Emitter<'_>,

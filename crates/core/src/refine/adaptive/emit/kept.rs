@@ -3,9 +3,8 @@
 use super::super::chains::{Chains, first_of};
 use super::super::cover::Cover;
 use super::super::quadtree::Edges;
-use super::Emission;
-use super::jobs::Job;
-use super::leaf_writer::split_off;
+use super::emission::Emission;
+use super::job::{Job, split_off};
 use crate::mesh::{Mesh, NONE};
 use crate::parallel::IsStopped;
 

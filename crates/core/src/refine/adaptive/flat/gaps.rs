@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::PoisonError;
 
-use super::FlatRegions;
+use super::regions::FlatRegions;
 use super::strips::{Net, Region, Regions};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;

@@ -6,8 +6,8 @@
 //! other, so it winds round nothing. That takes regions round whose points rims wind forwards alone, or one could undo what the other does: those
 //! that are proven not to fold, also where what rims enclose is asked for.
 
-use super::unfolded::is_unfolded;
-use super::{FlatRegions, HEIGHT_ROUNDING, MOST_UNFOLDED, Plane, height_over};
+use super::regions::{FlatRegions, Plane};
+use super::unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::quadtree::Edges;

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::super::control::Control;
 use super::super::quadtree::Edges;
-use super::FlatRegions;
 use super::flattened::Flattened;
 use super::gaps::chords;
+use super::regions::FlatRegions;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
 use crate::parallel::{IsStopped, asking, sort_asking};

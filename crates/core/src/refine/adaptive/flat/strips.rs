@@ -11,7 +11,7 @@
 
 use limitmesh_pages::filled;
 
-use super::{FlatRegions, Plane};
+use super::regions::{FlatRegions, Plane};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::NONE;
 use crate::parallel::{IsStopped, asking};
