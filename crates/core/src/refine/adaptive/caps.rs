@@ -222,7 +222,7 @@ fn within_room(
             }
             let plain = &Engine {
                 is_balanced: false,
-                ..engine.clone()
+                ..*engine
             };
             let (found, stop) = budget::search(plain, floor, most, cap)?;
             let mut found = found.finish(plain, stop, options)?;
@@ -301,7 +301,7 @@ pub(super) fn without_gaps<T>(
                 engine
                     .control
                     .flat
-                    .gaps((engine.control, &engine.edges), attempt, engine.watch)?,
+                    .gaps(engine.control, attempt, engine.watch)?,
             ))
         })?;
         if gaps.are_none() {

@@ -47,7 +47,6 @@ impl Emitter<'_> {
     ) -> Result<Emission, RefineError> {
         let Self {
             control,
-            edges,
             chains,
             covers,
             ..
@@ -71,7 +70,7 @@ impl Emitter<'_> {
         let is_new: Vec<bool> = (0..).zip(self.is_changed).map(is_new).collect();
         let mut starts = defaults::<u32>(3 * faces + 1);
         watch.each(0..3 * faces, |h| {
-            starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1
+            starts[h + 1] = starts[h] + chains.along(&control.edges, h as u32) as u32 + 1
         })?;
         let mut next = 0;
         let first_triangles = covers.iter().map(|cover| {
@@ -134,8 +133,7 @@ impl Emitter<'_> {
         let jobs = jobs(self, &mut emission, watch)?;
         let kept = before.as_ref().map(|before| Kept {
             before,
-            mesh: control.mesh,
-            edges,
+            control,
             chains,
         });
         parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
@@ -202,7 +200,7 @@ impl Emitter<'_> {
     fn join(&self, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         let Emission { borders, twins, .. } = emission;
         watch.each(0..borders.starts.len() as u32 - 1, |h| {
-            match self.edges.twin(h) {
+            match self.control.edges.twin(h) {
                 Some(twin) if h < twin => {
                     for (&a, &b) in borders
                         .along(h)
@@ -228,10 +226,7 @@ impl Emitter<'_> {
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let Self {
-            control,
-            edges,
-            chains,
-            ..
+            control, chains, ..
         } = *self;
         if control.lasting.is_empty() {
             return Ok(());
@@ -243,8 +238,10 @@ impl Emitter<'_> {
             }
             for edge in (0..3).filter(|&edge| open[edge]) {
                 let h = 3 * face + edge as u32;
-                let Some(twin) = edges.twin(h) else { continue };
-                let (number, places) = chains.own(first_of(edges, h));
+                let Some(twin) = control.edges.twin(h) else {
+                    continue;
+                };
+                let (number, places) = chains.own(first_of(&control.edges, h));
                 let mut normals = vec![[0.0; 3]; places.len()];
                 if h < twin {
                     normals.copy_from_slice(
@@ -267,7 +264,7 @@ impl Emitter<'_> {
             }
         }
         watch.each(&emission.sharp, |(h, normals)| {
-            let owner = first_of(edges, *h);
+            let owner = first_of(&control.edges, *h);
             if owner != *h {
                 let number = chains.own(owner).0;
                 for (vertex, normal) in (number..).zip(normals.iter().rev()) {

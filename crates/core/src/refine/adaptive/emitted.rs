@@ -7,7 +7,7 @@ use super::control::Control;
 use super::cover::Cover;
 use super::emit::Emission;
 use super::leaf::leaf_triangles;
-use super::quadtree::{Edges, Place, Trees, is_proven, is_split};
+use super::quadtree::{Place, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
 use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
@@ -76,7 +76,6 @@ pub(super) trait Beholder {
 #[derive(Clone, Copy)]
 pub(super) struct Sources<'a> {
     pub(super) control: &'a Control<'a>,
-    pub(super) edges: &'a Edges<'a>,
     pub(super) trees: &'a Trees,
     pub(super) chains: &'a Chains,
     pub(super) covers: &'a [Cover],
@@ -87,26 +86,25 @@ impl Sources<'_> {
     /// Whether a control face is one triangle that is marked as proven.
     pub(super) fn is_whole(&self, face: u32) -> bool {
         let word = self.trees.root(face);
-        !is_split(word) && is_proven(word) && self.chains.are_none(self.edges, face)
+        !is_split(word) && is_proven(word) && self.chains.are_none(&self.control.edges, face)
     }
 
     /// Shows the triangles of a control face, in the order in which they stand.
     pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
         let Self {
             control,
-            edges,
             trees,
             chains,
             covers,
             emission,
         } = *self;
         let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
-        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
         let mut leaves = Leaves {
             rules: control.rules,
             triangles: &emission.triangles,
             next: emission.triangles_of(face).start as u32,
-            open: control.flat.counting(edges, face, control.open(face)),
+            open: control.flat.counting(control, face, control.open(face)),
             diagonals: &covers[face as usize].diagonals,
             rim: Rim::default(),
             is_stopped,

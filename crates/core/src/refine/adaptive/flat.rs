@@ -37,7 +37,6 @@ use unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 
 use super::chains::Chains;
 use super::control::Control;
-use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
 use crate::parallel;
@@ -70,7 +69,6 @@ impl FlatRegions {
     /// Finds the regions.
     pub(super) fn of(
         control: &Control<'_>,
-        edges: &Edges<'_>,
         options: &ExactOptions,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
@@ -88,8 +86,7 @@ impl FlatRegions {
             watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32);
-            let flat =
-                flat.filter(|&face| may_be_flat((control, edges), &normals, face, options.unfold));
+            let flat = flat.filter(|&face| may_be_flat(control, &normals, face, options.unfold));
             // The largest faces know their planes best.
             let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
             flat.map(|face| (area(face), face))
@@ -117,7 +114,7 @@ impl FlatRegions {
             let height = |face: u32| {
                 let is_up = options.unfold || normals[face as usize].dot(plane.normal) > 0.0;
                 is_up
-                    .then(|| height_over((control, edges), face, &plane, most))
+                    .then(|| height_over(control, face, &plane, most))
                     .flatten()
             };
             let Some(mut off_plane) = height(seed) else {
@@ -132,7 +129,8 @@ impl FlatRegions {
                 }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
-                    let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else {
+                    let Some(beside) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
+                    else {
                         continue;
                     };
                     if !is_left[beside as usize] || control.kept.part(face, beside) {
@@ -170,7 +168,7 @@ impl FlatRegions {
             WEIGHT
         };
         let straight = match options.strips && !options.balance {
-            true => strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?,
+            true => strips::straight_faces(control, &normals, (&of_face, most), watch)?,
             false => Vec::new(),
         };
         if regions.is_empty() && straight.is_empty() {
@@ -199,7 +197,7 @@ impl FlatRegions {
             weight,
         };
         found.is_enclosed = match unfolds {
-            true => found.enclosed((control, edges), IN_PLANE * size, watch)?,
+            true => found.enclosed(control, IN_PLANE * size, watch)?,
             false => vec![false; found.regions.len()],
         };
         if options.balance {
@@ -208,8 +206,8 @@ impl FlatRegions {
                 return Ok(Self::default());
             }
         }
-        found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
-        found.join((control, edges), (most, size), watch)?;
+        found.by_rim = found.by_rim(control, (options, most), watch)?;
+        found.join(control, (most, size), watch)?;
         Ok(found)
     }
 
@@ -239,7 +237,7 @@ impl FlatRegions {
     /// boundaries around them, if what their rims enclose is the surface, or is taken for it.
     fn by_rim(
         &mut self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (options, most): (&ExactOptions, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
@@ -253,7 +251,7 @@ impl FlatRegions {
             *by_rim = may_be
                 && match self.unfolds {
                     true => self.is_enclosed[region as usize],
-                    false => !self.has_smooth_rim((control, edges), region),
+                    false => !self.has_smooth_rim(control, region),
                 };
         })?;
         let is_by_rim = |face: u32| {
@@ -289,20 +287,20 @@ impl FlatRegions {
     /// Triangles of a plan: `own` gives those of a face that is not flat.
     pub(super) fn count(
         &self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         chains: &Chains,
         own: impl Fn(u32) -> usize,
     ) -> usize {
         let faces = 0..control.mesh.face_count() as u32;
         faces
-            .map(|face| self.count_over((control, edges), chains, face, own(face)))
+            .map(|face| self.count_over(control, chains, face, own(face)))
             .sum()
     }
 
     /// Those that one face comes to, of which `own` are its own if it is not flat.
     pub(super) fn count_over(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         chains: &Chains,
         face: u32,
         own: usize,
@@ -310,35 +308,31 @@ impl FlatRegions {
         if self.region(face).is_none() {
             return own;
         }
-        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(mesh, h));
-        1 + rim.map(|h| chains.along(mesh.1, h)).sum::<usize>()
+        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(control, h));
+        1 + rim.map(|h| chains.along(&control.edges, h)).sum::<usize>()
     }
 
     /// The half-edges around a region.
-    fn rim<'a>(
-        &'a self,
-        mesh: (&'a Control<'_>, &'a Edges<'_>),
-        region: u32,
-    ) -> impl Iterator<Item = u32> + 'a {
+    fn rim<'a>(&'a self, control: &'a Control<'_>, region: u32) -> impl Iterator<Item = u32> + 'a {
         let faces = self.regions[region as usize].0.iter();
         faces
             .flat_map(|&face| 3 * face..3 * face + 3)
-            .filter(move |&h| self.is_rim(mesh, h))
+            .filter(move |&h| self.is_rim(control, h))
     }
 
     /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
-    fn has_smooth_rim(&self, mesh: (&Control<'_>, &Edges<'_>), region: u32) -> bool {
-        self.rim(mesh, region)
-            .any(|h| mesh.0.lasting.edge(HalfEdgeId(h)) <= 0.0)
+    fn has_smooth_rim(&self, control: &Control<'_>, region: u32) -> bool {
+        self.rim(control, region)
+            .any(|h| control.lasting.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.
-    fn is_rim(&self, (control, edges): (&Control<'_>, &Edges<'_>), h: u32) -> bool {
+    fn is_rim(&self, control: &Control<'_>, h: u32) -> bool {
         let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
         let ends_at = |twin: u32| {
             self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3)
         };
-        is_sharp || edges.twin(h).is_none_or(ends_at)
+        is_sharp || control.edges.twin(h).is_none_or(ends_at)
     }
 }
 
@@ -346,7 +340,7 @@ impl FlatRegions {
 /// Faces that are turned over in one plane with others are flat where what the rim encloses is asked for: control points that were moved
 /// along the rim turn slivers over.
 fn may_be_flat(
-    (control, edges): (&Control<'_>, &Edges<'_>),
+    control: &Control<'_>,
     normals: &[DVec3],
     face: u32,
     may_be_turned_over: bool,
@@ -355,7 +349,7 @@ fn may_be_flat(
     let open = control.open(face);
     let beside = (0..3u32)
         .filter(|&edge| !open[edge as usize])
-        .filter_map(|edge| edges.twin(3 * face + edge));
+        .filter_map(|edge| control.edges.twin(3 * face + edge));
     let mut beside = beside.map(|twin| normals[twin as usize / 3]);
     let is_alike = |other: DVec3| {
         let other = if may_be_turned_over && other.dot(normal) < 0.0 {

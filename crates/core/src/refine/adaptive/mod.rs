@@ -222,6 +222,7 @@ pub(super) fn count_over_first(
             for h in 0..3 * faces as u32 {
                 is_divided[h as usize / 3] = true;
                 engine
+                    .control
                     .edges
                     .twin(h)
                     .into_iter()
@@ -234,12 +235,10 @@ pub(super) fn count_over_first(
             let state = &found.state;
             let over = |face: u32| {
                 let own = state.covers[face as usize].triangles as usize;
-                engine.control.flat.count_over(
-                    (engine.control, &engine.edges),
-                    &state.chains,
-                    face,
-                    own,
-                )
+                engine
+                    .control
+                    .flat
+                    .count_over(engine.control, &state.chains, face, own)
             };
             Ok((0..faces as u32).map(over).sum())
         },
@@ -267,10 +266,10 @@ fn with_engine<T>(
     join_copies(&mut positions, &mesh.junctions().vertices);
     let sharpness = Sharpness::of(mesh);
     let lasting = sharpness.lasting();
-    let edges = Edges::of(mesh);
     let kept = KeptFaces::of(mesh, &options.kept_edges)?;
     let mut control = Control {
         mesh,
+        edges: Edges::of(mesh),
         sharpness: &sharpness,
         large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
         lasting: &lasting,
@@ -285,14 +284,13 @@ fn with_engine<T>(
     };
     if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty()
     {
-        control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
+        control.flat = FlatRegions::of(&control, options, &watch)?;
     }
     let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
     control.criteria = criteria(mesh, options, rounding)?;
     control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
     let engine = Engine {
         control: &control,
-        edges,
         max_levels: options.max_levels as u32,
         watch: &watch,
         is_balanced: options.balance,
@@ -328,10 +326,9 @@ fn criteria(
 }
 
 /// What stays the same all the way.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 struct Engine<'a> {
     control: &'a Control<'a>,
-    edges: Edges<'a>,
     max_levels: u32,
     watch: &'a SharedWatch<'a>,
     /// Vertices are moved off the surface.

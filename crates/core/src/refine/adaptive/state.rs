@@ -157,7 +157,6 @@ impl Engine<'_> {
         } = state;
         Sources {
             control: self.control,
-            edges: &self.edges,
             trees,
             chains,
             covers,

@@ -66,7 +66,7 @@ impl Divider<'_> {
             seen.tilt * shrunk(seen.highest(points), self.judge.limit),
             seen.frame.least_slope(),
         );
-        for adjacent in self.control.beside(self.edges, face) {
+        for adjacent in self.control.beside(face) {
             let other = self.expected[adjacent as usize];
             (tilt, slope) = (tilt.larger(other.tilt), slope.min(other.slope));
         }

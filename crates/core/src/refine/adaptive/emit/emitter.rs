@@ -3,13 +3,12 @@
 use super::super::chains::Chains;
 use super::super::control::Control;
 use super::super::cover::Cover;
-use super::super::quadtree::{Edges, Trees};
+use super::super::quadtree::Trees;
 
 /// What is emitted, and how.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Emitter<'a> {
     pub(in super::super) control: &'a Control<'a>,
-    pub(in super::super) edges: &'a Edges<'a>,
     pub(in super::super) trees: &'a Trees,
     pub(in super::super) chains: &'a Chains,
     /// By control face.

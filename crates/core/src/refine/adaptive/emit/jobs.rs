@@ -23,12 +23,7 @@ pub(super) fn jobs<'a>(
     emission: &'a mut Emission,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Job<'a>>, Cancelled> {
-    let Emitter {
-        chains,
-        edges,
-        covers,
-        ..
-    } = *emitter;
+    let Emitter { chains, covers, .. } = *emitter;
     let count = emitter.control.mesh.vertex_count();
     let Emission {
         positions,
@@ -65,7 +60,7 @@ pub(super) fn jobs<'a>(
         vertices += cover.vertices as usize;
         for h in 3 * face..3 * face + 3 {
             own += chains.own(h).1.len();
-            segments += chains.along(edges, h) + 1;
+            segments += chains.along(&emitter.control.edges, h) + 1;
         }
         let own_is_new = is_new[face as usize];
         let is_last = face + 1 == faces || own_is_new != is_new[face as usize + 1];
@@ -98,7 +93,6 @@ pub(super) fn write(
 ) {
     let Emitter {
         control,
-        edges,
         trees,
         chains,
         covers,
@@ -125,7 +119,7 @@ pub(super) fn write(
     };
     for face in job.faces {
         let word = trees.root(face);
-        if !is_split(word) && chains.are_none(edges, face) {
+        if !is_split(word) && chains.are_none(&control.edges, face) {
             let first = writer.push(control.mesh.triangles()[face as usize]);
             job.parents[(first / 3 - job.first_triangle) as usize] = face;
             let own = split_off(&mut job.borders, 3);
@@ -133,7 +127,7 @@ pub(super) fn write(
             continue;
         }
         walk.knots.clear();
-        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
         (writer.face, writer.diagonals) = (face, &covers[face as usize].diagonals);
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);

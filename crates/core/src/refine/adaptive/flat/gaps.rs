@@ -13,7 +13,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::demands::Demands;
 use crate::refine::adaptive::divide::child_open;
-use crate::refine::adaptive::quadtree::{Edges, Place};
+use crate::refine::adaptive::quadtree::Place;
 
 /// How often rims are divided once more.
 const MOST_DIVISIONS: usize = 3;
@@ -72,7 +72,7 @@ impl FlatRegions {
     /// These regions, at this attempt.
     pub(in super::super) fn gaps(
         &self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         attempt: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<Gaps, Cancelled> {
@@ -87,7 +87,7 @@ impl FlatRegions {
             // In the end as far as it is known to be of use.
             let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
             let least = if is_last {
-                Self::divisions(self.rim((control, edges), region).count())
+                Self::divisions(self.rim(control, region).count())
             } else {
                 0
             };

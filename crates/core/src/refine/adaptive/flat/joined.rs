@@ -10,7 +10,6 @@ use super::regions::{FlatRegions, Plane};
 use super::unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
-use crate::refine::adaptive::quadtree::Edges;
 use std::collections::HashSet;
 
 impl FlatRegions {
@@ -18,7 +17,7 @@ impl FlatRegions {
     /// How far that takes them off the planes is counted. `size` is the greatest coordinate.
     pub(super) fn join(
         &mut self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (most, size): (f64, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
@@ -35,13 +34,13 @@ impl FlatRegions {
             // Whether the first one folds is asked once there is another one in its plane.
             let (mut is_proven, mut rejected) = (None, HashSet::new());
             while let Some(region) = waiting.pop() {
-                for other in self.beyond(mesh.1, region, watch)? {
+                for other in self.beyond(control, region, watch)? {
                     if is_done[other as usize] || rejected.contains(&other) {
                         continue;
                     }
-                    let off = self.height_over(mesh, (other, &plane), most);
+                    let off = self.height_over(control, (other, &plane), most);
                     let mut is_sound = |region: u32| {
-                        self.is_sound(mesh.0, (region, &plane), most, &mut left, watch)
+                        self.is_sound(control, (region, &plane), most, &mut left, watch)
                     };
                     let may_join = off.is_some() && {
                         let is_first_sound = match is_proven {
@@ -68,13 +67,13 @@ impl FlatRegions {
     /// The regions beyond the edges of one, each as often as there are such edges.
     fn beyond(
         &self,
-        edges: &Edges<'_>,
+        control: &Control<'_>,
         region: u32,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<u32>, Cancelled> {
         let mut beyond = Vec::new();
         watch.each(&self.regions[region as usize].0, |&face| {
-            let twins = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h));
+            let twins = (3 * face..3 * face + 3).filter_map(|h| control.edges.twin(h));
             let others = twins
                 .filter_map(|twin| self.region(twin / 3))
                 .filter(|&other| other != region);
@@ -86,7 +85,7 @@ impl FlatRegions {
     /// How far the surface over a region is off a plane at most, if that is no more than `most` and it looks the same way.
     fn height_over(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (region, plane): (u32, &Plane),
         most: f64,
     ) -> Option<f64> {
@@ -96,7 +95,7 @@ impl FlatRegions {
         }
         let mut heights = faces
             .iter()
-            .map(|&face| height_over(mesh, face, plane, most));
+            .map(|&face| height_over(control, face, plane, most));
         heights.try_fold(0.0, |greatest: f64, height| Some(greatest.max(height?)))
     }
 
@@ -130,7 +129,7 @@ impl FlatRegions {
     /// part of the same plane beyond.
     pub(in super::super) fn counting(
         &self,
-        edges: &Edges<'_>,
+        control: &Control<'_>,
         face: u32,
         open: [bool; 3],
     ) -> [bool; 3] {
@@ -142,7 +141,8 @@ impl FlatRegions {
         };
         let Some(own) = joined(face) else { return open };
         [0, 1, 2].map(|edge| {
-            let beyond = edges
+            let beyond = control
+                .edges
                 .twin(3 * face + edge as u32)
                 .and_then(|twin| joined(twin / 3));
             open[edge] && beyond != Some(own)

@@ -6,7 +6,6 @@
 //! a distance: all points of that are as near to the vertex, which the region has in any case.
 
 use super::super::control::Control;
-use super::super::quadtree::Edges;
 use super::regions::Plane;
 use crate::patch::Patch;
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -87,7 +86,7 @@ fn is_net_unfolded(net: &BezierTriangle, plane: &Plane, halvings: usize) -> bool
 
 /// How far the surface over a face is off a plane at most; `None` where that is more than `most`.
 pub(super) fn height_over(
-    (control, edges): (&Control<'_>, &Edges<'_>),
+    control: &Control<'_>,
     face: u32,
     plane: &Plane,
     most: f64,
@@ -95,7 +94,7 @@ pub(super) fn height_over(
     // Nearly all faces are told apart by the vertices around them, which are among the control points.
     let open = control.open(face);
     let is_off = |h: u32| {
-        let twin = edges.twin(h).filter(|_| !open[h as usize % 3]);
+        let twin = control.edges.twin(h).filter(|_| !open[h as usize % 3]);
         twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
     };
     if (3 * face..3 * face + 3).any(is_off) {

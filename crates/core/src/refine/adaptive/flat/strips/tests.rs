@@ -44,15 +44,11 @@ fn what_has_a_direction_may_have_one() {
                         }
                     }
                     assert!(
-                        may_have_direction((control, &engine.edges), face, high),
+                        may_have_direction(control, face, high),
                         "{name}, face {face}"
                     );
                     regular += 1;
-                    told += usize::from(!may_have_direction(
-                        (control, &engine.edges),
-                        face,
-                        0.01 * high,
-                    ));
+                    told += usize::from(!may_have_direction(control, face, 0.01 * high));
                 }
                 Ok(())
             },
