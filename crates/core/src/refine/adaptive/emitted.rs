@@ -6,7 +6,7 @@ use super::chains::Chains;
 use super::control::Control;
 use super::cover::Cover;
 use super::emit::Emission;
-use super::leaf::leaf_triangles;
+use super::leaf::LeafTriangle;
 use super::quadtree::{Place, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
 use super::surface::{GeneralPiece, Ground, Surface};
@@ -221,22 +221,19 @@ impl<B: Beholder> Leaves<'_, B> {
                 .zip(triangle)
                 .for_each(|(&label, &vertex)| vertices[label as usize] = vertex);
         }
-        let emitted = |part, labels: [usize; 3], borders: [Option<usize>; 3]| {
-            let has = |triangle: &[u8; 3]| {
-                labels
-                    .iter()
-                    .all(|&label| triangle.contains(&(label as u8)))
-            };
-            Emitted {
-                number: first + pattern.iter().position(has).unwrap_or(0) as u32,
-                vertices: labels.map(|label| vertices[label]),
+        let triangles = (first..).zip(pattern).map(|(number, &labels)| {
+            let triangle = LeafTriangle::of(labels);
+            let emitted = Emitted {
+                number,
+                vertices: triangle.corners.map(|label| vertices[label]),
                 place,
-                part,
-                open: borders.map(|border| border.is_some_and(|edge| open[edge])),
-            }
-        };
-        let middles = [0, 1, 2].map(|edge| split[edge].map(|_| 3 + edge));
-        let triangles = leaf_triangles([0, 1, 2], middles, from_end);
+                part: triangle.part,
+                open: triangle
+                    .borders
+                    .map(|border| border.is_some_and(|edge| open[edge])),
+            };
+            (emitted, triangle.corners)
+        });
         match node.surface {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
@@ -250,12 +247,11 @@ impl<B: Beholder> Leaves<'_, B> {
                     spot.along(1, 0.5),
                     spot.along(2, 0.5),
                 ];
-                for triangle in triangles {
-                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                for (emitted, corners) in triangles {
                     if !self.beholder.wants_triangle(&emitted) {
                         continue;
                     }
-                    let cell = Cell(triangle.corners.map(|label| domain[label]));
+                    let cell = Cell(corners.map(|label| domain[label]));
                     self.beholder.triangle(
                         &emitted,
                         Over::Regular(piece.ground(), cell, spot),
@@ -266,14 +262,13 @@ impl<B: Beholder> Leaves<'_, B> {
             Surface::General(piece, rules) => {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
-                for triangle in triangles {
-                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                for (emitted, corners) in triangles {
                     if !self.beholder.wants_triangle(&emitted) {
                         continue;
                     }
                     let [d, e, f] = *piece.middles(rules);
                     let points = [a, b, c, d, e, f];
-                    let limits = triangle.corners.map(|label| points[label]);
+                    let limits = corners.map(|label| points[label]);
                     let over = Over::General(&mut pieces, limits, piece);
                     self.beholder.triangle(&emitted, over, self.rules);
                 }

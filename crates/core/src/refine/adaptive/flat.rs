@@ -242,8 +242,7 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let mut by_rim = vec![false; self.regions.len()];
-        let is_asked = options.angle.is_none() && options.pixels.is_none();
-        if !is_asked || !control.rules.is_certified() {
+        if !options.asks_for_distances_alone() || !control.rules.is_certified() {
             return Ok(by_rim);
         }
         watch.each((0..).zip(&mut by_rim), |(region, by_rim)| {

@@ -36,7 +36,7 @@ impl Gaps {
 
     /// Asks for what may close the gaps; `attempt` counts from zero, and there may be so many triangles more. After finitely many
     /// of them there are no gaps.
-    pub(in super::super) fn close(self, demands: &mut Demands, (attempt, room): (usize, usize)) {
+    pub(in super::super) fn close(self, demands: &mut Demands, attempt: usize, room: usize) {
         if attempt >= MOST_ATTEMPTS {
             return demands.judge_all_by_triangles();
         }

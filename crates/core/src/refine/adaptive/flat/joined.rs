@@ -152,15 +152,12 @@ impl FlatRegions {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::demands::Demands;
     use super::super::super::judge::Goal;
     use super::super::super::measure::{Look, measure};
     use super::super::super::with_engine;
     use crate::index::VertexId;
     use crate::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Mesh, Tags};
-    use crate::progress::unobserved;
     use crate::refine::ExactOptions;
-    use crate::scheme::Loop;
 
     const SIDE: u32 = 8;
 
@@ -211,55 +208,49 @@ mod tests {
         for bend in [0.0, 1e-3] {
             let mesh = divided_square(bend);
             let options = ExactOptions::default().tolerance(0.3);
-            with_engine(
-                &mesh,
-                &Loop,
-                (&options, &Demands::default()),
-                &mut unobserved,
-                |engine| {
-                    let flat = &engine.control.flat;
-                    assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
-                    assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
-                    let found = engine.refined(Goal::Within(0.3), usize::MAX)?.unwrap();
-                    let sources = engine.sources(&found.state, &found.emission);
-                    let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
-                    let nothing = Goal::Within(f64::INFINITY);
-                    let look = Look {
-                        goal: &nothing,
-                        length: 1e-12,
-                        changes: None,
-                        bulges: None,
-                        trusted: &[],
-                    };
-                    let planned = |face: u32| found.state.proven[face as usize].extent.bound;
-                    let measured = measure(&sources, engine.watch, &faces, &look)?;
-                    let topology = mesh.topology();
-                    let is_beside = |face: &u32| {
-                        let corners = topology.triangles()[*face as usize].map(VertexId);
-                        corners
-                            .iter()
-                            .filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2)
-                            .count()
-                            == 2
-                    };
-                    let worst = |face: u32| measured[face as usize].worst.0;
-                    let rims = faces
+            with_engine(&mesh, &options, |engine| {
+                let flat = &engine.control.flat;
+                assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
+                assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
+                let found = engine.refined(Goal::Within(0.3), usize::MAX)?.unwrap();
+                let sources = engine.sources(&found.state, &found.emission);
+                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
+                let nothing = Goal::Within(f64::INFINITY);
+                let look = Look {
+                    goal: &nothing,
+                    length: 1e-12,
+                    changes: None,
+                    bulges: None,
+                    trusted: &[],
+                };
+                let planned = |face: u32| found.state.proven[face as usize].extent.bound;
+                let measured = measure(&sources, engine.watch, &faces, &look)?;
+                let topology = mesh.topology();
+                let is_beside = |face: &u32| {
+                    let corners = topology.triangles()[*face as usize].map(VertexId);
+                    corners
                         .iter()
-                        .copied()
-                        .filter(|&face| flat.region(face).is_some())
-                        .filter(is_beside);
-                    let (mut counted, mut assumed) = (0.0f64, 0.0f64);
-                    for face in rims {
-                        (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));
-                    }
-                    assert!(assumed > 0.02, "{assumed}");
-                    match bend == 0.0 {
-                        true => assert!(counted < 1e-9, "{counted}"),
-                        false => assert!(counted > 0.02, "{counted}"),
-                    }
-                    Ok(())
-                },
-            )
+                        .filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2)
+                        .count()
+                        == 2
+                };
+                let worst = |face: u32| measured[face as usize].worst.0;
+                let rims = faces
+                    .iter()
+                    .copied()
+                    .filter(|&face| flat.region(face).is_some())
+                    .filter(is_beside);
+                let (mut counted, mut assumed) = (0.0f64, 0.0f64);
+                for face in rims {
+                    (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));
+                }
+                assert!(assumed > 0.02, "{assumed}");
+                match bend == 0.0 {
+                    true => assert!(counted < 1e-9, "{counted}"),
+                    false => assert!(counted > 0.02, "{counted}"),
+                }
+                Ok(())
+            })
             .unwrap();
         }
     }
