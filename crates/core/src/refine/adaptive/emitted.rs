@@ -25,6 +25,8 @@ pub(super) struct Emitted {
     pub(super) number: u32,
     /// Its vertices, in the order of the part's corners, which may begin elsewhere.
     pub(super) vertices: [u32; 3],
+    /// Which of the emitted triangle's corners is the first of those.
+    pub(super) turn: usize,
     /// The leaf that it covers, or a part of which.
     pub(super) place: Place,
     /// That part.
@@ -226,6 +228,7 @@ impl<B: Beholder> Leaves<'_, B> {
             let emitted = Emitted {
                 number,
                 vertices: triangle.corners.map(|label| vertices[label]),
+                turn: triangle.turn(labels),
                 place,
                 part: triangle.part,
                 open: triangle
@@ -289,6 +292,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let emitted = Emitted {
             number,
             vertices,
+            turn: 0,
             place,
             part: SubTriangle::Whole,
             open,
@@ -325,6 +329,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let emitted = Emitted {
             number,
             vertices: [b, c, a],
+            turn: 1,
             place,
             part: SubTriangle::Whole,
             open: [false; 3],

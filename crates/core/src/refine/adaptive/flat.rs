@@ -268,7 +268,7 @@ impl FlatRegions {
             return Ok(by_rim);
         }
         let folded = watch.pieces(faces.len(), UNFOLDED, |block| {
-            let region = |face: u32| self.region(face).unwrap_or(NONE) as usize;
+            let region = |face: u32| self.of_face[face as usize] as usize;
             let is_folded =
                 |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);
             let folded = faces[block].iter().copied().filter(is_folded);

@@ -43,6 +43,12 @@ impl LeafTriangle {
             borders,
         }
     }
+
+    /// Which of the triangle's labels is that of its first corner here.
+    pub(super) fn turn(&self, labels: [u8; 3]) -> usize {
+        let is_other = |label: &&u8| usize::from(**label) != self.corners[0];
+        labels.iter().take_while(is_other).count()
+    }
 }
 
 /// The leaf's edge on which two labels lie.

@@ -482,13 +482,7 @@ impl Among {
             true => neighbours(emission, sharp, emitted.number),
             false => [None; 3],
         };
-        // The emitted triangle may begin at another corner.
-        let emitted_at = emission.triangles[emitted.number as usize];
-        let first = emitted_at
-            .iter()
-            .position(|&vertex| vertex == emitted.vertices[0])
-            .unwrap_or(0);
-        let slopes = [0, 1, 2].map(|edge| slopes[(first + edge) % 3]);
+        let slopes = [0, 1, 2].map(|edge| slopes[(emitted.turn + edge) % 3]);
         let steps = emitted.vertices.map(|vertex| emission.step(vertex));
         let (mut moved, mut aside) = (0.0f64, 0.0f64);
         let lifts = steps.map(|step| {
