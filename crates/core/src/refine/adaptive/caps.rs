@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 
 use super::demands::Demands;
+use super::flat::RimGaps;
 use super::judge::Goal;
 use super::{Engine, Task, budget};
 use crate::mesh::Mesh;
@@ -95,11 +96,11 @@ fn balanced_within(
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
     task.with_engine(observer, |engine| {
-        let options = task.options;
+        let (options, mut gaps) = (task.options, RimGaps::default());
         let goal = Goal::Balanced(engine.floor(options.tolerance));
         let found = engine.refined(goal, most)?;
         found
-            .map(|found| found.finish(engine, ExactStop::Met, options))
+            .map(|found| found.finish(engine, ExactStop::Met, options, &mut gaps))
             .transpose()
     })
 }
@@ -120,12 +121,13 @@ pub(in crate::refine) fn within(
         demands: &Demands::default(),
     };
     task.with_engine(observer, |engine| {
+        let mut gaps = RimGaps::default();
         let goal = Goal::Within(engine.floor(options.tolerance));
         let found = engine.refined(goal, most)?;
         let found = found
-            .map(|found| found.finish(engine, ExactStop::Met, options))
+            .map(|found| found.finish(engine, ExactStop::Met, options, &mut gaps))
             .transpose()?;
-        Ok(found.filter(|_| !engine.control.flat.has_gaps()))
+        Ok(found.filter(|_| gaps.are_none()))
     })
 }
 
@@ -195,25 +197,25 @@ fn within_room(
 ) -> Result<Exact, RefineError> {
     let options = task.options;
     let (_, cap) = options.budget();
-    without_gaps(task, most, observer, |engine| {
+    without_gaps(task, most, observer, |engine, gaps| {
         let floor = engine.floor(options.tolerance);
         if options.balance
             && floor > 0.0
             && let Some(found) = engine.refined(Goal::Balanced(floor), most)?
         {
-            return found.finish(engine, ExactStop::Met, options);
+            return found.finish(engine, ExactStop::Met, options, gaps);
         }
         let plain = &Engine {
             is_balanced: false,
             ..*engine
         };
         let (found, stop) = budget::search(plain, floor, most, cap)?;
-        let mut found = found.finish(plain, stop, options)?;
+        let mut found = found.finish(plain, stop, options, gaps)?;
         // Evenly curved models are best divided evenly, as long as about as much of that is proven.
         if floor == 0.0
             && let Some(even) = budget::even(plain, most)?
         {
-            let even = even.finish(plain, stop, options)?;
+            let even = even.finish(plain, stop, options, gaps)?;
             let is_proven = even.error.upper <= PROVEN_ALIKE * found.error.upper;
             if is_proven && even.error.lower < found.error.lower {
                 found = even;
@@ -222,7 +224,7 @@ fn within_room(
         if !options.balance {
             return Ok(found);
         }
-        engine.least_balanced(found, floor, (most, cap), options)
+        engine.least_balanced(found, floor, (most, cap), options, gaps)
     })
 }
 
@@ -235,6 +237,7 @@ impl Engine<'_> {
         floor: f64,
         (most, stop): (usize, ExactStop),
         options: &ExactOptions,
+        gaps: &mut RimGaps,
     ) -> Result<Exact, RefineError> {
         let has_criteria = self.control.criteria.is_some();
         let mut high = if has_criteria {
@@ -256,7 +259,7 @@ impl Engine<'_> {
         let Some(found) = best else {
             return Ok(plain);
         };
-        let balanced = found.finish(self, stop, options)?;
+        let balanced = found.finish(self, stop, options, gaps)?;
         Ok(if balanced.error.upper < plain.error.upper {
             balanced
         } else {
@@ -271,7 +274,7 @@ pub(super) fn without_gaps<T>(
     task: Task<'_>,
     most: usize,
     observer: &mut Observer<'_>,
-    run: impl Fn(&Engine<'_>) -> Result<T, RefineError>,
+    run: impl Fn(&Engine<'_>, &mut RimGaps) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
     let (mut demands, mut attempt) = (Cow::Borrowed(task.demands), 0);
     let room = most.saturating_sub(task.mesh.face_count());
@@ -281,9 +284,12 @@ pub(super) fn without_gaps<T>(
             ..task
         };
         let (found, gaps) = task.with_engine(observer, |engine| {
-            let found = run(engine)?;
-            let control = engine.control;
-            Ok((found, control.flat.gaps(control, attempt, engine.watch)?))
+            let mut gaps = RimGaps::default();
+            let found = run(engine, &mut gaps)?;
+            Ok((
+                found,
+                gaps.at_attempt(attempt, engine.control, engine.watch)?,
+            ))
         })?;
         if gaps.are_none() {
             return Ok(found);

@@ -30,6 +30,7 @@ mod replace;
 mod strips;
 mod unfolded;
 
+pub(super) use gaps::RimGaps;
 use regions::{FlatRegions, Plane};
 pub(super) use replace::Assembled;
 pub(super) use strips::Net;
@@ -43,7 +44,6 @@ use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
-use std::sync::Mutex;
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 /// How far they are is measured, and counted with every distance.
@@ -192,7 +192,6 @@ impl FlatRegions {
             is_enclosed: Vec::new(),
             joined: Vec::new(),
             beyond_rims: 0.0,
-            gaps: Mutex::default(),
             is_merged,
             weight,
         };

@@ -5,6 +5,7 @@
 //! nothing. Then each frame is replayed with that plan, and measured as it came out.
 
 use super::demands::Demands;
+use super::flat::RimGaps;
 use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::measured::Measured;
@@ -57,7 +58,12 @@ pub(in crate::refine) fn frames(
     let refined = task(&meshes[0]).with_engine(observer, |engine| {
         let emission = engine.emit_all(&state)?;
         engine.check(&emission)?;
-        engine.assemble(emission, state.levels(engine.watch)?)
+        // Options for frames have no flat regions.
+        engine.assemble(
+            emission,
+            state.levels(engine.watch)?,
+            &mut RimGaps::default(),
+        )
     })?;
     let replay = Replay::new_observed(control, scheme, &refined, observer)?;
     let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));

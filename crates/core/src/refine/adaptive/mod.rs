@@ -181,7 +181,7 @@ pub(super) fn count(
         options,
         demands: &demands,
     };
-    let found = without_gaps(task, most, observer, |engine| {
+    let found = without_gaps(task, most, observer, |engine, gaps| {
         let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() {
             times
@@ -206,7 +206,10 @@ pub(super) fn count(
         }
         // Which regions cannot be triangulated from their rims nobody knows before.
         let levels = found.state.levels(engine.watch)?;
-        Ok(engine.assemble(found.emission, levels)?.mesh.face_count())
+        Ok(engine
+            .assemble(found.emission, levels, gaps)?
+            .mesh
+            .face_count())
     })?;
     let may_be_fewer = fewest.is_none() && options.balance;
     if may_be_fewer

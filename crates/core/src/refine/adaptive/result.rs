@@ -2,7 +2,7 @@
 
 use super::backs::shows_back;
 use super::emit::Emission;
-use super::flat::Assembled;
+use super::flat::{Assembled, RimGaps};
 use super::neighbours::sharp_edges;
 use super::rounds::Verified;
 use super::{Engine, probe, sides};
@@ -27,6 +27,7 @@ impl Verified {
         engine: &Engine<'_>,
         stop: ExactStop,
         options: &ExactOptions,
+        gaps: &mut RimGaps,
     ) -> Result<Exact, RefineError> {
         let Self { state, emission } = self;
         let (control, watch) = (engine.control, engine.watch);
@@ -75,7 +76,7 @@ impl Verified {
             pixels,
             worst,
             stop,
-            ..engine.assemble(emission, levels)?
+            ..engine.assemble(emission, levels, gaps)?
         };
         if options.angle.is_some()
             && let Some(criteria) = &control.criteria
@@ -100,7 +101,12 @@ impl Engine<'_> {
     }
 
     /// The mesh of what was emitted, of which nothing is proven yet.
-    pub(super) fn assemble(&self, emission: Emission, levels: usize) -> Result<Exact, RefineError> {
+    pub(super) fn assemble(
+        &self,
+        emission: Emission,
+        levels: usize,
+        gaps: &mut RimGaps,
+    ) -> Result<Exact, RefineError> {
         let (control, watch) = (self.control, self.watch);
         watch.stage(Stage::Assembling, None)?;
         let tags = sides::tags((control, watch), &emission)?;
@@ -132,7 +138,7 @@ impl Engine<'_> {
         let (whole, unfolded) =
             control
                 .flat
-                .merge(control, whole, (&starts, &sharp), corners, watch)?;
+                .merge(control, whole, (&starts, &sharp), corners, gaps, watch)?;
         let Assembled {
             positions,
             normals,

@@ -5,7 +5,6 @@
 //! are what they were.
 
 use std::collections::BTreeMap;
-use std::sync::PoisonError;
 
 use super::regions::FlatRegions;
 use super::strips::{Net, Region, Regions};
@@ -59,35 +58,31 @@ impl Gaps {
     }
 }
 
-impl FlatRegions {
-    /// Whether some regions had gaps in what was put together so far.
-    pub(in super::super) fn has_gaps(&self) -> bool {
-        !self
-            .gaps
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .is_empty()
+/// Regions of which nothing was found that could be triangulated, with the chords of their rims by control face; without chords where it is of
+/// no use to divide these.
+#[derive(Default)]
+pub(in super::super) struct RimGaps(BTreeMap<u32, BTreeMap<u32, u32>>);
+
+impl RimGaps {
+    pub(in super::super) fn are_none(&self) -> bool {
+        self.0.is_empty()
     }
 
-    /// These regions, at this attempt.
-    pub(in super::super) fn gaps(
+    /// What may close them, at this attempt.
+    pub(in super::super) fn at_attempt(
         &self,
-        control: &Control<'_>,
         attempt: usize,
+        control: &Control<'_>,
         watch: &SharedWatch<'_>,
     ) -> Result<Gaps, Cancelled> {
+        let flat = &control.flat;
         let mut gaps = Gaps::default();
-        for (&region, chords) in self
-            .gaps
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .iter()
-        {
+        for (&region, chords) in &self.0 {
             let along = gaps.0.entry(region).or_default();
             // In the end as far as it is known to be of use.
-            let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
+            let is_last = attempt + 1 == MOST_DIVISIONS && flat.unfolds && !chords.is_empty();
             let least = if is_last {
-                Self::divisions(self.rim(control, region).count())
+                FlatRegions::divisions(flat.rim(control, region).count())
             } else {
                 0
             };
@@ -98,20 +93,16 @@ impl FlatRegions {
                     .div_ceil(count_open)
                     .next_power_of_two()
                     .ilog2();
-                along_rim(
-                    (Place::root(face), open),
-                    levels.max(least.saturating_sub(1)),
-                    along,
-                );
+                let levels = levels.max(least.saturating_sub(1));
+                along_rim(Place::root(face), open, levels, along);
             })?;
         }
         Ok(gaps)
     }
 
-    /// Notes a region, with the number of its rim's chords by control face if it may be of use to divide these.
-    pub(super) fn note_gap(&self, region: u32, chords: BTreeMap<u32, u32>) {
-        let mut gaps = self.gaps.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = gaps.entry(region).or_default();
+    /// Notes a region.
+    pub(super) fn note(&mut self, region: u32, chords: BTreeMap<u32, u32>) {
+        let known = self.0.entry(region).or_default();
         for (face, count) in chords {
             let most = known.entry(face).or_default();
             *most = count.max(*most);
@@ -137,7 +128,7 @@ pub(super) fn chords(
 }
 
 /// The nodes along the open edges of one, down to so many levels below it.
-fn along_rim((place, open): (Place, [bool; 3]), levels: u32, found: &mut Vec<Place>) {
+fn along_rim(place: Place, open: [bool; 3], levels: u32, found: &mut Vec<Place>) {
     if open == [false; 3] {
         return;
     }
@@ -145,7 +136,8 @@ fn along_rim((place, open): (Place, [bool; 3]), levels: u32, found: &mut Vec<Pla
     if levels > 0 {
         (0..4).for_each(|child| {
             along_rim(
-                (place.child(child), child_open(open, child)),
+                place.child(child),
+                child_open(open, child),
                 levels - 1,
                 found,
             )

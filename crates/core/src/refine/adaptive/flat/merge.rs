@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::super::control::Control;
 use super::flattened::Flattened;
-use super::gaps::chords;
+use super::gaps::{RimGaps, chords};
 use super::regions::FlatRegions;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
@@ -45,13 +45,15 @@ impl Fate {
 
 impl FlatRegions {
     /// Triangulates the regions and strips anew; gives how many of them were folded, too. `starts` has the first triangle of each control
-    /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
+    /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay. Notes
+    /// regions that should have been triangulated and could not be.
     pub(in super::super) fn merge(
         &self,
         control: &Control<'_>,
         whole: Assembled,
         (starts, sharp): (&[u32], &HashSet<u32>),
         corners: usize,
+        gaps: &mut RimGaps,
         watch: &SharedWatch<'_>,
     ) -> Result<(Assembled, usize), Cancelled> {
         if self.regions.is_empty() && self.straight.is_empty() {
@@ -59,7 +61,7 @@ impl FlatRegions {
         }
         let net = whole.net((starts, sharp), control.kept, corners);
         let mut regions = self.regions(&net, watch)?;
-        let coverings = self.coverings(control, &net, &mut regions, watch)?;
+        let coverings = self.coverings(control, &net, &mut regions, gaps, watch)?;
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
@@ -85,6 +87,7 @@ impl FlatRegions {
         control: &Control<'_>,
         net: &Net<'_>,
         regions: &mut Regions,
+        gaps: &mut RimGaps,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
@@ -127,10 +130,10 @@ impl FlatRegions {
                     continue;
                 };
                 if fails[at] && !control.demands.judges_by_triangles(flat) {
-                    self.note_gap(flat, chords(region, net, regions, watch)?);
+                    gaps.note(flat, chords(region, net, regions, watch)?);
                 } else if self.is_by_rim(region) && !stays[at] {
                     // Finer rims have edges in common with others just the same.
-                    self.note_gap(flat, BTreeMap::new());
+                    gaps.note(flat, BTreeMap::new());
                 }
             }
             return Ok(coverings);

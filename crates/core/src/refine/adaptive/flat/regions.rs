@@ -1,8 +1,5 @@
 //! The flat regions of a control mesh, and what is known of each.
 
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-
 use super::super::demands::Demands;
 use crate::mesh::NONE;
 use crate::vector::DVec3;
@@ -41,8 +38,6 @@ pub(in super::super) struct FlatRegions {
     pub(super) joined: Vec<u32>,
     /// How far beyond its rim the surface over such a region may reach for all that was proven.
     pub(super) beyond_rims: f64,
-    /// Such regions of which nothing was found that could be triangulated, with the chords of their rims by control face.
-    pub(super) gaps: Mutex<BTreeMap<u32, BTreeMap<u32, u32>>>,
     /// By control face, whether it is part of a region or there may be strips over it; empty where there are neither.
     pub(super) is_merged: Vec<bool>,
     /// So many leaves of such a face count as one while faces are divided.
