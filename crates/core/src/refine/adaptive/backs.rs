@@ -72,7 +72,7 @@ impl BackFaces {
                     found
                 };
                 let region = Region::around(triangle, DVec3::ZERO);
-                looks_away(criteria, &region, (&[triangle], 0.0), &mut look);
+                looks_away(criteria, &region, &[triangle], 0.0, &mut look);
             }
             rests
         })?;
@@ -148,7 +148,8 @@ impl<'a> Behind<'a> {
 pub(super) fn looks_away(
     criteria: &Criteria,
     region: &Region,
-    (triangles, moved): (&[[DVec3; 3]], f64),
+    triangles: &[[DVec3; 3]],
+    moved: f64,
     mut piece: impl FnMut((usize, &Viewpoint), f64) -> Option<f64>,
 ) -> Backs {
     criteria.backs(region, |viewer, viewpoint, rest| {

@@ -37,7 +37,7 @@ impl Pending {
             Some(0) => {}
             Some(depth) => {
                 // Inside, neighbours are equally deep, and so they mostly are beside it.
-                for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, (place, depth), edge)) {
+                for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, place, depth, edge)) {
                     for index in 0..1 << (depth - 1) {
                         let lowest = place.along(edge, depth - 1, index);
                         if lacks(trees, edges, lowest, edge) {
@@ -70,7 +70,7 @@ impl Pending {
 }
 
 /// Whether the node beyond an edge of an even one is even, too, and at most a level less deep.
-fn is_as_deep(trees: &Trees, edges: &Edges<'_>, (place, depth): (Place, u32), edge: usize) -> bool {
+fn is_as_deep(trees: &Trees, edges: &Edges<'_>, place: Place, depth: u32, edge: usize) -> bool {
     let other = match beyond(place, edge) {
         Beyond::Same(other) => Some(other),
         Beyond::Control(along) => edges

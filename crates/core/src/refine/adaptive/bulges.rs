@@ -276,7 +276,7 @@ impl Looking<'_> {
         };
         let corners = self.corners(emitted);
         let region = Region::around(corners, DVec3::ZERO);
-        let backs = looks_away(criteria, &region, (&[corners], 0.0), |viewer, rest| {
+        let backs = looks_away(criteria, &region, &[corners], 0.0, |viewer, rest| {
             Behind::of(back_faces, emitted, over, rules).is_back(&over.corners(), viewer, rest)
         });
         criteria.is_unseen(&region, &backs)

@@ -224,7 +224,7 @@ fn within_room(
         if !options.balance {
             return Ok(found);
         }
-        engine.least_balanced(found, floor, (most, cap), options, gaps)
+        engine.least_balanced(found, floor, most, cap, options, gaps)
     })
 }
 
@@ -235,7 +235,8 @@ impl Engine<'_> {
         &self,
         plain: Exact,
         floor: f64,
-        (most, stop): (usize, ExactStop),
+        most: usize,
+        stop: ExactStop,
         options: &ExactOptions,
         gaps: &mut RimGaps,
     ) -> Result<Exact, RefineError> {

@@ -32,7 +32,8 @@ impl Changes {
     /// Since triangles were measured last, with the control faces that were touched since, and what is known of triangles whose
     /// corners were moved. Where that is all that counts, not all triangles of faces that were touched are others.
     pub(super) fn since(
-        (bulges, is_alone): (Option<&Bulges>, bool),
+        bulges: Option<&Bulges>,
+        is_alone: bool,
         is_touched: &[bool],
         emission: &Emission,
         watch: &SharedWatch<'_>,

@@ -19,6 +19,7 @@ use crate::patch::Rules;
 use crate::progress::SharedWatch;
 use crate::refine::RefineError;
 use crate::refine::attribute_goal::{AttributeGoal, GoalKind};
+use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::Exact;
 use crate::scheme::Scheme;
 
@@ -27,6 +28,26 @@ const HALVINGS: usize = 2;
 
 /// The chord of angles at which neighbours do not help: none that counts is as great.
 const ALONE: f64 = 4.0;
+
+/// What nodes there is room for.
+#[derive(Clone, Copy)]
+pub(super) struct Room {
+    /// Control faces.
+    faces: usize,
+    max_levels: u32,
+    /// Nodes at most.
+    pub(super) nodes: usize,
+}
+
+impl Room {
+    pub(super) fn of(mesh: &Mesh, options: &ExactOptions, nodes: usize) -> Self {
+        Self {
+            faces: mesh.face_count(),
+            max_levels: options.max_levels as u32,
+            nodes,
+        }
+    }
+}
 
 /// Nodes that are divided, and flat regions that are judged by their triangles though their rims would do.
 #[derive(Clone, Debug, Default)]
@@ -153,19 +174,24 @@ impl<'a> Functions<'a> {
         self.goals.is_empty()
     }
 
-    /// The nodes over which a function is too far from linear; `None` if there are more than `most`.
+    /// The nodes over which a function is too far from linear; `None` if there is no room for them.
     pub(super) fn demands(
         &self,
-        (faces, max_levels, most): (usize, u32, usize),
+        room: Room,
         watch: &SharedWatch<'_>,
     ) -> Result<Option<Demands>, RefineError> {
+        let Room {
+            faces,
+            max_levels,
+            nodes,
+        } = room;
         let count = AtomicUsize::new(0);
         let blocks = watch.long_shares(faces, |block, is_stopped| {
             let mut found = Vec::new();
             let search = Dividing {
                 functions: self,
                 max_levels,
-                most,
+                most: nodes,
                 count: &count,
                 is_stopped,
             };
@@ -175,7 +201,7 @@ impl<'a> Functions<'a> {
             found
         })?;
         self.check()?;
-        if count.load(Ordering::Relaxed) > most {
+        if count.load(Ordering::Relaxed) > nodes {
             return Ok(None);
         }
         let mut divided = HashSet::with_capacity(count.load(Ordering::Relaxed));

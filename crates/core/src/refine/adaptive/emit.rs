@@ -87,7 +87,7 @@ impl Emitter<'_> {
         let arrays = match &mut before {
             Some(before) => {
                 let mut arrays = Arrays::taken(before);
-                let shifts = self.shifts(before, &is_new, (&numbers, &first_triangles), watch)?;
+                let shifts = self.shifts(before, &is_new, &numbers, &first_triangles, watch)?;
                 arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
                 arrays
             }
@@ -149,7 +149,8 @@ impl Emitter<'_> {
         &self,
         before: &Emission,
         is_new: &[bool],
-        (now, starts): (&Numbers, &[u32]),
+        now: &Numbers,
+        starts: &[u32],
         watch: &SharedWatch<'_>,
     ) -> Result<(Shifts, Shifts), Cancelled> {
         let (mut vertices, mut triangles) = (Shifts::default(), Shifts::default());

@@ -168,7 +168,7 @@ impl FlatRegions {
             WEIGHT
         };
         let straight = match options.strips && !options.balance {
-            true => strips::straight_faces(control, &normals, (&of_face, most), watch)?,
+            true => strips::straight_faces(control, &normals, &of_face, most, watch)?,
             false => Vec::new(),
         };
         if regions.is_empty() && straight.is_empty() {
@@ -205,7 +205,7 @@ impl FlatRegions {
                 return Ok(Self::default());
             }
         }
-        found.by_rim = found.by_rim(control, (options, most), watch)?;
+        found.by_rim = found.by_rim(control, options, most, watch)?;
         found.join(control, (most, size), watch)?;
         Ok(found)
     }
@@ -237,7 +237,8 @@ impl FlatRegions {
     fn by_rim(
         &mut self,
         control: &Control<'_>,
-        (options, most): (&ExactOptions, f64),
+        options: &ExactOptions,
+        most: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let mut by_rim = vec![false; self.regions.len()];

@@ -170,13 +170,13 @@ impl Judge<'_> {
             .jet()
             .beside_closely(&by_piece, &cell, &seen.frame, open);
         if beside.is_loose() {
-            return self.by_net(&seen, &net(), (&heights, high), open);
+            return self.by_net(&seen, &net(), &heights, high, open);
         }
         let verdict = self.decided(&seen, beside.deviation(high));
         if verdict.is_proven() {
             return verdict;
         }
-        self.by_heights(&seen, &beside, (&heights, low))
+        self.by_heights(&seen, &beside, &heights, low)
     }
 
     /// A node whose curves are known, by heights that are refined where the least of them would do.
@@ -184,7 +184,8 @@ impl Judge<'_> {
         &self,
         seen: &Seen,
         beside: &BesideEdges,
-        (heights, low): (&Heights, f64),
+        heights: &Heights,
+        low: f64,
     ) -> Verdict {
         let least = beside.deviation(low);
         if exceeds(least.bound(0.0, ANY_SLOPES), self.limit) {
@@ -200,7 +201,8 @@ impl Judge<'_> {
         &self,
         seen: &Seen,
         net: &NetPart,
-        (heights, high): (&Heights, f64),
+        heights: &Heights,
+        high: f64,
         open: [bool; 3],
     ) -> Verdict {
         let (mut deviation, _) = net.at_a_glance(&seen.frame, open);

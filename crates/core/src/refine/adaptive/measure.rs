@@ -514,7 +514,7 @@ impl Among {
         let own = core::iter::once(self.corners);
         let triangles: SmallVec<[_; 4]> =
             own.chain(self.neighbours.into_iter().flatten()).collect();
-        looks_away(criteria, &self.region(), (&triangles, self.moved), piece)
+        looks_away(criteria, &self.region(), &triangles, self.moved, piece)
     }
 
     fn region(&self) -> Region {

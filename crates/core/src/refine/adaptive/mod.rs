@@ -68,7 +68,7 @@ use crate::scheme::Scheme;
 use back_faces::BackFaces;
 use caps::{may_do_with_fewer, once, without_gaps};
 use control::Control;
-use demands::{Demands, Functions, surfaces_of};
+use demands::{Demands, Functions, Room, surfaces_of};
 use flat::regions::FlatRegions;
 use judge::Goal;
 use quadtree::{Edges, Place};
@@ -98,13 +98,16 @@ pub(super) fn adaptive(
         return once(task, observer);
     }
     let (most, cap) = options.budget();
-    let room = most.saturating_sub(mesh.face_count()) / ADDED;
-    let watched = (mesh.face_count(), options.max_levels as u32, room);
-    let demanded = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+    let room = Room::of(
+        mesh,
+        options,
+        most.saturating_sub(mesh.face_count()) / ADDED,
+    );
+    let demanded = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
     let fits = demanded.is_some();
     let mut demands = match demanded {
         Some(demands) => demands,
-        None => fitting(&functions, watched, observer)?,
+        None => fitting(&functions, room, observer)?,
     };
     loop {
         let mut found = once(
@@ -126,7 +129,7 @@ pub(super) fn adaptive(
             is_new |= demands.add(place);
         }
         // Without room for them, or where nothing may be divided any further, that is how far it comes.
-        if !fits || !is_new || demands.len() > room {
+        if !fits || !is_new || demands.len() > room.nodes {
             found.stop = if fits && !is_new {
                 ExactStop::LevelCap
             } else {
@@ -141,12 +144,12 @@ pub(super) fn adaptive(
 /// none where no such goals are.
 fn fitting(
     functions: &Functions<'_>,
-    watched: (usize, u32, usize),
+    room: Room,
     observer: &mut Observer<'_>,
 ) -> Result<Demands, RefineError> {
     for halvings in 1..=COARSEST {
         let coarser = functions.coarser(f64::from(halvings).exp2());
-        let found = coarser.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+        let found = coarser.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         if let Some(demands) = found {
             return Ok(demands);
         }
@@ -165,8 +168,8 @@ pub(super) fn count(
 ) -> Result<usize, RefineError> {
     let surfaces = surfaces_of(&options.attributes, scheme)?;
     let functions = Functions::of(&options.attributes, &surfaces).coarser(times);
-    let watched = (mesh.face_count(), options.max_levels as u32, usize::MAX);
-    let demands = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+    let room = Room::of(mesh, options, usize::MAX);
+    let demands = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();
     let plain = options.clone().balance(false);
     // As in [`once`], angles that balanced vertices meet late are met with plain ones.

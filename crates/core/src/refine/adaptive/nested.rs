@@ -4,7 +4,7 @@
 //! and its vertices' places on the coarser level. Where places count as well, what is too far off is divided until nothing is.
 
 use super::coarser::on_coarser;
-use super::demands::{Demands, Functions};
+use super::demands::{Demands, Functions, Room};
 use super::leaves::{Covering, Descent, Leaves};
 use super::quadtree::Place;
 use super::{ADDED, Task, once, probe};
@@ -38,13 +38,16 @@ pub(in crate::refine) fn nested(
 ) -> Result<Level, RefineError> {
     let mesh = surface.control();
     let (most, cap) = options.budget();
-    let room = most.saturating_sub(mesh.face_count()) / ADDED;
+    let room = Room::of(
+        mesh,
+        options,
+        most.saturating_sub(mesh.face_count()) / ADDED,
+    );
     let mut demands = Demands::default();
     let mut fits = true;
     if with_geomorph {
-        let watched = (mesh.face_count(), options.max_levels as u32, room);
         let functions = Functions::positions(surface, tolerance);
-        let found = functions.demands(watched, &SharedWatch::new(observer, Stage::Refining))?;
+        let found = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         fits = found.is_some();
         demands = found.unwrap_or_default();
     }
@@ -106,7 +109,7 @@ pub(in crate::refine) fn nested(
             is_new |= demands.add(place);
         }
         // Without room for them, or where nothing may be divided any further, that is how far it comes.
-        if !fits || !is_new || demands.len() > room {
+        if !fits || !is_new || demands.len() > room.nodes {
             level.exact.stop = if fits && !is_new {
                 ExactStop::LevelCap
             } else {

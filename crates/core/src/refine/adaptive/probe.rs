@@ -306,7 +306,7 @@ fn lower(
         }
         let poll = &mut |_| watch.poll();
         let found = parallel::each_long_polled(some, poll, |(promise, leaf), is_stopped| {
-            let points = farthest(sources, leaf, is_stopped).into_iter();
+            let points = farthest(sources, leaf.0, leaf.1, is_stopped).into_iter();
             let distances = points.map(|point| (mesh.distance(point, leaf.0, is_stopped), point));
             (promise, leaf, distances.collect::<Vec<_>>())
         })?;

@@ -109,8 +109,8 @@ impl Engine<'_> {
     ) -> Result<Exact, RefineError> {
         let (control, watch) = (self.control, self.watch);
         watch.stage(Stage::Assembling, None)?;
-        let tags = sides::tags((control, watch), &emission)?;
-        let sides = sides::sides((control, watch), &emission)?;
+        let tags = sides::tags(control, watch, &emission)?;
+        let sides = sides::sides(control, watch, &emission)?;
         let sharp = sharp_edges(&emission, watch)?;
         let Emission {
             positions,

@@ -184,7 +184,8 @@ impl Engine<'_> {
         };
         let mut emission = emitter.emit(before, self.watch)?;
         let junctions = sides::junctions(
-            (self.control, self.watch),
+            self.control,
+            self.watch,
             &self.control.edges,
             &state.chains,
             &emission,
@@ -255,7 +256,7 @@ impl Engine<'_> {
         watch.stage(Stage::Bounding, None)?;
         let known = self.is_balanced.then_some(&bulges);
         // Of triangles of which nothing but distances is asked it is known what was found of them.
-        let changes = Changes::since((known, is_alone), is_changed, emission, watch)?;
+        let changes = Changes::since(known, is_alone, is_changed, emission, watch)?;
         let faces = changes.faces(emission, &control.edges, watch)?;
         let trusted = if self.trusts() {
             &state.is_trusted[..]

@@ -12,7 +12,8 @@ use crate::progress::{Cancelled, SharedWatch};
 /// The normals of the corners of emitted triangles at vertices on sharp edges, by the half-edge that leaves the corner,
 /// ascending.
 pub(super) fn sides(
-    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    control: &Control<'_>,
+    watch: &SharedWatch<'_>,
     emission: &Emission,
 ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
     let mut sides = Vec::new();
@@ -66,7 +67,8 @@ pub(super) fn sides(
 
 /// The tags of the emitted mesh: creases along those of the control mesh, and its corners.
 pub(super) fn tags(
-    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    control: &Control<'_>,
+    watch: &SharedWatch<'_>,
     emission: &Emission,
 ) -> Result<Tags, Cancelled> {
     let corners = control
@@ -97,7 +99,8 @@ pub(super) fn tags(
 
 /// The copies of vertices and edges of cut sheets.
 pub(super) fn junctions(
-    (control, watch): (&Control<'_>, &SharedWatch<'_>),
+    control: &Control<'_>,
+    watch: &SharedWatch<'_>,
     edges: &Edges<'_>,
     chains: &Chains,
     emission: &Emission,

@@ -290,14 +290,16 @@ impl<'a> Surface<'a> {
         places: &[f64],
         found: &mut impl FnMut(usize, LimitPoint),
     ) {
-        self.part_along(edge, (0.0, 1.0), (0, places.len()), places, found);
+        self.part_along(edge, 0.0, 1.0, 0, places.len(), places, found);
     }
 
     fn part_along(
         self,
         edge: usize,
-        (from, length): (f64, f64),
-        (first, last): (usize, usize),
+        from: f64,
+        length: f64,
+        first: usize,
+        last: usize,
         places: &[f64],
         found: &mut impl FnMut(usize, LimitPoint),
     ) {
@@ -339,7 +341,7 @@ impl<'a> Surface<'a> {
                     ((edge + 1) % 3, from + half, next, last),
                 ] {
                     self.child(child)
-                        .part_along(edge, (from, half), (first, last), places, found);
+                        .part_along(edge, from, half, first, last, places, found);
                 }
             }
         }

@@ -34,7 +34,7 @@ impl<'a> Trial<'a> {
         let normal = seen.frame.normal();
         let triangle = corners.map(|corner| corner.position);
         let region = Region::around(triangle, normal).turned(2.0 * seen.tilt);
-        let backs = looks_away(criteria, &region, (&[triangle], 0.0), |viewer, rest| {
+        let backs = looks_away(criteria, &region, &[triangle], 0.0, |viewer, rest| {
             behind.is_back(corners, viewer, rest)
         });
         let cone =

@@ -34,7 +34,7 @@ impl FlatRegions {
     ) -> Result<Vec<bool>, Cancelled> {
         let found = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
             let is_enclosed = |region| {
-                self.encloses(control, (region as u32, rounding), is_stopped)
+                self.encloses(control, region as u32, rounding, is_stopped)
                     .is_some()
             };
             block.map(is_enclosed).collect::<Vec<_>>()
@@ -53,7 +53,8 @@ impl FlatRegions {
     fn encloses(
         &self,
         control: &Control<'_>,
-        (region, rounding): (u32, f64),
+        region: u32,
+        rounding: f64,
         is_stopped: &IsStopped<'_>,
     ) -> Option<()> {
         let (faces, plane) = &self.regions[region as usize];
@@ -85,7 +86,7 @@ impl FlatRegions {
             if is_known {
                 curve.reverse();
             } else {
-                let points = curve_over(control, h, (levels, rounding));
+                let points = curve_over(control, h, levels, rounding);
                 let first = positions.len() as u32;
                 positions.extend(points.iter().map(DVec3::to_array));
                 curve.extend(first..positions.len() as u32);
@@ -111,7 +112,7 @@ impl FlatRegions {
 }
 
 /// Points inside the curve over a half-edge, in order, so many times divided; none where it is straight.
-fn curve_over(control: &Control<'_>, h: u32, (levels, rounding): (u32, f64)) -> Vec<DVec3> {
+fn curve_over(control: &Control<'_>, h: u32, levels: u32, rounding: f64) -> Vec<DVec3> {
     let mut points = Vec::new();
     let triangle = control.mesh.triangles()[h as usize / 3];
     let ends = [0, 1].map(|end| triangle[(h as usize + end) % 3] as usize);

@@ -38,9 +38,9 @@ impl FlatRegions {
                     if is_done[other as usize] || rejected.contains(&other) {
                         continue;
                     }
-                    let off = self.height_over(control, (other, &plane), most);
+                    let off = self.height_over(control, other, &plane, most);
                     let mut is_sound = |region: u32| {
-                        self.is_sound(control, (region, &plane), most, &mut left, watch)
+                        self.is_sound(control, region, &plane, most, &mut left, watch)
                     };
                     let may_join = off.is_some() && {
                         let is_first_sound = match is_proven {
@@ -86,7 +86,8 @@ impl FlatRegions {
     fn height_over(
         &self,
         control: &Control<'_>,
-        (region, plane): (u32, &Plane),
+        region: u32,
+        plane: &Plane,
         most: f64,
     ) -> Option<f64> {
         let (faces, own) = &self.regions[region as usize];
@@ -103,7 +104,8 @@ impl FlatRegions {
     fn is_sound(
         &self,
         control: &Control<'_>,
-        (region, plane): (u32, &Plane),
+        region: u32,
+        plane: &Plane,
         most: f64,
         left: &mut usize,
         watch: &SharedWatch<'_>,

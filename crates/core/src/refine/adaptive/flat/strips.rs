@@ -171,7 +171,8 @@ impl Regions {
 pub(super) fn straight_faces(
     control: &Control<'_>,
     normals: &[DVec3],
-    (flat, most): (&[u32], f64),
+    flat: &[u32],
+    most: f64,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<u32>, Cancelled> {
     let mesh = control.mesh;

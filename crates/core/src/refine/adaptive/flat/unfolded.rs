@@ -29,14 +29,15 @@ const ROUNDING: f64 = 1e-12;
 
 /// Whether the surface over a face is turned over nowhere, but for pieces smaller than `least`.
 pub(super) fn is_unfolded(control: &Control<'_>, face: u32, plane: &Plane, least: f64) -> bool {
-    is_piece_unfolded(control, &control.patch(face), plane, (least, MOST_LEVELS))
+    is_piece_unfolded(control, &control.patch(face), plane, least, MOST_LEVELS)
 }
 
 fn is_piece_unfolded(
     control: &Control<'_>,
     patch: &Patch,
     plane: &Plane,
-    (least, levels): (f64, usize),
+    least: f64,
+    levels: usize,
 ) -> bool {
     if let Patch::Regular(points) = patch {
         return is_net_unfolded(&BezierTriangle::of(points), plane, HALVINGS);
@@ -50,7 +51,7 @@ fn is_piece_unfolded(
         return false;
     }
     let refined = patch.refined(control.rules);
-    (0..4).all(|child| is_piece_unfolded(control, &refined.part(child), plane, (least, levels - 1)))
+    (0..4).all(|child| is_piece_unfolded(control, &refined.part(child), plane, least, levels - 1))
 }
 
 fn is_net_unfolded(net: &BezierTriangle, plane: &Plane, halvings: usize) -> bool {

@@ -27,7 +27,8 @@ const LOOKED_AT: usize = 1 << 14;
 /// none is given. Where vertices were moved, those that stand highest and lowest, and the corners.
 pub(super) fn farthest(
     sources: &Sources<'_>,
-    (face, leaf): (u32, Option<Place>),
+    face: u32,
+    leaf: Option<Place>,
     is_stopped: &IsStopped<'_>,
 ) -> Vec<DVec3> {
     let Sources {
