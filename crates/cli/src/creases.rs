@@ -8,7 +8,7 @@ use limitmesh_io::channels::{GROUP, MATERIAL, OBJECT, SMOOTHING_GROUP};
 
 use crate::arguments::CreasesFrom;
 use crate::failure::usage;
-use crate::vector::{cross, length};
+use crate::vector::{cross, length, vector};
 
 /// Normals are one if they differ by less: their numbers are rounded, by 4 digits and more.
 const SAME: f64 = 1e-3;
@@ -132,9 +132,9 @@ fn inner_edges(mesh: &Mesh, is_own: impl Fn(HalfEdgeId, HalfEdgeId) -> bool) -> 
 /// Edges at one end of which the normals of their faces differ: at the other they are one where the crease ends.
 fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
     let unit = |h: HalfEdgeId| {
-        let own = normals.value(h.index());
+        let own = vector(normals.value(h.index()));
         let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-        (length > 0.0).then(|| [0, 1, 2].map(|i| own.get(i).copied().unwrap_or(0.0) / length))
+        (length > 0.0).then(|| own.map(|x| x / length))
     };
     let differ = |a: HalfEdgeId, b: HalfEdgeId| match (unit(a), unit(b)) {
         (Some(a), Some(b)) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>() > SAME * SAME,

@@ -180,7 +180,7 @@ pub(crate) fn read(
     let normals = soup
         .channels
         .iter()
-        .position(|channel| channel.name == NORMALS);
+        .position(|channel| channel.name == NORMALS && channel.arity == 3);
     let normals = normals.map(|at| soup.channels.remove(at));
     Ok(Soup {
         name,

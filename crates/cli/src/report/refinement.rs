@@ -223,14 +223,12 @@ pub(crate) struct ParametersReport {
 }
 
 impl ParametersReport {
-    /// What all methods have; the rest null.
-    pub(crate) fn common(arguments: &RefineArguments) -> Self {
-        // A unit that is missing was found before.
-        let weld = arguments
-            .build
-            .options()
-            .map_or_else(|_| Weld::default(), |options| options.weld);
-        Self {
+    /// Of any method: what not all methods have is null.
+    ///
+    /// # Errors
+    /// A length has a unit, and the mesh's is not known.
+    pub(crate) fn common(arguments: &RefineArguments) -> anyhow::Result<Self> {
+        Ok(Self {
             method: arguments.method,
             angle_degrees: None,
             levels: None,
@@ -246,14 +244,14 @@ impl ParametersReport {
             within: None,
             concave_corners: arguments.features.concave_corners(),
             max_triangles: arguments.max_triangles(),
-            weld: match weld {
+            weld: match arguments.build.options()?.weld {
                 Weld::Never => None,
                 Weld::Within(distance) => Some(distance),
                 _ => Some(0.0),
             },
             strict: arguments.build.strict,
             exact: None,
-        }
+        })
     }
 }
 

@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         let report = FramesReport {
             version: VERSION,
             frames: frames.collect(),
-            parameters: exact::parameters(&task, &goals),
+            parameters: exact::parameters(&task, &goals)?,
             triangles: refined.mesh.face_count(),
             vertices: refined.mesh.vertex_count(),
             levels: refined.levels,
@@ -338,9 +338,9 @@ fn write_all(
     };
     let mut errors = Vec::with_capacity(frames.len());
     for (number, (job, format)) in jobs.iter().enumerate() {
-        let (Some(path), &Some(format)) = (&job.output, format) else {
-            continue;
-        };
+        let file = job.output.as_deref().zip(*format);
+        debug_assert!(file.is_some(), "a frame has a file and its format");
+        let (path, format) = file.context("a frame has no file to be written to")?;
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
         let mut moved = exact.clone().moved_to(&frame)?;

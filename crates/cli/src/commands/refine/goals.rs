@@ -67,7 +67,7 @@ impl Goals {
             length: length.or(near.map(|near| near.tolerance)),
             tolerance,
             near,
-            rounding: most_rounding(arguments, control),
+            rounding: most_rounding(arguments, control)?,
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
             separates_faces: channels.vary_within_faces(),

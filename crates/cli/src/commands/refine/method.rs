@@ -38,8 +38,8 @@ impl Method {
     pub(super) fn parameters(&self, task: &Task<'_>) -> anyhow::Result<ParametersReport> {
         let (arguments, diagonal) = (task.arguments, task.control.diagonal);
         let own = match self {
-            Self::Exact(goals) => exact::parameters(task, goals),
-            Self::Stepwise | Self::Sqrt3Steps => stepwise::parameters(arguments),
+            Self::Exact(goals) => exact::parameters(task, goals)?,
+            Self::Stepwise | Self::Sqrt3Steps => stepwise::parameters(arguments)?,
             Self::Sqrt3 => sqrt3::parameters(arguments, diagonal)?,
             Self::Restricted => restricted::parameters(arguments, diagonal)?,
         };

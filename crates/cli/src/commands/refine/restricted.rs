@@ -1,6 +1,7 @@
 //! Refinement over a restricted quadtree by criteria of the literature, to be compared with: planarity (Zorin, Schröder and Sweldens)
 //! and vertex errors (Müller and Jaeschke).
 
+use anyhow::Context;
 use limitmesh::front::{Demand, Front, MOST_LEVELS, Measure, Snapshot};
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactStop, Origin, Traced};
@@ -103,7 +104,7 @@ pub(super) fn parameters(
             levels,
             own,
         )),
-        ..ParametersReport::common(arguments)
+        ..ParametersReport::common(arguments)?
     })
 }
 
@@ -122,15 +123,15 @@ fn normals(found: &Snapshot, task: &Task<'_>) -> anyhow::Result<Normals> {
             points.map(|point| point.normal).collect(),
         ));
     }
-    // A control face that a corner is not of has no points.
-    let nowhere = Origin {
-        face: u32::MAX,
-        barycentric: [0.0; 3],
-    };
     let control = task.mesh().triangles();
     let corners = (0..3 * found.mesh.face_count() as u32).map(HalfEdgeId);
-    let origin = |h| found.corner_origin(control, h).unwrap_or(nowhere);
-    let places: Vec<_> = corners.map(|h| place(&origin(h))).collect();
+    let origins = corners.map(|h| found.corner_origin(control, h));
+    let places: Option<Vec<_>> = origins.map(|own| own.as_ref().map(place)).collect();
+    debug_assert!(
+        places.is_some(),
+        "a corner is outside its triangle's control face"
+    );
+    let places = places.context("a corner is outside its triangle's control face")?;
     let points = surface.at_all(&places);
     Ok(Normals::BySide(SplitSurface::new(&found.mesh, |h| {
         points[h.index()].normal

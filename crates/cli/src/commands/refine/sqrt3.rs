@@ -30,7 +30,7 @@ pub(super) fn parameters(
             levels,
             &arguments.exact,
         )),
-        ..ParametersReport::common(arguments)
+        ..ParametersReport::common(arguments)?
     })
 }
 

@@ -158,16 +158,19 @@ fn finish(task: &Task<'_>, mesh: Mesh) -> anyhow::Result<(Mesh, Option<Normals>)
 }
 
 /// What was asked for, defaults filled in.
-pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
+///
+/// # Errors
+/// A length has a unit, and the mesh's is not known.
+pub(super) fn parameters(arguments: &RefineArguments) -> anyhow::Result<ParametersReport> {
     let adaptive = arguments.method != Method::Uniform;
-    ParametersReport {
+    Ok(ParametersReport {
         angle_degrees: adaptive.then(|| arguments.angle.unwrap_or(USUAL_ANGLE)),
         levels: Some(levels(arguments)),
         seam: adaptive.then(|| arguments.seam.unwrap_or(Seam::All)),
         view: ViewReport::of(arguments),
         limit: arguments.limit,
-        ..ParametersReport::common(arguments)
-    }
+        ..ParametersReport::common(arguments)?
+    })
 }
 
 /// Whether the cap left a step undone.

@@ -116,11 +116,13 @@ impl<'a> Parser<'a> {
             let end = start + reader.buffer_position() as usize;
             match event {
                 Ok(Event::Start(tag)) => {
-                    let level = self.open(&Element::new(&tag, self.text, at), end)?;
+                    let element = Element::new(&tag, &self.found.name, self.text, at)?;
+                    let level = self.open(&element, end)?;
                     self.levels.push(level);
                 }
                 Ok(Event::Empty(tag)) => {
-                    let level = self.open(&Element::new(&tag, self.text, at), end)?;
+                    let element = Element::new(&tag, &self.found.name, self.text, at)?;
+                    let level = self.open(&element, end)?;
                     self.close(level, end);
                 }
                 Ok(Event::End(_)) => {

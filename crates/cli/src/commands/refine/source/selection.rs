@@ -51,10 +51,7 @@ impl Selection {
 
     /// Whether a primitive is refined.
     pub(super) fn has(&self, mesh: usize, primitive: usize) -> bool {
-        self.0
-            .get(mesh)
-            .and_then(|own| own.get(primitive))
-            .is_some_and(|&is_wanted| is_wanted)
+        self.0[mesh][primitive]
     }
 }
 
