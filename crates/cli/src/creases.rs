@@ -16,7 +16,7 @@ const SAME: f64 = 1e-3;
 /// The sine of the angle between faces that are not in one plane, 1°.
 const BENT: f64 = 0.0175;
 
-/// What a file says of its edges, on a mesh's corners and faces.
+/// A file's hints of sharp edges, on a mesh's corners and faces.
 pub(crate) struct Hints<'a> {
     /// Whether it tags edges or vertices.
     pub(crate) is_tagged: bool,
@@ -24,7 +24,7 @@ pub(crate) struct Hints<'a> {
     pub(crate) channels: &'a [Channel],
 }
 
-/// What a file says of its edges, some of which are sharp.
+/// The kind of a file's own sharp edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OwnSharpness {
     /// Nothing.
@@ -83,7 +83,7 @@ impl Hints<'_> {
         }))
     }
 
-    /// What it says of some edges that they are sharp, and of others that they are not.
+    /// The hint that makes some edges sharp, and others not.
     pub(crate) fn sharpness(&self, mesh: &Mesh) -> OwnSharpness {
         let mut groups = self
             .channels

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Context;
 use limitmesh::scheme::Loop;
+use limitmesh_io::gltf::AssetContents;
 
 use super::limit_control;
 use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments, LimitArguments};
@@ -17,8 +18,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
-    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation,
-    PackageInformation, VERSION,
+    ChannelReport, InformationReport, InputReport, MeshInformation, PackageInformation, VERSION,
 };
 
 /// Examines a file and prints what it holds.
@@ -64,10 +64,13 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         input: report,
         polygons,
         tags,
-        asset: asset.map(|(_, contents)| contents.into()),
+        asset: asset.map(|(_, contents)| contents),
         package: package
             .zip(input.unit)
-            .map(|(own, unit)| PackageInformation::new(own, unit)),
+            .map(|(contents, unit)| PackageInformation {
+                unit: unit.name(),
+                contents,
+            }),
         diagnosis: (&input.diagnosis).into(),
         mesh: mesh_info::examine(&input.mesh, &input.trace.faces),
         limit: match arguments.limit {
@@ -175,8 +178,8 @@ fn describe_file(report: &InformationReport) -> String {
     text
 }
 
-/// What a glTF document holds, a line for each mesh and primitive.
-fn describe_asset(asset: &AssetInformation) -> String {
+/// The contents of a glTF document, a line for each mesh and primitive.
+fn describe_asset(asset: &AssetContents) -> String {
     let mut text = String::from("\nasset\n");
     let counts: Vec<String> = asset
         .counts
@@ -229,10 +232,15 @@ fn describe_asset(asset: &AssetInformation) -> String {
     text
 }
 
-/// What a 3MF package holds, a line for each object.
-fn describe_package(package: &PackageInformation) -> String {
+/// The contents of a 3MF package, a line for each object.
+fn describe_package(
+    PackageInformation {
+        unit,
+        contents: package,
+    }: &PackageInformation,
+) -> String {
     let items = counted(package.items, "item is", "items are");
-    let mut text = format!("\npackage\n  in {}; {items} built", package.unit);
+    let mut text = format!("\npackage\n  in {unit}; {items} built");
     if package.assemblies > 0 {
         text.push_str(&format!(
             ", {} of others",
@@ -293,7 +301,7 @@ fn describe_mesh(mesh: &MeshInformation) -> String {
         bulk_in_words(&mesh.bulk),
         format!(
             "least angle {:.2}°, mean least angle {:.1}°",
-            mesh.min_angle_degrees, mesh.mean_min_angle_degrees
+            mesh.quality.min_angle_degrees, mesh.quality.mean_min_angle_degrees
         ),
     ];
     let text: String = lines.iter().map(|line| format!("  {line}\n")).collect();

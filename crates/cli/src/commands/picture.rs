@@ -48,17 +48,21 @@ pub(super) fn drawn(path: &Path, triangles: usize) -> String {
     )
 }
 
-/// Draws a surface and writes the picture.
+/// Draws a surface, with its materials if it has some, and writes the picture.
 pub(super) fn draw(
     path: &Path,
     surface: Triangles<'_>,
     normals: Option<&[[f64; 3]]>,
+    covering: Option<&Covering<'_>>,
     view: ViewDirection,
     style: &Style,
     Size { width, height }: Size,
 ) -> anyhow::Result<()> {
     let camera = Camera::fit_tightly(surface, view, width, height)?;
-    let image = render(surface, normals, None, &camera, style, width, height)?;
+    let image = match covering {
+        Some(own) => render_textured(surface, normals, own, &camera, style, (width, height))?,
+        None => render(surface, normals, None, &camera, style, width, height)?,
+    };
     output::write_file(path, &image.encode_png()?)
 }
 
@@ -76,25 +80,11 @@ pub(super) fn draw_edges(
         path,
         surface,
         Some(normals),
+        None,
         view_direction(sight),
         &style,
         SIZE,
     )?;
     progress.note(drawn(path, surface.triangles.len()));
     Ok(())
-}
-
-/// Draws a surface with its materials and writes the picture.
-pub(super) fn draw_covered(
-    path: &Path,
-    surface: Triangles<'_>,
-    normals: Option<&[[f64; 3]]>,
-    covering: &Covering<'_>,
-    view: ViewDirection,
-    style: &Style,
-    Size { width, height }: Size,
-) -> anyhow::Result<()> {
-    let camera = Camera::fit_tightly(surface, view, width, height)?;
-    let image = render_textured(surface, normals, covering, &camera, style, (width, height))?;
-    output::write_file(path, &image.encode_png()?)
 }

@@ -176,7 +176,7 @@ fn shared_defects_are_found() {
     }
 }
 
-/// The same head with a fifth of its faces reversed becomes the head again, with these faces named.
+/// A head with a fifth of its faces reversed becomes the head again, with these faces named.
 #[test]
 fn reversed_faces_are_turned_back() {
     let Some(folder) = shared("") else { return };

@@ -124,7 +124,7 @@ fn damaged_files_say_where() {
     }
 }
 
-/// What is read is written in every format and read again: equal in all but STL, where it is equal as `f32`.
+/// Each input is written in every format and read again: equal in all but STL, where it is equal as `f32`.
 #[test]
 fn models_survive_every_format() {
     let Some(folder) = shared("") else { return };
@@ -136,7 +136,7 @@ fn models_survive_every_format() {
         "mannequin.off",
     ] {
         let mut soup = read(folder.join(name)).unwrap();
-        // What was left out is not written here, nor what else there is beside the shape.
+        // What was left out is not written here, nor anything else apart from the shape.
         soup.left_out.clear();
         soup.channels.clear();
         let triangles = triangles(&soup);

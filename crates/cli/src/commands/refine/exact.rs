@@ -132,7 +132,7 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 /// A mesh that is off by no more than this share of the diagonal is the surface itself, as files in single precision have it.
 const EXACT: f64 = 1e-6;
 
-/// What was reached, in sentences of a line each.
+/// The results, in sentences of a line each.
 fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) -> Vec<String> {
     let arguments = task.arguments;
     let mut lines = vec![error.in_words(&task.unit())];
@@ -197,7 +197,7 @@ pub(super) fn open_cones(found: &Exact) -> Option<String> {
     })
 }
 
-/// What was asked for, defaults filled in.
+/// The options, defaults filled in.
 ///
 /// # Errors
 /// A length has a unit, and the mesh's is not known.

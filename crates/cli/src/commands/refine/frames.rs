@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     })
 }
 
-/// What became of all frames: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
+/// The result for all frames in words: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
 fn in_words(found: &Frames, worst: f64, diagonal: f64, name: &str, refining: Duration) -> String {
     let refined = &found.refined;
     let made = format!(
@@ -236,7 +236,7 @@ fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<(Input, Vec<Vec<[f6
     Ok((first, frames))
 }
 
-/// What all frames must share with the first.
+/// The properties that all frames must share with the first.
 struct FirstFrame<'a> {
     name: &'a str,
     soup: &'a PolygonSoup,

@@ -1,4 +1,4 @@
-//! What is asked of exact refinement: the goals on the command line with those that hold where none is given, as options of the
+//! The goals of exact refinement: those on the command line with those that hold where none is given, as options of the
 //! library, and in words.
 
 use limitmesh::Mesh;

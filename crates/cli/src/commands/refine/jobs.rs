@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use limitmesh_io::Format;
 
 use super::check;
-use crate::arguments::{FileFormat, RefineArguments, Unit};
+use crate::arguments::{RefineArguments, Unit};
 use crate::failure::{self, Outcome, usage};
 use crate::input;
 
@@ -60,7 +60,7 @@ fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
 
 fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArguments> {
     let extension = || {
-        let to = arguments.to.map(FileFormat::format);
+        let to = arguments.to;
         Ok(match (to, input::builtin_name(input)) {
             (Some(to), _) => to.extension(),
             (None, Some(_)) => "ply",

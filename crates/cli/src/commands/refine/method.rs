@@ -31,7 +31,7 @@ impl Method {
         })
     }
 
-    /// What was asked for, defaults filled in.
+    /// The options, defaults filled in.
     ///
     /// # Errors
     /// A length has a unit, and the mesh's is not known.

@@ -12,7 +12,7 @@ use super::refined::{Refined, capped};
 use super::task::Task;
 use crate::arguments::{Extent, Method, RefineArguments};
 use crate::format::{counted, number};
-use crate::report::refinement::{ExactParametersReport, exact_stop_name};
+use crate::report::refinement::exact_stop_name;
 use crate::report::{MethodReport, ParametersReport};
 
 /// The angle of planarity where nothing else is asked, in degrees: that of the stepwise methods.
@@ -21,7 +21,7 @@ const USUAL_ANGLE: f64 = 10.0;
 /// The vertex error where nothing else is asked, in per cent of the diagonal: the exact method's distance.
 const USUAL_PERCENT: f64 = 0.1;
 
-/// What is asked.
+/// The goal.
 struct Goal {
     measure: Measure,
     /// In the measure's unit.
@@ -71,7 +71,7 @@ impl Goal {
         }
     }
 
-    /// What was reached, in words.
+    /// The result, in words.
     fn in_words(&self, worst: f64, unit: &str) -> String {
         let length = number(worst);
         let reached = match self.measure {
@@ -88,24 +88,20 @@ impl Goal {
     }
 }
 
-/// What was asked for, defaults filled in.
+/// The options, defaults filled in.
 pub(super) fn parameters(
     arguments: &RefineArguments,
     diagonal: f64,
 ) -> anyhow::Result<ParametersReport> {
     let goal = Goal::of(arguments, diagonal)?;
     let levels = most_levels(arguments) as usize;
-    let own = &arguments.exact;
-    Ok(ParametersReport {
-        angle_degrees: goal.angle_degrees,
-        exact: Some(ExactParametersReport::new(
-            goal.tolerance,
-            diagonal,
-            levels,
-            own,
-        )),
-        ..ParametersReport::common(arguments)?
-    })
+    ParametersReport::of_goals(
+        goal.angle_degrees,
+        goal.tolerance,
+        diagonal,
+        levels,
+        arguments,
+    )
 }
 
 fn most_levels(arguments: &RefineArguments) -> u32 {

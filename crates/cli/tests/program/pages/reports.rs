@@ -149,7 +149,7 @@ fn misfit(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<Strin
         let Some(variants) = schema[word].as_array() else {
             continue;
         };
-        // Fields beside the variants are each variant's, too.
+        // Fields apart from the variants are each variant's, too.
         let misfits: Vec<String> = variants
             .iter()
             .filter_map(|own| misfit(root, &joined(schema, own), value, at))

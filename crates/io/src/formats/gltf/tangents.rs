@@ -114,7 +114,7 @@ impl WithTangents {
     }
 }
 
-/// What a morph target adds to the tangents of all corners.
+/// The tangents that a morph target adds at all corners.
 struct Added {
     target: usize,
     tangents: Vec<[f32; 3]>,
@@ -125,19 +125,10 @@ fn singles<const N: usize>(rows: &[[f64; N]]) -> Vec<[f32; N]> {
 }
 
 fn attribute<const N: usize>(values: impl Iterator<Item = [f32; N]>) -> VertexAttribute {
-    let (name, values) = (
-        TANGENT.to_owned(),
-        values.flatten().map(f64::from).collect(),
-    );
-    VertexAttribute {
-        name,
-        width: N,
-        values,
-        is_integer: false,
-    }
+    VertexAttribute::new(TANGENT, N, values.flatten().map(f64::from).collect())
 }
 
-/// What tangents are found from.
+/// The input of the tangents.
 struct Surface<'a> {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,

@@ -23,7 +23,7 @@ pub(super) struct Element<'a> {
     pub(super) name: &'a str,
     /// Its name without.
     pub(super) local: &'a str,
-    /// What follows the name.
+    /// The text after the name.
     pub(super) attributes: &'a str,
 }
 
