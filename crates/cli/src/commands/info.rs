@@ -2,17 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::Context;
-use limitmesh::scheme::Loop;
 use limitmesh_io::gltf::AssetContents;
 
-use super::limit_control;
-use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments, LimitArguments};
+use crate::arguments::InfoArguments;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
-use crate::failure::{Outcome, usage};
+use crate::failure::Outcome;
 use crate::format::{counted, number, point, table, thousands};
-use crate::input::{self, Input};
+use crate::input;
 use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
@@ -23,16 +20,6 @@ use crate::report::{
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    if arguments.features.creases_from != CreasesFrom::None {
-        return usage(
-            "info follows tags and --crease-angle; --creases-from is for refine, evaluate and measure",
-        );
-    }
-    if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
-        return usage(format!(
-            "{option} belongs to a limit surface; it needs --limit"
-        ));
-    }
     let mut read = input::read(&arguments.input, &arguments.build, progress)?;
     let soup = &read.soup;
     let mut corners = BTreeMap::<usize, usize>::new();
@@ -73,10 +60,6 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
             }),
         diagnosis: (&input.diagnosis).into(),
         mesh: mesh_info::examine(&input.mesh, &input.trace.faces),
-        limit: match arguments.limit {
-            true => limit_of(input, arguments, progress)?,
-            false => None,
-        },
     };
     progress.clear();
     if arguments.json {
@@ -92,29 +75,9 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
             .for_each(|line| text.push_str(&format!("  {line}\n")));
         text.push_str("\ncontrol mesh\n");
         text.push_str(&describe_mesh(&report.mesh));
-        if let Some(limit) = &report.limit {
-            text.push_str(&format!("\nlimit surface\n  {}\n", bulk_in_words(limit)));
-        }
         output::print(&text)?;
     }
     Ok(Outcome::Done)
-}
-
-/// Area and volume of the limit surface, with what is sharp by its looks.
-fn limit_of(
-    input: Input,
-    arguments: &InfoArguments,
-    progress: &Progress,
-) -> anyhow::Result<Option<Bulk>> {
-    let name = input.name.clone();
-    let limit = LimitArguments {
-        scheme: None,
-        features: arguments.features,
-        interpolation: InterpolationArguments::default(),
-        build: arguments.build,
-    };
-    let prepared = limit_control::prepared(input, &limit, progress)?;
-    Bulk::of_limit(&prepared.input.mesh, &Loop).with_context(|| name)
 }
 
 fn describe_file(report: &InformationReport) -> String {

@@ -30,8 +30,6 @@ pub(crate) struct InformationReport {
     pub(crate) diagnosis: DiagnosisReport,
     /// The control mesh.
     pub(crate) mesh: MeshInformation,
-    /// The limit surface; null unless it was asked for.
-    pub(crate) limit: Option<Bulk>,
 }
 
 /// The contents of a 3MF package.

@@ -7,8 +7,7 @@ use serde_json::Value;
 use crate::common::{done, file, folder, json_of, run, usage_error};
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
-    let report = json_of(&format!("measure {arguments} --json"), paths);
-    report
+    json_of(&format!("measure {arguments} --json"), paths)
 }
 
 fn number(value: &Value) -> f64 {
