@@ -135,10 +135,9 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
             .filter_map(|row| row.get(column))
             .map(|c| c.chars().count())
             .max()
+            .unwrap_or(0)
     };
-    let widths: Vec<usize> = (0..columns)
-        .map(|column| width(column).unwrap_or(0))
-        .collect();
+    let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();

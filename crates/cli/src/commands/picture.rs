@@ -22,16 +22,19 @@ pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if output::is_standard_output(path) {
         return Ok(());
     }
-    if path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
-    {
+    if is_png(path) {
         return output::check_writable(path);
     }
     usage(format!(
         "{}: pictures are PNG files; give a name that ends with .png",
         path.display()
     ))
+}
+
+/// Whether a file is called as PNG files are.
+pub(super) fn is_png(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// The view of a picture: along a direction of sight, or from the front, a little from the side and above.

@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
-use std::path::{Path, is_separator};
+use std::path::Path;
 
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
 use crate::arguments::{Arguments, Viewer};
 use crate::file_identity::FileIdentity;
+use crate::output::is_folder;
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
@@ -132,11 +133,6 @@ impl Reader {
 /// The file that an option names in which cameras are.
 fn file_of_cameras(text: &str) -> Option<String> {
     matches!(text.parse(), Ok(Viewer::File(_))).then(|| text.to_owned())
-}
-
-fn is_folder(path: &Path) -> bool {
-    let last = path.as_os_str().as_encoded_bytes().last();
-    last.is_some_and(|&last| is_separator(char::from(last))) || path.is_dir()
 }
 
 /// The message of serde_json on a text of one line.

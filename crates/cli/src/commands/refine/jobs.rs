@@ -1,7 +1,7 @@
 //! Several inputs of one command: where each is written, and how they end together.
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf, is_separator};
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::ValueEnum;
@@ -11,6 +11,7 @@ use super::check;
 use crate::arguments::{RefineArguments, Unit};
 use crate::failure::{self, Outcome, usage};
 use crate::input;
+use crate::output::{ends_with_separator, is_folder};
 
 /// A command for one input, and the format that it writes; none for a dry run without a name.
 pub(super) type Job = (RefineArguments, Option<Format>);
@@ -88,18 +89,6 @@ fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArgume
         proof: place(&arguments.proof, &|| Ok("proof")).transpose()?,
         ..arguments.clone()
     })
-}
-
-/// Whether a name is that of a folder: it ends with a slash, or there is one.
-fn is_folder(path: &Path) -> bool {
-    ends_with_separator(path) || path.is_dir()
-}
-
-fn ends_with_separator(path: &Path) -> bool {
-    path.as_os_str()
-        .as_encoded_bytes()
-        .last()
-        .is_some_and(|&last| is_separator(char::from(last)))
 }
 
 /// The file in a folder that is called as the input is.
