@@ -126,7 +126,7 @@ fn volume(corners: [[f64; 3]; 3], tip: [f64; 3]) -> f64 {
     dot(a, cross(b, c)) / 6.0
 }
 
-/// What numbers add up to, compensated (Neumaier 1974): what a million roundings lose would show in a difference.
+/// A compensated sum of numbers (Neumaier 1974): the loss of a million roundings would show in a difference.
 #[derive(Clone, Copy, Default)]
 struct Sum {
     sum: f64,

@@ -8,7 +8,7 @@ use limitmesh_io::channels::{GROUP, MATERIAL, OBJECT, SMOOTHING_GROUP};
 
 use crate::arguments::CreasesFrom;
 use crate::failure::usage;
-use crate::vector::{cross, length};
+use crate::vector::{cross, length, vector};
 
 /// Normals are one if they differ by less: their numbers are rounded, by 4 digits and more.
 const SAME: f64 = 1e-3;
@@ -16,7 +16,7 @@ const SAME: f64 = 1e-3;
 /// The sine of the angle between faces that are not in one plane, 1°.
 const BENT: f64 = 0.0175;
 
-/// What a file says of its edges, on a mesh's corners and faces.
+/// A file's hints of sharp edges, on a mesh's corners and faces.
 pub(crate) struct Hints<'a> {
     /// Whether it tags edges or vertices.
     pub(crate) is_tagged: bool,
@@ -24,7 +24,7 @@ pub(crate) struct Hints<'a> {
     pub(crate) channels: &'a [Channel],
 }
 
-/// What a file says of its edges, some of which are sharp.
+/// The kind of a file's own sharp edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum OwnSharpness {
     /// Nothing.
@@ -83,7 +83,7 @@ impl Hints<'_> {
         }))
     }
 
-    /// What it says of some edges that they are sharp, and of others that they are not.
+    /// The hint that makes some edges sharp, and others not.
     pub(crate) fn sharpness(&self, mesh: &Mesh) -> OwnSharpness {
         let mut groups = self
             .channels
@@ -132,9 +132,9 @@ fn inner_edges(mesh: &Mesh, is_own: impl Fn(HalfEdgeId, HalfEdgeId) -> bool) -> 
 /// Edges at one end of which the normals of their faces differ: at the other they are one where the crease ends.
 fn split_edges(mesh: &Mesh, normals: &Channel) -> Vec<HalfEdgeId> {
     let unit = |h: HalfEdgeId| {
-        let own = normals.value(h.index());
+        let own = vector(normals.value(h.index()));
         let length = own.iter().map(|x| x * x).sum::<f64>().sqrt();
-        (length > 0.0).then(|| [0, 1, 2].map(|i| own.get(i).copied().unwrap_or(0.0) / length))
+        (length > 0.0).then(|| own.map(|x| x / length))
     };
     let differ = |a: HalfEdgeId, b: HalfEdgeId| match (unit(a), unit(b)) {
         (Some(a), Some(b)) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>() > SAME * SAME,

@@ -78,7 +78,7 @@ pub(crate) fn refined(
     }
 }
 
-/// What clap says, without what helps on a terminal only.
+/// The message of clap, without the hints for a terminal.
 fn first_line(text: &str) -> String {
     let text = text.lines().next().unwrap_or_default();
     text.strip_prefix("error: ").unwrap_or(text).to_owned()
@@ -97,7 +97,7 @@ fn in_words(error: &anyhow::Error) -> String {
     text
 }
 
-/// What kind of mesh it is, as JSON: `mesh` of the report of `limitmesh info`. `faces` are the input's that its own are from; none where
+/// The properties of a mesh, as JSON: `mesh` of the report of `limitmesh info`. `faces` are the input's that its own are from; none where
 /// these are not known.
 ///
 /// # Errors

@@ -11,11 +11,14 @@ pub(crate) fn number(x: f64) -> String {
         return format!("{x:.5e}");
     }
     let decimals = (5 - x.abs().log10().floor() as i64).clamp(0, 9) as usize;
-    let text = format!("{x:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
+    without_zeros(&format!("{x:.decimals$}")).to_owned()
+}
+
+/// Digits without a tail of zeros after the point.
+fn without_zeros(text: &str) -> &str {
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => text,
     }
 }
 
@@ -80,27 +83,15 @@ fn outwards(x: f64, digits: usize, sign: f64) -> String {
     if !(1e-4..1e9).contains(&rounded) {
         return format!("{rounded:.*e}", digits - 1);
     }
-    let text = format!(
-        "{rounded:.*}",
-        (digits as f64 - 1.0 - exponent).max(0.0) as usize
-    );
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
+    let decimals = (digits as f64 - 1.0 - exponent).max(0.0) as usize;
+    without_zeros(&format!("{rounded:.decimals$}")).to_owned()
 }
 
 /// [`number`] without a tail of zeros before an exponent either.
 fn short(x: f64) -> String {
     let text = number(x);
     match text.split_once('e') {
-        Some((digits, exponent)) => {
-            format!(
-                "{}e{exponent}",
-                digits.trim_end_matches('0').trim_end_matches('.')
-            )
-        }
+        Some((digits, exponent)) => format!("{}e{exponent}", without_zeros(digits)),
         None => text,
     }
 }
@@ -144,10 +135,9 @@ pub(crate) fn table(rows: &[Vec<String>]) -> String {
             .filter_map(|row| row.get(column))
             .map(|c| c.chars().count())
             .max()
+            .unwrap_or(0)
     };
-    let widths: Vec<usize> = (0..columns)
-        .map(|column| width(column).unwrap_or(0))
-        .collect();
+    let widths: Vec<usize> = (0..columns).map(width).collect();
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();

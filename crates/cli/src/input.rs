@@ -8,23 +8,23 @@ use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Trace, Weld};
 use limitmesh::{Mesh, PolygonSoup};
 use limitmesh_io::channels::NORMALS;
-use limitmesh_io::gltf::Contents;
+use limitmesh_io::gltf::AssetContents;
 use limitmesh_io::threemf::PackageContents;
 use limitmesh_io::{Asset, Format, Package};
 
-use crate::arguments::{BuildArguments, ChannelArguments, CreasesFrom, FileFormat, Unit};
+use crate::arguments::{BuildArguments, ChannelArguments, CreasesFrom, Unit};
 use crate::creases::Hints;
 use crate::failure::usage;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
 
-/// What marks the name of a built-in model.
+/// The prefix of a built-in model's name.
 const BUILTIN: &str = "builtin:";
 
 /// Standard input where a file is expected.
 const STANDARD_INPUT: &str = "-";
 
-/// What a file or a built-in model held.
+/// The contents of a file or a built-in model.
 pub(crate) struct Soup {
     /// As given on the command line.
     pub(crate) name: String,
@@ -35,17 +35,17 @@ pub(crate) struct Soup {
     /// Normals of its corners or vertices, which say where edges were meant to be sharp.
     pub(crate) normals: Option<Channel>,
     /// The glTF document, if it was one, and what else that holds.
-    pub(crate) asset: Option<(Asset, Contents)>,
-    /// What else a 3MF package holds.
+    pub(crate) asset: Option<(Asset, AssetContents)>,
+    /// The contents of a 3MF package.
     pub(crate) package: Option<PackageContents>,
-    /// What its numbers are measured in, by itself or by `--unit`.
+    /// The unit of its numbers, by itself or by `--unit`.
     pub(crate) unit: Option<Unit>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
 
 impl Input {
-    /// What it says of sharp edges, apart from tags.
+    /// Its hints of sharp edges, apart from tags.
     pub(crate) fn hints(&self) -> Hints<'_> {
         Hints {
             is_tagged: self.is_tagged,
@@ -88,7 +88,7 @@ impl Input {
     }
 }
 
-/// What makes numbers in one unit such in another, where both are known and differ; a note says it of the file that is called `name`.
+/// The factor from one unit to another, where both are known and differ; a note names it for the file `name`.
 pub(crate) fn factor(
     own: Option<Unit>,
     other: Option<Unit>,
@@ -110,19 +110,19 @@ pub(crate) struct Input {
     pub(crate) name: String,
     /// `obj`, `ply`, `stl`, `off`, `gltf`, `glb`, `3mf` or `builtin`.
     pub(crate) format: &'static str,
-    /// What else the file held and was left out, in words.
+    /// The contents of the file that were left out, in words.
     pub(crate) left_out: Vec<String>,
     /// Whether it tags edges or vertices as sharp.
     pub(crate) is_tagged: bool,
     /// The mesh.
     pub(crate) mesh: Mesh,
-    /// What was found and repaired.
+    /// Findings and repairs.
     pub(crate) diagnosis: Diagnosis,
     /// The input's face that each face of the mesh is from, and the corners.
     pub(crate) trace: Trace,
     /// Normals of the corners, as the file has them.
     pub(crate) normals: Option<Channel>,
-    /// What corners and faces of the mesh carry.
+    /// Values of the mesh's corners and faces.
     pub(crate) channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub(crate) material_libraries: Vec<String>,
@@ -130,7 +130,7 @@ pub(crate) struct Input {
     pub(crate) texture_files: Vec<String>,
     /// The glTF document, if it was one.
     pub(crate) asset: Option<Asset>,
-    /// What its numbers are measured in, by itself or by `--unit`.
+    /// The unit of its numbers, by itself or by `--unit`.
     pub(crate) unit: Option<Unit>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
@@ -180,7 +180,7 @@ pub(crate) fn read(
     let normals = soup
         .channels
         .iter()
-        .position(|channel| channel.name == NORMALS);
+        .position(|channel| channel.name == NORMALS && channel.arity == 3);
     let normals = normals.map(|at| soup.channels.remove(at));
     Ok(Soup {
         name,
@@ -277,10 +277,10 @@ pub(crate) fn builtin_name(path: &Path) -> Option<&str> {
 ///
 /// # Errors
 /// Neither says which.
-pub(crate) fn format_of(path: &Path, given: Option<FileFormat>) -> anyhow::Result<Format> {
+pub(crate) fn format_of(path: &Path, given: Option<Format>) -> anyhow::Result<Format> {
     match (Format::from_path(path), given) {
         (Ok(format), _) => Ok(format),
-        (Err(_), Some(given)) => Ok(given.format()),
+        (Err(_), Some(given)) => Ok(given),
         (Err(_), None) if path.as_os_str() == STANDARD_INPUT => {
             usage("standard input has no name that says its format; --from FORMAT does")
         }

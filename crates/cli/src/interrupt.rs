@@ -9,11 +9,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use anyhow::Context;
 
-/// What the program does, for the message of an interrupt.
+/// The current stage, for the message of an interrupt.
 struct State {
     /// The file that is being written, and how many had been finished before.
     writing: Option<(PathBuf, usize)>,
-    /// What was asked for meanwhile.
+    /// The signal that came meanwhile.
     asked: Option<Signal>,
     doing: String,
     written: Vec<String>,

@@ -26,6 +26,7 @@ mod points;
 mod progress;
 mod reference;
 mod report;
+mod rows;
 #[cfg(test)]
 mod tests;
 mod vector;

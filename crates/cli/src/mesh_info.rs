@@ -1,19 +1,18 @@
-//! What kind of surface a control mesh is: components, boundary loops, genus, valences, extent, volume, sharp edges,
+//! Properties of a control mesh: components, boundary loops, genus, valences, extent, volume, sharp edges,
 //! triangles.
 
-use limitmesh::measure::{triangle_quality, watertightness};
+use limitmesh::measure::watertightness;
 use limitmesh::{Mesh, VertexId};
 
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
-use crate::report::MeshInformation;
 use crate::report::information::BoundingBox;
+use crate::report::{MeshInformation, QualityReport};
 
 /// Examines a control mesh, with the input's faces that its own are from; none where these are not known.
 pub(crate) fn examine(mesh: &Mesh, faces: &[u32]) -> MeshInformation {
     let surface = mesh.as_triangles();
     let tightness = watertightness(surface);
-    let quality = triangle_quality(surface);
     let topology = mesh.topology();
     let boundary_loops = boundary_loops(mesh);
     let euler = topology.euler_characteristic();
@@ -48,9 +47,7 @@ pub(crate) fn examine(mesh: &Mesh, faces: &[u32]) -> MeshInformation {
         },
         bulk: Bulk::of(mesh),
         dihedrals: Dihedrals::of(mesh, faces),
-        min_angle_degrees: quality.min_angle_degrees,
-        mean_min_angle_degrees: quality.mean_min_angle_degrees,
-        angle_histogram: quality.histogram,
+        quality: QualityReport::of(mesh),
     }
 }
 
@@ -71,38 +68,4 @@ fn boundary_loops(mesh: &Mesh) -> usize {
         }
     }
     loops
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_square_ring_has_two_loops_and_no_genus() {
-        // The border of a 3 × 3 grid of squares.
-        let mut positions = Vec::new();
-        for y in 0..4 {
-            positions.extend((0..4).map(|x| [f64::from(x), f64::from(y), 0.0]));
-        }
-        let mut triangles = Vec::new();
-        for (x, y) in (0..9u32)
-            .map(|i| (i % 3, i / 3))
-            .filter(|&cell| cell != (1, 1))
-        {
-            let a = 4 * y + x;
-            triangles.extend([[a, a + 1, a + 5], [a, a + 5, a + 4]]);
-        }
-        let mesh = Mesh::from_triangles(positions, triangles).unwrap();
-        let shape = examine(&mesh, &[]);
-        assert_eq!(
-            (
-                shape.boundary_loops,
-                shape.genus,
-                shape.euler_characteristic
-            ),
-            (2, 0, 0)
-        );
-        assert_eq!((shape.vertices, shape.edges, shape.triangles), (16, 32, 16));
-        assert_eq!(shape.bounding_box.high, [3.0, 3.0, 0.0]);
-    }
 }

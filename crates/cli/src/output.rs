@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Path, PathBuf, is_separator};
 
 use anyhow::Context;
 use limitmesh_io::{Asset, Format, Output, WriteError, WriteOptions};
@@ -35,6 +35,19 @@ pub(crate) fn json(value: &impl Serialize) -> anyhow::Result<String> {
 /// Whether this means standard output.
 pub(crate) fn is_standard_output(path: &Path) -> bool {
     path.as_os_str() == STANDARD_OUTPUT
+}
+
+/// Whether a name is that of a folder: it ends with a slash, or there is one.
+pub(crate) fn is_folder(path: &Path) -> bool {
+    ends_with_separator(path) || path.is_dir()
+}
+
+/// Whether a name ends with a slash.
+pub(crate) fn ends_with_separator(path: &Path) -> bool {
+    path.as_os_str()
+        .as_encoded_bytes()
+        .last()
+        .is_some_and(|&last| is_separator(char::from(last)))
 }
 
 /// Writes a file of bytes, whole or not at all; or to standard output for `-`.

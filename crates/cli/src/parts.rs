@@ -8,11 +8,11 @@ use crate::arguments::{CreaseAngle, CreasesFrom, FeatureArguments, Interpolation
 use crate::creases::{Hints, OwnSharpness};
 use crate::format::{counted, number};
 
-/// What options say of a surface's sharp edges and of its vertices, once the mesh has been looked at.
+/// The options for a surface's sharp edges and its vertices, decided by looking at the mesh.
 pub(crate) struct Decided {
     pub(crate) features: FeatureArguments,
     pub(crate) interpolation: InterpolationArguments,
-    /// What was found, in words.
+    /// The finding, in words.
     pub(crate) note: Option<String>,
 }
 

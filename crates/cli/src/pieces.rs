@@ -1,4 +1,4 @@
-//! What is done for each of many vertices or triangles, by all threads: in pieces of a fixed length, so that results are the same for any
+//! Loops over many vertices or triangles, by all threads: in pieces of a fixed length, so that results are the same for any
 //! number of these.
 
 use std::ops::Range;
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// How many of them a piece has.
 const PIECE: usize = 1 << 13;
 
-/// What `of` gives for each piece of so many elements, in their order.
+/// The results of `of` for each piece of so many elements, in their order.
 pub(crate) fn pieces<T: Send>(
     count: usize,
     of: impl Fn(Range<usize>) -> T + Sync + Send,

@@ -8,6 +8,7 @@ use crate::arguments::{BuildArguments, Unit};
 use crate::format::counted;
 use crate::input;
 use crate::progress::Progress;
+use crate::rows::rows;
 
 /// Points, and the triangles over them where there are any.
 pub(crate) struct Points {
@@ -15,7 +16,7 @@ pub(crate) struct Points {
     pub(crate) name: String,
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// What they are measured in, where that is known.
+    /// Their unit, where that is known.
     unit: Option<Unit>,
 }
 
@@ -121,12 +122,7 @@ pub(crate) fn read(
 fn coordinates(text: &str, has_count: bool) -> anyhow::Result<Vec<[f64; 3]>> {
     let mut found = Vec::new();
     let mut count = None;
-    // Editors may mark a file as UTF-8.
-    for (line, row) in text.trim_start_matches('\u{feff}').lines().zip(1..) {
-        let line = line.split('#').next().unwrap_or("").trim();
-        if line.is_empty() {
-            continue;
-        }
+    for (row, line) in rows(text) {
         if has_count
             && row == 1
             && let Ok(points) = line.parse::<usize>()
@@ -159,7 +155,7 @@ fn coordinates(text: &str, has_count: bool) -> anyhow::Result<Vec<[f64; 3]>> {
     Ok(found)
 }
 
-/// What a line has between separators. Where there are semicolons a comma is none: it may be a decimal one, which is no number here.
+/// The fields of a line between separators. Where there are semicolons a comma is none: it may be a decimal one, which is no number here.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     let separator = if line.contains(';') { ';' } else { ',' };
     let mut is_quoted = false;

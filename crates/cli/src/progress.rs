@@ -1,4 +1,4 @@
-//! What the program says on standard error while it works: a spinner on a terminal, and notes.
+//! Messages on standard error while the program works: a spinner on a terminal, and notes.
 //!
 //! `--quiet` silences both; errors are not printed here.
 
@@ -22,7 +22,7 @@ pub trait Host {
     fn note(&self, line: &str);
 }
 
-/// The phases of an optimised refinement: a fine mesh, collapses, and what these came to.
+/// The phases of an optimised refinement: a fine mesh, collapses, and the result of these.
 #[derive(Default)]
 pub(crate) struct Phases {
     has_collapsed: bool,
@@ -105,7 +105,7 @@ impl<'a> Progress<'a> {
         self.observer_in_phases(None)
     }
 
-    /// The same with the phase that the stage belongs to before it.
+    /// An observer that shows the stage after its phase.
     pub(crate) fn observer_in_phases(
         &self,
         mut phases: Option<Phases>,
@@ -129,7 +129,7 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// What another program says to that, if one hears it.
+    /// The answer of another program, if one listens.
     pub(crate) fn answer(&self, at: &limitmesh::progress::Progress) -> ControlFlow<()> {
         self.host
             .map_or(ControlFlow::Continue(()), |host| host.observe(at))

@@ -1,4 +1,4 @@
-//! What approximates a limit surface when distances are measured, as in the paper: the control mesh refined
+//! The mesh that approximates a limit surface when distances are measured, as in the paper: the control mesh refined
 //! uniformly, all vertices moved to the limit.
 
 use limitmesh::refine::{Stop, UniformOptions, reference_levels, uniform};

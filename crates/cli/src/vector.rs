@@ -7,6 +7,11 @@ pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| a[axis] - b[axis])
 }
 
+/// The first three numbers of a channel's value, such as a normal.
+pub(crate) fn vector(value: &[f64]) -> [f64; 3] {
+    [value[0], value[1], value[2]]
+}
+
 /// The scalar product.
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -1,4 +1,4 @@
-//! What the numbers of a written file are measured in, where those of the input are known.
+//! The unit of a written file's numbers, where that of the input's is known.
 
 use std::borrow::Cow;
 use std::path::Path;

@@ -139,7 +139,7 @@ pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
     size * greatest.max(0.0).sqrt()
 }
 
-/// What it does to vectors, by rows.
+/// The linear part, by rows.
 pub(crate) fn linear(m: &Affine) -> [[f64; 3]; 3] {
     m.map(|[a, b, c, _]| [a, b, c])
 }

@@ -1,4 +1,4 @@
-//! What files of a format can hold, as each format says of itself, and whether an output fits into it.
+//! The capacity of a format's files, as each format declares it, and whether an output fits into it.
 
 use crate::channels::NORMALS;
 use crate::error::WriteError;
@@ -16,7 +16,7 @@ pub(crate) enum Held {
     Double,
 }
 
-/// What files of a format can hold beside positions and triangles.
+/// The capacity of a format's files, apart from positions and triangles.
 #[derive(Clone, Copy)]
 pub(crate) struct Capacity {
     /// How coordinates are held.

@@ -12,7 +12,7 @@ pub(crate) const COLOUR: &str = "colours";
 pub(crate) const FACE_COLOUR: &str = "colours of faces";
 /// Attributes of facets in binary STL files.
 pub(crate) const ATTRIBUTE: &str = "attributes of facets";
-/// What a solid without a name is called in STL files, which have to call it something; no name when read.
+/// The name of a solid without a name in STL files, which need one; no name when read.
 pub(crate) const UNNAMED_SOLID: &str = "limitmesh";
 /// Normals of corners: where they differ between two faces, their edge was meant to be sharp. They are found anew, so no file holds them.
 pub const NORMALS: &str = "normals";

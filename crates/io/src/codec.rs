@@ -1,4 +1,4 @@
-//! What each format declares of itself: how files begin, what they can hold, how they are read and written.
+//! The declaration of each format: how files begin, what they can hold, how they are read and written.
 
 use crate::capacity::Capacity;
 use crate::error::{ReadError, WriteError};

@@ -1,4 +1,4 @@
-//! What bytes plainly are, whatever their name says.
+//! The format that bytes plainly have, whatever their name says.
 
 use crate::format::Format;
 use crate::formats::codec;
@@ -22,7 +22,7 @@ const SIGNATURES: [(&[u8], &str); 11] = [
     (b"{", "JSON, as glTF is"),
 ];
 
-/// What else `bytes` plainly are, in words, if they cannot be of format `named`; `None` if they may be.
+/// The format that `bytes` plainly have, in words, if they cannot be of format `named`; `None` if they may be.
 pub(crate) fn looks_like_other(bytes: &[u8], named: Format) -> Option<&'static str> {
     let begins = |format: &&Format| (codec(**format).begins)(bytes);
     let has_signature = named.is_gltf() || named == Format::ThreeMf;

@@ -17,7 +17,7 @@ pub enum ReadError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         reason: io::Error,
     },
     /// There is not a single byte.
@@ -38,7 +38,7 @@ pub enum ReadError {
         path: Option<PathBuf>,
         /// The format it is named as.
         format: Format,
-        /// What it seems to be.
+        /// The format that it seems to have.
         looks_like: &'static str,
     },
     /// Something in the content breaks the rules of the format.
@@ -48,7 +48,7 @@ pub enum ReadError {
         path: Option<PathBuf>,
         /// The format.
         format: Format,
-        /// What is wrong, and where.
+        /// The problem, and its place.
         flaw: Flaw,
     },
 }
@@ -96,20 +96,20 @@ pub enum WriteError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         reason: io::Error,
     },
     /// The writer that was given failed.
     #[error("cannot write: {reason}")]
     Writer {
-        /// What it says.
+        /// Its message.
         #[from]
         reason: io::Error,
     },
     /// The output does not fit together, or not into the format.
     #[error("{problem}")]
     Unfit {
-        /// What is wrong, in words.
+        /// The problem, in words.
         problem: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a file, and where.
+//! A flaw of a file, and its place.
 
 use std::fmt;
 
@@ -44,7 +44,7 @@ pub struct Flaw {
     pub place: Place,
     /// The element there, such as `vertex 5`; empty outside elements.
     pub element: String,
-    /// What is wrong, in words.
+    /// The problem, in words.
     pub problem: String,
 }
 

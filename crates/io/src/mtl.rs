@@ -111,7 +111,7 @@ impl MaterialLibraries {
         Some(file)
     }
 
-    /// What was found by a name; notes why it cannot be read.
+    /// The picture of a name; notes why it cannot be read.
     fn unless_refused<T>(&mut self, name: &str, found: io::Result<T>) -> Option<T> {
         let noted = found.map_err(|why| {
             let (name, reason) = (name.to_owned(), why.to_string());

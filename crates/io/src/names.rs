@@ -3,10 +3,10 @@
 //! A byte that is not part of a character becomes a character of its own, from U+10FF80 on, which nobody uses for anything else; where
 //! a file has one of these itself, its bytes become such characters, too.
 
-/// Before the first character that stands for a byte: those are 0x80 and above.
+/// Before the first character that encodes a byte: those are 0x80 and above.
 const FIRST: u32 = 0x10_FF00;
 
-/// The byte that a character stands for.
+/// The byte that a character encodes.
 fn byte_of(c: char) -> Option<u8> {
     u32::from(c)
         .checked_sub(FIRST)

@@ -1,4 +1,4 @@
-//! What is written, and how.
+//! The output, and the options of its file.
 
 use crate::mtl::MaterialLibraries;
 use crate::unit::LengthUnit;
@@ -15,7 +15,7 @@ macro_rules! setters {
     )* };
 }
 
-/// What is to be written: triangles and, for each vertex, what else is known.
+/// The output: triangles and, for each vertex, its known properties.
 #[derive(Clone, Copy, Debug)]
 pub struct Output<'a> {
     /// Positions and triangles.
@@ -33,11 +33,11 @@ pub struct Output<'a> {
     pub vertex_properties: &'a [Property<'a>],
     /// Further properties of the triangles. PLY holds them.
     pub face_properties: &'a [Property<'a>],
-    /// What corners and faces carry: see [`holds`](crate::holds). PLY may have vertices several times for it: see [`splits_vertices`](crate::splits_vertices).
+    /// Values of corners and faces: see [`holds`](crate::holds). PLY may have vertices several times for it: see [`splits_vertices`](crate::splits_vertices).
     pub channels: &'a [Channel],
     /// Files that describe materials. OBJ names them.
     pub material_libraries: &'a [String],
-    /// What the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours and pictures. The files are copied
+    /// The looks of the materials of the channel [`MATERIAL`](crate::MATERIAL) look like. glTF holds their base colours and pictures. The files are copied
     /// below the folder of an OBJ or PLY file, which names them.
     pub materials: Option<&'a MaterialLibraries>,
     /// Pictures that texture coordinates are places on. PLY names them.
@@ -100,7 +100,7 @@ impl<'a> Output<'a> {
 pub struct WriteOptions {
     /// Text where the format has a binary form as well (PLY, STL). Default: binary there.
     pub ascii: bool,
-    /// What the numbers are measured in, where that is known. 3MF says so, and that they are millimetres where it is not known. In glTF, whose
+    /// The unit of the numbers, where that is known. 3MF says so, and that they are millimetres where it is not known. In glTF, whose
     /// unit is the metre, the node of the mesh scales them; where it is not known they are as they are.
     pub unit: Option<LengthUnit>,
 }

@@ -8,7 +8,7 @@ const ELEMENTS: usize = 1 << 11;
 /// Bytes of what stands between lists after which they go out.
 const BYTES: usize = 1 << 16;
 
-/// What is written, gathered into pieces: those of long lists by all threads, in their order. Call [`Pieces::finish`] at the end.
+/// Written bytes, gathered into pieces: those of long lists by all threads, in their order. Call [`Pieces::finish`] at the end.
 pub(crate) struct Pieces<'w> {
     writer: &'w mut dyn Write,
     own: Piece,

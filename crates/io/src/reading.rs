@@ -1,4 +1,4 @@
-//! What readers of all formats share: counts that indices can name, names under which faces stand, and words for what a soup has no place for.
+//! Parts of the readers of all formats: counts that indices can name, names of groups of faces, and words for statements that a soup has no place for.
 
 use crate::flaw::{Flaw, Place, Result};
 use limitmesh::mesh::{Channel, Domain, PolygonFaces, Semantic};
@@ -129,7 +129,7 @@ impl Kind {
 /// Other things that are named at most: a file of another kind could have any number.
 const MOST_OTHERS: usize = 8;
 
-/// What a file held and a soup has no place for, in words for people.
+/// Statements of a file that a soup has no place for, in words for people.
 #[derive(Default)]
 pub(crate) struct LeftOut {
     kinds: BTreeSet<Kind>,

@@ -6,10 +6,10 @@ use crate::flaw::{Flaw, Place, Result, quoted};
 use crate::names;
 use memchr::memchr2;
 
-/// What some editors put before text in UTF-8.
+/// The mark that some editors put before text in UTF-8.
 pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// What a text format has besides words and lines.
+/// The syntax of a text format, apart from words and lines.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Syntax {
     /// A word that begins with `#` hides itself and the rest of its line.

@@ -1,6 +1,6 @@
 //! Units of length.
 
-/// What the numbers of a file are measured in.
+/// Units of the numbers of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum LengthUnit {

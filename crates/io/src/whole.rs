@@ -24,7 +24,7 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     }
 }
 
-/// What is known of the earlier file of that name, if there is one; an error if it may not be replaced.
+/// The metadata of the earlier file of that name, if there is one; an error if it may not be replaced.
 fn earlier(path: &Path) -> io::Result<Option<fs::Metadata>> {
     let Ok(earlier) = fs::metadata(path) else {
         return Ok(None);
@@ -125,11 +125,11 @@ pub(crate) fn write_together(files: &[WholeFile]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// What this process is writing and has written.
+/// The files that this process is writing and has written.
 struct Register {
     /// The temporary files.
     unfinished: Vec<PathBuf>,
-    /// How often writing came to its end; files that belong together count once.
+    /// How often writing ended; files that belong together count once.
     finished: usize,
 }
 

@@ -56,7 +56,7 @@ pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) 
 
 /// Writes a mesh file in the format of its extension, whole or not at all (see [`write_whole`](crate::write_whole)).
 ///
-/// What the format cannot hold is left out: [`Output`] says which holds what. Positions keep every bit in
+/// Values that the format cannot hold are left out: [`Output`] says which holds what. Positions keep every bit in
 /// OBJ, PLY, OFF, 3MF and ASCII STL; binary STL and glTF round them to `f32`. STL repeats them in each facet.
 ///
 /// # Errors

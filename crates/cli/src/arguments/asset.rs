@@ -10,7 +10,7 @@ use crate::failure::usage;
 /// The heading of these options in the help.
 const HEADING: &str = "Options of glTF assets";
 
-/// What of an asset is refined, and how it is joined.
+/// Which parts of an asset are refined, and how they are joined.
 #[derive(Args, Debug, Clone, Default)]
 #[command(next_help_heading = HEADING)]
 pub(crate) struct AssetArguments {
@@ -26,7 +26,7 @@ pub(crate) struct AssetArguments {
     #[arg(long, value_name = "NAME")]
     pub(crate) material: Vec<String>,
 
-    /// Leave images where they are: the new asset names those of the input, rather than copies beside it
+    /// Leave images where they are: the new asset names those of the input, rather than copies
     #[arg(long)]
     pub(crate) link_resources: bool,
 
@@ -45,7 +45,7 @@ pub(crate) struct AssetArguments {
     pub(crate) morph_tolerance: Option<MorphTolerance>,
 }
 
-/// What moves vertices of one place apart.
+/// The attributes that move vertices of one place apart.
 #[derive(ValueEnum, Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mover {
     /// Joints and weights that differ

@@ -72,7 +72,7 @@ pub(crate) struct BatchArguments {
 
     /// Memory that a job may take [such as 500MB; K, M, G and T are powers of 1024]; then it is ended
     ///
-    /// What its process has in memory is looked at fifty times a second (Linux alone). For a result that ends in good order before
+    /// The memory of its process is measured fifty times a second (Linux alone). For a result that ends in good order before
     /// that, give jobs a `max-memory` as well.
     #[arg(long, value_name = "BYTES", value_parser = values::memory, allow_hyphen_values = true)]
     pub(crate) memory_limit: Option<usize>,
@@ -85,7 +85,7 @@ pub(crate) struct BatchArguments {
 /// A job of `limitmesh batch`, for it alone: ends when standard input does
 #[derive(Args, Debug)]
 pub(crate) struct BatchJobArguments {
-    /// What follows `limitmesh refine`
+    /// The arguments after `limitmesh refine`
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub(crate) words: Vec<OsString>,
 }

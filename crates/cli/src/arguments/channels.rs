@@ -30,7 +30,7 @@ pub(crate) struct ChannelArguments {
     /// Divide until a channel, linear on each triangle, is so near to where the surface has it; may be given several times
     ///
     /// In the channel's own units; of several numbers it is their Euclidean distance. For texture coordinates (uv for all) also in texels
-    /// of a texture so many texels wide: uv=0.5@2048. A goal besides the tolerance, for smooth channels; linear ones are exact on any
+    /// of a texture so many texels wide: uv=0.5@2048. A goal in addition to the tolerance, for smooth channels; linear ones are exact on any
     /// triangles. Of several for one channel the last holds. Not with --triangles, --balance or --optimize.
     #[arg(long, value_name = "NAME=E|NAME=TEXELS@SIZE")]
     pub(crate) attribute_tolerance: Vec<AttributeTolerance>,
@@ -220,7 +220,7 @@ impl ChannelArguments {
     /// Channels of the input as they are to be interpolated.
     ///
     /// # Errors
-    /// What is chosen would blend what has nothing between: names, or values of whole faces.
+    /// The choice would blend values that have nothing between: names, or values of whole faces.
     pub(crate) fn apply(&self, channels: &mut [Channel]) -> anyhow::Result<()> {
         channels.iter_mut().try_for_each(|channel| {
             self.apply_to(channel)?;

@@ -17,7 +17,7 @@ Examples:
 /// Refines by limit normals with the angle and levels given, finds the angle at which the method of Amresh,
 /// Farin and Razdan gives nearly as many triangles, the level at which uniform refinement comes nearest,
 /// without and with its vertices moved to the limit surface, and the best meshes of exact refinement with no more
-/// triangles: plain, balanced and optimised. Beside them stand criteria of the literature with no more triangles over restricted
+/// triangles: plain, balanced and optimised. Added to them are criteria of the literature with no more triangles over restricted
 /// quadtrees of eight levels, planarity by angle and by distance (Zorin, Schröder and Sweldens) and vertex errors (Müller and Jaeschke), and
 /// √3-subdivision (Kobbelt). Each is measured against its scheme's limit surface.
 #[derive(Args, Debug, Clone)]

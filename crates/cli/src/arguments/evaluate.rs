@@ -72,7 +72,7 @@ impl FromStr for Places {
     }
 }
 
-/// What stands between commas and blanks.
+/// A word between commas and blanks.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| c == ',' || c.is_whitespace())
         .filter(|word| !word.is_empty())

@@ -7,7 +7,7 @@ use super::values::{self, Extent};
 /// The heading of these options in the help.
 const HEADING: &str = "Goals and caps of --method exact, and of others where they say so";
 
-/// What exact refinement is to reach, and what it must not exceed.
+/// The goals and the caps of exact refinement.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = HEADING)]
 pub(crate) struct ExactArguments {
@@ -65,7 +65,7 @@ pub(crate) struct ExactArguments {
 
     /// Take no more memory, about [such as 500MB; K, M, G and T are powers of 1024; default: no limit]
     ///
-    /// What was reached by then is written, and the exit code is 3.
+    /// The mesh that was reached by then is written, and the exit code is 3.
     #[arg(long, value_name = "BYTES", value_parser = values::memory, allow_hyphen_values = true)]
     pub(crate) max_memory: Option<usize>,
 

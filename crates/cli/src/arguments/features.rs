@@ -23,7 +23,7 @@ pub(crate) enum Boundary {
     Fixed,
 }
 
-/// What becomes of corners whose faces take 180° or more between two sharp edges.
+/// The rule for corners whose faces take 180° or more between two sharp edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -34,7 +34,7 @@ pub(crate) enum ConcaveCorners {
     Fixed,
 }
 
-/// What in a file says that edges are sharp.
+/// The values of a file that make edges sharp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
@@ -59,7 +59,7 @@ pub(crate) enum CreaseAngle {
     None,
     /// Those whose faces' normals differ by more degrees.
     Above(f64),
-    /// The same, found by looking at the mesh.
+    /// The angle that was found by looking at the mesh.
     Found(f64),
 }
 
@@ -88,7 +88,7 @@ pub(super) fn crease_angle(text: &str) -> Result<CreaseAngle, String> {
 /// A control mesh with its tags.
 pub(crate) struct Featured {
     pub(crate) mesh: Mesh,
-    /// What was done about concave corners.
+    /// The divisions at concave corners.
     pub(crate) concave: limitmesh::mesh::ConcaveCorners,
     /// Edges along needles that are as sharp as asked and have no tag for it.
     pub(crate) along_needles: usize,
@@ -111,7 +111,7 @@ pub(crate) struct FeatureArguments {
 
     /// Keep edges sharp that the file's normals, smoothing groups or materials say are sharp [default: none]
     ///
-    /// Beside --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only,
+    /// In addition to --crease-angle and the tags of the file. For OBJ, PLY, OFF and STL files; glTF assets that are edited have normals only,
     /// 3MF files none of these.
     #[arg(
         long,
@@ -126,7 +126,7 @@ pub(crate) struct FeatureArguments {
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) boundary: Option<Boundary>,
 
-    /// What becomes of corners that take 180° or more between two sharp edges [default: smooth; fixed with --crease-angle
+    /// Rule for corners that take 180° or more between two sharp edges [default: smooth; fixed with --crease-angle
     /// or --creases-from, or with --boundary corners or fixed]
     #[arg(long, value_enum, value_name = "RULE")]
     pub(crate) concave_corners: Option<ConcaveCorners>,
@@ -146,7 +146,7 @@ impl FeatureArguments {
         )
     }
 
-    /// The same for whom edges are sharp that look so, unless something else is asked for.
+    /// These arguments, with edges sharp that look so unless something else is asked for.
     pub(crate) fn or_auto(mut self) -> Self {
         self.crease_angle.get_or_insert(CreaseAngle::Auto);
         self
@@ -191,7 +191,7 @@ impl FeatureArguments {
         }
     }
 
-    /// What becomes of concave corners, by the other options where it was not said.
+    /// The rule for concave corners, by the other options where none was given.
     pub(crate) fn concave_corners(&self) -> ConcaveCorners {
         let is_asked = self.angle().is_some()
             || self.creases_from != CreasesFrom::None

@@ -4,15 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::features::FeatureArguments;
 use super::shared::BuildArguments;
 
 const EXAMPLES: &str = "\
 Examples:
   limitmesh info scan.stl
-  limitmesh info builtin:cup --json
-  limitmesh info part.stl --limit --crease-angle 30
-        with the area and volume of the smooth surface";
+  limitmesh info builtin:cup --json";
 
 /// Say what is in a file and what would be repaired
 ///
@@ -23,14 +20,6 @@ Examples:
 pub(crate) struct InfoArguments {
     /// Mesh file (.obj, .ply, .stl, .off, .gltf, .glb, .3mf), - for standard input, or builtin:NAME
     pub(crate) input: PathBuf,
-
-    /// Say also the area and the volume of the limit surface of the control mesh (Loop's scheme), to some 1e-9 of them
-    #[arg(long)]
-    pub(crate) limit: bool,
-
-    // Of the limit surface: with --limit only.
-    #[command(flatten)]
-    pub(crate) features: FeatureArguments,
 
     #[command(flatten)]
     pub(crate) build: BuildArguments,

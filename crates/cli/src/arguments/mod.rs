@@ -43,9 +43,7 @@ pub(crate) use quantity::{Length, Unit};
 pub(crate) use refine::{MOST_EXACT, Method, RefineArguments, Way};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{
-    BuildArguments, FileFormat, OverwriteArguments, RefiningScheme, SchemeName, Seam,
-};
+pub(crate) use shared::{BuildArguments, OverwriteArguments, RefiningScheme, SchemeName};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, MAX_STEPS, Size};
 pub(crate) use viewer::Viewer;
@@ -106,7 +104,7 @@ pub(crate) struct GlobalArguments {
     pub(crate) threads: usize,
 }
 
-/// What to do.
+/// The command.
 #[derive(Subcommand, Debug)]
 pub(crate) enum Command {
     Refine(Box<RefineArguments>),

@@ -8,7 +8,7 @@ use limitmesh_io::threemf::LengthUnit;
 
 use crate::failure::usage;
 
-/// What the numbers of a mesh are measured in. 3MF packages say it, glTF documents are in metres, other files do not say.
+/// The unit of a mesh's numbers. 3MF packages say it, glTF documents are in metres, other files do not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Unit {
     /// Micrometres

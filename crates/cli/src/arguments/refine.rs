@@ -13,20 +13,18 @@ use super::channels::ChannelArguments;
 use super::exact::ExactArguments;
 use super::features::FeatureArguments;
 use super::interpolation::InterpolationArguments;
-use super::shared::{
-    BuildArguments, FileFormat, GENERAL, OverwriteArguments, RefiningScheme, Seam,
-};
+use super::shared::{BuildArguments, GENERAL, OverwriteArguments, RefiningScheme, formats};
 use super::values;
 use super::viewer::{Viewer, cameras_in};
 use crate::failure::{UsageError, usage};
 use crate::output::is_standard_output;
 
-/// What decides which faces are divided.
+/// The rule that decides which faces are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
-    /// What is too far from the limit surface, or fails another goal; vertices lie on the limit surface
+    /// Parts of faces that are too far from the limit surface, or fail another goal; vertices lie on the limit surface
     Exact,
     /// Faces whose normal leaves the cone around a limit normal of their vertices, step by step
     LimitNormal,
@@ -106,7 +104,7 @@ Examples:
   limitmesh refine builtin:head -o head.ply --triangles 20000 --picture head.png
   limitmesh refine *.stl -o smooth/ --triangles 20k";
 
-/// What a first user needs, which `-h` shows by these headings; `--help` shows all.
+/// The options that a first user needs, which `-h` shows by these headings; `--help` shows all.
 const USUAL: [(&str, &[&str]); 3] = [
     (
         "Goal",
@@ -195,8 +193,8 @@ pub(crate) struct RefineArguments {
     pub(crate) overwrite: OverwriteArguments,
 
     /// Format to write, whatever the name of the file says; standard output needs it
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub(crate) to: Option<FileFormat>,
+    #[arg(long, value_parser = formats(), value_name = "FORMAT")]
+    pub(crate) to: Option<Format>,
 
     /// The inputs are frames of one mesh: refine them with the same triangles, each within the goals
     ///
@@ -207,7 +205,7 @@ pub(crate) struct RefineArguments {
     #[arg(long)]
     pub(crate) shared_topology: bool,
 
-    /// What decides which faces are divided
+    /// The rule that decides which faces are divided
     #[arg(long, value_enum, default_value = "exact")]
     pub(crate) method: Method,
 
@@ -239,7 +237,7 @@ pub(crate) struct RefineArguments {
 
     /// Give no more triangles
     ///
-    /// What was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
+    /// The mesh that was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
     /// would give more. Default: 30000000 for exact, 5000000 for planarity and vertex-error, 50000000 for the others, which keep
     /// memory below about 10 gigabytes.
     #[arg(long, value_name = "N", value_parser = values::positive)]
@@ -253,7 +251,7 @@ pub(crate) struct RefineArguments {
 
     /// Divide no part of a control face more often [0 to 24]
     ///
-    /// What was reached by then is written. Of the stepwise methods it is the number of steps [0 to 12; default: 3]; for goals it is a
+    /// The mesh that was reached by then is written. Of the stepwise methods it is the number of steps [0 to 12; default: 3]; for goals it is a
     /// cap [1 to 24; default: 24, for planarity and vertex-error 30, for --scheme sqrt3, where two levels divide an edge in three, 20], and
     /// the exit code is 3 where it is reached.
     #[arg(long, value_name = "N", value_parser = values::levels)]
@@ -295,10 +293,6 @@ pub(crate) struct RefineArguments {
     /// Print the options that a first user needs; all others: --help
     #[arg(short, long, action = ArgAction::Help, help_heading = GENERAL)]
     pub(crate) help: Option<bool>,
-
-    /// Which vertices move where divided and undivided faces meet [default: all]
-    #[arg(long, value_enum, help_heading = STEPWISE)]
-    pub(crate) seam: Option<Seam>,
 
     /// Move the vertices to the limit surface of the last mesh at the end
     ///
@@ -409,10 +403,10 @@ impl RefineArguments {
     /// Neither the name of the file nor an option says which.
     pub(crate) fn format(&self) -> anyhow::Result<Option<Format>> {
         let Some(path) = &self.output else {
-            return Ok(self.to.map(FileFormat::format));
+            return Ok(self.to);
         };
         match self.to {
-            Some(to) => Ok(Some(to.format())),
+            Some(to) => Ok(Some(to)),
             None if is_standard_output(path) => {
                 usage("standard output has no name that says its format; --to FORMAT does")
             }

@@ -61,7 +61,7 @@ pub(crate) struct RenderArguments {
     #[arg(conflicts_with = "flat")]
     pub(crate) crease_angle: Option<CreaseAngle>,
 
-    /// What lies on the surface by its texture coordinates: a PNG or JPEG file, checker for a pattern that shows stretching and seams, or
+    /// A picture on the surface by its texture coordinates: a PNG or JPEG file, checker for a pattern that shows stretching and seams, or
     /// none
     ///
     /// Without it a glTF file's own materials are drawn, with their base colours and textures in plain light, and other files in one colour.

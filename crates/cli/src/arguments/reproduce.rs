@@ -21,7 +21,7 @@ Examples:
 /// Reproduce the paper's table and figures
 ///
 /// Writes a folder with one page (index.html), its pictures, and the numbers as CSV and JSON: the paper's
-/// Table 1 with the method of Amresh, Farin and Razdan, uniform refinement and exact refinement beside it, its
+/// Table 1 with the method of Amresh, Farin and Razdan, uniform refinement and exact refinement, its
 /// Figures 2, 5, 7, 8 and 9, how the distance changes with the number of steps, and what the seam rules do. Takes a minute or two.
 #[derive(Args, Debug)]
 #[command(after_help = DETAILS)]

@@ -1,9 +1,10 @@
 //! Options that several commands have.
 
+use std::path::Path;
+
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use limitmesh::mesh::{BuildOptions, Weld};
-use limitmesh::refine::SeamRule;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh_io::Format;
 use serde::Serialize;
@@ -97,31 +98,6 @@ impl RefiningScheme {
     }
 }
 
-/// Which vertices move where divided and undivided faces meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
-#[cfg_attr(test, derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Seam {
-    /// All vertices of the mesh move in each step
-    #[default]
-    All,
-    /// Vertices with at least one divided face move
-    Any,
-    /// Vertices all of whose faces are divided move
-    Inner,
-}
-
-impl Seam {
-    /// The library's rule.
-    pub(crate) fn rule(self) -> SeamRule {
-        match self {
-            Self::All => SeamRule::All,
-            Self::Any => SeamRule::Any,
-            Self::Inner => SeamRule::Inner,
-        }
-    }
-}
-
 /// How the control mesh is made from what the file holds.
 #[derive(Args, Debug, Clone, Copy, Default)]
 pub(crate) struct BuildArguments {
@@ -139,8 +115,8 @@ pub(crate) struct BuildArguments {
     pub(crate) unit: Option<Unit>,
 
     /// Format of standard input ('-'), and of files whose names have no extension that is known
-    #[arg(long, value_enum, value_name = "FORMAT")]
-    pub(crate) from: Option<FileFormat>,
+    #[arg(long, value_parser = formats(), value_name = "FORMAT")]
+    pub(crate) from: Option<Format>,
 
     /// Refuse a mesh that needs repair instead of repairing it
     #[arg(long)]
@@ -185,37 +161,8 @@ pub(super) fn loop_family() -> impl TypedValueParser<Value = SchemeName> {
         .try_map(|name| SchemeName::from_str(&name, false))
 }
 
-/// A format of mesh files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum FileFormat {
-    /// Wavefront OBJ
-    Obj,
-    /// Stanford PLY
-    Ply,
-    /// STL, binary or text
-    Stl,
-    /// Geomview OFF
-    Off,
-    /// glTF as text
-    Gltf,
-    /// glTF in one binary file
-    Glb,
-    /// 3MF
-    #[value(name = "3mf")]
-    ThreeMf,
-}
-
-impl FileFormat {
-    /// The library's.
-    pub(crate) fn format(self) -> Format {
-        match self {
-            Self::Obj => Format::Obj,
-            Self::Ply => Format::Ply,
-            Self::Stl => Format::Stl,
-            Self::Off => Format::Off,
-            Self::Gltf => Format::Gltf,
-            Self::Glb => Format::Glb,
-            Self::ThreeMf => Format::ThreeMf,
-        }
-    }
+/// The formats of mesh files, by their extensions.
+pub(super) fn formats() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::ALL.iter().map(|own| own.extension()))
+        .try_map(|name| Format::from_path(Path::new(&format!("mesh.{name}"))))
 }

@@ -8,6 +8,7 @@ use limitmesh::criterion::Camera;
 
 use super::quantity::finite;
 use super::values::{self, Size};
+use crate::rows::rows;
 
 /// How a camera is written.
 const FORM: &str = "eye, target and up (three numbers each), the vertical angle of view in degrees and the size in \
@@ -82,14 +83,10 @@ pub(super) fn cameras_in(path: &Path) -> anyhow::Result<Vec<Camera>> {
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("{} cannot be read", path.display()))?;
     let mut cameras = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        if line.is_empty() {
-            continue;
-        }
+    for (row, line) in rows(&text) {
         match camera(line) {
             Ok(camera) => cameras.push(camera),
-            Err(what) => anyhow::bail!("{}, line {}: {what}", path.display(), i + 1),
+            Err(what) => anyhow::bail!("{}, line {row}: {what}", path.display()),
         }
     }
     anyhow::ensure!(

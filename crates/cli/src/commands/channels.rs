@@ -1,4 +1,4 @@
-//! What the input carries apart from its shape, on its way to the output: texture coordinates, colours, materials, groups.
+//! The input's values apart from its shape, on their way to the output: texture coordinates, colours, materials, groups.
 
 use limitmesh::carry::carried;
 use limitmesh::mesh::{Channel, FaceParts};
@@ -29,7 +29,7 @@ pub(super) struct Channels {
     material_libraries: Vec<String>,
     /// Pictures.
     texture_files: Vec<String>,
-    /// What these say and name.
+    /// The contents of these, and the files that they name.
     found: MaterialLibraries,
 }
 
@@ -135,7 +135,7 @@ impl Channels {
         format == Format::Ply && splits_vertices(&self.channels, triangles, positions.len())
     }
 
-    /// What becomes of vertices with several values: that they are written several times, if [`Self::split_vertices`] says so, or of which
+    /// A note on vertices with several values: that they are written several times, if [`Self::split_vertices`] says so, or of which
     /// channels one value is, and for how many.
     pub(super) fn note(
         &self,

@@ -204,7 +204,7 @@ fn by_sqrt3(
     judge.judge(Given::new("sqrt3", &found.mesh, found.levels, took))
 }
 
-/// What a method gave: a mesh after some steps or levels.
+/// The result of a method: a mesh after some steps or levels.
 struct Given<'a> {
     method: &'static str,
     angle_degrees: Option<f64>,
@@ -235,7 +235,7 @@ const MOST_OPTIMISED: usize = 200_000;
 #[derive(Clone, Copy)]
 struct Judge<'a> {
     arguments: &'a CompareArguments,
-    /// What the limit surface is of, and by which scheme.
+    /// The control mesh of the limit surface, and its scheme.
     limit: LimitArguments,
     scheme: RefiningScheme,
     reference: &'a Reference,

@@ -1,4 +1,4 @@
-//! What covers a surface in a picture: one texture by a mesh's texture coordinates, or the materials of a glTF document.
+//! The covering of a surface in a picture: one texture by a mesh's texture coordinates, or the materials of a glTF document.
 
 use std::path::Path;
 
@@ -138,7 +138,7 @@ fn place(mesh: &Mesh, channel: &Channel, corner: usize) -> [f64; 2] {
     [0, 1].map(|axis| value.get(axis).copied().unwrap_or(0.0))
 }
 
-/// What a document does to texture coordinates before they are used.
+/// A document's transform of texture coordinates.
 struct Transform([[f64; 2]; 3]);
 
 impl Transform {

@@ -13,6 +13,7 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::EvaluationReport;
+use crate::rows::rows;
 
 /// Evaluates places, and prints what was found in their order.
 pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -99,18 +100,10 @@ fn places(given: &Places) -> anyhow::Result<Vec<Place>> {
             path.display()
         )
     })?;
-    // Editors may mark a file as UTF-8.
-    let lines = text
-        .trim_start_matches('\u{feff}')
-        .lines()
-        .zip(1..)
-        .map(|(line, row)| (line.split('#').next().unwrap_or("").trim(), row));
-    let places = lines
-        .filter(|(line, _)| !line.is_empty())
-        .map(|(line, row)| {
-            line.parse()
-                .map_err(|what| anyhow::anyhow!("{}: line {row}: {what}", path.display()))
-        });
+    let places = rows(&text).map(|(row, line)| {
+        line.parse()
+            .map_err(|what| anyhow::anyhow!("{}: line {row}: {what}", path.display()))
+    });
     let places = places.collect::<anyhow::Result<Vec<Place>>>()?;
     if places.is_empty() {
         bail!(

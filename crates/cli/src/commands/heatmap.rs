@@ -9,7 +9,7 @@ use limitmesh_render::{
     Camera, ColourBar, Lighting, Scale, Shading, Style, ViewDirection, dice, render_scalar,
 };
 
-use super::picture::SIZE;
+use super::picture::{self, SIZE};
 use crate::arguments::Size;
 use crate::failure::usage;
 use crate::output;
@@ -24,18 +24,13 @@ const MOST_PARTS: usize = 64;
 
 /// Refuses a name that is neither a PLY nor a PNG file's, before any work is done.
 pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
-    if is_picture(path) || matches!(Format::from_path(path), Ok(Format::Ply)) {
+    if picture::is_png(path) || matches!(Format::from_path(path), Ok(Format::Ply)) {
         return output::check_writable(path);
     }
     usage(format!(
         "{}: a heat map is a .ply or a .png file",
         path.display()
     ))
-}
-
-fn is_picture(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// Writes the surface coloured by its distance to the reference.
@@ -46,7 +41,7 @@ pub(super) fn write(
     whole: Whole,
     progress: &Progress,
 ) -> anyhow::Result<()> {
-    if is_picture(path) {
+    if picture::is_png(path) {
         draw(path, surface, reference, whole, progress)
     } else {
         write_mesh(path, surface, reference, progress)

@@ -2,37 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::Context;
-use limitmesh::scheme::Loop;
+use limitmesh_io::gltf::AssetContents;
 
-use super::limit_control;
-use crate::arguments::{CreasesFrom, InfoArguments, InterpolationArguments, LimitArguments};
+use crate::arguments::InfoArguments;
 use crate::bulk::Bulk;
 use crate::dihedral::Dihedrals;
-use crate::failure::{Outcome, usage};
+use crate::failure::Outcome;
 use crate::format::{counted, number, point, table, thousands};
-use crate::input::{self, Input};
+use crate::input;
 use crate::mesh_info;
 use crate::output;
 use crate::progress::Progress;
 use crate::report::information::{PolygonCount, TagCounts};
 use crate::report::{
-    AssetInformation, ChannelReport, InformationReport, InputReport, MeshInformation,
-    PackageInformation, VERSION,
+    ChannelReport, InformationReport, InputReport, MeshInformation, PackageInformation, VERSION,
 };
 
 /// Examines a file and prints what it holds.
 pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    if arguments.features.creases_from != CreasesFrom::None {
-        return usage(
-            "info follows tags and --crease-angle; --creases-from is for refine, evaluate and measure",
-        );
-    }
-    if let (Some(option), false) = (arguments.features.given(), arguments.limit) {
-        return usage(format!(
-            "{option} belongs to a limit surface; it needs --limit"
-        ));
-    }
     let mut read = input::read(&arguments.input, &arguments.build, progress)?;
     let soup = &read.soup;
     let mut corners = BTreeMap::<usize, usize>::new();
@@ -64,16 +51,15 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
         input: report,
         polygons,
         tags,
-        asset: asset.map(|(_, contents)| contents.into()),
+        asset: asset.map(|(_, contents)| contents),
         package: package
             .zip(input.unit)
-            .map(|(own, unit)| PackageInformation::new(own, unit)),
+            .map(|(contents, unit)| PackageInformation {
+                unit: unit.name(),
+                contents,
+            }),
         diagnosis: (&input.diagnosis).into(),
         mesh: mesh_info::examine(&input.mesh, &input.trace.faces),
-        limit: match arguments.limit {
-            true => limit_of(input, arguments, progress)?,
-            false => None,
-        },
     };
     progress.clear();
     if arguments.json {
@@ -89,29 +75,9 @@ pub(crate) fn run(arguments: &InfoArguments, progress: &Progress) -> anyhow::Res
             .for_each(|line| text.push_str(&format!("  {line}\n")));
         text.push_str("\ncontrol mesh\n");
         text.push_str(&describe_mesh(&report.mesh));
-        if let Some(limit) = &report.limit {
-            text.push_str(&format!("\nlimit surface\n  {}\n", bulk_in_words(limit)));
-        }
         output::print(&text)?;
     }
     Ok(Outcome::Done)
-}
-
-/// Area and volume of the limit surface, with what is sharp by its looks.
-fn limit_of(
-    input: Input,
-    arguments: &InfoArguments,
-    progress: &Progress,
-) -> anyhow::Result<Option<Bulk>> {
-    let name = input.name.clone();
-    let limit = LimitArguments {
-        scheme: None,
-        features: arguments.features,
-        interpolation: InterpolationArguments::default(),
-        build: arguments.build,
-    };
-    let prepared = limit_control::prepared(input, &limit, progress)?;
-    Bulk::of_limit(&prepared.input.mesh, &Loop).with_context(|| name)
 }
 
 fn describe_file(report: &InformationReport) -> String {
@@ -175,8 +141,8 @@ fn describe_file(report: &InformationReport) -> String {
     text
 }
 
-/// What a glTF document holds, a line for each mesh and primitive.
-fn describe_asset(asset: &AssetInformation) -> String {
+/// The contents of a glTF document, a line for each mesh and primitive.
+fn describe_asset(asset: &AssetContents) -> String {
     let mut text = String::from("\nasset\n");
     let counts: Vec<String> = asset
         .counts
@@ -229,10 +195,15 @@ fn describe_asset(asset: &AssetInformation) -> String {
     text
 }
 
-/// What a 3MF package holds, a line for each object.
-fn describe_package(package: &PackageInformation) -> String {
+/// The contents of a 3MF package, a line for each object.
+fn describe_package(
+    PackageInformation {
+        unit,
+        contents: package,
+    }: &PackageInformation,
+) -> String {
     let items = counted(package.items, "item is", "items are");
-    let mut text = format!("\npackage\n  in {}; {items} built", package.unit);
+    let mut text = format!("\npackage\n  in {unit}; {items} built");
     if package.assemblies > 0 {
         text.push_str(&format!(
             ", {} of others",
@@ -293,7 +264,7 @@ fn describe_mesh(mesh: &MeshInformation) -> String {
         bulk_in_words(&mesh.bulk),
         format!(
             "least angle {:.2}°, mean least angle {:.1}°",
-            mesh.min_angle_degrees, mesh.mean_min_angle_degrees
+            mesh.quality.min_angle_degrees, mesh.quality.mean_min_angle_degrees
         ),
     ];
     let text: String = lines.iter().map(|line| format!("  {line}\n")).collect();

@@ -10,7 +10,7 @@ use crate::progress::Progress;
 
 /// A control mesh.
 pub(super) struct Prepared {
-    /// What was read; its mesh has tags, and control points that let the surface pass through its vertices where that is asked for.
+    /// The input; its mesh has tags, and control points that let the surface pass through its vertices where that is asked for.
     pub(super) input: Input,
     /// Where its faces are on those of the mesh that was read.
     pub(super) parts: FaceParts,

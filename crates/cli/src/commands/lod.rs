@@ -27,12 +27,12 @@ use crate::report::refinement::exact_stop_name;
 use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
 use crate::written_unit::WrittenUnit;
 
-/// What holds where nothing is said.
+/// The defaults.
 const USUAL_LEVELS: usize = 4;
 const USUAL_TOLERANCE: Extent = Extent::Percent(0.1);
 const USUAL_RATIO: f64 = 0.25;
 
-/// What a scene's soup says that it leaves out, which comes along with the asset.
+/// An item of the soup's left-out list that comes along with the asset.
 const MATERIALS: &str = "colours and textures of materials";
 
 /// A level as it is written: a vertex for each side of sharp edges.
@@ -44,7 +44,7 @@ struct Written {
 }
 
 impl Written {
-    /// What becomes of vertices with several values.
+    /// A note on vertices with several values.
     fn note(&self, format: Format) -> Option<String> {
         let surface = self.split.as_triangles();
         self.channels.note(
@@ -267,7 +267,7 @@ fn written(
     })
 }
 
-/// What is said of the levels, the finest first.
+/// The reports on the levels, the finest first.
 fn reports(
     levels: &[Level],
     control: &Mesh,

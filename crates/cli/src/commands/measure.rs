@@ -134,7 +134,7 @@ fn against_limit(
     arguments: &MeasureArguments,
     progress: &Progress,
 ) -> anyhow::Result<(Mesh, SurfaceReport, Distance)> {
-    let is_fixed = |limit: &LimitReport| limit.concave_corners == ConcaveCorners::Fixed;
+    let is_fixed = |limit: &LimitReport| limit.features.concave_corners == ConcaveCorners::Fixed;
     let unfolds = report.limit.as_ref().is_some_and(is_fixed);
     let found = certified::to_limit(surface, control, unfolds, arguments, progress)?;
     let limit = report.limit.map(|limit| LimitReport {

@@ -12,7 +12,7 @@ use crate::output;
 pub(crate) struct ModelEntry {
     /// Its name, after `builtin:`.
     name: &'static str,
-    /// What it is.
+    /// Its description.
     about: &'static str,
 }
 

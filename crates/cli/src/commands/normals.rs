@@ -39,7 +39,7 @@ impl Normals {
         )
     }
 
-    /// What a soup leaves out that an output has after all, of another source.
+    /// Items that a soup leaves out and an output has from another source.
     pub(super) fn kept(format: Option<Format>) -> &'static [&'static str] {
         if format.is_some_and(Self::are_held) {
             &["normals"]
@@ -87,7 +87,7 @@ impl Normals {
         }
     }
 
-    /// What is said of a file that has to do without them.
+    /// The note on a file without them.
     pub(super) fn note(&self, format: Format, is_split: bool) -> Option<&'static str> {
         let is_left_out = matches!(self, Self::BySide(_)) && format == Format::Ply && !is_split;
         is_left_out.then_some(

@@ -22,16 +22,19 @@ pub(super) fn check_name(path: &Path) -> anyhow::Result<()> {
     if output::is_standard_output(path) {
         return Ok(());
     }
-    if path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
-    {
+    if is_png(path) {
         return output::check_writable(path);
     }
     usage(format!(
         "{}: pictures are PNG files; give a name that ends with .png",
         path.display()
     ))
+}
+
+/// Whether a file is called as PNG files are.
+pub(super) fn is_png(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
 /// The view of a picture: along a direction of sight, or from the front, a little from the side and above.
@@ -48,17 +51,21 @@ pub(super) fn drawn(path: &Path, triangles: usize) -> String {
     )
 }
 
-/// Draws a surface and writes the picture.
+/// Draws a surface, with its materials if it has some, and writes the picture.
 pub(super) fn draw(
     path: &Path,
     surface: Triangles<'_>,
     normals: Option<&[[f64; 3]]>,
+    covering: Option<&Covering<'_>>,
     view: ViewDirection,
     style: &Style,
     Size { width, height }: Size,
 ) -> anyhow::Result<()> {
     let camera = Camera::fit_tightly(surface, view, width, height)?;
-    let image = render(surface, normals, None, &camera, style, width, height)?;
+    let image = match covering {
+        Some(own) => render_textured(surface, normals, own, &camera, style, (width, height))?,
+        None => render(surface, normals, None, &camera, style, width, height)?,
+    };
     output::write_file(path, &image.encode_png()?)
 }
 
@@ -76,25 +83,11 @@ pub(super) fn draw_edges(
         path,
         surface,
         Some(normals),
+        None,
         view_direction(sight),
         &style,
         SIZE,
     )?;
     progress.note(drawn(path, surface.triangles.len()));
     Ok(())
-}
-
-/// Draws a surface with its materials and writes the picture.
-pub(super) fn draw_covered(
-    path: &Path,
-    surface: Triangles<'_>,
-    normals: Option<&[[f64; 3]]>,
-    covering: &Covering<'_>,
-    view: ViewDirection,
-    style: &Style,
-    Size { width, height }: Size,
-) -> anyhow::Result<()> {
-    let camera = Camera::fit_tightly(surface, view, width, height)?;
-    let image = render_textured(surface, normals, covering, &camera, style, (width, height))?;
-    output::write_file(path, &image.encode_png()?)
 }

@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     Ok(Outcome::Done)
 }
 
-/// What is written.
+/// The files and bytes that are written.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Ply,
@@ -117,7 +117,7 @@ impl Kind {
     }
 }
 
-/// What was found, by point.
+/// The results, by point.
 struct Found {
     closest: Vec<Closest>,
     /// Distances, below 0 inside or behind.

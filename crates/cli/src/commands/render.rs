@@ -18,7 +18,7 @@ use crate::input;
 use crate::output;
 use crate::progress::Progress;
 
-/// What pictures do without, or have by other ways.
+/// Items of a soup's left-out list that pictures do without, or have by other ways.
 const UNSEEN: [&str; 3] = ["normals", "tangents", "colours and textures of materials"];
 
 /// Reads a mesh and draws it.
@@ -70,21 +70,17 @@ pub(crate) fn run(arguments: &RenderArguments, progress: &Progress) -> anyhow::R
         Some(split) => (split.as_triangles(), Some(&split.normals[..])),
         None => (mesh.as_triangles(), None),
     };
-    match &cover {
-        Some(cover) => {
-            let (path, size) = (&arguments.output, arguments.size);
-            let covering = &cover.covering();
-            picture::draw_covered(path, surface, normals, covering, view, &style, size)?;
-        }
-        None => picture::draw(
-            &arguments.output,
-            surface,
-            normals,
-            view,
-            &style,
-            arguments.size,
-        )?,
-    }
+    let covering = cover.as_ref().map(Cover::covering);
+    let (path, size) = (&arguments.output, arguments.size);
+    picture::draw(
+        path,
+        surface,
+        normals,
+        covering.as_ref(),
+        view,
+        &style,
+        size,
+    )?;
     progress.note(picture::drawn(&arguments.output, mesh.face_count()));
     Ok(Outcome::Done)
 }

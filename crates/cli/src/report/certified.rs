@@ -23,7 +23,7 @@ pub(crate) struct CertifiedReport {
     pub(crate) converged: bool,
     /// Triangles and pieces of them looked at.
     pub(crate) work: u64,
-    /// What per cent are of.
+    /// The length that is 100 per cent.
     pub(crate) diagonal: f64,
     /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,

@@ -1,4 +1,4 @@
-//! What a mesh carries apart from its shape, as reported.
+//! The report on a mesh's values apart from its shape.
 
 use limitmesh::mesh::{Channel, Domain, Interpolation};
 use serde::Serialize;

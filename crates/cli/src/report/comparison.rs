@@ -36,7 +36,7 @@ pub(crate) struct ComparedMethod {
     pub(crate) mean_min_angle_degrees: f64,
     /// Wall-clock seconds of the refinement alone.
     pub(crate) seconds: f64,
-    /// What approximates the limit surface; sqrt3 has its own.
+    /// The mesh that approximates the limit surface; sqrt3 has its own.
     pub(crate) reference: LimitReport,
     /// Triangles of that mesh.
     pub(crate) reference_triangles: usize,

@@ -1,4 +1,4 @@
-//! What was found in the input: each finding with its count and the first few places.
+//! Findings in the input: each finding with its count and the first few places.
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
-//! What `limitmesh evaluate` says of a place.
+//! The report of `limitmesh evaluate` on a place.
 
-use limitmesh::{Curvature, Derivatives};
+use limitmesh::Derivatives;
 use serde::Serialize;
 
 use crate::arguments::Place;
@@ -88,20 +88,11 @@ impl EvaluationReport {
             ),
             curvature: derivatives
                 .and_then(|derivatives| derivatives.curvature())
-                .map(|curvature| {
-                    let Curvature {
-                        gaussian,
-                        mean,
-                        principal,
-                        directions,
-                        ..
-                    } = curvature;
-                    CurvatureReport {
-                        gaussian,
-                        mean,
-                        principal,
-                        directions,
-                    }
+                .map(|own| CurvatureReport {
+                    gaussian: own.gaussian,
+                    mean: own.mean,
+                    principal: own.principal,
+                    directions: own.directions,
                 }),
         }
     }

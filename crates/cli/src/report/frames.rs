@@ -12,7 +12,7 @@ pub(crate) struct FramesReport {
     pub(crate) version: &'static str,
     /// In the order of the command line.
     pub(crate) frames: Vec<FrameReport>,
-    /// What was asked for.
+    /// The options.
     pub(crate) parameters: ParametersReport,
     /// Triangles of each frame.
     pub(crate) triangles: usize,
@@ -32,7 +32,7 @@ pub(crate) struct FramesReport {
     pub(crate) seconds: FramesSeconds,
 }
 
-/// What became of a frame.
+/// A refined frame.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct FrameReport {

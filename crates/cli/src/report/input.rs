@@ -1,4 +1,4 @@
-//! What a report says of the file that was read.
+//! The report on the file that was read.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::channel::ChannelReport;
 use crate::arguments::ChannelArguments;
 use crate::input::Input;
 
-/// What was read.
+/// The input.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct InputReport {
@@ -18,9 +18,9 @@ pub(crate) struct InputReport {
     pub(crate) vertices: usize,
     /// Polygons in the file.
     pub(crate) faces: usize,
-    /// What else the file held and was left out, in words.
+    /// The contents of the file that were left out, in words.
     pub(crate) left_out: Vec<String>,
-    /// What vertices, corners and faces carry.
+    /// Values of vertices, corners and faces.
     pub(crate) channels: Vec<ChannelReport>,
 }
 

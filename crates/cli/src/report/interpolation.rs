@@ -1,4 +1,4 @@
-//! What reports say of control points that were found for a limit surface through the vertices.
+//! The report on control points for a limit surface through the vertices.
 
 use limitmesh::interpolate::{Interpolated, InterpolationMethod};
 use serde::Serialize;
@@ -15,7 +15,7 @@ pub(crate) struct InterpolationReport {
     pub(crate) method: &'static str,
     /// Steps of conjugate gradients.
     pub(crate) iterations: usize,
-    /// The greatest distance of a limit from its vertex, but for those that are passed by.
+    /// The greatest distance of a limit from its vertex, but for relaxed ones, which `passed_by` counts.
     pub(crate) residual: f64,
     /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries, and those in regions that would fold.
     pub(crate) passed_by: usize,

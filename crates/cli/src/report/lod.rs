@@ -1,4 +1,4 @@
-//! What `limitmesh lod` says of its levels.
+//! The report of `limitmesh lod`.
 
 use serde::Serialize;
 
@@ -16,7 +16,7 @@ pub(crate) struct LodReport {
     pub(crate) diagonal: f64,
     /// Whether distances are proven.
     pub(crate) certified: bool,
-    /// What the distances to switch at are for.
+    /// The picture that the distances to switch at are for.
     pub(crate) picture: PictureReport,
     /// The levels, from the finest.
     pub(crate) levels: Vec<LevelReport>,
@@ -46,7 +46,7 @@ pub(crate) struct LevelReport {
     pub(crate) vertices: usize,
     /// Its triangles.
     pub(crate) triangles: usize,
-    /// What was asked for.
+    /// The options.
     pub(crate) tolerance: f64,
     /// The symmetric Hausdorff distance to the limit surface is at least this.
     pub(crate) lower: f64,

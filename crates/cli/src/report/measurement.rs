@@ -5,10 +5,11 @@ use serde::Serialize;
 
 use super::certified::CertifiedReport;
 use super::diagnosis::DiagnosisReport;
+use super::features::FeaturesReport;
 use super::whole::Whole;
-use crate::arguments::{Boundary, ConcaveCorners, CreasesFrom, LimitArguments, RefiningScheme};
+use crate::arguments::{LimitArguments, RefiningScheme};
 
-/// What a sampled distance is, in every report of one.
+/// The kind of a sampled distance, in every report of one.
 pub(crate) const KIND: &str = "sampled lower bound";
 
 /// How far two surfaces are from each other.
@@ -19,7 +20,7 @@ pub(crate) struct MeasureReport {
     pub(crate) version: &'static str,
     /// The surface that is measured.
     pub(crate) surface: SurfaceReport,
-    /// What it is measured against.
+    /// The surface that it is measured against.
     pub(crate) reference: SurfaceReport,
     /// The distance.
     pub(crate) hausdorff: DistanceReport,
@@ -50,7 +51,7 @@ pub(crate) struct SurfaceReport {
     pub(crate) area: Option<f64>,
     /// In cubes of the mesh's unit, above 0 where normals point outwards; null for open surfaces, and where it is not known.
     pub(crate) volume: Option<f64>,
-    /// What was found and repaired.
+    /// Findings and repairs.
     pub(crate) diagnosis: DiagnosisReport,
     /// How the surface approximates a limit surface; null where it is measured as it is.
     pub(crate) limit: Option<LimitReport>,
@@ -69,18 +70,10 @@ pub(crate) struct LimitReport {
     pub(crate) chosen: bool,
     /// How far the mesh that approximates the limit surface is from it at most; null where that is not proven.
     pub(crate) error: Option<f64>,
-    /// The rule for open boundaries.
-    pub(crate) boundary: Boundary,
-    /// Edges beyond this angle are sharp; null for none.
-    pub(crate) crease_angle_degrees: Option<f64>,
-    /// Whether that was found by looking at the mesh, where it looks like a part.
-    pub(crate) crease_angle_auto: bool,
-    /// What in the file says that edges are sharp, apart from tags.
-    pub(crate) creases_from: CreasesFrom,
+    #[serde(flatten)]
+    pub(crate) features: FeaturesReport,
     /// How near it passes to the vertices of the control mesh; null where these are its control points.
     pub(crate) interpolate_within: Option<f64>,
-    /// What becomes of corners of 180° and more between sharp edges.
-    pub(crate) concave_corners: ConcaveCorners,
 }
 
 impl LimitReport {
@@ -93,18 +86,13 @@ impl LimitReport {
         diagonal: f64,
         levels: usize,
     ) -> anyhow::Result<Self> {
-        let features = &arguments.features;
         Ok(Self {
             scheme: arguments.scheme().into(),
             levels,
             chosen: true,
             error: None,
-            boundary: features.boundary.unwrap_or_default(),
-            crease_angle_degrees: features.angle(),
-            crease_angle_auto: features.is_auto(),
-            creases_from: features.creases_from,
+            features: (&arguments.features).into(),
             interpolate_within: arguments.within(diagonal)?,
-            concave_corners: features.concave_corners(),
         })
     }
 }
@@ -125,7 +113,7 @@ pub(crate) struct HausdorffReport {
     pub(crate) backward: f64,
     /// Samples of both directions together.
     pub(crate) samples: usize,
-    /// What per cent are of.
+    /// The length that is 100 per cent.
     pub(crate) diagonal: f64,
     /// Whose diagonal that is: `control mesh` or `second mesh`.
     pub(crate) diagonal_of: &'static str,

@@ -6,6 +6,7 @@ mod channel;
 mod comparison;
 pub(crate) mod diagnosis;
 mod evaluation;
+mod features;
 mod frames;
 pub(crate) mod information;
 mod input;
@@ -13,6 +14,7 @@ mod interpolation;
 mod lod;
 pub(crate) mod measurement;
 pub(crate) mod projection;
+mod quality;
 pub(crate) mod refinement;
 mod whole;
 
@@ -21,13 +23,12 @@ pub(crate) use channel::ChannelReport;
 pub(crate) use comparison::ComparedMethod;
 pub(crate) use evaluation::EvaluationReport;
 pub(crate) use frames::{FrameReport, FramesReport, FramesSeconds};
-pub(crate) use information::{
-    AssetInformation, InformationReport, MeshInformation, PackageInformation,
-};
+pub(crate) use information::{InformationReport, MeshInformation, PackageInformation};
 pub(crate) use input::InputReport;
 pub(crate) use interpolation::InterpolationReport;
 pub(crate) use lod::{LevelReport, LodReport, MorphReport, PictureReport};
 pub(crate) use measurement::{DistanceReport, LimitReport, MeasureReport, SurfaceReport};
+pub(crate) use quality::QualityReport;
 pub(crate) use refinement::{
     AssetMeshReport, AssetReport, AttributeReport, CameraReport, ErrorReport, EstimateReport,
     ExactParametersReport, MeshReport, MethodReport, OutputReport, ParametersReport,

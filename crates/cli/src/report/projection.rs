@@ -16,7 +16,7 @@ pub(crate) struct ProjectionReport {
     pub(crate) control: ControlReport,
     /// How much nearer the surface may be than what was found.
     pub(crate) tolerance: f64,
-    /// What gives the sign of distances: `inside` of a closed surface, or the `normal` of an open one at the closest point.
+    /// The source of the sign of distances: `inside` of a closed surface, or the `normal` of an open one at the closest point.
     pub(crate) sign: &'static str,
     /// Of all points; null without any.
     pub(crate) distance: Option<DistancesReport>,

@@ -3,23 +3,22 @@
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
 use limitmesh::criterion::Viewpoint;
-use limitmesh::measure::{triangle_quality, watertightness};
+use limitmesh::measure::watertightness;
 use limitmesh::mesh::Weld;
 use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
+use super::features::FeaturesReport;
 use super::input::InputReport;
 use super::interpolation::InterpolationReport;
+use super::quality::QualityReport;
 use super::whole::{IntervalReport, percent};
-use crate::arguments::{
-    Boundary, ConcaveCorners, CreasesFrom, ExactArguments, Method, RefineArguments, RefiningScheme,
-    Seam,
-};
+use crate::arguments::{ExactArguments, Method, RefineArguments, RefiningScheme};
 use crate::bulk::Bulk;
 use crate::format::{lower_bound, upper_bound};
 
-/// What became of a mesh that was refined.
+/// The report on a mesh that was refined.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct RefineReport {
@@ -31,15 +30,15 @@ pub(crate) struct RefineReport {
     pub(crate) seconds: SecondsReport,
 }
 
-/// What became of a mesh.
+/// A mesh before and after its refinement.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MeshReport {
-    /// What was read.
+    /// The input.
     pub(crate) input: InputReport,
-    /// What was found and repaired.
+    /// Findings and repairs.
     pub(crate) diagnosis: DiagnosisReport,
-    /// What was asked for.
+    /// The options.
     pub(crate) parameters: ParametersReport,
     /// How control points were found; null where the input's vertices are the control points.
     pub(crate) interpolation: Option<InterpolationReport>,
@@ -47,7 +46,7 @@ pub(crate) struct MeshReport {
     pub(crate) method: MethodReport,
     /// Area and volume.
     pub(crate) size: SizeReport,
-    /// What was written.
+    /// The output.
     pub(crate) output: OutputReport,
 }
 
@@ -67,7 +66,7 @@ pub(crate) struct AssetReport {
     pub(crate) seconds: SecondsReport,
 }
 
-/// What became of a mesh of an asset. All lengths are the scene's.
+/// The report on a mesh of an asset. All lengths are the scene's.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct AssetMeshReport {
@@ -89,8 +88,8 @@ pub(crate) struct SizeReport {
     pub(crate) after: Bulk,
 }
 
-/// What the method did.
-#[derive(Debug, Serialize)]
+/// The work of the method, and its result.
+#[derive(Debug, Default, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct MethodReport {
     /// Steps of a stepwise method.
@@ -121,16 +120,9 @@ impl MethodReport {
     /// Of so many levels or steps that ended so; the rest as of a method that reports nothing else.
     pub(crate) fn new(levels: usize, stop: &'static str) -> Self {
         Self {
-            steps: Vec::new(),
-            rounds: Vec::new(),
             levels,
             stop,
-            needed_triangles: None,
-            error: None,
-            input_distance: None,
-            pixels: None,
-            open_cones: None,
-            attributes: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -180,7 +172,7 @@ pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
     }
 }
 
-/// What was asked for, defaults filled in; null where an option does not apply to the method.
+/// The options, defaults filled in; null where an option does not apply to the method.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ParametersReport {
@@ -192,26 +184,16 @@ pub(crate) struct ParametersReport {
     pub(crate) levels: Option<usize>,
     /// The subdivision scheme.
     pub(crate) scheme: RefiningScheme,
-    /// Which vertices move where divided and undivided faces meet.
-    pub(crate) seam: Option<Seam>,
     /// Where the viewer looks from.
     pub(crate) view: Option<ViewReport>,
     /// Whether vertices were moved to the limit at the end.
     pub(crate) limit: bool,
-    /// The rule for open boundaries.
-    pub(crate) boundary: Boundary,
-    /// Edges beyond this angle are sharp; null for none.
-    pub(crate) crease_angle_degrees: Option<f64>,
-    /// Whether that was found by looking at the mesh, where it looks like a part.
-    pub(crate) crease_angle_auto: bool,
-    /// What in the file says that edges are sharp, apart from tags.
-    pub(crate) creases_from: CreasesFrom,
+    #[serde(flatten)]
+    pub(crate) features: FeaturesReport,
     /// How near the limit surface is to pass to the input's vertices, in the mesh's unit; null where these are the control points.
     pub(crate) interpolate_within: Option<f64>,
     /// How near the input the result has to be, either way, in the mesh's unit; null where that was not asked for.
     pub(crate) within: Option<f64>,
-    /// What becomes of corners of 180° and more between sharp edges.
-    pub(crate) concave_corners: ConcaveCorners,
     /// Triangles at most.
     pub(crate) max_triangles: usize,
     /// Distance within which vertices were merged: 0 at equal positions, null for none.
@@ -223,42 +205,35 @@ pub(crate) struct ParametersReport {
 }
 
 impl ParametersReport {
-    /// What all methods have; the rest null.
-    pub(crate) fn common(arguments: &RefineArguments) -> Self {
-        // A unit that is missing was found before.
-        let weld = arguments
-            .build
-            .options()
-            .map_or_else(|_| Weld::default(), |options| options.weld);
-        Self {
+    /// Of any method: what not all methods have is null.
+    ///
+    /// # Errors
+    /// A length has a unit, and the mesh's is not known.
+    pub(crate) fn common(arguments: &RefineArguments) -> anyhow::Result<Self> {
+        Ok(Self {
             method: arguments.method,
             angle_degrees: None,
             levels: None,
             scheme: arguments.scheme,
-            seam: None,
             view: None,
             limit: false,
-            boundary: arguments.features.boundary.unwrap_or_default(),
-            crease_angle_degrees: arguments.features.angle(),
-            crease_angle_auto: arguments.features.is_auto(),
-            creases_from: arguments.features.creases_from,
+            features: (&arguments.features).into(),
             interpolate_within: None,
             within: None,
-            concave_corners: arguments.features.concave_corners(),
             max_triangles: arguments.max_triangles(),
-            weld: match weld {
+            weld: match arguments.build.options()?.weld {
                 Weld::Never => None,
                 Weld::Within(distance) => Some(distance),
                 _ => Some(0.0),
             },
             strict: arguments.build.strict,
             exact: None,
-        }
+        })
     }
 }
 
 /// Goals and caps of the exact method; null where a goal was not set.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct ExactParametersReport {
     /// The distance to the limit surface at most, in the mesh's unit.
@@ -285,6 +260,27 @@ pub(crate) struct ExactParametersReport {
     pub(crate) provenance: bool,
 }
 
+impl ParametersReport {
+    /// Of a method whose goals are an angle, a distance in the unit of a mesh with that diagonal, and a number of triangles.
+    ///
+    /// # Errors
+    /// A length has a unit, and the mesh's is not known.
+    pub(crate) fn of_goals(
+        angle_degrees: Option<f64>,
+        tolerance: Option<f64>,
+        diagonal: f64,
+        max_levels: usize,
+        arguments: &RefineArguments,
+    ) -> anyhow::Result<Self> {
+        let exact = ExactParametersReport::new(tolerance, diagonal, max_levels, &arguments.exact);
+        Ok(Self {
+            angle_degrees,
+            exact: Some(exact),
+            ..Self::common(arguments)?
+        })
+    }
+}
+
 impl ExactParametersReport {
     /// Of a method whose goals are a distance, in the unit of a mesh with that diagonal, and a number of triangles alone.
     pub(crate) fn new(
@@ -297,14 +293,9 @@ impl ExactParametersReport {
             tolerance,
             tolerance_percent: tolerance.map(|tolerance| percent(tolerance, diagonal)),
             triangles: arguments.triangles,
-            pixels: None,
-            cameras: Vec::new(),
-            balance: false,
-            optimize: false,
-            divide_flat: false,
             max_levels,
-            max_memory: None,
             provenance: arguments.provenance,
+            ..Self::default()
         }
     }
 }
@@ -337,7 +328,7 @@ impl ViewReport {
     }
 }
 
-/// What one step did.
+/// The work of one step.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct StepEntry {
@@ -388,21 +379,13 @@ pub(crate) struct CameraReport {
 
 impl From<&Camera> for CameraReport {
     fn from(camera: &Camera) -> Self {
-        let &Camera {
-            eye,
-            target,
-            up,
-            fov_degrees,
-            width,
-            height,
-        } = camera;
         Self {
-            eye,
-            target,
-            up,
-            fov_degrees,
-            width,
-            height,
+            eye: camera.eye,
+            target: camera.target,
+            up: camera.up,
+            fov_degrees: camera.fov_degrees,
+            width: camera.width,
+            height: camera.height,
         }
     }
 }
@@ -413,17 +396,17 @@ impl From<&Camera> for CameraReport {
 pub(crate) struct PredictionReport {
     /// The program's version.
     pub(crate) version: &'static str,
-    /// What was read.
+    /// The input.
     pub(crate) input: InputReport,
-    /// What was found and repaired.
+    /// Findings and repairs.
     pub(crate) diagnosis: DiagnosisReport,
-    /// What was asked for.
+    /// The options.
     pub(crate) parameters: ParametersReport,
-    /// What is predicted.
+    /// The prediction.
     pub(crate) estimate: EstimateReport,
 }
 
-/// What a refinement is predicted to give.
+/// The predicted size of a refinement.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct EstimateReport {
@@ -435,7 +418,7 @@ pub(crate) struct EstimateReport {
     pub(crate) counted: bool,
 }
 
-/// What one round of the exact method did.
+/// The work of one round of the exact method.
 #[derive(Debug, Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(crate) struct RoundEntry {
@@ -556,20 +539,14 @@ pub(crate) struct OutputReport {
     pub(crate) t_junctions: usize,
     /// Triangles whose normal is more than 90° from the limit normal at one of their corners, or with --within from all faces around; null for the stepwise methods.
     pub(crate) inverted_triangles: Option<usize>,
-    /// The least angle of a triangle.
-    pub(crate) min_angle_degrees: f64,
-    /// The mean of the triangles' least angles.
-    pub(crate) mean_min_angle_degrees: f64,
-    /// Triangles with a least angle in [0°, 5°), [5°, 10°) … [55°, 60°].
-    pub(crate) angle_histogram: [usize; 12],
+    #[serde(flatten)]
+    pub(crate) quality: QualityReport,
 }
 
 impl OutputReport {
     /// Examines a mesh.
     pub(crate) fn of(path: String, mesh: &Mesh, inverted_triangles: Option<usize>) -> Self {
-        let surface = mesh.as_triangles();
-        let tightness = watertightness(surface);
-        let quality = triangle_quality(surface);
+        let tightness = watertightness(mesh.as_triangles());
         Self {
             path,
             vertices: mesh.vertex_count(),
@@ -581,9 +558,7 @@ impl OutputReport {
             components: tightness.components,
             t_junctions: tightness.t_junctions,
             inverted_triangles,
-            min_angle_degrees: quality.min_angle_degrees,
-            mean_min_angle_degrees: quality.mean_min_angle_degrees,
-            angle_histogram: quality.histogram,
+            quality: QualityReport::of(mesh),
         }
     }
 }

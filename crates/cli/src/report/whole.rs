@@ -1,4 +1,4 @@
-//! What lengths are given in per cent of.
+//! The length that is 100 per cent of others.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! glTF assets: lengths are the scene's, borders between materials stay, and what cannot be carried along is told.
+//! glTF assets: lengths are the scene's, borders between materials stay, and what cannot be carried along is reported.
 
 use std::path::{Path, PathBuf};
 
@@ -180,7 +180,7 @@ fn materials_keep_their_border_and_stay_joined() {
     }
 }
 
-/// What a file's mesh has, read by the library's other half.
+/// The mesh of a file, read by the library's other half.
 pub(crate) fn first_mesh(path: &Path) -> limitmesh_io::gltf::MeshSoup {
     let asset = limitmesh_io::Asset::open(path).expect("an asset");
     asset

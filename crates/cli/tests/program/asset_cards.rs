@@ -28,7 +28,7 @@ fn area(positions: &[[f64; 3]], triangle: [u32; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3])
 }
 
-/// Checks that triangles stand for the limit of the card's front, which its back has, too.
+/// Checks that triangles approximate the limit of the card's front, which its back has, too.
 #[track_caller]
 fn is_limit_of_front(positions: &[[f64; 3]], triangles: &[[u32; 3]]) {
     let front = Glb::read(&data("card_two_materials.glb"));

@@ -30,7 +30,7 @@ fn sides() -> (Points, Points, Vec<[u32; 3]>) {
     (points, normals, triangles)
 }
 
-/// What the targets of the asset below add to a position: a bend; nothing; one corner moved; and nothing again.
+/// The displacements of the targets of the asset below: a bend; nothing; one corner moved; and nothing again.
 fn moved(target: usize, [x, y, z]: [f32; 3]) -> [f32; 3] {
     match target {
         0 => [0.25 * z * z, 0.1 * x * z, -0.3 * y],

@@ -69,7 +69,7 @@ fn tangents_without_their_texture_coordinates_are_left_out_and_told() {
     assert!(attributes.get("TANGENT").is_none(), "{attributes}");
 }
 
-/// What another program wrote for a cube whose sides stay flat is what is found for it: directions and senses.
+/// The tangents that another program wrote for a cube with flat sides are found again: directions and senses.
 #[test]
 fn another_program_s_tangents_are_found_again() {
     let Some(models) = std::env::var_os("LIMITMESH_MODELS") else {

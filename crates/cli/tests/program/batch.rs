@@ -97,7 +97,7 @@ fn a_job_is_what_refine_does_with_its_options() {
         names(&folder.path().join("made/here")),
         ["a.ply", "a.png", "b.obj", "c.ply"]
     );
-    // Times are told where they are asked for.
+    // Times are reported where they are asked for.
     let timed = folder.path().join("timed.jsonl");
     done("batch {} -o {} --seconds", &[&list, &timed]);
     assert!(results(&timed)[0]["report"]["seconds"]["total"].is_number());
@@ -278,7 +278,7 @@ fn results_are_kept_where_nothing_changed() {
     let found = folder.path().join("results.jsonl");
     done("batch {} -o {} --resume", &[&list, &found]);
     let told = results(&found);
-    // The key tells what decides on a result, wherever it is.
+    // The key depends on all that decides on a result, wherever it is.
     assert_eq!(told[0]["key"], told[1]["key"]);
     run("batch {} -o {}", &[&list, &found])
         .expect(1)

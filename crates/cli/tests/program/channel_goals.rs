@@ -77,7 +77,7 @@ fn texture_coordinates_are_within_their_tolerance() {
         &[&input, &output],
     )
     .saying("heat: within ");
-    // Too much is told, and what was reached.
+    // The goal that was missed is reported, and what was reached.
     run(
         "refine {} -o {} --attribute-tolerance uv=1e-4 --max-triangles 2000 --report {}",
         &[&input, &output, &json],

@@ -139,7 +139,7 @@ fn channels_are_left_out_on_demand() {
         .filter(|name| name != "normals");
     let names: Vec<String> = names.collect();
     assert_eq!(names, ["id"]);
-    // Where no channel is left, nothing tells faces apart: flat regions are triangulated from their rims.
+    // Where no channel is left, nothing distinguishes faces: flat regions are triangulated from their rims.
     let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nusemtl a\nf 4 3 2 1\nf 5 6 7 8\n\
                 usemtl b\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
     let cube = file(&folder, "cube.obj", cube);

@@ -15,7 +15,7 @@ use tempfile::TempDir;
 /// Longer than any command takes here, and short enough to notice one that hangs.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
 
-/// What a run of the program gave.
+/// The result of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Run {
     pub(crate) code: Option<i32>,
@@ -24,7 +24,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// The same run, if it ended with this code.
+    /// This run, if it ended with this code.
     #[track_caller]
     pub(crate) fn expect(self, code: i32) -> Self {
         assert_eq!(
@@ -43,7 +43,7 @@ impl Run {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in:\n{}", self.stdout))
     }
 
-    /// The same run, if its messages contain `words`.
+    /// This run, if its messages contain `words`.
     #[track_caller]
     pub(crate) fn saying(self, words: &str) -> Self {
         assert!(
@@ -96,7 +96,7 @@ pub(crate) fn done(arguments: &str, paths: &[&Path]) -> Run {
     run(arguments, paths).expect(0)
 }
 
-/// What [`done`] gives on standard output, as JSON.
+/// The standard output of [`done`], as JSON.
 #[track_caller]
 pub(crate) fn json_of(arguments: &str, paths: &[&Path]) -> Value {
     done(arguments, paths).json()
@@ -222,7 +222,7 @@ pub(crate) fn file(folder: &TempDir, name: &str, content: &str) -> PathBuf {
     path
 }
 
-/// What a mesh file is by its own indices, counted here from scratch.
+/// The topology of a mesh file by its own indices, counted here from scratch.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) vertices: u64,
@@ -232,7 +232,7 @@ pub(crate) struct Counts {
     pub(crate) euler_characteristic: i64,
 }
 
-/// A small file that is kept beside the tests.
+/// A small file that is kept with the tests.
 pub(crate) fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/data")
@@ -281,14 +281,5 @@ pub(crate) fn claimed(output: &Value) -> Counts {
         boundary_edges: count("boundary_edges"),
         non_manifold_edges: count("non_manifold_edges"),
         euler_characteristic: output["euler_characteristic"].as_i64().expect("a number"),
-    }
-}
-
-/// Whether all keys of a list, separated by spaces, are there; a point goes into an object.
-#[track_caller]
-pub(crate) fn has_keys(value: &Value, keys: &str) {
-    for key in keys.split_whitespace() {
-        let pointer = format!("/{}", key.replace('.', "/"));
-        assert!(value.pointer(&pointer).is_some(), "no {key} in {value:#}");
     }
 }

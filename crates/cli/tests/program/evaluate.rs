@@ -1,4 +1,4 @@
-//! `evaluate`, and `info --limit`: the limit surface itself, at places and as a whole.
+//! `evaluate`: the limit surface itself, at places.
 
 use crate::common::{done, file, folder, json_of, run, usage_error};
 

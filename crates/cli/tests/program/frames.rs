@@ -7,7 +7,7 @@ use limitmesh::refine::{LimitDistanceOptions, limit_distance};
 use limitmesh::scheme::Loop;
 use tempfile::TempDir;
 
-use crate::common::{done, file, folder, has_keys, run, usage_error};
+use crate::common::{done, file, folder, run, usage_error};
 
 /// A box of four sharp edges and texture coordinates, sheared by so much.
 fn frame(shear: f64, faces: &str, tags: &str) -> String {
@@ -91,10 +91,6 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
     );
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
-    has_keys(
-        &report,
-        "version frames parameters triangles vertices levels stop table_bytes seconds",
-    );
     assert_eq!(report["stop"], "met");
     let proven = report["frames"].as_array().expect("a list");
     assert_eq!(proven.len(), 3);

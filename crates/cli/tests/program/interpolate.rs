@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, has_keys, json_of, soup};
+use crate::common::{done, file, folder, json_of, soup};
 
 /// A peg of 16 facets and radius 5 between flat ends, as OBJ.
 fn peg() -> String {
@@ -80,9 +80,7 @@ fn a_peg_keeps_its_radius() {
     assert_eq!(report["error"]["certified"], true);
     // Lengths are in per cent of what was read.
     assert!((number(&report["error"]["diagonal"]) - 264f64.sqrt()).abs() < 1e-9);
-    let keys = "within method iterations residual displacement displacement_percent most_displaced energy least_energy";
     let found = &report["interpolation"];
-    has_keys(found, keys);
     assert_eq!(
         (&found["within"], &found["method"]),
         (&json!(0.0), &json!("conjugate-gradients"))

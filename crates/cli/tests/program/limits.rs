@@ -53,7 +53,7 @@ fn tiny_and_huge_models_are_refined_as_any_other() {
 fn why_nothing_is_certified_is_told() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    // There is no memory for a mesh that tells more.
+    // There is no memory for a mesh that would show more.
     for goal in ["--angle 20", "--angle 20 --balance"] {
         let words = format!("refine builtin:shoe -o {{}} {goal} --max-memory 3M");
         done(&words, &[&output])

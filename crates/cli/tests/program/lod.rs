@@ -7,8 +7,7 @@ use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::read;
 
-use crate::asset::{cube, first_mesh};
-use crate::common::{done, file, folder, has_keys, names, run, usage_error};
+use crate::common::{done, file, folder, names, run, usage_error};
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -37,10 +36,6 @@ fn files_are_within_their_tolerances_and_nested() {
     let control = control("torus");
     let (mut distances, mut vertices) = (Vec::new(), Vec::new());
     for (lod, (level, percent)) in levels.iter().zip([0.5, 2.0]).enumerate() {
-        has_keys(
-            level,
-            "lod path vertices triangles tolerance lower upper parametric switching_distance",
-        );
         let soup = read(folder.path().join(format!("torus_LOD{lod}.ply"))).expect("a mesh");
         let mesh = Mesh::from_soup(&soup, &Default::default())
             .expect("a mesh")
@@ -186,56 +181,6 @@ fn a_cap_that_ends_the_levels_is_named() {
 /// A square with a texture and two materials that a library describes.
 const PAINTED: &str = "mtllib paint.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 1\nv 0 3 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl red\n\
     f 1/1 2/2 3/3\nusemtl blue\nf 1/1 3/3 4/4\n";
-
-/// Of an asset all but its nodes, skins and what names them.
-#[test]
-fn an_assets_materials_come_along() {
-    let folder = folder();
-    let nodes = r#"{"mesh":0,"skin":0},{"name":"hips"}"#;
-    let input = cube(&folder, "in.gltf", nodes, r#","JOINTS_0":4,"WEIGHTS_0":5"#);
-    let text = std::fs::read_to_string(&input).expect("text").replace(
-        r#""nodes":["#,
-        r#""skins":[{"joints":[0,1]}],"extensionsUsed":["VRM"],
-        "extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1}]}}},"nodes":["#,
-    );
-    std::fs::write(&input, text).expect("written");
-    let output = folder.path().join("out.gltf");
-    let said = done(
-        "lod {} -o {} --levels 2 --crease-angle none",
-        &[&input, &output],
-    );
-    let said = said.saying("left out: joints and weights\n");
-    assert!(!said.stderr.contains("place for them"), "{}", said.stderr);
-    let document: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(&output).expect("a document")).expect("JSON");
-    assert_eq!(
-        document["materials"],
-        serde_json::json!([{"name": "body"}, {"name": "lid", "extras": {"k": 1.5}}])
-    );
-    assert!(
-        document["skins"].is_null() && document["extensions"].is_null(),
-        "{document:#}"
-    );
-    assert_eq!(document["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
-    let parts: Vec<Option<usize>> = first_mesh(&output)
-        .parts
-        .iter()
-        .map(|part| Some(part.primitive))
-        .collect();
-    assert_eq!(parts, [Some(0), Some(1)], "a primitive for each material");
-    let materials = document["meshes"][0]["primitives"]
-        .as_array()
-        .expect("primitives");
-    assert_eq!(
-        [&materials[0]["material"], &materials[1]["material"]],
-        [0, 1]
-    );
-    let all = done(
-        "lod {} -o {} --levels 2",
-        &[&input, &folder.path().join("out.ply")],
-    );
-    all.saying("colours and textures of materials");
-}
 
 /// Before any work, and of the files that are written, not of the name that they are called after.
 #[test]

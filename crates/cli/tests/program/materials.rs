@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use crate::common::{done, file, folder, names, run};
 use crate::glb::Glb;
 
-/// The bytes that tell a PNG file, and others that make it one of its own.
+/// The bytes that begin a PNG file, and others that make it unique.
 fn picture(other: &[u8]) -> Vec<u8> {
     [b"\x89PNG\r\n\x1a\n", other].concat()
 }

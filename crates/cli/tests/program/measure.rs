@@ -4,21 +4,10 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{done, file, folder, has_keys, json_of, run, usage_error};
-
-const CONTRACT: &str = "version surface.path surface.triangles reference.path reference.triangles
-    reference.limit hausdorff.kind hausdorff.symmetric hausdorff.symmetric_percent hausdorff.forward
-    hausdorff.backward hausdorff.samples hausdorff.diagonal hausdorff.diagonal_of
-    hausdorff.forward_detail.max hausdorff.forward_detail.mean hausdorff.forward_detail.rms
-    hausdorff.forward_detail.percentile_95 hausdorff.backward_detail.percentile_95
-    hausdorff.forward_detail.samples hausdorff.forward_detail.at hausdorff.forward_detail.to
-    hausdorff.backward_detail.max hausdorff.backward_detail.mean hausdorff.backward_detail.rms
-    seconds.prepare seconds.measure";
+use crate::common::{done, file, folder, json_of, run, usage_error};
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
-    let report = json_of(&format!("measure {arguments} --json"), paths);
-    has_keys(&report, CONTRACT);
-    report
+    json_of(&format!("measure {arguments} --json"), paths)
 }
 
 fn number(value: &Value) -> f64 {
@@ -131,17 +120,10 @@ fn heat_maps_are_meshes_or_pictures() {
     usage_error("measure {} {} --heatmap {}", &[&tilted, &low, &low], ".png");
 }
 
-const CERTIFIED: &str = "version surface.path reference.path hausdorff.kind hausdorff.lower hausdorff.upper
-    hausdorff.lower_percent hausdorff.upper_percent hausdorff.converged hausdorff.work hausdorff.diagonal hausdorff.diagonal_of
-    hausdorff.forward.lower hausdorff.forward.upper hausdorff.forward.converged hausdorff.forward.at
-    hausdorff.forward.to hausdorff.backward.lower hausdorff.backward.upper hausdorff.backward.converged
-    hausdorff.backward.at hausdorff.backward.to seconds.prepare seconds.measure";
-
 fn certified(arguments: &str, paths: &[&Path], code: i32) -> Value {
     let report = run(&format!("measure {arguments} --certified --json"), paths)
         .expect(code)
         .json();
-    has_keys(&report, CERTIFIED);
     report["hausdorff"].clone()
 }
 
@@ -224,7 +206,7 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
     .expect(2);
 }
 
-/// What `refine` proves and what `measure` finds are per cent of one diagonal, the control mesh's; its limit surface is
+/// The bounds of `refine` and the distances of `measure` are per cent of one diagonal, the control mesh's; its limit surface is
 /// smaller, and so is the box of the refined mesh.
 #[test]
 fn refine_and_measure_speak_of_one_diagonal() {
@@ -254,7 +236,7 @@ fn refine_and_measure_speak_of_one_diagonal() {
         assert_eq!(number(&found["diagonal"]), diagonal);
         assert_eq!(found["diagonal_of"], "control mesh");
     }
-    // Per cent by per cent: what was proven holds what is found, and the other way round. The mesh that stands for the limit
+    // Per cent by per cent: what was proven holds what is found, and the other way round. The mesh that approximates the limit
     // surface is off by less than a tenth of that.
     let percent = |value: &Value, name: &str| number(&value[name]);
     assert!(percent(sampled, "symmetric_percent") <= 1.1 * percent(error, "upper_percent"));

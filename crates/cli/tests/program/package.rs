@@ -1,4 +1,4 @@
-//! 3MF packages: lengths are the build's, triangles inherit what they carry, and what cannot be followed is told.
+//! 3MF packages: lengths are the build's, triangles inherit what they carry, and what cannot be followed is reported.
 
 use std::io::{Cursor, Read, Write};
 use std::path::{Path, PathBuf};

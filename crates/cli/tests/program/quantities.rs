@@ -57,15 +57,3 @@ fn lengths_may_have_a_unit_where_the_mesh_has_one() {
     .stderr;
     assert!(told.contains(" mm) of the limit surface"), "{told}");
 }
-
-#[test]
-fn what_a_tolerance_may_be_is_told_in_one_way() {
-    for bad in ["0", "-1", "0%", "-0.5%", "-1mm"] {
-        let words = format!("refine builtin:cube -o out.ply --tolerance={bad}");
-        usage_error(
-            &words,
-            &[],
-            &format!("{bad} is out of range: a tolerance is above 0"),
-        );
-    }
-}

@@ -10,7 +10,7 @@ use crate::common::{claimed, counts, folder, json_of, names, run, soup};
 use serde_json::Value;
 
 /// By file: faces as stored; vertices, triangles, Euler characteristic, boundary loops and components of the control mesh, `cut` where
-/// sheets are cut apart, which may split faces beside the cut; findings that are not zero, `any` where their number depends on
+/// sheets are cut apart, which may split faces adjacent to the cut; findings that are not zero, `any` where their number depends on
 /// which of several equal repairs is made. Of files that cannot be read, words of the message.
 ///
 /// From the models' own table, which was computed by other programs, and by hand for the defective files.

@@ -42,7 +42,6 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
             "--tolerance is for exact refinement",
         ),
         ("--limit", "--limit has no effect"),
-        ("--seam any", "--seam has no effect"),
         (
             "--shared-topology",
             "--scheme sqrt3 does not go with --shared-topology",

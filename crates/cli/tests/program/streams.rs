@@ -1,4 +1,4 @@
-//! Where meshes come from and go to: standard input and output, formats that names do not tell, several inputs, names in
+//! Where meshes come from and go to: standard input and output, formats that names do not show, several inputs, names in
 //! any encoding.
 
 use std::io::Write;
@@ -111,7 +111,7 @@ fn formats_that_nothing_tells_are_asked_for() {
         .saying("'dat'");
     done("refine {} -o {} --from obj --to off", &[&input, &unnamed]);
     assert!(std::fs::read(&unnamed).expect("a file").starts_with(b"OFF"));
-    // A name that tells its format wins over --from, which is for standard input and the like.
+    // A name that shows its format wins over --from, which is for standard input and the like.
     let named = file(&folder, "named.obj", TETRAHEDRON);
     done("info {} --from stl", &[&named]);
     assert_eq!(names(folder.path()), ["named.obj", "scan.dat", "unnamed"]);

@@ -69,7 +69,6 @@ fn the_short_help_shows_what_most_people_need() {
     for option in [
         "--provenance",
         "--attribute-tolerance",
-        "--seam",
         "--max-memory",
         "--weld-ignores",
     ] {
@@ -121,7 +120,7 @@ fn usage_is_shown_for_what_is_written_wrong_alone() {
     }
 }
 
-/// What a person meant who writes a unit apart, a folder for a file, or a file without a command.
+/// Hints for a unit apart from its number, a folder for a file, or a file without a command.
 #[test]
 fn slips_are_answered_with_what_was_meant() {
     let folder = folder();
@@ -148,15 +147,9 @@ fn options_out_of_range_are_refused_before_any_work() {
     let output = folder.path().join("out.ply");
     let wrong = [
         ("--angle 0", "above 0"),
-        ("--angle -5", "above 0"),
-        ("--angle 180.5", "at most 180"),
-        ("--angle NaN", "not a finite number"),
-        ("--angle ten", "not a number"),
         ("--method uniform --levels 13", "12 steps are the most"),
         ("--levels two", "whole number"),
         ("--view 0,0,0", "no direction"),
-        ("--view 1,2", "three"),
-        ("--view 1,2,inf", "not a finite number"),
         (
             "--angle 5 --view 0,0,1 --view @0,0,1",
             "one direction or eye",
@@ -166,39 +159,27 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--view 0,0,1 --method amresh", "limit-normal"),
         ("--view @0,0,1 --method uniform", "limit-normal"),
         ("--method uniform --angle 5", "divides every face"),
-        ("--method uniform --seam any", "never meet"),
         ("--max-triangles 0", "at least 1"),
         ("--tolerance 0", "above 0"),
-        ("--tolerance -1%", "a tolerance is above 0"),
-        ("--tolerance NaN", "not a finite number"),
-        ("--tolerance 1e999", "not a finite number"),
-        ("--tolerance 1000%", "the whole mesh"),
-        ("--tolerance fine", "a length or per cent"),
         ("--triangles 0", "at least 1"),
-        ("--triangles many", "whole number"),
         ("--levels 0", "goals need 1"),
         ("--levels 25", "at most 24"),
         ("--limit", "lie on the limit surface"),
-        ("--seam all", "lie on the limit surface"),
         ("--method uniform --tolerance 1", "--method exact"),
         ("--method amresh --triangles 1000", "--method exact"),
         ("--method limit-normal --provenance", "--method exact"),
         ("--pixels 1", "a camera in --view"),
         ("--pixels 0 --view 0,0,5,0,0,0,0,1,0,40,800x600", "above 0"),
-        ("--view 0,0,5,0,0,0,0,0,0,40,800x600", "upward direction"),
-        ("--view 0,0,0,0,0,0,0,1,0,40,800x600", "eye to its target"),
         ("--view 0,0,5,1", "eye, target and up"),
         ("--optimize --angle 5", "--optimize"),
         ("--optimize --balance", "--optimize"),
         ("--method uniform --optimize", "--method exact"),
         ("--max-memory 0", "at least one byte"),
-        ("--max-memory 2Q", "K, M, G or T"),
         ("--view 0,0,1", "--angle"),
         ("--dry-run --picture p.png", "--dry-run"),
         ("--method uniform --dry-run", "--method exact"),
         ("--method limit-normal --balance", "--method exact"),
         ("--weld -1", "at least 0"),
-        ("--weld near", "'none'"),
         ("--scheme catmull", "loop-warren"),
         ("--picture p.jpg", ".png"),
         ("--threads 100000", "at most"),

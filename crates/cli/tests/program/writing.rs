@@ -191,7 +191,7 @@ fn pipe(folder: &tempfile::TempDir, name: &str) -> std::path::PathBuf {
     pipe
 }
 
-/// What whoever starts the program has it ignore stays ignored, as `nohup` needs.
+/// A signal that is ignored at the start stays ignored, as `nohup` needs.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_ignored_hangup_stays_ignored() {
@@ -233,7 +233,7 @@ fn what_is_read_only_is_an_error_before_the_work() {
     assert_eq!(names(folder.path()), ["out.ply"]);
 }
 
-/// Results are told in lines that fit a terminal of 100 columns.
+/// Results are reported in lines that fit a terminal of 100 columns.
 #[test]
 fn lines_of_results_are_short() {
     let folder = folder();

@@ -12,7 +12,7 @@ pub use ply::splits_vertices;
 use crate::codec::Codec;
 use crate::format::Format;
 
-/// What a format declares.
+/// The declaration of a format.
 pub(crate) fn codec(format: Format) -> Codec {
     match format {
         Format::Obj => obj::CODEC,

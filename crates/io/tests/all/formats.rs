@@ -1,4 +1,4 @@
-//! What each reader understands, on small files written out here.
+//! The syntax that each reader understands, on small files written out here.
 
 use super::support::{
     cases, channel, labels, output, read, refused, text as text_of, triangles, values, written,
@@ -376,7 +376,7 @@ fn extensions_in_capitals_and_small_letters() {
     }
 }
 
-/// What reading bytes says that it left out.
+/// The statements that reading bytes leaves out.
 fn left_out(bytes: impl AsRef<[u8]>, format: Format) -> Vec<String> {
     read(bytes, format).left_out
 }
@@ -450,7 +450,7 @@ fn obj_files_hold_channels() {
     assert_eq!(again.material_libraries, soup.material_libraries);
 }
 
-/// Corners that name texture coordinates that are not there: the shape is read, and that is told.
+/// Corners that name texture coordinates that are not there: the shape is read, and that is reported.
 #[test]
 fn texture_coordinates_that_are_not_there_are_told() {
     for corner in ["1/2", "1/x", "1/0", "1/-2"] {
@@ -509,7 +509,7 @@ fn ply_files_hold_channels() {
     }
 }
 
-/// Lists that do not fit, and numbers that are none: the shape is read, and that is told.
+/// Lists that do not fit, and numbers that are none: the shape is read, and that is reported.
 #[test]
 fn ply_channels_that_do_not_fit_are_told() {
     let ply = |heat: &str, list: &str| {

@@ -77,7 +77,7 @@ fn what_a_type_cannot_hold_is_written_as_a_double() {
     }
 }
 
-/// Colours of 16 bits stand for 0 to 1, as those of 8 do.
+/// Colours of 16 bits are 0 to 1, as those of 8 are.
 #[test]
 fn colours_of_two_bytes_are_kept() {
     let text = TYPES

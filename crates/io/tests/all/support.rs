@@ -1,4 +1,4 @@
-//! What tests of all formats share: files read and written in memory, tables of cases, and the folder of shared models.
+//! Common parts of the tests of all formats: files read and written in memory, tables of cases, and the folder of shared models.
 
 use limitmesh::Triangles;
 use limitmesh::mesh::{Channel, PolygonSoup};
@@ -44,7 +44,7 @@ pub(crate) fn written(format: Format, output: &Output<'_>, ascii: bool) -> Vec<u
     try_written(format, output, ascii).unwrap()
 }
 
-/// What is written as text.
+/// An output as text.
 #[track_caller]
 pub(crate) fn text(format: Format, output: &Output<'_>) -> String {
     String::from_utf8(written(format, output, true)).unwrap()

@@ -1,4 +1,4 @@
-//! What is written reads back as the same, files are written whole or not at all, and what does not fit
+//! An output reads back unchanged, files are written whole or not at all, and what does not fit
 //! together is refused.
 
 use super::support::{channel, output, read, skip, text, try_written, unwritten, values, written};

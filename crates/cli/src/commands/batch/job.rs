@@ -2,25 +2,26 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsString;
-use std::path::{Path, is_separator};
+use std::path::Path;
 
 use clap::CommandFactory;
 use serde_json::value::RawValue;
 
 use crate::arguments::{Arguments, Viewer};
 use crate::file_identity::FileIdentity;
+use crate::output::is_folder;
 
 /// Options of `refine` that are no matter of a job: the report is in its result, and the batch has the others.
 const NOT_OF_JOBS: [&str; 6] = ["output", "report", "threads", "quiet", "help", "version"];
 
-/// What a job asks for.
+/// A job.
 #[derive(Debug, PartialEq)]
 pub(super) struct Job {
     /// As the line names it.
     pub(super) input: String,
     /// None for a dry run.
     pub(super) output: Option<String>,
-    /// What else it writes: a picture, a proof.
+    /// The other files that it writes: a picture, a proof.
     pub(super) others: Vec<String>,
     /// Files that options name and that decide on the result.
     pub(super) option_files: Vec<String>,
@@ -134,17 +135,12 @@ fn file_of_cameras(text: &str) -> Option<String> {
     matches!(text.parse(), Ok(Viewer::File(_))).then(|| text.to_owned())
 }
 
-fn is_folder(path: &Path) -> bool {
-    let last = path.as_os_str().as_encoded_bytes().last();
-    last.is_some_and(|&last| is_separator(char::from(last))) || path.is_dir()
-}
-
-/// What serde_json says of a text of one line.
+/// The message of serde_json on a text of one line.
 fn without_line(why: &serde_json::Error) -> String {
     why.to_string().replace(" at line 1 column ", " at column ")
 }
 
-/// What a field holds.
+/// The value of a field.
 #[derive(PartialEq)]
 enum Value {
     /// Text, or a number as it was written.
@@ -327,31 +323,5 @@ mod tests {
                 .contains("UTF-8")
         );
         assert!(job(r#"{"input": "a.obj", "dry-run": true}"#).is_ok());
-    }
-
-    #[test]
-    fn files_belong_to_one() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        let job = |input: &str, output: &str| Job {
-            input: at(input).display().to_string(),
-            output: Some(at(output).display().to_string()),
-            others: Vec::new(),
-            option_files: Vec::new(),
-            options: Vec::new(),
-        };
-        let mut claims = Claims::default();
-        claims.take(&at("results.jsonl"));
-        claims.read(&at("a.obj"));
-        assert_eq!(claims.write(&job("a.obj", "b.ply"), 1), Ok(()));
-        for (output, words) in [
-            ("b.ply", "what line 1 writes"),
-            ("./b.ply", "what line 1 writes"),
-            ("a.obj", "the input of a job"),
-            ("results.jsonl", "the jobs or the results"),
-        ] {
-            let what = claims.write(&job("a.obj", output), 2).unwrap_err();
-            assert!(what.contains(words), "{output}: {what}");
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! What a result depends on, in one number: SHA-256 of the program's version, the options, the formats and the input's bytes.
+//! The key of a result by all that it depends on: SHA-256 of the program's version, the options, the formats and the input's bytes.
 //!
 //! Each part is hashed after its length, so that no two lists of parts are one.
 

@@ -53,7 +53,7 @@ struct Task {
     job: Result<Job, String>,
 }
 
-/// What comes of a task.
+/// The outcome of a task.
 enum Fate {
     /// An earlier result holds.
     Kept(Place, Standing),
@@ -63,7 +63,7 @@ enum Fate {
     Cancelled,
 }
 
-/// What a result counts as.
+/// The kind of a result.
 #[derive(Clone, PartialEq)]
 enum Standing {
     Done,
@@ -195,7 +195,7 @@ fn make_folders(tasks: &[Task]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What all jobs share.
+/// The common data of all jobs.
 struct Batch {
     starter: Starter,
     earlier: EarlierResults,
@@ -350,7 +350,7 @@ impl Batch {
         })
     }
 
-    /// What becomes of a job in its process; `None` where it is cancelled.
+    /// The status of a job after its process; `None` where it is cancelled.
     fn status(&self, job: &Job) -> anyhow::Result<Option<JobStatus>> {
         let (verdict, report) = match self.starter.run(&job.words())? {
             Ended::Cancelled => return Ok(None),

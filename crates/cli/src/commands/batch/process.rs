@@ -26,7 +26,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// The end of what a process that crashed said is kept, up to so many bytes.
 const MOST_WORDS: usize = 400;
 
-/// What a job's process says in the end.
+/// The last message of a job's process.
 #[derive(Serialize, Deserialize)]
 #[serde(tag = "verdict", rename_all = "kebab-case")]
 pub(in crate::commands) enum Verdict {
@@ -36,7 +36,7 @@ pub(in crate::commands) enum Verdict {
     File { message: String },
 }
 
-/// What jobs must not exceed.
+/// The limits of jobs.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
     pub(super) time: Option<Duration>,

@@ -124,7 +124,7 @@ pub(super) struct ResultFile {
     lines: BTreeMap<usize, Place>,
 }
 
-/// What counts of a result when a batch is resumed.
+/// The part of a result that counts when a batch is resumed.
 #[derive(Deserialize)]
 struct Known {
     key: Option<String>,

@@ -5,7 +5,7 @@ use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::value::RawValue;
 use std::fmt;
 
-/// What became of a job, in a line.
+/// The outcome of a job, in a line.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[cfg_attr(test, schemars(rename = "BatchLine"))]
@@ -23,7 +23,7 @@ pub(crate) struct Line<'a> {
     pub(super) status: JobStatus,
 }
 
-/// What became of a job.
+/// The outcome of a job.
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(tag = "status", rename_all = "kebab-case")]
@@ -48,7 +48,7 @@ pub(super) enum JobStatus {
     },
     /// There is no result.
     Failed {
-        /// What went wrong.
+        /// The error.
         error: JobError,
     },
 }
@@ -57,7 +57,7 @@ pub(super) enum JobStatus {
 #[derive(Serialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 pub(super) struct JobError {
-    /// What is to be mended.
+    /// The part that has to be changed.
     pub(super) kind: Kind,
     /// The limit that it passed: seconds or bytes.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,7 +66,7 @@ pub(super) struct JobError {
     pub(super) message: String,
 }
 
-/// What is to be mended.
+/// The part that has to be changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, serde::Deserialize)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]

@@ -60,7 +60,7 @@ impl AttributeGoals {
         });
     }
 
-    /// What is asked of the refinement.
+    /// The goals of the refinement.
     pub(super) fn options(&self) -> Vec<AttributeGoal> {
         let goals = self.all.iter().filter_map(|wanted| wanted.goal.clone());
         goals.collect()
@@ -80,7 +80,7 @@ impl AttributeGoals {
         }
     }
 
-    /// What was reached.
+    /// The results.
     pub(super) fn reached(&self, found: &Exact) -> Vec<AttributeReport> {
         let mut bounds = found.attribute_bounds.iter();
         let of = |wanted: &Wanted| AttributeReport {
@@ -94,7 +94,7 @@ impl AttributeGoals {
         self.all.iter().map(of).collect()
     }
 
-    /// What was reached in lines: one for each channel, and one for all morph targets.
+    /// The results in lines: one for each channel, and one for all morph targets.
     pub(super) fn achieved(&self, reached: &[AttributeReport], unit: &str) -> Vec<String> {
         let mut lines = Vec::new();
         let mut morphs: Option<Option<f64>> = None;

@@ -1,4 +1,4 @@
-//! What makes no sense on a command line of `limitmesh refine`, found before any work is done.
+//! Checks of the command line of `limitmesh refine`, before any work is done.
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -52,7 +52,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
 }
 
 /// Whether a rule is broken, and why it holds.
-fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 13] {
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 12] {
     let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
     let has_angle = arguments.angle.is_some();
     let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
@@ -89,10 +89,6 @@ fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 13] {
         (
             is_uniform && has_angle,
             "--angle has no effect with --method uniform, which divides every face",
-        ),
-        (
-            is_uniform && arguments.seam.is_some(),
-            "--seam has no effect with --method uniform, where divided and undivided faces never meet",
         ),
         (
             method == Method::VertexError && has_angle,
@@ -186,7 +182,6 @@ fn unknown(arguments: &RefineArguments) -> Option<Limited> {
     let has_tolerance = arguments.channels.given_tolerance().is_some();
     let has_morphs = arguments.asset.morph_tolerance.is_some();
     let all = [
-        ("--seam", arguments.seam.is_some(), STEPS),
         ("--limit", arguments.limit, STEPS),
         ("--interpolate", is_led, IN_QUARTERS),
         ("--tolerance", exact.tolerance.is_some(), GOALS),

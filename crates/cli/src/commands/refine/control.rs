@@ -11,7 +11,7 @@ use crate::format::counted;
 use crate::progress::Progress;
 use crate::report::InterpolationReport;
 
-/// What is refined, and what it is compared with.
+/// The mesh that is refined, and the one that it is compared with.
 pub(super) struct Control {
     pub(super) mesh: Mesh,
     /// The corners of 180° and more that were divided, with the faces that they divided.

@@ -34,7 +34,7 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
     let mut found = exact_observed(task.mesh(), task.scheme()?, &options, &mut observer)?;
     drop(observer);
     let moved = input_distance::measured(task, &found, goals)?;
-    let rounding = rounding(arguments, found.mesh.positions());
+    let rounding = rounding(arguments, found.mesh.positions())?;
     let note = round(&mut found, rounding, goals);
     task.progress.notes(note);
     let diagonal = control.diagonal;
@@ -132,7 +132,7 @@ fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
 /// A mesh that is off by no more than this share of the diagonal is the surface itself, as files in single precision have it.
 const EXACT: f64 = 1e-6;
 
-/// What was reached, in sentences of a line each.
+/// The results, in sentences of a line each.
 fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) -> Vec<String> {
     let arguments = task.arguments;
     let mut lines = vec![error.in_words(&task.unit())];
@@ -197,12 +197,15 @@ pub(super) fn open_cones(found: &Exact) -> Option<String> {
     })
 }
 
-/// What was asked for, defaults filled in.
-pub(super) fn parameters(task: &Task<'_>, goals: &Goals) -> ParametersReport {
+/// The options, defaults filled in.
+///
+/// # Errors
+/// A length has a unit, and the mesh's is not known.
+pub(super) fn parameters(task: &Task<'_>, goals: &Goals) -> anyhow::Result<ParametersReport> {
     let (arguments, options) = (task.arguments, goals.options(task));
     let own = &arguments.exact;
     let (length, diagonal) = (goals.length, task.control.diagonal);
-    ParametersReport {
+    Ok(ParametersReport {
         angle_degrees: arguments.angle,
         within: goals.near.map(|near| near.within),
         view: ViewReport::of(arguments),
@@ -215,8 +218,8 @@ pub(super) fn parameters(task: &Task<'_>, goals: &Goals) -> ParametersReport {
             max_memory: options.max_memory,
             ..ExactParametersReport::new(length, diagonal, options.max_levels, own)
         }),
-        ..ParametersReport::common(arguments)
-    }
+        ..ParametersReport::common(arguments)?
+    })
 }
 
 /// Whether a cap ended the refinement before the goals were met, and what was reached.

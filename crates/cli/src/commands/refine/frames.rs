@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         let report = FramesReport {
             version: VERSION,
             frames: frames.collect(),
-            parameters: exact::parameters(&task, &goals),
+            parameters: exact::parameters(&task, &goals)?,
             triangles: refined.mesh.face_count(),
             vertices: refined.mesh.vertex_count(),
             levels: refined.levels,
@@ -139,7 +139,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     })
 }
 
-/// What became of all frames: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
+/// The result for all frames in words: `worst` is the greatest distance of any, per cent are of the diagonal of the first, which is called `name`.
 fn in_words(found: &Frames, worst: f64, diagonal: f64, name: &str, refining: Duration) -> String {
     let refined = &found.refined;
     let made = format!(
@@ -236,7 +236,7 @@ fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<(Input, Vec<Vec<[f6
     Ok((first, frames))
 }
 
-/// What all frames must share with the first.
+/// The properties that all frames must share with the first.
 struct FirstFrame<'a> {
     name: &'a str,
     soup: &'a PolygonSoup,
@@ -338,9 +338,9 @@ fn write_all(
     };
     let mut errors = Vec::with_capacity(frames.len());
     for (number, (job, format)) in jobs.iter().enumerate() {
-        let (Some(path), &Some(format)) = (&job.output, format) else {
-            continue;
-        };
+        let file = job.output.as_deref().zip(*format);
+        debug_assert!(file.is_some(), "a frame has a file and its format");
+        let (path, format) = file.context("a frame has no file to be written to")?;
         progress.stage(format!("writing {}", job.output_name()));
         found.replay.frame(&frames[number], &mut frame)?;
         let mut moved = exact.clone().moved_to(&frame)?;

@@ -1,4 +1,4 @@
-//! What is asked of exact refinement: the goals on the command line with those that hold where none is given, as options of the
+//! The goals of exact refinement: those on the command line with those that hold where none is given, as options of the
 //! library, and in words.
 
 use limitmesh::Mesh;
@@ -67,7 +67,7 @@ impl Goals {
             length: length.or(near.map(|near| near.tolerance)),
             tolerance,
             near,
-            rounding: most_rounding(arguments, control),
+            rounding: most_rounding(arguments, control)?,
             pixels: (!cameras.is_empty()).then(|| exact.pixels.unwrap_or(USUAL_PIXELS)),
             cameras,
             separates_faces: channels.vary_within_faces(),

@@ -1,16 +1,17 @@
 //! Several inputs of one command: where each is written, and how they end together.
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf, is_separator};
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::ValueEnum;
 use limitmesh_io::Format;
 
 use super::check;
-use crate::arguments::{FileFormat, RefineArguments, Unit};
+use crate::arguments::{RefineArguments, Unit};
 use crate::failure::{self, Outcome, usage};
 use crate::input;
+use crate::output::{ends_with_separator, is_folder};
 
 /// A command for one input, and the format that it writes; none for a dry run without a name.
 pub(super) type Job = (RefineArguments, Option<Format>);
@@ -60,7 +61,7 @@ fn jobs(arguments: &RefineArguments) -> anyhow::Result<Vec<RefineArguments>> {
 
 fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArguments> {
     let extension = || {
-        let to = arguments.to.map(FileFormat::format);
+        let to = arguments.to;
         Ok(match (to, input::builtin_name(input)) {
             (Some(to), _) => to.extension(),
             (None, Some(_)) => "ply",
@@ -88,18 +89,6 @@ fn job(arguments: &RefineArguments, input: &Path) -> anyhow::Result<RefineArgume
         proof: place(&arguments.proof, &|| Ok("proof")).transpose()?,
         ..arguments.clone()
     })
-}
-
-/// Whether a name is that of a folder: it ends with a slash, or there is one.
-fn is_folder(path: &Path) -> bool {
-    ends_with_separator(path) || path.is_dir()
-}
-
-fn ends_with_separator(path: &Path) -> bool {
-    path.as_os_str()
-        .as_encoded_bytes()
-        .last()
-        .is_some_and(|&last| is_separator(char::from(last)))
 }
 
 /// The file in a folder that is called as the input is.

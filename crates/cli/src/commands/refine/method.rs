@@ -31,15 +31,15 @@ impl Method {
         })
     }
 
-    /// What was asked for, defaults filled in.
+    /// The options, defaults filled in.
     ///
     /// # Errors
     /// A length has a unit, and the mesh's is not known.
     pub(super) fn parameters(&self, task: &Task<'_>) -> anyhow::Result<ParametersReport> {
         let (arguments, diagonal) = (task.arguments, task.control.diagonal);
         let own = match self {
-            Self::Exact(goals) => exact::parameters(task, goals),
-            Self::Stepwise | Self::Sqrt3Steps => stepwise::parameters(arguments),
+            Self::Exact(goals) => exact::parameters(task, goals)?,
+            Self::Stepwise | Self::Sqrt3Steps => stepwise::parameters(arguments)?,
             Self::Sqrt3 => sqrt3::parameters(arguments, diagonal)?,
             Self::Restricted => restricted::parameters(arguments, diagonal)?,
         };

@@ -37,7 +37,7 @@ impl Nearness {
             return Ok(None);
         };
         let within = within.length(diagonal, arguments.build.unit)?;
-        let kept = with_room(within, most_rounding(arguments, mesh));
+        let kept = with_room(within, most_rounding(arguments, mesh)?);
         let tolerance = WithinOptions::usual_tolerance(kept, diagonal);
         Ok(Some(Self { within, tolerance }))
     }
@@ -58,7 +58,7 @@ impl Nearness {
             1.0
         };
         let options = WithinOptions::default()
-            .within(with_room(self.within, most_rounding(arguments, mesh)))
+            .within(with_room(self.within, most_rounding(arguments, mesh)?))
             .tolerance(Some(times * self.tolerance))
             .max_triangles(Some(arguments.max_triangles()));
         let scheme = arguments.scheme()?;

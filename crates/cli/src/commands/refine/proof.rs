@@ -94,7 +94,9 @@ pub(super) fn write(path: &Path, refined: &mut Refined, task: &Task<'_>) -> anyh
 /// The length that a proof confirms, once it is written, or why there is none.
 fn proven(path: &Path, refined: &Refined, task: &Task<'_>) -> anyhow::Result<Result<f64, String>> {
     let (arguments, control) = (task.arguments, task.mesh());
-    let written = arguments.output.as_deref().unwrap_or(Path::new(""));
+    let written = arguments.output.as_deref();
+    debug_assert!(written.is_some(), "--proof needs a result in a file");
+    let written = written.context("--proof needs a result in a file")?;
     let result = read_plain(written)
         .with_context(|| format!("{} cannot be read again", written.display()))?;
     let (origins, parents) = (&refined.trail.origins, &refined.trail.parents);

@@ -1,4 +1,4 @@
-//! What a method makes of a control mesh, and what is reported of it.
+//! The result of a method, and its report.
 
 use limitmesh::Mesh;
 use limitmesh::refine::ExactStop;

@@ -1,6 +1,7 @@
 //! Refinement over a restricted quadtree by criteria of the literature, to be compared with: planarity (Zorin, Schröder and Sweldens)
 //! and vertex errors (Müller and Jaeschke).
 
+use anyhow::Context;
 use limitmesh::front::{Demand, Front, MOST_LEVELS, Measure, Snapshot};
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactStop, Origin, Traced};
@@ -11,7 +12,7 @@ use super::refined::{Refined, capped};
 use super::task::Task;
 use crate::arguments::{Extent, Method, RefineArguments};
 use crate::format::{counted, number};
-use crate::report::refinement::{ExactParametersReport, exact_stop_name};
+use crate::report::refinement::exact_stop_name;
 use crate::report::{MethodReport, ParametersReport};
 
 /// The angle of planarity where nothing else is asked, in degrees: that of the stepwise methods.
@@ -20,7 +21,7 @@ const USUAL_ANGLE: f64 = 10.0;
 /// The vertex error where nothing else is asked, in per cent of the diagonal: the exact method's distance.
 const USUAL_PERCENT: f64 = 0.1;
 
-/// What is asked.
+/// The goal.
 struct Goal {
     measure: Measure,
     /// In the measure's unit.
@@ -70,7 +71,7 @@ impl Goal {
         }
     }
 
-    /// What was reached, in words.
+    /// The result, in words.
     fn in_words(&self, worst: f64, unit: &str) -> String {
         let length = number(worst);
         let reached = match self.measure {
@@ -87,24 +88,20 @@ impl Goal {
     }
 }
 
-/// What was asked for, defaults filled in.
+/// The options, defaults filled in.
 pub(super) fn parameters(
     arguments: &RefineArguments,
     diagonal: f64,
 ) -> anyhow::Result<ParametersReport> {
     let goal = Goal::of(arguments, diagonal)?;
     let levels = most_levels(arguments) as usize;
-    let own = &arguments.exact;
-    Ok(ParametersReport {
-        angle_degrees: goal.angle_degrees,
-        exact: Some(ExactParametersReport::new(
-            goal.tolerance,
-            diagonal,
-            levels,
-            own,
-        )),
-        ..ParametersReport::common(arguments)
-    })
+    ParametersReport::of_goals(
+        goal.angle_degrees,
+        goal.tolerance,
+        diagonal,
+        levels,
+        arguments,
+    )
 }
 
 fn most_levels(arguments: &RefineArguments) -> u32 {
@@ -122,15 +119,15 @@ fn normals(found: &Snapshot, task: &Task<'_>) -> anyhow::Result<Normals> {
             points.map(|point| point.normal).collect(),
         ));
     }
-    // A control face that a corner is not of has no points.
-    let nowhere = Origin {
-        face: u32::MAX,
-        barycentric: [0.0; 3],
-    };
     let control = task.mesh().triangles();
     let corners = (0..3 * found.mesh.face_count() as u32).map(HalfEdgeId);
-    let origin = |h| found.corner_origin(control, h).unwrap_or(nowhere);
-    let places: Vec<_> = corners.map(|h| place(&origin(h))).collect();
+    let origins = corners.map(|h| found.corner_origin(control, h));
+    let places: Option<Vec<_>> = origins.map(|own| own.as_ref().map(place)).collect();
+    debug_assert!(
+        places.is_some(),
+        "a corner is outside its triangle's control face"
+    );
+    let places = places.context("a corner is outside its triangle's control face")?;
     let points = surface.at_all(&places);
     Ok(Normals::BySide(SplitSurface::new(&found.mesh, |h| {
         points[h.index()].normal

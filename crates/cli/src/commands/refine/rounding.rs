@@ -12,23 +12,29 @@ pub(super) fn with_room(length: f64, rounding: f64) -> f64 {
 }
 
 /// How far the output's format rounds a vertex at most: all lie in the box of the control mesh's.
-pub(super) fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> f64 {
-    if rounding(arguments, &[[0.1; 3]]) == 0.0 {
-        return 0.0;
+///
+/// # Errors
+/// The output's name has no known format.
+pub(super) fn most_rounding(arguments: &RefineArguments, control: &Mesh) -> anyhow::Result<f64> {
+    if rounding(arguments, &[[0.1; 3]])? == 0.0 {
+        return Ok(0.0);
     }
     let coordinates = control.positions().as_flattened();
     let largest = coordinates.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     // Half of the last place of `f32`, and of its least number, along each axis.
-    3f64.sqrt() * (largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1)))
+    let half = largest * f64::from(f32::EPSILON) * 0.5 + 0.5 * f64::from(f32::from_bits(1));
+    Ok(3f64.sqrt() * half)
 }
 
-/// How far the output's format rounds these positions.
-pub(super) fn rounding(arguments: &RefineArguments, positions: &[[f64; 3]]) -> f64 {
-    // Without a file nothing is rounded; a name that says no format was refused before.
-    let format = arguments.format().ok().flatten();
-    format.map_or(0.0, |format| {
-        limitmesh_io::rounding(format, &arguments.write_options(), positions)
-    })
+/// How far the output's format rounds these positions; not at all without a file.
+///
+/// # Errors
+/// The output's name has no known format.
+pub(super) fn rounding(arguments: &RefineArguments, positions: &[[f64; 3]]) -> anyhow::Result<f64> {
+    let options = &arguments.write_options();
+    Ok(arguments.format()?.map_or(0.0, |format| {
+        limitmesh_io::rounding(format, options, positions)
+    }))
 }
 
 /// The bounds of a distance after a file rounded the vertices by so much.

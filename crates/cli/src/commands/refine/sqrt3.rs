@@ -9,29 +9,20 @@ use super::stepwise;
 use super::task::Task;
 use crate::arguments::{Extent, RefineArguments};
 use crate::format::counted;
-use crate::report::refinement::{ErrorReport, ExactParametersReport, exact_stop_name};
+use crate::report::refinement::{ErrorReport, exact_stop_name};
 use crate::report::{MethodReport, ParametersReport};
 
 /// The tolerance where there is no other goal, in per cent of the diagonal: that of the exact method.
 const USUAL_PERCENT: f64 = 0.1;
 
-/// What was asked for of adaptive refinement, defaults filled in.
+/// The options of adaptive refinement, defaults filled in.
 pub(super) fn parameters(
     arguments: &RefineArguments,
     diagonal: f64,
 ) -> anyhow::Result<ParametersReport> {
     let goals = goals(arguments, diagonal)?;
     let (tolerance, levels) = (goals.tolerance, goals.max_levels);
-    Ok(ParametersReport {
-        angle_degrees: arguments.angle,
-        exact: Some(ExactParametersReport::new(
-            tolerance,
-            diagonal,
-            levels,
-            &arguments.exact,
-        )),
-        ..ParametersReport::common(arguments)
-    })
+    ParametersReport::of_goals(arguments.angle, tolerance, diagonal, levels, arguments)
 }
 
 /// The goals and caps of an adaptive refinement.

@@ -15,7 +15,7 @@ use super::super::normals::Normals;
 use super::refined::Refined;
 use super::task::Task;
 use super::trail::Trail;
-use crate::arguments::{Method, RefineArguments, Seam};
+use crate::arguments::{Method, RefineArguments};
 use crate::failure::Outcome;
 use crate::format::{counted, thousands};
 use crate::progress::Progress;
@@ -62,7 +62,7 @@ pub(super) fn run(task: &Task<'_>) -> anyhow::Result<Refined> {
     })
 }
 
-/// What the steps did.
+/// The report on the steps.
 pub(super) fn report(steps: &[StepReport], stop: Stop) -> MethodReport {
     MethodReport {
         steps: steps.iter().map(StepEntry::from).collect(),
@@ -107,7 +107,6 @@ fn refine(task: &Task<'_>) -> anyhow::Result<Refinement> {
         Some(criterion) => {
             let options = StepwiseOptions::default()
                 .levels(levels)
-                .seam(arguments.seam.unwrap_or_default().rule())
                 .origins(is_traced)
                 .max_triangles(cap);
             stepwise_observed(
@@ -157,17 +156,19 @@ fn finish(task: &Task<'_>, mesh: Mesh) -> anyhow::Result<(Mesh, Option<Normals>)
     Ok((mesh, normals))
 }
 
-/// What was asked for, defaults filled in.
-pub(super) fn parameters(arguments: &RefineArguments) -> ParametersReport {
+/// The options, defaults filled in.
+///
+/// # Errors
+/// A length has a unit, and the mesh's is not known.
+pub(super) fn parameters(arguments: &RefineArguments) -> anyhow::Result<ParametersReport> {
     let adaptive = arguments.method != Method::Uniform;
-    ParametersReport {
+    Ok(ParametersReport {
         angle_degrees: adaptive.then(|| arguments.angle.unwrap_or(USUAL_ANGLE)),
         levels: Some(levels(arguments)),
-        seam: adaptive.then(|| arguments.seam.unwrap_or(Seam::All)),
         view: ViewReport::of(arguments),
         limit: arguments.limit,
-        ..ParametersReport::common(arguments)
-    }
+        ..ParametersReport::common(arguments)?
+    })
 }
 
 /// Whether the cap left a step undone.

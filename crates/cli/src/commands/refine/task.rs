@@ -13,7 +13,7 @@ use crate::format::counted;
 use crate::progress::Progress;
 use limitmesh::refine::Origin;
 
-/// What is refined, what it carries, and what is asked of it.
+/// A control mesh, its values, and the options for its refinement.
 #[derive(Clone, Copy)]
 pub(super) struct Task<'a> {
     pub(super) control: &'a Control,
@@ -53,7 +53,7 @@ impl<'a> Task<'a> {
         self.progress.stage(format!("refining {triangles}"));
     }
 
-    /// What the file says of where vertices and triangles came from, if that is asked for.
+    /// The properties that trace vertices and triangles to the input, if they are asked for.
     pub(super) fn provenance(&self, origins: &[Origin], parents: &[u32]) -> Option<Provenance> {
         let is_asked = self.arguments.exact.provenance;
         is_asked.then(|| {

@@ -48,7 +48,7 @@ fn page() -> String {
     page
 }
 
-/// What a command does, how it is called, its options by their headings, and examples.
+/// The page of a command: its purpose, its usage, its options by their headings, and examples.
 fn section(command: &Command) -> String {
     let mut page = format!("\n## limitmesh {}\n\n", command.get_name());
     let about = command
@@ -84,7 +84,7 @@ fn section(command: &Command) -> String {
     page + &examples(command)
 }
 
-/// What follows a command's options in its help.
+/// The text after a command's options in its help.
 fn examples(command: &Command) -> String {
     let help = command.get_after_long_help().or(command.get_after_help());
     help.map_or_else(String::new, |help| {

@@ -13,7 +13,7 @@ use crate::report::{
     MeasureReport, PredictionReport, RefineReport,
 };
 
-/// What each command reports: how it is asked, the name of the report's type, and whether it is a list of these.
+/// The report of each command: how it is asked for, the name of its type, and whether it is a list of these.
 pub(super) const REPORTS: [(&str, &str, bool); 11] = [
     ("refine --report FILE.json", "RefineReport", false),
     (
@@ -74,7 +74,7 @@ pub(super) fn schema() -> Value {
     })
 }
 
-/// What the library finds in a mesh, by its names.
+/// The library's findings in a mesh, by their names.
 pub(crate) fn findings(generator: &mut SchemaGenerator) -> Schema {
     let finding = generator.subschema_for::<Finding>();
     let names: Vec<&str> = Diagnosis::default()
@@ -109,7 +109,7 @@ pub(crate) struct OneSided {
     mean: f64,
     /// The root mean square over the surface.
     rms: f64,
-    /// What 95 % of the same samples do not exceed.
+    /// The distance that 95 % of these samples do not exceed.
     percentile_95: f64,
     /// Samples taken, vertices included.
     samples: usize,

@@ -129,7 +129,7 @@ fn checked(page: &Page) -> Vec<String> {
     wrong
 }
 
-/// What a command prints, and its exit code if it is not 0.
+/// The output of a command, and its exit code if it is not 0.
 fn said(command: &str, folder: &Path) -> Vec<String> {
     let command = match command.strip_prefix(FROM_SOURCE) {
         Some(arguments) => format!("limitmesh {arguments}"),
@@ -173,7 +173,7 @@ fn as_shown(line: String, shown: &[&str]) -> String {
     same.map_or(line, |&shown| shown.to_owned())
 }
 
-/// What was said, as the page would show it: it ends after as many lines as there were if it ended with `...`.
+/// The messages, as the page would show them: they end after as many lines as there were if it ended with `...`.
 fn elided(said: Vec<String>, shown: &[&str]) -> Vec<String> {
     let kept = if shown.last() == Some(&"...") {
         shown.len() - 1

@@ -73,7 +73,7 @@ fn the_readme_is_short() {
     );
 }
 
-/// What a page links to below the repository, outside code.
+/// The links of a page below the repository, outside code.
 fn targets(text: &str) -> Vec<&str> {
     let mut is_code = false;
     let mut found = Vec::new();

@@ -92,7 +92,7 @@ impl Asset {
         self.scene.stretch(mesh)
     }
 
-    /// What the scene does to vectors of a mesh where it shows it largest, by rows: x' = row · x.
+    /// The linear map of a mesh's vectors in the scene, where it is largest, by rows: x' = row · x.
     pub fn largest(&self, mesh: usize) -> [[f64; 3]; 3] {
         self.scene.largest(mesh)
     }

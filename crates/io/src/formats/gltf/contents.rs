@@ -1,51 +1,56 @@
-//! What a document holds, for people.
+//! The contents of a document, for people.
 
 use super::asset::Asset;
 use super::document::json::At;
 use crate::error::ReadError;
 use crate::flaw::Result;
+use serde::Serialize;
+use std::collections::BTreeMap;
 
-/// What a document holds, for people.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The meshes of a glTF document, and how much else it holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Contents {
-    /// All meshes.
+pub struct AssetContents {
+    /// The document's meshes.
     pub meshes: Vec<MeshContents>,
-    /// How many there are of other things, such as `nodes`, by the document's own names; those that it has.
-    pub counts: Vec<(String, usize)>,
+    /// Nodes, materials and so on, by the document's names for them.
+    pub counts: BTreeMap<&'static str, usize>,
     /// Extensions that the document uses.
     pub extensions: Vec<String>,
 }
 
-/// What a mesh holds.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A mesh of a glTF document.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct MeshContents {
-    /// Its name, if it has one.
+    /// Its name in the document.
     pub name: Option<String>,
+    /// How often the scene has it.
+    pub shown: usize,
     /// Its primitives.
     pub primitives: Vec<PrimitiveContents>,
-    /// How often the scene that is shown has it.
-    pub shown: usize,
 }
 
-/// What a primitive holds.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// A primitive of a mesh.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct PrimitiveContents {
-    /// `triangles`, `triangle strip`, `triangle fan`, `points`, `lines`, `line loop` or `line strip`.
+    /// Such as `triangles` or `triangle strip`.
     pub mode: &'static str,
-    /// Vertices, as its accessors tell.
+    /// Vertices, as its accessors count them.
     pub vertices: usize,
     /// Indices, or vertices where it has none.
-    pub corners: usize,
-    /// The names of its attributes.
+    pub indices: usize,
+    /// Names of its attributes.
     pub attributes: Vec<String>,
-    /// Number of morph targets.
-    pub targets: usize,
-    /// The name of its material, or its number; `None` without one.
+    /// Morph targets that it has.
+    pub morph_targets: usize,
+    /// The name of its material, or its number; null without one.
     pub material: Option<String>,
-    /// Extensions, such as compression.
+    /// Extensions that it uses, such as compression.
     pub extensions: Vec<String>,
 }
 
@@ -60,17 +65,17 @@ const MODES: [&str; 7] = [
 ];
 
 impl Asset {
-    /// What the document holds.
+    /// The meshes of the document, and how much else it holds.
     ///
     /// # Errors
     /// Something that should be a number, an array or an object is none.
-    pub fn contents(&self) -> std::result::Result<Contents, ReadError> {
+    pub fn contents(&self) -> std::result::Result<AssetContents, ReadError> {
         self.read_contents().map_err(|flaw| self.in_file(flaw))
     }
 
-    fn read_contents(&self) -> Result<Contents> {
+    fn read_contents(&self) -> Result<AssetContents> {
         let root = self.source.root();
-        let mut contents = Contents::default();
+        let mut contents = AssetContents::default();
         for (i, mesh) in root.list("meshes")?.iter().enumerate() {
             let primitives = mesh.list("primitives")?;
             let primitives = primitives.iter().map(|at| self.primitive_contents(at));
@@ -90,7 +95,7 @@ impl Asset {
         ] {
             let count = root.list(key)?.len();
             if count > 0 {
-                contents.counts.push((key.to_owned(), count));
+                contents.counts.insert(key, count);
             }
         }
         for name in root.list("extensionsUsed")? {
@@ -119,9 +124,9 @@ impl Asset {
         Ok(PrimitiveContents {
             mode: MODES.get(mode).copied().unwrap_or("of an unknown mode"),
             vertices,
-            corners: at.get("indices").map_or(Ok(vertices), count)?,
+            indices: at.get("indices").map_or(Ok(vertices), count)?,
             attributes: names(attributes)?,
-            targets: at.list("targets")?.len(),
+            morph_targets: at.list("targets")?.len(),
             material,
             extensions: at.get("extensions").map_or_else(|| Ok(Vec::new()), names)?,
         })

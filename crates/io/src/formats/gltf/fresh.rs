@@ -107,19 +107,13 @@ pub(super) fn fill(
     Ok(())
 }
 
-/// What a morph target adds.
+/// The displacements of a morph target.
 fn displaced(name: &str, from: &[[f64; 3]], to: &[[f64; 3]]) -> VertexAttribute {
     let added = from
         .iter()
         .zip(to)
         .flat_map(|(from, to)| [0, 1, 2].map(|i| to[i] - from[i]));
-    let (name, values) = (name.to_owned(), added.collect());
-    VertexAttribute {
-        name,
-        width: 3,
-        values,
-        is_integer: false,
-    }
+    VertexAttribute::new(name, 3, added.collect())
 }
 
 /// A document that holds nothing.
@@ -135,7 +129,7 @@ pub(super) fn scale_to_metres(node: &mut Value, unit: Option<LengthUnit>) {
     }
 }
 
-/// What geometry is put into.
+/// The document that takes the geometry.
 fn text(groups: &Groups, unit: Option<LengthUnit>, looks: &Looks) -> Value {
     let mut document = empty();
     if groups.triangles.is_empty() {

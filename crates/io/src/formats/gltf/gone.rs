@@ -1,6 +1,6 @@
 //! Extensions that say something of nodes, meshes, skins, animations, cameras and scenes, of a document that has others in their places.
 //!
-//! What stands in these goes with them. What the document's own `extensions` hold stays unless it has a member that is called as if it
+//! Their contents go with them. What the document's own `extensions` hold stays unless it has a member that is called as if it
 //! named some: what that would name now is another, or none. A name goes from the document's lists where nothing that stays has it.
 
 use super::document::extensions::{LOD, names_in};
@@ -19,7 +19,7 @@ const ARRAYS: [&str; 6] = [
     "scenes",
 ];
 
-/// What members are called, in part and in whatever case, that name items of these, or bones.
+/// Parts of the names, in whatever case, of members that name items of these, or bones.
 const NAMING: [&str; 8] = [
     "node",
     "mesh",
@@ -31,7 +31,7 @@ const NAMING: [&str; 8] = [
     "bone",
 ];
 
-/// What goes.
+/// The parts that go.
 #[derive(Default)]
 pub(super) struct Gone {
     /// Extensions of the document itself.
@@ -41,7 +41,7 @@ pub(super) struct Gone {
 }
 
 impl Gone {
-    /// What goes of a document.
+    /// The parts of a document that go.
     pub(super) fn of(json: &Value) -> Self {
         let own = json.get("extensions").and_then(Value::as_object);
         let own = own.into_iter().flatten();

@@ -8,7 +8,7 @@ use crate::output::Output;
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::collections::HashMap;
 
-/// What new documents can hold; one that is edited keeps what it has.
+/// The capacity of new documents; one that is edited keeps its own values.
 pub(super) fn capacity() -> Capacity {
     let holds = |own: &Channel| {
         let is_by_face = own.domain == Domain::Face;
@@ -148,7 +148,7 @@ impl Part {
         let corners = output.surface.triangles;
         let mut vertices: Vec<u32> = Vec::new();
         let mut values: Vec<Vec<u32>> = vec![Vec::new(); channels.len()];
-        // By vertex of the file, another one at the same vertex of the surface; and those beside which there are too many to look at.
+        // By vertex of the file, another one at the same vertex of the surface; and those with too many others to look at.
         let mut others: Vec<u32> = Vec::new();
         let mut crowded: HashMap<(u32, Vec<u32>), u32> = HashMap::new();
         let mut number = |triangle: usize, corner: usize| {
@@ -200,7 +200,7 @@ impl Part {
 }
 
 fn attribute(attribute: &Attribute<'_>, indices: &[u32]) -> VertexAttribute {
-    let (name, channel) = (attribute.name.clone(), attribute.channel);
+    let channel = attribute.channel;
     let is_texture = channel.semantic == Semantic::TextureCoordinates;
     let width = if is_texture { 2 } else { channel.arity };
     let mut values = Vec::with_capacity(width * indices.len());
@@ -212,10 +212,5 @@ fn attribute(attribute: &Attribute<'_>, indices: &[u32]) -> VertexAttribute {
             false => values.extend(value),
         }
     }
-    VertexAttribute {
-        name,
-        width,
-        values,
-        is_integer: false,
-    }
+    VertexAttribute::new(&attribute.name, width, values)
 }

@@ -108,7 +108,7 @@ pub fn write_levels(
     asset.write(path, format).map(drop)
 }
 
-/// What is written, before geometry is put into it.
+/// The document before geometry is put into it.
 struct Document<'a> {
     name: &'a str,
     levels: &'a [DetailLevel<'a>],

@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What a document says of materials, each list for its member.
+/// A document's members about materials, each list for its member.
 #[derive(Default)]
 pub(super) struct Looks {
     pub(super) materials: Vec<Value>,
     textures: Vec<Value>,
     images: Vec<Value>,
     views: Vec<Value>,
-    /// What the views name.
+    /// The bytes that the views name.
     bytes: Vec<u8>,
 }
 

@@ -13,7 +13,7 @@
 //! nothing names go from a buffer that is written anew, so that offsets of views change. All other bytes of the text are those that were read. The
 //! JSON is read by serde_json, and found again in its text by serde_json's raw values; a crate that has a document model of its own would write that model, not the text.
 //!
-//! What a document says of itself is not believed: every count, offset and index is checked before room is made for
+//! The numbers that a document states of itself are not believed: every count, offset and index is checked before room is made for
 //! what it names, files are reached below the document's folder only, and a flaw names its place as JavaScript would.
 
 mod asset;
@@ -30,7 +30,7 @@ mod save;
 mod tangents;
 
 pub use asset::Asset;
-pub use contents::{Contents, MeshContents, PrimitiveContents};
+pub use contents::{AssetContents, MeshContents, PrimitiveContents};
 pub use edit::geometry::{Geometry, VertexAttribute};
 pub use levels::{DetailLevel, write_levels};
 pub use read::Joining;

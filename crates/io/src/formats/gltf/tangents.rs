@@ -21,7 +21,7 @@ const TANGENT: &str = "TANGENT";
 
 impl WithTangents {
     /// Adds tangents to a geometry by the texture coordinates `texture`, such as `TEXCOORD_0`, and what the morph targets `moved` add to
-    /// them. `None` if it has no normals or no such texture coordinates, without which there are no tangents.
+    /// them. `None` if it has no normals, no such texture coordinates, or no such target, without which there are no tangents.
     pub fn of(geometry: &Geometry<'_>, texture: &str, moved: &[usize]) -> Option<Self> {
         let is_texture = |own: &&VertexAttribute| own.name == texture && own.width == 2;
         let places = geometry.attributes.iter().find(is_texture)?;
@@ -34,10 +34,7 @@ impl WithTangents {
         let tangents = base.tangents()?;
         let mut added = Vec::new();
         for &target in moved {
-            let Some(own) = geometry.targets.get(target) else {
-                continue;
-            };
-            let found = base.moved(own).tangents()?;
+            let found = base.moved(geometry.targets.get(target)?).tangents()?;
             let pairs = found.iter().zip(&tangents);
             let tangents = pairs.map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i]));
             let tangents = tangents.collect();
@@ -117,7 +114,7 @@ impl WithTangents {
     }
 }
 
-/// What a morph target adds to the tangents of all corners.
+/// The tangents that a morph target adds at all corners.
 struct Added {
     target: usize,
     tangents: Vec<[f32; 3]>,
@@ -128,19 +125,10 @@ fn singles<const N: usize>(rows: &[[f64; N]]) -> Vec<[f32; N]> {
 }
 
 fn attribute<const N: usize>(values: impl Iterator<Item = [f32; N]>) -> VertexAttribute {
-    let (name, values) = (
-        TANGENT.to_owned(),
-        values.flatten().map(f64::from).collect(),
-    );
-    VertexAttribute {
-        name,
-        width: N,
-        values,
-        is_integer: false,
-    }
+    VertexAttribute::new(TANGENT, N, values.flatten().map(f64::from).collect())
 }
 
-/// What tangents are found from.
+/// The input of the tangents.
 struct Surface<'a> {
     positions: Vec<[f32; 3]>,
     normals: Vec<[f32; 3]>,

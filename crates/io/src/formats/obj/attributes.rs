@@ -1,4 +1,4 @@
-//! What the vertices, corners and faces of an OBJ file carry: texture coordinates, normals, colours, and the names that faces stand under.
+//! Values of the vertices, corners and faces of an OBJ file: texture coordinates, normals, colours, and the names that faces stand under.
 
 use crate::channels;
 use crate::reading::{Labels, by_element};
@@ -16,7 +16,7 @@ pub(super) const LABELS: [(&[u8], &str); 4] = [
     (b"s", channels::SMOOTHING_GROUP),
 ];
 
-/// What has been met so far.
+/// The values that were read so far.
 #[derive(Default)]
 pub(super) struct Attributes {
     pub(super) textures: List,

@@ -222,7 +222,7 @@ impl Reader<'_> {
             .push(point.unwrap_or([0.0; 3]));
     }
 
-    /// What faces from here on belong to; other statements have no place in a soup.
+    /// The group of the faces from here on; other statements have no place in a soup.
     fn label(&mut self, keyword: &[u8]) {
         match LABELS.iter().position(|&(own, _)| own == keyword) {
             Some(kind) => {

@@ -9,7 +9,7 @@ use crate::pieces::{Piece, Pieces};
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::io::{self, Write};
 
-/// What files can hold.
+/// The capacity of files.
 pub(super) fn capacity() -> Capacity {
     let holds = |channel: &Channel| match (channel.semantic, channel.domain) {
         (Semantic::TextureCoordinates, _) => true,
@@ -95,7 +95,7 @@ fn vertices(
         out.bytes(b"v");
         out.numbers(&positions[vertex]);
         if let Some(colours) = output.colours {
-            // Three decimals tell the 256 steps apart.
+            // Three decimals distinguish the 256 steps.
             let rounded = |c: u8| (f64::from(c) / 255.0 * 1000.0).round() / 1000.0;
             out.numbers(&colours[vertex].map(rounded));
         } else if let Some((channel, indices)) = &colours {

@@ -20,7 +20,7 @@ pub(super) struct Colours {
     is_wrong: bool,
 }
 
-/// What an element without a colour has until Geomview's grey takes its place.
+/// The colour of an element without one, until Geomview's grey takes its place.
 const NONE: [f64; 4] = [f64::NAN; 4];
 
 /// Geomview's colour of what has none.

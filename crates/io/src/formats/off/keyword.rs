@@ -1,6 +1,6 @@
 //! The keyword of an OFF file.
 
-/// What the keyword says.
+/// The meaning of the keyword.
 #[derive(Default)]
 pub(super) struct Keyword<'a> {
     /// Whether normals, colours and texture coordinates follow a vertex's position, in this order.

@@ -37,7 +37,7 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
     found.is_some()
 }
 
-/// What stands before the vertices.
+/// The header before the vertices.
 struct Header<'a> {
     keyword: Keyword<'a>,
     vertices: usize,

@@ -1,4 +1,4 @@
-//! What follows the position on a vertex's line: a normal of three numbers, a colour, a texture coordinate of two numbers.
+//! Values after the position on a vertex's line: a normal of three numbers, a colour, a texture coordinate of two numbers.
 //!
 //! They stand in this order, whatever the order of the keyword's letters. Normals and texture coordinates are there only if the
 //! keyword announces them; colours may be there without.
@@ -25,7 +25,7 @@ struct Column {
     is_wrong: bool,
 }
 
-/// What the vertices of a file have after their positions.
+/// Values of the vertices of a file after their positions.
 pub(super) struct VertexColumns {
     normals: Option<Column>,
     colours: Colours,

@@ -7,7 +7,7 @@ use crate::pieces::{Piece, Pieces};
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 use std::io::{self, Write};
 
-/// What files can hold.
+/// The capacity of files.
 pub(super) fn capacity() -> Capacity {
     let holds = |own: &Channel| own.semantic == Semantic::Colour && [3, 4].contains(&own.arity);
     Capacity {
@@ -59,7 +59,7 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
     out.finish()
 }
 
-/// A colour with its opacity: bytes where the channel's file had them, else numbers with a point, which tells them apart.
+/// A colour with its opacity: bytes where the channel's file had them, else numbers with a point, by which readers distinguish them.
 fn colour(out: &mut Piece, channel: &Channel, number: u32) {
     let mut own = [1.0; 4];
     let start = number as usize * channel.arity;

@@ -1,4 +1,4 @@
-//! What the vertices and faces of a PLY file have beside positions and indices: one number each, or a list of texture coordinates.
+//! Properties of the vertices and faces of a PLY file, apart from positions and indices: one number each, or a list of texture coordinates.
 //!
 //! Numbers that belong together by their names become one channel: `s, t`, `u, v` or `texture_u, texture_v`, and `red, green, blue`
 //! with `alpha`, whose bytes are parts of 1; `nx, ny, nz` say where edges were meant to be sharp. Of the others, whole numbers name something, and floating-point ones are interpolated.

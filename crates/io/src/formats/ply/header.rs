@@ -8,7 +8,7 @@ use crate::scan::integer;
 use limitmesh::mesh::Storage;
 use std::fmt::Display;
 
-/// What comes before the name of a picture in a comment, as MeshLab writes it.
+/// The words before the name of a picture in a comment, as MeshLab writes them.
 const TEXTURE_FILE: &[u8] = b"TextureFile";
 
 /// Elements of a header, and properties of an element, at most: more than any program writes, few enough to be compared with each other.
@@ -159,7 +159,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// What a soup has no place for, in words.
+    /// Elements and properties that a soup has no place for, in words.
     pub(super) fn left_out(&self) -> Vec<String> {
         let elements = || self.elements.iter().filter(|element| element.count > 0);
         let has_strips = elements().any(|e| e.name == "tristrips");

@@ -243,7 +243,7 @@ fn read_polygons<S: Source>(
         push_face(faces, &polygon, || source.place())
     })?;
     if !strips.is_empty() {
-        // What strips have beside their corners is not known.
+        // The attributes of strips are not known.
         return Ok(());
     }
     columns.add_to(element, soup);

@@ -33,7 +33,7 @@ pub(super) trait Source {
     /// Where the source stands, for errors.
     fn place(&self) -> Place;
 
-    /// The same place once more, to go over some elements twice.
+    /// A second reader at this place, to go over some elements twice.
     fn fork(&self) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! What is known of vertices and faces as numbers of a PLY file: what `columns` makes channels of.
+//! Values of vertices and faces as numbers of a PLY file: `columns` makes channels of them.
 
 use super::split::{Split, is_of_vertices};
 use crate::capacity::{Capacity, Held};
@@ -8,7 +8,7 @@ use crate::pieces::Piece;
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
 use std::sync::Arc;
 
-/// What files can hold.
+/// The capacity of files.
 pub(super) fn capacity() -> Capacity {
     let holds = |channel: &Channel| match channel.semantic {
         Semantic::TextureCoordinates => channel.domain != Domain::Face,
@@ -46,7 +46,7 @@ enum Values<'a> {
     },
 }
 
-/// What an output becomes.
+/// The columns of an output.
 #[derive(Default)]
 pub(super) struct Columns<'a> {
     pub(super) vertices: Vec<Column<'a>>,

@@ -8,7 +8,7 @@ use crate::pieces::{Piece, Pieces};
 use limitmesh::mesh::{Channel, Domain};
 use std::io::{self, Write};
 
-/// What files can hold: in text the names of solids, in bytes attributes.
+/// The capacity of files: in text the names of solids, in bytes attributes.
 pub(super) fn capacity(options: &WriteOptions) -> Capacity {
     if options.ascii {
         let text = Capacity::of_channels(|own| own.domain == Domain::Face && own.name == OBJECT);

@@ -1,6 +1,6 @@
 //! The archive: parts are read from it, and all but those that changed are copied as they are, compressed.
 //!
-//! What the archive says of its own sizes is not believed: a part is given up where it becomes larger than [`MOST_BYTES`], or than text ever does
+//! The sizes that the archive states are not believed: a part is given up where it becomes larger than [`MOST_BYTES`], or than text ever does
 //! that was compressed to the archive's size ([`MOST_TIMES`]).
 
 use super::xml::elements;

@@ -19,7 +19,7 @@ pub struct NewTriangles<'a> {
     pub keeps: &'a dyn Fn(&str) -> bool,
 }
 
-/// What takes the place of a mesh's text.
+/// The text that replaces a mesh's.
 pub(super) struct Replacement {
     vertices: String,
     triangles: String,

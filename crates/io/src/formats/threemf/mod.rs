@@ -5,11 +5,11 @@
 //!         ZIP parts    XML text                               sources         edited text
 //! ```
 //!
-//! A package holds what a print needs beside its triangles: materials, build plates, slicers' settings, pictures. So it is *edited,
+//! A package holds more than triangles for a print: materials, build plates, slicers' settings, pictures. So it is *edited,
 //! never written anew*: all parts but models are copied as they are, and of a model's text only what stands between the tags of
 //! `<vertices>` and `<triangles>` changes. Triangles inherit the attributes of the one that they came from.
 //!
-//! What a package says of itself is not believed: parts are unpacked to a stated size at most, every index is checked, and a flaw
+//! The numbers that a package states of itself are not believed: parts are unpacked to a stated size at most, every index is checked, and a flaw
 //! names the part, the line and the object.
 
 mod container;

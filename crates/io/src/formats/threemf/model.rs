@@ -23,7 +23,7 @@ pub(super) struct Model {
     pub(super) unit: LengthUnit,
     pub(super) objects: Vec<Object>,
     pub(super) of_id: HashMap<u32, usize>,
-    /// What is built.
+    /// The items that are built.
     pub(super) items: Vec<Use>,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct MeshText {
     /// Between the tags of the lists.
     pub(super) vertices_at: Range<usize>,
     pub(super) triangles_at: Range<usize>,
-    /// What else the mesh has, by name.
+    /// The mesh's other elements, by name.
     pub(super) others: Vec<String>,
 }
 
@@ -116,11 +116,13 @@ impl<'a> Parser<'a> {
             let end = start + reader.buffer_position() as usize;
             match event {
                 Ok(Event::Start(tag)) => {
-                    let level = self.open(&Element::new(&tag, self.text, at), end)?;
+                    let element = Element::new(&tag, &self.found.name, self.text, at)?;
+                    let level = self.open(&element, end)?;
                     self.levels.push(level);
                 }
                 Ok(Event::Empty(tag)) => {
-                    let level = self.open(&Element::new(&tag, self.text, at), end)?;
+                    let element = Element::new(&tag, &self.found.name, self.text, at)?;
+                    let level = self.open(&element, end)?;
                     self.close(level, end);
                 }
                 Ok(Event::End(_)) => {
@@ -158,7 +160,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// What an element is, by where it stands; its tag ends at a byte.
+    /// The kind of an element, by its parents; its tag ends at a byte.
     fn open(&mut self, element: &Element<'a>, end: usize) -> Result<Level> {
         let Some(&level) = self.levels.last() else {
             return self.model(element);

@@ -16,6 +16,7 @@ use crate::reading::MOST;
 use crate::unit::LengthUnit;
 use crate::whole::write_whole;
 use limitmesh::PolygonSoup;
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -30,7 +31,7 @@ pub struct Package {
     objects: Vec<Address>,
     /// By these, the matrices by which the build has them.
     placements: Vec<Vec<Affine>>,
-    /// The part that tells volumes from each other, and its text.
+    /// The part that lists volumes, and its text.
     settings: Option<(usize, String)>,
     volumes: Vec<Volume>,
     replaced: BTreeMap<usize, Replacement>,
@@ -44,45 +45,45 @@ pub struct ObjectSoup {
     pub soup: PolygonSoup,
     /// Whether vertices at one position were made one, but for those of several volumes: these stay apart.
     pub is_joined: bool,
-    /// The names of attributes that triangles have beside their corners.
+    /// The names of triangles' attributes, apart from their corners.
     pub attributes: Vec<String>,
     /// Whether all triangles have the same of these, and belong to one volume.
     pub is_uniform: bool,
     /// Whether attributes of a triangle depend on where in it something is: properties of corners, or paint in parts.
     pub varies_within: bool,
-    /// What else the mesh has, which names its vertices or triangles by number, such as `b:beamlattice`.
+    /// The mesh's other elements, which name its vertices or triangles by number, such as `b:beamlattice`.
     pub others: Vec<String>,
 }
 
-/// What a package holds, for people.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// The contents of a 3MF package, for people.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct PackageContents {
-    /// All objects that have a mesh.
-    pub objects: Vec<ObjectContents>,
-    /// Objects that are put together from others.
-    pub assemblies: usize,
     /// Items that are built.
     pub items: usize,
-    /// What numbers are measured in.
-    pub unit: LengthUnit,
+    /// Objects that are put together from others.
+    pub assemblies: usize,
+    /// Objects that have a mesh.
+    pub objects: Vec<ObjectContents>,
 }
 
-/// What an object holds.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// An object of a 3MF package.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct ObjectContents {
-    /// As it is called in messages.
+    /// As messages call it.
     pub name: String,
-    /// Vertices.
+    /// Vertices of its mesh.
     pub vertices: usize,
-    /// Triangles.
+    /// Triangles of its mesh.
     pub triangles: usize,
     /// How often the build has it.
     pub built: usize,
-    /// The names of what its triangles have beside corners.
+    /// Names of its triangles' properties, apart from corners.
     pub attributes: Vec<String>,
-    /// What else its mesh has.
+    /// Names of the mesh's other elements.
     pub others: Vec<String>,
 }
 
@@ -175,7 +176,7 @@ impl Package {
         self.objects.len()
     }
 
-    /// What its numbers are measured in.
+    /// The unit of its numbers.
     pub fn unit(&self) -> LengthUnit {
         self.models[0].unit
     }
@@ -204,7 +205,7 @@ impl Package {
         affine::usable(all.map(affine::greatest_stretch).fold(0.0, f64::max))
     }
 
-    /// What the build does to vectors of an object where it is largest, by rows: x' = row · x.
+    /// The linear map of an object's vectors in the build, where it is largest, by rows: x' = row · x.
     pub fn largest(&self, object: usize) -> [[f64; 3]; 3] {
         let all = self.placements.get(object).into_iter().flatten();
         affine::linear(affine::largest(all))
@@ -337,7 +338,7 @@ impl Package {
         Ok(all)
     }
 
-    /// What the package holds.
+    /// The objects of the package, and how it puts them together.
     pub fn contents(&self) -> PackageContents {
         let object = |object: usize| {
             let mesh = self.mesh(object).map(|(_, _, mesh)| mesh);
@@ -358,7 +359,6 @@ impl Package {
             objects: (0..self.object_count()).map(object).collect(),
             assemblies: assemblies.filter(|own| !own.components.is_empty()).count(),
             items: self.models[0].items.len(),
-            unit: self.unit(),
         }
     }
 

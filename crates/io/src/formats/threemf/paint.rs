@@ -1,4 +1,4 @@
-//! What slicers paint on triangles: a tree of divisions, a hexadecimal digit a node, written backwards.
+//! Paint of slicers on triangles: a tree of divisions, a hexadecimal digit a node, written backwards.
 //!
 //! The low two bits of a node are how many sides of its triangle are divided, in the middle, 0 to 3; the high two bits of one that is
 //! divided are a corner, at which the corners a, b, c begin: one side divided is that across a; two are those at a. Then its
@@ -9,7 +9,7 @@
 //! three: (a, ab, ca) (ab, b, bc) (bc, c, ca) (ab, bc, ca)
 //! ```
 //!
-//! The high bits of a leaf are its paint, 0 for none; 3 for one that the next digit tells. It is what PrusaSlicer and those that
+//! The high bits of a leaf are its paint, 0 for none; 3 for one that the next digit holds. It is what PrusaSlicer and those that
 //! come from it write as `paint_color`, `paint_supports`, `slic3rpe:mmu_segmentation` and so on.
 
 /// Local names of attributes that hold such trees.

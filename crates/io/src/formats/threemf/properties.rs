@@ -1,4 +1,4 @@
-//! What triangles of a mesh have beside their corners: properties, paint, and what nobody here knows. Triangles that come from one
+//! Attributes of triangles apart from their corners: properties, paint, and unknown ones. Triangles that come from one
 //! inherit it.
 
 use super::paint;
@@ -18,7 +18,7 @@ pub struct Source {
 /// Names of the properties of corners.
 const CORNERS: [&str; 3] = ["p1", "p2", "p3"];
 
-/// What could not be kept of all triangles.
+/// Attributes that could not be kept, counted over all triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Inherited {

@@ -1,4 +1,4 @@
-//! Parts of one mesh by ranges of its triangles, as PrusaSlicer keeps them beside the model.
+//! Parts of one mesh by ranges of its triangles, as PrusaSlicer keeps them in a part of its own.
 //!
 //! It joins the volumes of an object into one mesh, and names each by its first and last triangle; so these numbers change with the
 //! triangles.

@@ -23,26 +23,36 @@ pub(super) struct Element<'a> {
     pub(super) name: &'a str,
     /// Its name without.
     pub(super) local: &'a str,
-    /// What follows the name.
+    /// The text after the name.
     pub(super) attributes: &'a str,
 }
 
 impl<'a> Element<'a> {
-    /// Of a tag that was read from `text`, where it begins at a byte.
-    pub(super) fn new(tag: &BytesStart<'_>, text: &'a str, at: usize) -> Self {
+    /// Of a tag that was read from the `text` of a part, where it begins at a byte.
+    ///
+    /// # Errors
+    /// The tag is not a piece of this text.
+    pub(super) fn new(
+        tag: &BytesStart<'_>,
+        part: &str,
+        text: &'a str,
+        at: usize,
+    ) -> Result<Self, Flaw> {
         let content: &str = tag;
-        // What was read from a text borrows from it.
         let start = offset(content, text);
         let whole = text.get(start..start.wrapping_add(content.len()));
-        let whole = whole.unwrap_or_default();
-        let (name, attributes) = whole.split_at(tag.name().as_ref().len().min(whole.len()));
+        let pieces = whole.and_then(|whole| whole.split_at_checked(tag.name().as_ref().len()));
+        debug_assert!(pieces.is_some(), "the tag borrows from the text");
+        let (name, attributes) = pieces.ok_or_else(|| {
+            Flaw::saying(part, "the reader gave a tag that is not in the text").at(text, at)
+        })?;
         let local = name.rsplit_once(':').map_or(name, |(_, local)| local);
-        Self {
+        Ok(Self {
             at,
             name,
             local,
             attributes,
-        }
+        })
     }
 
     /// An attribute by its whole name.
@@ -115,7 +125,7 @@ pub(super) fn elements<'a>(
             let at = reader.buffer_position() as usize;
             match reader.read_event() {
                 Ok(Event::Start(tag) | Event::Empty(tag)) => {
-                    return Some(Ok(Element::new(&tag, text, at)));
+                    return Some(Element::new(&tag, part, text, at));
                 }
                 Ok(Event::Eof) => return None,
                 Ok(_) => {}

@@ -21,7 +21,7 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-/// What is met in files that are damaged, or whose other files are not there.
+/// The flaws of files that are damaged, or whose other files are not there.
 const REFUSED: [(&str, &str); 9] = [
     (
         "BoxWithInfinites.glb",

@@ -1,4 +1,4 @@
-//! What is written: new triangles, and all else as it was, to the byte.
+//! Edited documents: new triangles, and all else as it was, to the byte.
 
 use super::support::{document, floats, glb, parts, triangles_of};
 use limitmesh::Triangles;

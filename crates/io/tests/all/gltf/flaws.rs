@@ -4,7 +4,7 @@
 use super::support::{complaint, document, glb};
 use limitmesh_io::Asset;
 
-/// What is said of a sound triangle in which some text is replaced.
+/// The error on a sound triangle in which some text is replaced.
 #[track_caller]
 fn with(old: &str, new: &str) -> String {
     let top = r#""buffers":[{"byteLength":39}],

@@ -224,7 +224,7 @@ fn materials_have_base_colours() {
     assert!(why.contains("textures[0].source"), "{why}");
 }
 
-/// The same document with another primitive.
+/// That document with another primitive.
 fn with_primitive(bytes: &[u8], primitive: &str) -> Vec<u8> {
     let (text, bin) = parts(bytes);
     glb(

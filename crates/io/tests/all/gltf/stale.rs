@@ -1,11 +1,11 @@
-//! What extensions say of vertices and triangles by their numbers goes with these, and nothing else does.
+//! Members of extensions that name vertices and triangles by number go with these, and nothing else does.
 
 use super::support::{floats, glb, parts};
 use limitmesh_io::gltf::Geometry;
 use limitmesh_io::{Asset, Format};
 use serde_json::{Value, json};
 
-/// The document after these primitives got another triangle, and what is told of it.
+/// The document after these primitives got another triangle, and the report on it.
 fn edited(document: &Value, primitives: &[(usize, usize)]) -> (Value, Vec<String>) {
     let bytes = glb(
         &document.to_string(),

@@ -36,7 +36,7 @@ pub(crate) fn parts(glb: &[u8]) -> (String, Vec<u8>) {
     (text, bytes)
 }
 
-/// A document with one primitive: members of the document beside meshes, and of the primitive.
+/// A document with one primitive: members of the document apart from meshes, and of the primitive.
 pub(crate) fn document(top: &str, primitive: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{{{primitive}}}]}}],{top}}}"#
@@ -55,7 +55,7 @@ pub(crate) fn mesh(bytes: &[u8]) -> MeshSoup {
         .unwrap()
 }
 
-/// What is said of a mesh, or of the document.
+/// The error on a mesh, or on the document.
 #[track_caller]
 pub(crate) fn complaint(bytes: &[u8]) -> String {
     match Asset::from_bytes(bytes, None).and_then(|asset| asset.mesh(0, Joining::Together)) {

@@ -46,7 +46,7 @@ impl<'a> Carried<'a> {
         self.trail.corner(triangle, corner, vertex, self.control)
     }
 
-    /// What a triangle's corner, which is at a vertex, is of the vertices of the input's face.
+    /// The weights of the input's vertices at a triangle's corner, which is at a vertex.
     pub(super) fn place(
         &self,
         triangle: usize,
@@ -58,7 +58,7 @@ impl<'a> Carried<'a> {
         Some([0, 1, 2].map(|corner| (self.vertices[3 * whole as usize + corner], weights[corner])))
     }
 
-    /// What moves the control mesh's vertices, given what moves the input's: joints with weights that add up to 1, where there are any.
+    /// The joints of the control mesh's vertices, given those of the input's: joints with weights that add up to 1, where there are any.
     /// Vertices on divided faces are moved as the points are where they stand.
     pub(super) fn influences(
         &self,

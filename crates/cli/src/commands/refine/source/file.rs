@@ -30,14 +30,6 @@ impl Source for FileSource {
     type Own = ();
     const NOUNS: Option<[&'static str; 2]> = None;
 
-    fn count(&self) -> usize {
-        1
-    }
-
-    fn diagonal(&self) -> Option<f64> {
-        None
-    }
-
     fn item(
         &mut self,
         _: usize,
@@ -68,14 +60,6 @@ impl Source for FileSource {
             draw(path, refined, task)?;
         }
         Ok(())
-    }
-
-    fn write(&mut self, _: &RefineArguments, _: &Progress) -> anyhow::Result<()> {
-        Ok(())
-    }
-
-    fn left_out(&self) -> Vec<String> {
-        Vec::new()
     }
 }
 

@@ -18,16 +18,20 @@ use crate::report::InputReport;
 
 /// Meshes that are refined one after the other, and written together.
 pub(crate) trait Source {
-    /// What a source keeps of a mesh until its result is put back.
+    /// The data of a mesh that a source keeps until its result is put back.
     type Own;
 
     /// A mesh and several, in words; `None` where there is only one.
     const NOUNS: Option<[&'static str; 2]>;
 
-    fn count(&self) -> usize;
+    fn count(&self) -> usize {
+        1
+    }
 
     /// Lengths in per cent are of this; of each mesh's own diagonal where it is `None`.
-    fn diagonal(&self) -> Option<f64>;
+    fn diagonal(&self) -> Option<f64> {
+        None
+    }
 
     /// Reads a mesh; `None` where there is nothing to refine, so that it stays as it is.
     ///
@@ -71,13 +75,17 @@ pub(crate) trait Source {
     ///
     /// # Errors
     /// It cannot be written.
-    fn write(&mut self, arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<()>;
+    fn write(&mut self, _: &RefineArguments, _: &Progress) -> anyhow::Result<()> {
+        Ok(())
+    }
 
-    /// What was left out, by the source's names.
-    fn left_out(&self) -> Vec<String>;
+    /// The attributes that were left out, by the source's names.
+    fn left_out(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
-/// What belongs to a mesh that is refined.
+/// A mesh that is refined, without its geometry.
 pub(crate) struct Item<Own> {
     pub(crate) own: Own,
     pub(crate) number: usize,

@@ -236,7 +236,7 @@ fn origin(carried: &Carried<'_>, triangles: &[[u32; 3]], triangle: usize) -> Ori
     Origin { face, corners }
 }
 
-/// What triangles could not inherit as it was.
+/// Attributes that triangles could not inherit unchanged.
 fn inherited_in_words(inherited: &Inherited) -> Vec<String> {
     let lines = [
         (

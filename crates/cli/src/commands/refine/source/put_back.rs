@@ -143,7 +143,11 @@ impl PutBack<'_> {
             }
             // Targets are counted, and each has to add something.
             for own in targets.iter_mut().filter(|own| own.is_empty()) {
-                own.push(added("POSITION", vec![0.0; 3 * positions.len()]));
+                own.push(VertexAttribute::new(
+                    "POSITION",
+                    3,
+                    vec![0.0; 3 * positions.len()],
+                ));
             }
             let geometry = Geometry {
                 positions: &positions,
@@ -275,7 +279,11 @@ impl PutBack<'_> {
         let channel = channels.find(|channel| channel.name == table.name)?;
         let corners = numbered.corners.iter();
         let values = corners.flat_map(|&corner| channel.value(corner as usize));
-        Some(added("POSITION", values.copied().collect()))
+        Some(VertexAttribute::new(
+            "POSITION",
+            3,
+            values.copied().collect(),
+        ))
     }
 
     /// The limit normals of base plus target at the surface's vertices, each on its own side of sharp edges.
@@ -330,7 +338,7 @@ pub(super) fn moved_positions(mesh: &Mesh, displacement: &Channel, scale: f64) -
     positions
 }
 
-/// What a target adds to the normals of vertices of the surface; nothing where it does not move them, or they have none then.
+/// The change of the normals of the surface's vertices by a target; nothing where it does not move them, or they have none then.
 fn added_normals(
     moved: Option<&[[f64; 3]]>,
     vertices: &[u32],
@@ -342,16 +350,7 @@ fn added_normals(
         let has_one = moved != [0.0; 3];
         values.extend((0..3).map(|i| if has_one { moved[i] - base[i] } else { 0.0 }));
     }
-    added("NORMAL", values)
-}
-
-fn added(name: &str, values: Vec<f64>) -> VertexAttribute {
-    VertexAttribute {
-        name: name.to_owned(),
-        width: 3,
-        values,
-        is_integer: false,
-    }
+    VertexAttribute::new("NORMAL", 3, values)
 }
 
 /// Of length 1; upwards where there is no direction, as files need one.

@@ -1,4 +1,4 @@
-//! What glTF assets and 3MF packages share: several meshes that are refined at the scale of their largest appearance.
+//! Common parts of glTF assets and 3MF packages: several meshes that are refined at the scale of their largest appearance.
 
 use std::path::Path;
 

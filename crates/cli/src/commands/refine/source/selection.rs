@@ -1,7 +1,7 @@
 //! Which meshes and primitives of an asset are refined: those whose names were given.
 
 use limitmesh_io::Asset;
-use limitmesh_io::gltf::Contents;
+use limitmesh_io::gltf::AssetContents;
 
 use crate::arguments::AssetArguments;
 
@@ -17,7 +17,7 @@ impl Selection {
     /// # Errors
     /// Nothing has a name that was given, or no mesh of these names has a primitive of these materials; the message says what there is.
     pub(super) fn new(asset: &Asset, arguments: &AssetArguments) -> anyhow::Result<Self> {
-        let Contents { meshes, .. } = asset.contents()?;
+        let AssetContents { meshes, .. } = asset.contents()?;
         let mesh_names: Vec<String> = meshes
             .iter()
             .enumerate()
@@ -51,10 +51,7 @@ impl Selection {
 
     /// Whether a primitive is refined.
     pub(super) fn has(&self, mesh: usize, primitive: usize) -> bool {
-        self.0
-            .get(mesh)
-            .and_then(|own| own.get(primitive))
-            .is_some_and(|&is_wanted| is_wanted)
+        self.0[mesh][primitive]
     }
 }
 

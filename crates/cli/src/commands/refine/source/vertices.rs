@@ -13,7 +13,7 @@ pub(super) struct Vertices<'a> {
     next: Vec<u32>,
     /// By vertex of the mesh, what moves it, if anything does.
     moving: Option<&'a [Joints]>,
-    /// What the file's vertices have.
+    /// The attributes of the file's vertices.
     attributes: Vec<VertexAttribute>,
     joints: Vec<f64>,
     weights: Vec<f64>,
@@ -30,10 +30,8 @@ impl<'a> Vertices<'a> {
         count: usize,
     ) -> Self {
         let empty = |channel: &&Channel| VertexAttribute {
-            name: channel.name.clone(),
-            width: channel.arity,
-            values: Vec::new(),
             is_integer: channel.semantic == Semantic::Label,
+            ..VertexAttribute::new(&channel.name, channel.arity, Vec::new())
         };
         let attributes = channels.iter().map(empty).collect();
         Self {
@@ -52,10 +50,8 @@ impl<'a> Vertices<'a> {
         let mut all = self.attributes;
         if self.moving.is_some() {
             let attribute = |name: &str, values, is_integer| VertexAttribute {
-                name: name.to_owned(),
-                width: MOST_JOINTS,
-                values,
                 is_integer,
+                ..VertexAttribute::new(name, MOST_JOINTS, values)
             };
             all.push(attribute("JOINTS_0", self.joints, true));
             all.push(attribute("WEIGHTS_0", self.weights, false));

@@ -38,7 +38,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// What is to be said of them.
+    /// The notes on them.
     pub(super) fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         if self.clamped > 0 {

@@ -65,7 +65,7 @@ pub(crate) fn meshopt(
     Ok(bytes)
 }
 
-/// What a Draco stream holds.
+/// The contents of a Draco stream.
 pub(crate) struct Compressed {
     pub(crate) attributes: BTreeMap<String, Numbers>,
     /// Vertex indices of triangles.

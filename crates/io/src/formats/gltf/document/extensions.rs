@@ -9,10 +9,10 @@ pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
 /// Names under which meshopt compression of views is known.
 pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// What instances of a mesh are placed by.
+/// The extension that places instances of a mesh.
 pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
-/// What shifts, turns and scales texture coordinates, or names others.
+/// The extension that shifts, turns and scales texture coordinates, or names others.
 pub(crate) const TRANSFORM: &str = "KHR_texture_transform";
 
 /// Levels of detail.
@@ -44,7 +44,7 @@ pub(crate) fn index(value: &Value) -> Option<usize> {
     usize::try_from(value.as_u64()?).ok()
 }
 
-/// What an extension of an object says.
+/// The value of an extension of an object.
 pub(crate) fn extension<'a>(object: &'a Value, name: &str) -> Option<&'a Value> {
     object.get("extensions")?.get(name)
 }

@@ -82,7 +82,7 @@ impl Component {
     }
 }
 
-/// What an accessor says of its numbers.
+/// The declaration of an accessor's numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Layout {
     pub(crate) count: usize,

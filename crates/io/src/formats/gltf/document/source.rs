@@ -1,6 +1,6 @@
 //! The document as it was read: its JSON, and the bytes that its buffers and views name.
 //!
-//! Files beside the document are read when something asks for them, so that a missing animation does not keep a mesh
+//! Files that the document names are read when something asks for them, so that a missing animation does not keep a mesh
 //! from being refined.
 
 use super::codecs;
@@ -26,7 +26,7 @@ pub(crate) struct Source {
     pub(crate) json: Value,
     /// The file's parts.
     pub(crate) container: Container,
-    /// Where files beside the document are; `None` if it came from nowhere.
+    /// The folder of the files that the document names; `None` if it came from nowhere.
     folder: Option<PathBuf>,
     buffers: Vec<OnceCell<Result<Vec<u8>>>>,
     views: Vec<OnceCell<Result<Vec<u8>>>>,
@@ -72,7 +72,7 @@ impl Source {
         })
     }
 
-    /// Where files beside the document are.
+    /// The folder of the files that the document names.
     pub(crate) fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }

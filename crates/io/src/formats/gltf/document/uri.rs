@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// What a URI says.
+/// The meaning of a URI.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Uri<'a> {
     /// The payload of a data URI in base 64.
@@ -14,7 +14,7 @@ pub(crate) enum Uri<'a> {
 /// Understands a URI.
 ///
 /// # Errors
-/// What was expected instead.
+/// The expected form.
 pub(crate) fn parse(uri: &str) -> Result<Uri<'_>, &'static str> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, payload) = data.split_once(',').ok_or("a comma before the data")?;

@@ -27,10 +27,10 @@ pub(crate) enum Place<'a> {
     Inside,
 }
 
-/// What is written.
+/// The files and bytes that are written.
 pub(crate) struct Written {
     pub(crate) container: Container,
-    /// What the file has that was named, if one was.
+    /// The contents of the file that was named, if one was.
     pub(crate) file: Option<Vec<u8>>,
 }
 

@@ -12,7 +12,7 @@ const BYTE: u32 = 5121;
 const SHORT: u32 = 5123;
 const INT: u32 = 5125;
 
-/// What a buffer view is for.
+/// The use of a buffer view.
 const OF_VERTICES: u32 = 34962;
 const OF_INDICES: u32 = 34963;
 
@@ -25,7 +25,7 @@ pub struct Geometry<'a> {
     pub normals: Option<&'a [[f64; 3]]>,
     /// Vertex indices of each triangle, counter-clockwise seen from outside.
     pub triangles: &'a [[u32; 3]],
-    /// What else there is at the vertices.
+    /// Other attributes of the vertices.
     pub attributes: &'a [VertexAttribute],
     /// By morph target, what it adds to these, to positions and to normals: at least one attribute each.
     pub targets: &'a [Vec<VertexAttribute>],
@@ -44,7 +44,19 @@ pub struct VertexAttribute {
     pub is_integer: bool,
 }
 
-/// What is changed in a document.
+impl VertexAttribute {
+    /// Of numbers that need not be whole.
+    pub fn new(name: &str, width: usize, values: Vec<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            width,
+            values,
+            is_integer: false,
+        }
+    }
+}
+
+/// The changes of a document.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
     pub(crate) primitives: BTreeMap<PrimitiveAddress, NewPrimitive>,
@@ -58,7 +70,7 @@ pub(crate) struct PrimitiveAddress {
     pub(crate) primitive: usize,
 }
 
-/// What is appended to a document: bytes, and views and accessors that name them.
+/// The additions to a document: bytes, and views and accessors that name them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Appended {
     pub(crate) bytes: Vec<u8>,

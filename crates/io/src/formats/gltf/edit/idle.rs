@@ -1,7 +1,7 @@
 //! Extensions of how geometry is stored that nothing in an edited document uses any more: programs that lack the decoders would refuse it
 //! for nothing.
 //!
-//! What is written is never compressed, quantised or encoded as polygons, so names go from the document's lists where no primitive that
+//! New geometry is never compressed, quantised or encoded as polygons, so names go from the document's lists where no primitive that
 //! stays needs them. Views that meshopt compressed stay, as something that nobody here knows may name them; where nothing
 //! that is known does, and the extension is required, they become plain views of what they hold, so that the document
 //! says the same as before to a program without the decoder; but for those of which it is known that nothing names them (`unused.rs`).
@@ -29,7 +29,7 @@ const FLOAT: u64 = 5126;
 /// In the place of a buffer that never had bytes.
 const ONE_BYTE: &str = "\"data:application/octet-stream;base64,AA==\"";
 
-/// What nothing uses any more.
+/// The parts that nothing uses any more.
 pub(crate) struct Idle {
     /// Names that the document's lists lose.
     names: Vec<String>,
@@ -46,7 +46,7 @@ struct PlainView {
 }
 
 impl Idle {
-    /// What nothing uses any more of a document in which primitives are replaced.
+    /// The parts of a document in which primitives are replaced that nothing uses any more.
     pub(crate) fn of(source: &Source, changes: &Changes, rest: &Rest, unused: &Unused) -> Self {
         let json = &rest.json;
         let names = rest.gone.iter().cloned().collect();

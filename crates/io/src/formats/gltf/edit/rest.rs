@@ -1,4 +1,4 @@
-//! What of a document stays where primitives are replaced: the document without their geometry, and without what extensions say of
+//! The rest of a document whose primitives are replaced: the document without their geometry, and without what extensions say of
 //! triangles and vertices that are no more.
 //!
 //! Takes the document and the numbers of the primitives; gives the JSON that is left, which is looked at and never written, what is reported
@@ -43,19 +43,19 @@ const COUNTING: &str = "FB_geometry_metadata";
 /// The extension of a primitive that says what its vertices belong to: by an attribute, by a texture, or else by their numbers.
 const FEATURES: &str = "EXT_mesh_features";
 
-/// What stays.
+/// The rest of the document.
 #[derive(Debug, Default)]
 pub(crate) struct Rest {
     /// The document without what goes.
     pub(crate) json: Value,
     /// Extensions that go with what they said, and nothing that stays has any more.
     pub(crate) gone: BTreeSet<String>,
-    /// What goes, for people.
+    /// The parts that go, for people.
     pub(crate) left_out: BTreeSet<String>,
 }
 
 impl Rest {
-    /// What stays of a document in which primitives are replaced.
+    /// The rest of a document in which primitives are replaced.
     pub(crate) fn of(json: &Value, changes: &Changes) -> Self {
         let mut rest = Self {
             json: json.clone(),
@@ -147,7 +147,7 @@ impl Rest {
     }
 }
 
-/// What becomes of the extensions of an object.
+/// The fate of the extensions of an object.
 pub(crate) enum Extensions {
     Same,
     /// None is left.

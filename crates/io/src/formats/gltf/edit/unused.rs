@@ -16,7 +16,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// What bytes begin at multiples of at most, in views of any kind: kept bytes are moved by multiples of this.
+/// The greatest alignment of bytes, in views of any kind: kept bytes are moved by multiples of this.
 const ALIGNMENT: usize = 16;
 
 /// Beginnings of the names of extensions that name textures, nodes and numbers, but neither accessors nor views.
@@ -49,17 +49,17 @@ const KNOWN: [&str; 17] = [
     "textures",
 ];
 
-/// What nothing names.
+/// The parts that nothing names.
 #[derive(Debug, Default)]
 pub(crate) struct Unused {
     accessors: BTreeSet<usize>,
     views: BTreeSet<usize>,
-    /// What goes of the first buffer, in order.
+    /// The ranges of the first buffer that go, in order.
     cuts: Vec<Range<usize>>,
 }
 
 impl Unused {
-    /// What nothing names in the document `rest` that is left of another, `json`; nothing where that cannot be known.
+    /// The parts that nothing names in the document `rest` that is left of another, `json`; nothing where that cannot be known.
     pub(crate) fn of(json: &Value, rest: &Value) -> Self {
         Self::found(json, rest).unwrap_or_default()
     }
@@ -176,7 +176,7 @@ impl Unused {
     }
 }
 
-/// What goes of the first buffer: bytes of the views `free` and of no others; `None` if a view cannot be understood.
+/// The ranges of the first buffer that go: bytes of the views `free` and of no others; `None` if a view cannot be understood.
 fn cuts(views: &[Value], free: &BTreeSet<usize>, length: usize) -> Option<Vec<Range<usize>>> {
     // Beginnings and ends, of views that are free, and of others.
     let mut ends: Vec<(usize, [isize; 2])> = Vec::new();
@@ -232,7 +232,7 @@ fn is_meshopt(extensions: &Value) -> bool {
     own.is_some_and(|own| own.keys().all(|name| MESHOPT.contains(&&name[..])))
 }
 
-/// What is named by something that nobody here knows.
+/// The parts that members of unknown meaning name.
 #[derive(Default)]
 struct Mentioned {
     numbers: BTreeSet<usize>,

@@ -24,9 +24,9 @@ pub enum Joining {
     Together,
     /// Those that stand and move together but for what this says: the first of those that become one says where it stands and how it moves.
     Ignoring {
-        /// What skins do to them.
+        /// Whether joints and weights are ignored.
         skins: bool,
-        /// What morph targets do to them.
+        /// Whether displacements are ignored.
         morphs: bool,
         /// Differences of positions and of displacements up to this distance, in the mesh's coordinates and along chains, and of weights up to
         /// its share of the mesh's diagonal; 0 for none.

@@ -1,4 +1,4 @@
-//! What the materials of a document look like in plain light: colours, and the textures that multiply them.
+//! The looks of a document's materials in plain light: colours, and the textures that multiply them.
 
 use crate::flaw::Result;
 use crate::formats::gltf::document::extensions::TRANSFORM;
@@ -23,7 +23,7 @@ pub struct BaseTexture {
     pub file: Vec<u8>,
     /// Which set of texture coordinates.
     pub set: usize,
-    /// What is done to them, in glTF's own direction (v downwards): the columns of a matrix and a shift (`KHR_texture_transform`).
+    /// Their transform, in glTF's own direction (v downwards): the columns of a matrix and a shift (`KHR_texture_transform`).
     pub transform: [[f64; 2]; 3],
 }
 

@@ -32,7 +32,7 @@ pub struct Part {
     pub targets: Vec<Vec<String>>,
 }
 
-/// What was not made one, though it is at one place.
+/// Vertices that were not made one, though they are at one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct KeptApart {
@@ -61,10 +61,10 @@ pub struct MeshSoup {
     /// Normals of the corners as the document has them, of any length and zero where it has none: where they differ between two faces, the
     /// edge was meant to be sharp. They are found anew, so that nothing carries them.
     pub normals: Option<Channel>,
-    /// What stayed apart at one place.
+    /// Vertices that stayed apart at one place.
     pub kept_apart: KeptApart,
     /// Edges along which the primitives that were asked for meet others. Their ends are corners of the soup, so that they stay straight
-    /// and the surface does not leave the triangles beside it.
+    /// and the surface does not leave the adjacent triangles.
     pub borders: usize,
     /// By vertex of the soup, the joints that move it with their weights above 0, by joint; empty without a skin.
     pub influences: Vec<Vec<(u32, f64)>>,

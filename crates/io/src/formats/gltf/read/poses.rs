@@ -1,6 +1,6 @@
 //! Where morph targets and joints take the vertices of a mesh.
 //!
-//! What holds at rest, such as that a triangle has no area, need not hold where its vertices are moved apart. So it is looked at in some
+//! A property at rest, such as a triangle without area, need not hold where its vertices are moved apart. So it is tested in some
 //! poses: at rest, at weight 1 of each morph target, and with all targets together at weights that nobody would choose, where it
 //! holds by chance only. What joints do to vertices with the same joints and weights is one affine map; of others it is not known.
 

@@ -34,7 +34,7 @@ pub(crate) struct Primitive {
     pub(crate) influences: Vec<Vec<(u32, f64)>>,
     /// Its normals as they stand, of any length; empty where it has none or they make no sense, or if nobody asked for attributes.
     pub(crate) normals: Vec<[f64; 3]>,
-    /// Attributes beside positions, normals, tangents, joints and weights, if these were asked for.
+    /// Attributes apart from positions, normals, tangents, joints and weights, if these were asked for.
     pub(crate) attributes: Vec<(AttributeName, Numbers)>,
     /// Names of all attributes.
     pub(crate) names: Vec<String>,
@@ -79,7 +79,7 @@ impl Primitive {
     }
 }
 
-/// What a primitive is made of.
+/// The parts of a primitive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Mode {
     /// Points and lines, which are left as they are.
@@ -223,7 +223,7 @@ impl Source {
         Ok(target)
     }
 
-    /// What is in the primitive's Draco stream, if it has one.
+    /// The contents of the primitive's Draco stream, if it has one.
     fn compressed(&self, at: &At<'_>, attributes: &At<'_>) -> Result<Option<Compressed>> {
         let Some(extension) = at.path(&["extensions", DRACO]) else {
             return Ok(None);

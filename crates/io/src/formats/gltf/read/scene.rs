@@ -100,13 +100,13 @@ impl Scene {
         self.placements.get(mesh).into_iter().flatten()
     }
 
-    /// What tolerances for a mesh are divided by; 1 if nothing shows it.
+    /// The divisor of tolerances for a mesh; 1 if nothing shows it.
     pub(crate) fn stretch(&self, mesh: usize) -> f64 {
         let stretches = self.of(mesh).map(|own| own.placement.stretch());
         affine::usable(stretches.fold(0.0, f64::max))
     }
 
-    /// What the placement by which a mesh is largest does to vectors, by rows. A skin does what all its joints do, or else it makes all
+    /// The linear map of the placement by which a mesh is largest, by rows. A skin does what all its joints do, or else it makes all
     /// vectors as long as the worst of them.
     pub(crate) fn largest(&self, mesh: usize) -> [[f64; 3]; 3] {
         let all = self.of(mesh).map(|own| &own.placement);

@@ -1,4 +1,4 @@
-//! What the meshes of a scene carry, as channels of one soup.
+//! Values of the meshes of a scene, as channels of one soup.
 //!
 //! A channel of the scene has the values of all meshes, one after the other, as often as the scene shows them; where a mesh has no
 //! such attribute the value is zero. Texture coordinates run upwards, as in other formats: glTF's v is 1 − v.
