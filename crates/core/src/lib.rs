@@ -45,7 +45,7 @@
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
 //! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`sqrt3`] | √3-subdivision: uniform and adaptive, with exact limits |
-//! | [`progress`] | what long functions tell while they work, and how they are cancelled |
+//! | [`progress`] | what long functions report while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 
 pub mod carry;

@@ -69,7 +69,7 @@ pub struct LimitSurface<'a> {
     large: LargeRings,
     rules: Rules<'a>,
     positions: Vec<[f64; 3]>,
-    /// `None` where nobody asks for normals: they are zero then.
+    /// `None` if no normals are requested: they are zero then.
     normals: Option<SidedNormals>,
 }
 

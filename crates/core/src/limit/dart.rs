@@ -181,7 +181,7 @@ impl<'d> Parity<'d> {
         let points: Vec<usize> = (0..mirror.len())
             .filter(|&i| i < mirror[i] || (is_own(i) && sign > 0.0))
             .collect();
-        // What a functional with weight 1 at i, and ±1 at its image, gives at j after a step.
+        // The value at j after a step of a functional with weight 1 at i and ±1 at its image.
         let matrix = DMatrix::from_fn(points.len(), points.len(), |a, b| {
             let (i, j) = (points[a], points[b]);
             let image = if is_own(i) {

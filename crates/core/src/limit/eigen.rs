@@ -79,7 +79,8 @@ where
 {
     let n = matrix.nrows();
     let size = matrix.norm().max(f64::MIN_POSITIVE);
-    // A shift beside the eigenvalue keeps the system solvable; the error it leaves shrinks by 1e-10 a step.
+    // A shift next to the eigenvalue keeps the system solvable; the error it leaves shrinks by
+    // 1e-10 a step.
     let shift = eigenvalue + T::from_real(size * 1e-11);
     let system = (matrix - DMatrix::identity(n, n) * shift).lu();
     // Starting with unequal entries: a vector with the matrix's symmetry could miss the eigenvector.

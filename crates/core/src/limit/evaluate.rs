@@ -27,7 +27,7 @@ const LEAST_SINE: f64 = 1e-12;
 /// A tangent shorter than this fraction of the longest difference that entered it is what rounding left of zero.
 const LEAST_LENGTH: f64 = 1e-14;
 
-/// Vertices beside sharp edges that are looked at together.
+/// The most vertices adjacent to sharp edges that are evaluated together.
 const TAGGED: usize = 256;
 
 /// Squared lengths whose product, even times [`LEAST_SINE`] twice, neither vanishes nor overflows.
@@ -451,7 +451,7 @@ impl Tangents {
 
     /// The unit normal of the plane they span, if they do span one.
     #[inline]
-    /// Those of a closed ring that is counted from another edge, this angle away on the regular ring.
+    /// The values for a closed ring counted from another edge, at this angle on the regular ring.
     fn turned(&self, angle: f64) -> Self {
         let (sine, cosine) = angle.sin_cos();
         let first = cosine * self.first + sine * self.second;
@@ -475,7 +475,7 @@ impl Tangents {
         spans.then(|| normal / square.sqrt())
     }
 
-    /// As [`Self::normal`], for tangents whose squares would vanish or overflow.
+    /// The normal of tangents whose squares would vanish or overflow.
     #[cold]
     fn normal_at_any_size(&self) -> Option<DVec3> {
         let long = |tangent: DVec3| tangent.abs().max_element() > LEAST_LENGTH * self.greatest;

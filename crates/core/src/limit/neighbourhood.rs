@@ -12,8 +12,8 @@
 //! 2k+1 … 2k+f       the points M_j opposite V across the edge P_j P_{j+1}   (two-ring schemes only)
 //! ```
 //!
-//! After refinement the same points are: V moved, the edge points of the spokes V P_j, the P_j moved, and the
-//! edge points of the link edges P_j P_{j+1}.
+//! After refinement these points are: V moved, the edge points of the spokes V P_j, the P_j moved,
+//! and the edge points of the link edges P_j P_{j+1}.
 
 use super::LimitError;
 use crate::masks::views::{LabelledRing, edge_views, vertex_views};
@@ -227,7 +227,7 @@ impl<'s> Neighbourhood<'s> {
         Ok(before)
     }
 
-    /// What is not 0 in the row of the new point on the edge to P_j, by the masks of the Loop family.
+    /// The non-zero weights of the new point on the edge to P_j, by the masks of the Loop family.
     fn spoke_row(&self, j: usize) -> [(usize, f64); 4] {
         let k = self.valence();
         let is_boundary = self.shape.open && (j == 0 || j + 1 == k);

@@ -33,8 +33,8 @@ struct Mode {
     value: Complex<f64>,
     component: usize,
     on_boundary: bool,
-    /// Whether it stands for a Jordan block: its pattern grows by a power of the number of steps over others of
-    /// the same modulus, and its one left eigenvector tells where to.
+    /// Whether the eigenvalue has a Jordan block: its pattern grows by a power of the number of
+    /// steps over others of equal modulus, and its one left eigenvector gives the direction.
     defective: bool,
 }
 

@@ -13,7 +13,7 @@ use crate::vector::DVec3;
 
 /// Where points stand after one refinement.
 pub(super) trait Refined {
-    /// What is known of a point.
+    /// The data of a point.
     type Point;
     /// The new position of a vertex.
     fn moved(&self, vertex: VertexId) -> Self::Point;

@@ -71,7 +71,7 @@ impl LimitStencil {
         (!self.tangents.is_empty()).then_some(&self.tangents[..])
     }
 
-    /// What the tangents span.
+    /// The plane or line that the tangents span.
     pub fn tangent_plane(&self) -> TangentPlane {
         self.plane
     }

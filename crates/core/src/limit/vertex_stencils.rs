@@ -1,4 +1,5 @@
-//! The limit stencils of a mesh's vertices, each kind once: for whoever applies them to other positions of the same mesh.
+//! The limit stencils of a mesh's vertices, each kind once, to be applied to other positions of the
+//! mesh.
 //!
 //! Takes a mesh and a table of a scheme with one-ring support; gives the weights of positions and of tangents by side.
 

@@ -22,7 +22,7 @@ pub enum BarycentricError {
     /// The weights do not add up to 1, or are no numbers.
     #[error("the weights add up to {sum:?} rather than 1 (to {OF_SUMS:?})")]
     Sum {
-        /// What they add up to.
+        /// The sum of the weights.
         sum: f64,
     },
 }

@@ -49,7 +49,7 @@ pub struct Curvature {
 impl Derivatives {
     /// The unit normal, on the side from which the face's corners run counter-clockwise; `None` where the derivatives span no plane.
     pub fn normal(&self) -> Option<[f64; 3]> {
-        // Lengths of both may be next to nothing beside an irregular vertex.
+        // Both lengths may be close to zero near an irregular vertex.
         let [along, across] = self.first.map(|first| unit_or_zero(vector(first)));
         let normal = unit_or_zero(along.cross(across));
         (normal != DVec3::ZERO).then(|| normal.to_array())
@@ -67,7 +67,8 @@ impl Derivatives {
     pub fn curvature(&self) -> Option<Curvature> {
         let normal = vector(self.normal()?);
         let [by_u, by_v] = self.first.map(vector);
-        // In orthonormal directions of the tangent plane the shape operator is symmetric, and no product is large beside another.
+        // In orthonormal directions of the tangent plane the shape operator is symmetric, and the
+        // products are of similar size.
         let along = unit_or_zero(by_u);
         let across = normal.cross(along);
         let [uu, uv, vv] = self.second.map(|second| vector(second).dot(normal));

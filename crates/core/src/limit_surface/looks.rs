@@ -62,8 +62,9 @@ impl LimitSurface<'_> {
         Ok(blocks.concat())
     }
 
-    /// A cone that holds all normals of the surface over a control face, with the apexes by which one product tells how it looks from
-    /// anywhere; `None` where the normals take up more than a half space, or are not known to take up less.
+    /// A cone that holds all normals of the surface over a control face, with the apexes which
+    /// decide by one product how the surface faces any viewpoint; `None` where the normals take up
+    /// more than a half space, or are not known to take up less.
     pub fn normal_cone(&self, face: FaceId) -> Option<NormalCone> {
         if face.index() >= self.mesh.face_count() {
             return None;

@@ -13,8 +13,9 @@ use crate::vector::{DVec3, vector};
 /// Faces that are integrated together.
 const BLOCK: usize = 64;
 
-/// Pieces are refined until their triangle is this part of the face's. Beside an irregular vertex they are flat then, but their edges
-/// are bent at every size, so that the triangle's own error is some tenths of it.
+/// Pieces are refined until their triangle is this part of the face's. Near an irregular vertex
+/// they are flat then, but their edges are bent at every size, so that the triangle's own error is
+/// some tenths of it.
 const SPECK: f64 = 1e-12;
 
 /// Refinements at most, where pieces do not get smaller.
@@ -37,7 +38,8 @@ const FOUR: [(f64, f64); 2] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// What is integrated: over a regular piece, given the area of its face, and over the flat triangle that stands for a speck.
+/// The integrand: its value over a regular piece, given the area of its face, and over the flat
+/// triangle that approximates a speck.
 trait Integrand: Sync {
     fn of_piece(&self, piece: &Quartic, whole: f64) -> f64;
     fn of_triangle(&self, corners: [DVec3; 3]) -> f64;

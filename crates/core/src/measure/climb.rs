@@ -30,8 +30,8 @@ struct Candidate {
     distance: f64,
 }
 
-/// The farthest point found around the samples of `from`, whose `distances` to `to` are given; `None` if there are no
-/// samples beside the vertices.
+/// The farthest point found around the samples of `from`, whose `distances` to `to` are given;
+/// `None` if there are no samples but the vertices.
 pub(super) fn climb(
     samples: &Samples<'_, '_>,
     distances: &[f64],

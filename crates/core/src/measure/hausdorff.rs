@@ -38,11 +38,12 @@ impl SamplingOptions {
 pub struct OneSided {
     /// Greatest distance found, at the samples and in a search around the farthest of them.
     pub max: f64,
-    /// Mean over the surface: that of the samples inside triangles, which each stand for the same area.
+    /// Mean over the surface: that of the samples inside triangles, each of which represents an
+    /// equal area.
     pub mean: f64,
-    /// Root mean square of the same samples.
+    /// Root mean square over the samples of [`Self::mean`].
     pub rms: f64,
-    /// What 95 % of the same samples do not exceed.
+    /// The distance that 95 % of the samples of [`Self::mean`] do not exceed.
     pub percentile_95: f64,
     /// Samples taken, vertices included. Points measured only in the search for the maximum do not count.
     pub samples: usize,

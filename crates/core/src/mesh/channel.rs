@@ -1,4 +1,5 @@
-//! Channels: what a mesh carries beside positions, such as texture coordinates, colours, weights of skins, materials.
+//! Channels: the data that a mesh carries in addition to positions, such as texture coordinates,
+//! colours, weights of skins, materials.
 //!
 //! A channel is a table of values and, for each element of its domain, which of them it has. So that two corners at one vertex have
 //! one value is known from their indices, not guessed from numbers; where they differ, the channel has a *seam*.
@@ -8,7 +9,7 @@ use thiserror::Error;
 use super::{FaceParts, Mesh, PolygonSoup};
 use crate::index::HalfEdgeId;
 
-/// What has the values of a channel.
+/// The elements that have the values of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// The vertices.
@@ -19,7 +20,7 @@ pub enum Domain {
     Face,
 }
 
-/// What the values of a channel mean.
+/// The meaning of a channel's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Semantic {
@@ -53,7 +54,8 @@ impl Semantic {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Interpolation {
-    /// As positions do, by the scheme's masks and their limits; the rule says what happens along seams.
+    /// Refined as positions are, by the scheme's masks and their limits; the rule decides along
+    /// seams.
     Smooth(SeamRule),
     /// Linear over each control face.
     Linear,
@@ -88,19 +90,19 @@ pub enum Storage {
     Double,
     /// In single precision.
     Single,
-    /// As bytes, 255 for 1: colours.
+    /// Unsigned bytes, 255 for 1: colours.
     Byte,
-    /// As whole numbers of 32 bits with a sign.
+    /// Signed integers of 32 bits.
     Int32,
-    /// As whole numbers of 8 bits with a sign.
+    /// Signed integers of 8 bits.
     Int8,
-    /// As whole numbers of 8 bits, 0 to 255.
+    /// Unsigned integers of 8 bits, 0 to 255.
     Uint8,
-    /// As whole numbers of 16 bits with a sign.
+    /// Signed integers of 16 bits.
     Int16,
-    /// As whole numbers of 16 bits, 0 to 65,535; colours of 65,535 for 1.
+    /// Unsigned integers of 16 bits, 0 to 65,535; colours of 65,535 for 1.
     Uint16,
-    /// As whole numbers of 32 bits from 0 on.
+    /// Unsigned integers of 32 bits.
     Uint32,
 }
 
@@ -110,9 +112,9 @@ pub enum Storage {
 pub struct Channel {
     /// Its name in the file.
     pub name: String,
-    /// What it means.
+    /// The meaning of the values.
     pub semantic: Semantic,
-    /// What has its values.
+    /// The elements that have the values.
     pub domain: Domain,
     /// Numbers in a value.
     pub arity: usize,
@@ -124,7 +126,8 @@ pub struct Channel {
     pub interpolation: Interpolation,
     /// How its file holds the numbers.
     pub storage: Storage,
-    /// Where the values are [`Semantic::Label`], what each number stands for; empty where they stand for themselves.
+    /// The name of each number where the values are [`Semantic::Label`]; empty where they have no
+    /// names.
     pub labels: Vec<String>,
 }
 
@@ -141,7 +144,7 @@ pub enum ChannelError {
         count: usize,
         /// Elements.
         expected: usize,
-        /// What they are.
+        /// The kind of element.
         elements: &'static str,
     },
     /// An index leads beyond the values.
@@ -163,7 +166,7 @@ pub enum ChannelError {
         name: String,
         /// The value.
         value: usize,
-        /// What was found.
+        /// The actual count.
         what: String,
         /// Numbers in a value.
         arity: usize,
@@ -192,8 +195,9 @@ pub enum ChannelError {
 pub struct Trace {
     /// By face of the mesh, the soup's face.
     pub faces: Vec<u32>,
-    /// By corner of the mesh, three a face, the soup's corner, counted over all its faces. Where repairs gave a face a corner that its
-    /// polygon has not, one of another at the same vertex.
+    /// For each corner of the mesh, three a face, the soup's corner, counted over all its faces.
+    /// Where a repair gave a face a corner that its polygon has not, it is a corner of another
+    /// polygon at that vertex.
     pub corners: Vec<u32>,
 }
 
@@ -223,18 +227,18 @@ impl Channel {
         }
     }
 
-    /// The same with other values and indices.
+    /// The channel with other values and indices.
     pub fn with(mut self, values: Vec<f64>, indices: Vec<u32>) -> Self {
         (self.values, self.indices) = (values, indices);
         self
     }
 
-    /// The same, held in another way by files.
+    /// The channel with another storage in files.
     pub fn stored(self, storage: Storage) -> Self {
         Self { storage, ..self }
     }
 
-    /// The same, interpolated in another way.
+    /// The channel with another interpolation.
     pub fn interpolated(self, interpolation: Interpolation) -> Self {
         Self {
             interpolation,
@@ -317,8 +321,8 @@ impl Channel {
         }
     }
 
-    /// The soup's channel as one of the mesh's corners or faces. Corners at one vertex whose values are equal come to have one value,
-    /// so that a seam is where values differ.
+    /// The soup's channel as one of the mesh's corners or faces. Equal values of corners at one
+    /// vertex become one value, so that a seam is where values differ.
     ///
     /// # Errors
     /// The channel does not fit the soup.
@@ -365,7 +369,7 @@ impl Channel {
         })
     }
 
-    /// The same with one value where corners at a vertex have equal ones.
+    /// The channel with one value where corners at a vertex have equal ones.
     fn joined(self, mesh: &Mesh) -> Self {
         let mut values = Vec::with_capacity(self.values.len());
         let mut indices = vec![0; self.indices.len()];
@@ -444,7 +448,8 @@ impl Channel {
         }
     }
 
-    /// Whether the values at both ends of an edge are the same on both sides, for a channel of corners; the half-edge's twin is `twin`.
+    /// Whether the values at both ends of an edge are equal on both sides, for a channel of
+    /// corners; the half-edge's twin is `twin`.
     pub(crate) fn is_continuous(&self, h: HalfEdgeId, twin: HalfEdgeId) -> bool {
         let index = |corner: HalfEdgeId| self.indices[corner.index()];
         index(h) == index(twin.next()) && index(h.next()) == index(twin)

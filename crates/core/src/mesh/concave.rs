@@ -1,9 +1,10 @@
 //! Sharp edges inside sectors that are too wide for the rules of corners.
 //!
-//! A corner keeps its place, and its limit plane is that of the two sharp edges beside each sector: the smooth surface fills
-//! the wedge between their directions, which is the sector's own only up to 180°. Beyond, it fills the other side of the
-//! corner, turned over, and a flat face folds over its edge. Here such a sector is divided by edges that become sharp,
-//! until each part is narrower: `Σ αᵢ < π` over its angles αᵢ at the corner. Each part then has a wedge of its own.
+//! A corner keeps its place, and its limit plane is that of the two sharp edges that bound each
+//! sector: the smooth surface fills the wedge between their directions, which is the sector's own
+//! only up to 180°. Beyond, it fills the other side of the corner, turned over, and a flat face
+//! folds over its edge. Here such a sector is divided by edges that become sharp, until each part
+//! is narrower: `Σ αᵢ < π` over its angles αᵢ at the corner. Each part then has a wedge of its own.
 
 use core::f64::consts::PI;
 use core::ops::Range;
@@ -24,7 +25,7 @@ const WIDEST: f64 = PI * (1.0 - 1e-3);
 /// Faces whose normals differ by less are in one plane, in radians: 0.1°, which no shading shows.
 const FLAT: f64 = 0.1 * PI / 180.0;
 
-/// What was done about sectors of corners of 180° and more.
+/// The changes to sectors of corners of 180° and more.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ConcaveCorners {
@@ -40,10 +41,11 @@ impl Mesh {
     /// The mesh with every sector of 180° and more at its corners (vertices that keep their place, at three sharp edges or
     /// by a tag) divided by sharp edges, so that flat faces stay flat there; and what that took.
     ///
-    /// Of the edges inside a sector those nearest to its bisector become sharp, in a plane all that lead to other corners.
-    /// Where that would make a corner of the vertex at the other end, or show a line on a curved surface, only the half at the
-    /// corner does: the edge is divided in its middle, and the faces beside it around a point inside each. Vertices keep their
-    /// numbers, and so do faces and the first parts of those that were divided; the others follow.
+    /// Of the edges inside a sector those nearest to its bisector become sharp, in a plane all that
+    /// lead to other corners. Where that would make a corner of the vertex at the other end, or
+    /// show a line on a curved surface, only the half at the corner does: the edge is divided in
+    /// its middle, and its two faces around a point inside each. Vertices keep their numbers, and
+    /// so do faces and the first parts of those that were divided; the others follow.
     ///
     /// ```
     /// use limitmesh::mesh::{CornerTag, Tags};

@@ -1,4 +1,4 @@
-//! What was found in a soup and repaired on the way to a mesh.
+//! The defects of a soup, repaired on the way to a mesh.
 
 use core::fmt;
 
@@ -49,8 +49,8 @@ pub struct Diagnosis {
     pub input_faces: usize,
     /// Faces with more than three corners, cut into triangles (no defect).
     pub polygons: Finding,
-    /// Vertices that were merged into an earlier one: at the same place (no defect), or within a distance
-    /// that was asked for (no defect either).
+    /// Vertices that were merged into an earlier one: at one position, or within the given
+    /// distance; neither is a defect.
     pub welded_vertices: Finding,
     /// Faces with fewer than three corners, or whose corners fell together.
     pub collapsed_faces: Finding,
@@ -81,16 +81,16 @@ pub struct Diagnosis {
     pub concave_corners: Finding,
 }
 
-/// How a finding is told.
+/// The words of a finding.
 struct Wording {
     /// In reports: the field's name.
     name: &'static str,
     defect: bool,
     /// One of it, and many of it.
     nouns: [&'static str; 2],
-    /// What is done about it.
+    /// The repair.
     repair: &'static str,
-    /// What its numbers name.
+    /// The kind of element that its numbers name.
     place: &'static str,
 }
 
@@ -311,7 +311,7 @@ impl Wording {
         self.found(finding, &format!(": {}", self.repair))
     }
 
-    /// The same with other words, or none, before the places.
+    /// A finding's message with other words, or none, before the numbers.
     fn found(&self, finding: &Finding, words: &str) -> String {
         let noun = self.nouns[usize::from(finding.count != 1)];
         let mut places = finding

@@ -65,7 +65,7 @@ impl FaceParts {
         }
     }
 
-    /// The same faces as parts of those that were divided before.
+    /// The faces as parts of those that were divided before.
     pub fn after(&self, before: &Self) -> Self {
         let of_first = |part: &Part| {
             let corners = part
@@ -100,14 +100,16 @@ impl FaceParts {
 pub(super) struct Cut {
     /// One of the edge's half-edges.
     pub(super) edge: HalfEdgeId,
-    /// Where the new vertex stands; half as far as it is from the edge's middle move those inside the faces beside it.
+    /// The position of the new vertex. New vertices inside the adjacent faces move by half its
+    /// distance from the edge's middle.
     pub(super) position: [f64; 3],
 }
 
-/// Divides edges, each once at most, and the faces beside them: these in the triangles around a point inside, so that the new
-/// vertices have neighbours near them on either side. Old vertices keep their numbers, new ones on edges follow in the order
-/// of their cuts, then those inside faces; a divided face's first part keeps its number, and the others follow all faces.
-/// Edges along which sheets were cut apart are not to be divided.
+/// Divides edges, each once at most, and their faces, each into the triangles around a point
+/// inside, so that the new vertices have neighbours near them on either side. Old vertices keep
+/// their numbers, new ones on edges follow in the order of their cuts, then those inside faces; a
+/// divided face's first part keeps its number, and the others follow all faces. Edges along which
+/// sheets were cut apart are not to be divided.
 ///
 /// # Errors
 /// The mesh gets more elements than can be numbered.

@@ -48,7 +48,7 @@ impl Mesh {
         self.with_corners(&kept)
     }
 
-    /// The mesh with corners that never fade at these vertices; the tags that it has stay.
+    /// The mesh with infinitely sharp corners at these vertices; the tags that it has stay.
     pub fn with_corners(mut self, vertices: &[VertexId]) -> Self {
         let corners = vertices.iter().map(|v| CornerTag {
             vertex: v.0,
@@ -59,7 +59,8 @@ impl Mesh {
         self
     }
 
-    /// The mesh with creases that never fade along the edges of [`Self::creases_above`]; the tags that it has stay.
+    /// The mesh with infinitely sharp creases along the edges of [`Self::creases_above`]; the tags
+    /// that it has stay.
     ///
     /// # Errors
     /// The angle is not within 0 … π.
@@ -68,7 +69,7 @@ impl Mesh {
         Ok(self.with_creases(&edges))
     }
 
-    /// The mesh with creases that never fade along these edges; the tags that it has stay.
+    /// The mesh with infinitely sharp creases along these edges; the tags that it has stay.
     pub fn with_creases(mut self, edges: &[HalfEdgeId]) -> Self {
         let ends = edges.iter().map(|&h| self.topology.ends(h).map(|v| v.0));
         let creases: Vec<CreaseTag> = ends
@@ -116,7 +117,7 @@ impl Mesh {
     }
 }
 
-/// What [`Mesh::creases_above`] finds.
+/// The result of [`Mesh::creases_above`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct CreasesAbove {

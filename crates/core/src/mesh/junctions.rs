@@ -53,7 +53,7 @@ impl Groups {
     }
 }
 
-/// Copies of vertices and edges that stand for one original each.
+/// Copies of vertices and edges that represent one original each.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Junctions {
     /// Vertices at one place.
@@ -76,7 +76,8 @@ impl Junctions {
             .collect()
     }
 
-    /// Checks that copies stand at equal positions and that grouped half-edges are boundaries with the same ends.
+    /// Checks that copies have equal positions and that grouped half-edges are boundaries with the
+    /// same ends.
     pub(crate) fn validate(
         &self,
         topology: &Topology,

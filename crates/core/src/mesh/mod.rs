@@ -43,14 +43,14 @@ use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
 use crate::vector::{DVec3, diagonal, normal, unit_or_zero, vector};
 
-/// What can be wrong with the data a mesh is made of.
+/// An error in the data of a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// More elements than `u32` indices can name.
     #[error("{count} {what} are too many: at most {limit} can be indexed")]
     TooMany {
-        /// What is counted.
+        /// The kind of element.
         what: &'static str,
         /// How many there are.
         count: usize,
@@ -77,7 +77,7 @@ pub enum MeshError {
         /// The value met.
         value: f64,
     },
-    /// A face names the same vertex twice.
+    /// A face names a vertex twice.
     #[error("face {face} names vertex {vertex} twice")]
     RepeatedCorner {
         /// The face at fault.
@@ -85,7 +85,7 @@ pub enum MeshError {
         /// The repeated vertex.
         vertex: usize,
     },
-    /// An edge has more than two faces, or two faces run along it the same way.
+    /// An edge has more than two faces, or two faces run along it in one direction.
     #[error(
         "the edge from vertex {from} to vertex {to} is used by face {face} and by an earlier face in the same direction"
     )]
@@ -114,13 +114,13 @@ pub enum MeshError {
     /// Nothing is left to refine.
     #[error("no face is left: {reason}")]
     NoFaces {
-        /// How it came to that.
+        /// The cause.
         reason: String,
     },
     /// A repair would be needed and was forbidden.
     #[error("the mesh needs repair, which strict mode refuses: {summary}")]
     NeedsRepair {
-        /// What was found, in words.
+        /// A summary in words.
         summary: String,
     },
     /// An option is out of range.
@@ -130,7 +130,7 @@ pub enum MeshError {
         name: &'static str,
         /// The value met.
         value: f64,
-        /// What it may be.
+        /// The expected value.
         expected: &'static str,
     },
     /// An internal invariant is broken.
@@ -223,8 +223,7 @@ impl Mesh {
 
     /// [`Self::from_soup`], with the faces and corners of the soup that those of the mesh are from.
     ///
-    /// # Errors
-    /// The same.
+    /// # Errors Those of [`Self::from_soup`].
     pub fn from_soup_traced(
         soup: &PolygonSoup,
         options: &BuildOptions,
@@ -303,7 +302,7 @@ impl Mesh {
         Ok(self)
     }
 
-    /// Vertices and boundary edges of different sheets that stand at the same place and must stay together.
+    /// Vertices and boundary edges of different sheets at one position that must stay together.
     pub fn junctions(&self) -> &Junctions {
         &self.junctions
     }
@@ -363,8 +362,8 @@ impl Mesh {
         self.as_triangles().diagonal()
     }
 
-    /// The shape of the one-ring of `vertex`, which decides its rules unless there are sharp edges inside the mesh or
-    /// corners that fade (see [`Sharpness::sectors`]).
+    /// The shape of the one-ring of `vertex`, which decides its rules unless there are sharp edges
+    /// inside the mesh or semi-sharp corners (see [`Sharpness::sectors`]).
     #[inline]
     pub fn ring_shape(&self, vertex: VertexId) -> RingShape {
         let (valence, open) = self.topology.valence_and_openness(vertex);

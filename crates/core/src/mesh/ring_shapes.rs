@@ -31,7 +31,7 @@ impl RingShapes {
         });
         let shapes = shapes?.concat();
         let distinct = parallel::pieces_polled(shapes.len(), PIECE, poll, |piece| {
-            // Neighbouring vertices mostly have the same shape: what is left to sort is little.
+            // Neighbouring vertices mostly have equal shapes, so that few are left to sort.
             let mut shapes = shapes[piece].to_vec();
             shapes.dedup();
             sorted_once(shapes)

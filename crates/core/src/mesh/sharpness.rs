@@ -117,7 +117,7 @@ impl<'m> Sharpness<'m> {
         }
     }
 
-    /// What is left after so many levels of refinement that only what never fades is still sharp.
+    /// The infinitely sharp tags: those left after enough levels of refinement.
     pub fn lasting(&self) -> Self {
         let half_edges = self
             .half_edges
@@ -137,7 +137,7 @@ impl<'m> Sharpness<'m> {
         self.tagged.is_empty()
     }
 
-    /// Whether something sharp that will fade is left.
+    /// Whether there are semi-sharp tags.
     pub fn fades(&self) -> bool {
         let mut all = self
             .half_edges
@@ -147,7 +147,7 @@ impl<'m> Sharpness<'m> {
         all.any(|s| s < INFINITELY_SHARP)
     }
 
-    /// Levels of refinement after which nothing fades any more.
+    /// Levels of refinement after which only infinitely sharp tags are left.
     pub(crate) fn fading_levels(&self) -> usize {
         let all = self
             .half_edges

@@ -82,7 +82,8 @@ impl<'a> FromIterator<&'a [u32]> for PolygonFaces {
     }
 }
 
-/// What a file held: positions, polygons, tags. Indices may be anything; [`super::Mesh::from_soup`] checks.
+/// The contents of a file: positions, polygons, tags. positions, polygons, tags. Indices may be
+/// anything; [`super::Mesh::from_soup`] checks.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct PolygonSoup {
     /// Vertex positions in the file's units.
@@ -96,12 +97,12 @@ pub struct PolygonSoup {
     pub creases: Vec<CreaseTag>,
     /// Sharp vertices.
     pub corners: Vec<CornerTag>,
-    /// What vertices, corners and faces carry.
+    /// The channels of vertices, corners and faces.
     pub channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub material_libraries: Vec<String>,
     /// Pictures that texture coordinates are places on, where the file names them itself.
     pub texture_files: Vec<String>,
-    /// What the file held beside these and was left out, in words such as "texture coordinates".
+    /// Further contents of the file that were left out, in words such as "texture coordinates".
     pub left_out: Vec<String>,
 }

@@ -15,7 +15,7 @@ const ALIKE: f64 = 1e-6;
 /// A surface with a normal for each vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitSurface {
-    /// Those of the mesh, then the further copies of vertices with several sides.
+    /// The positions of the mesh, then further copies of vertices with several sides.
     pub positions: Vec<[f64; 3]>,
     /// One for each position.
     pub normals: Vec<[f64; 3]>,

@@ -20,7 +20,7 @@ pub struct CreaseTag {
 pub struct CornerTag {
     /// The vertex.
     pub vertex: u32,
-    /// As for [`CreaseTag::sharpness`].
+    /// As many levels as [`CreaseTag::sharpness`] says.
     pub sharpness: f64,
 }
 
@@ -64,9 +64,9 @@ impl Tags {
         self.corners.dedup_by_key(|tag| tag.vertex);
     }
 
-    /// The tags with the same outcome for all copies of a vertex that was cut: each is as sharp as the sharpest, and
-    /// where an edge inside one of the sheets is sharp, which makes its copy a corner, all are corners for a level
-    /// longer than that lasts.
+    /// The tags with the same outcome for all copies of a vertex that was cut: each is as sharp as
+    /// the sharpest, and where an edge inside one of the sheets is sharp, which makes its copy a
+    /// corner, all are corners for one level more than that edge is sharp.
     pub(crate) fn joined(mut self, topology: &Topology, junctions: &Junctions) -> Self {
         if self.is_empty() || junctions.vertices.is_empty() {
             return self;

@@ -94,7 +94,7 @@ impl Topology {
         (0..self.outgoing.len() as u32).map(VertexId)
     }
 
-    /// The same without the connections.
+    /// The triangles without the connections.
     pub(crate) fn into_triangles(self) -> Vec<[u32; 3]> {
         self.triangles
     }
@@ -105,7 +105,7 @@ impl Topology {
         &self.triangles
     }
 
-    /// The half-edge along the same edge in the neighbouring face; `None` on a boundary.
+    /// The half-edge along this edge in the neighbouring face; `None` on a boundary.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
         let twin = self.twins[h.index()];
@@ -413,7 +413,7 @@ fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, 
             [a, b] if from(a) != from(b) => {
                 (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
             }
-            // Of two that run the same way, or of three or more, two have the same origin.
+            // Of two half-edges in one direction, or of three or more, two have equal origins.
             _ if twice.is_none() => {
                 twice = (1..edge.len())
                     .find(|&i| edge[..i].iter().any(|e| from(e) == from(&edge[i])))

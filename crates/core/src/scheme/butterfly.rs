@@ -214,8 +214,8 @@ fn boundary_vertex_rule(end: &mut End<'_>, scale: f64) {
     }
 }
 
-/// An end that is a corner of the boundary: with d_i the edge from the corner and d_{i−1}, d_{i+1} the ones beside
-/// it, ½ d_i + ⅛ (d_{i−1} + d_{i+1} − 2 cos φ d_i).
+/// An end that is a corner of the boundary: with d_i the edge from the corner and d_{i−1}, d_{i+1}
+/// its neighbours, ½ d_i + ⅛ (d_{i−1} + d_{i+1} − 2 cos φ d_i).
 ///
 /// The bracket vanishes for linear functions on a fan of K equal angles φ; with φ = 120°/K that includes the
 /// corner of a grid cut by its diagonal (K = 2). Patterns of the edges inside shrink by ½ + ¼(cos(mπ/K) − cos φ),

@@ -59,7 +59,7 @@ impl LoopFamily {
         }
     }
 
-    /// The same member, for as long as anybody may want.
+    /// This family member as a static reference.
     pub(crate) fn scheme(self) -> &'static dyn Scheme {
         match self.weights {
             Weights::Loop => &Loop,

@@ -48,7 +48,7 @@ impl EdgeMask {
     }
 }
 
-/// How far around a vertex its refined neighbourhood of the same size reaches.
+/// How far a vertex's refined neighbourhood of equal size reaches.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Support {
     /// The refined one-ring depends on the one-ring alone, and the masks of its edges do not depend on the

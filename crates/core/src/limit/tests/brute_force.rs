@@ -144,8 +144,9 @@ fn iterated_normals(
     (0..shape.faces() as usize).map(face).collect()
 }
 
-/// Steps after which the other patterns have shrunk to nothing beside the tangents: the rings here shrink them by
-/// 0.95 a step at least (on a ribbon, where those that outlast one tangent do not enter the faces at its edges).
+/// Steps after which the other patterns have shrunk to nothing relative to the tangents: the rings
+/// here shrink them by 0.95 a step at least (on a ribbon, where those that shrink more slowly than
+/// one tangent do not enter the faces at its edges).
 const STEPS: usize = 500;
 
 #[test]

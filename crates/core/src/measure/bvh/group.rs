@@ -42,7 +42,7 @@ impl Bvh<'_> {
         }
     }
 
-    /// The same for one group; takes and gives a triangle near it.
+    /// The nearest triangle to a group of points. Takes and gives a triangle near it.
     fn group_nearest(
         &self,
         points: &[DVec3],

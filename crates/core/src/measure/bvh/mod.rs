@@ -63,7 +63,7 @@ pub struct Bvh<'a> {
     starts: Vec<usize>,
 }
 
-/// What a search has found so far.
+/// The best result of a search so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// Squared distance in the frame.
@@ -96,8 +96,8 @@ impl Nearest {
         better
     }
 
-    /// What a box may be away at most and still hold a triangle as near as this, with slack for the rounding of
-    /// the box test.
+    /// The greatest distance of a box that may hold a nearer triangle, with slack for the rounding
+    /// of the box test.
     ///
     /// The test's gaps are within 2^-23 of their size or within half the boxes' margin of the truth
     /// ([`build::MARGIN`]), their squares and sum add less than 2^-22; 2^-20 covers both and the conversion. Below
@@ -136,7 +136,7 @@ impl<'a> Bvh<'a> {
         Self::named(surface, "reference", observer)
     }
 
-    /// The same; `which` names the surface in errors.
+    /// Builds the hierarchy; `which` names the surface in errors.
     pub(super) fn named(
         surface: Triangles<'a>,
         which: &'static str,
@@ -164,7 +164,7 @@ impl<'a> Bvh<'a> {
         diagonal(self.bounds[0], self.bounds[1])
     }
 
-    /// Bytes that the hierarchy takes beside the surface it borrows.
+    /// Bytes of the hierarchy, without the surface it borrows.
     pub fn memory(&self) -> usize {
         size_of_val(self.slots.as_slice())
             + size_of_val(self.nodes.as_slice())
@@ -176,8 +176,9 @@ impl<'a> Bvh<'a> {
         self.closest_with_guess(point, None)
     }
 
-    /// The same, faster where `guess` is a triangle near the closest one, for example the answer for a
-    /// neighbouring point. The answer does not depend on the guess, and a guess out of range is ignored.
+    /// The closest point, found faster where `guess` is a triangle near it, for example the answer
+    /// for a neighbouring point. The answer does not depend on the guess, and a guess out of range
+    /// is ignored.
     pub fn closest_from(&self, point: [f64; 3], guess: u32) -> ClosestPoint {
         self.closest_with_guess(point, Some(guess))
     }
@@ -186,7 +187,7 @@ impl<'a> Bvh<'a> {
         self.closest_counted(point, guess).0
     }
 
-    /// The same, and how many nodes were visited for it.
+    /// The closest point, and the number of nodes visited for it.
     pub(super) fn closest_counted(
         &self,
         point: [f64; 3],
@@ -241,7 +242,7 @@ impl<'a> Bvh<'a> {
         vector(self.surface.positions[vertex as usize])
     }
 
-    /// The same, scaled so that squares and products neither overflow nor vanish.
+    /// The corners of a triangle, scaled so that squares and products neither overflow nor vanish.
     #[inline]
     pub(super) fn scaled_corners(&self, slot: usize) -> [DVec3; 3] {
         let [a, b, c] = self.corners(slot);

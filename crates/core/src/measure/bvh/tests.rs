@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// The distance to a triangle by another way than the library's: to its plane, if the foot is inside by the signs
-/// of three areas, else to its three sides.
+/// The distance to a triangle by another way than the library's: to its plane, if the projection is
+/// inside by the signs of three areas, else to its three sides.
 fn distance_to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
     // Seen from the corner with the angle nearest 90°: from the tip of a needle rounding decides the plane.
     let sine = |first: usize| {

@@ -55,7 +55,7 @@ const COUNTED_AT: [[f64; 2]; 4] = [
 struct View {
     base: DVec3,
     rows: [DVec3; 3],
-    /// How far the vertices that computed coordinates stand for may be from the true ones.
+    /// The greatest distance of the vertices at computed coordinates from the true ones.
     slack: f64,
     /// Sine of the angle between the direction and the triangle's normal, or a little more.
     tilt: f64,
@@ -332,7 +332,8 @@ fn passes_by(a: DVec3, b: DVec3) -> bool {
     first != 0 && turn(a, b, 1.0, 0.0) == first && turn(a, b, 0.0, 1.0) == first
 }
 
-/// Whether a triangle's shadow holds the point; `None` if it is too near one of the sides to tell.
+/// Whether a triangle's shadow holds the point; `None` if it is too near one of the sides to
+/// decide.
 #[inline]
 fn holds(&[a, b, c]: &[DVec3; 3], x: f64, y: f64) -> Option<bool> {
     if (a.x < x && b.x < x && c.x < x)

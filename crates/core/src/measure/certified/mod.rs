@@ -75,8 +75,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The interval where one of the surfaces only stands for another, within `error` of it in both directions: that
-    /// much wider on both sides.
+    /// The interval for a surface that approximates another within `error` in both directions:
+    /// wider by `error` on both sides.
     ///
     /// The distances of two surfaces to a third differ by at most their own symmetric distance. Rounded outwards.
     pub fn widened(self, error: f64) -> Self {
@@ -164,8 +164,7 @@ pub fn certified_hausdorff(
 
 /// [`certified_hausdorff`], telling an observer how it goes on.
 ///
-/// # Errors
-/// The same, or the observer asked to stop.
+/// # Errors Those of [`certified_hausdorff`], or the observer asked to stop.
 pub fn certified_hausdorff_observed(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
@@ -191,8 +190,7 @@ pub fn certified_hausdorff_between(
 
 /// [`certified_hausdorff_between`], telling an observer how it goes on.
 ///
-/// # Errors
-/// The same, or the observer asked to stop.
+/// # Errors Those of [`certified_hausdorff_between`], or the observer asked to stop.
 pub fn certified_hausdorff_between_observed(
     surface: &Bvh<'_>,
     reference: &Bvh<'_>,

@@ -53,7 +53,7 @@ impl Sample {
     }
 }
 
-/// What bounding pieces needs beside them; its memory is used again.
+/// The search state for bounding pieces; its memory is used again.
 pub(crate) struct Worker<'t, 's, 'a> {
     pub(super) target: &'t Target<'s, 'a>,
     pub(super) cover: Cover,

@@ -104,7 +104,7 @@ impl<F: Fn(u32) -> [DVec3; 3]> InsideOut<'_, F> {
         if !self.closed.iter().any(|own| own.volume < 0.0) {
             return Vec::new();
         }
-        // What lies inside another is smaller.
+        // A component inside another is smaller.
         let mut order: Vec<usize> = (0..self.closed.len()).collect();
         order.sort_by(|&a, &b| self.closed[b].size.total_cmp(&self.closed[a].size));
         let mut signs = vec![1.0; self.closed.len()];

@@ -32,12 +32,12 @@ pub use weld::weld_within;
 pub enum Weld {
     /// None: the file's indices alone connect faces.
     Never,
-    /// Those at exactly equal positions.
+    /// Vertices at exactly equal positions.
     #[default]
     Exact,
-    /// Those within this distance of each other, in the mesh's units. A chain of vertices, each within the
-    /// distance of the next, becomes one vertex however long the chain; it stands where the first of them in
-    /// the input's order stood.
+    /// Vertices within this distance of each other, in the mesh's units. A chain of vertices, each
+    /// within the distance of the next, becomes one vertex however long the chain; it stands where
+    /// the first of them in the input's order stood.
     Within(f64),
 }
 
@@ -86,7 +86,7 @@ pub(super) fn build(
     Ok((mesh, diagnosis, trace))
 }
 
-/// Refuses coordinates and indices that mean nothing; tells which vertices have a face.
+/// Refuses invalid coordinates and indices; reports which vertices have a face.
 fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
     check_finite(&soup.positions)?;
     let count = soup.positions.len();
@@ -115,7 +115,8 @@ fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
     Ok(used)
 }
 
-/// For each vertex the one that stands for it: itself or an earlier one. Vertices without faces take no part.
+/// For each vertex its representative: itself or an earlier one. Vertices without faces take no
+/// part.
 fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshError> {
     match weld {
         Weld::Never => Ok((0..soup.positions.len() as u32).collect()),

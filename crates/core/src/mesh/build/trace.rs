@@ -1,4 +1,5 @@
-//! Which corner of the soup each corner of the mesh is from: the one of its face's polygon at the same vertex.
+//! The corner of the soup for each corner of the mesh: the one of its face's polygon at that
+//! vertex.
 
 use super::retag::VertexMaps;
 use crate::geometry::NONE;
@@ -51,7 +52,7 @@ fn before_cutting(maps: &VertexMaps<'_>, v: u32) -> u32 {
     }
 }
 
-/// Where a polygon comes to which vertex.
+/// The corners of a polygon at each vertex.
 #[derive(Default)]
 struct Places {
     /// Its vertices, where they are still there.
@@ -72,7 +73,7 @@ impl Places {
         self.by_vertex.sort_unstable();
     }
 
-    /// Where the polygon comes to a vertex; where it does several times, between these two if it can be told.
+    /// The polygon's corner at a vertex; with several, the one between these two if it is unique.
     fn of(&self, vertex: u32, [next, previous]: [u32; 2]) -> Option<usize> {
         let start = self.by_vertex.partition_point(|&(other, _)| other < vertex);
         let places = self.by_vertex[start..]

@@ -51,7 +51,7 @@ impl Faces {
     }
 }
 
-/// Cuts all polygons into triangles; `kept[v]` stands for vertex `v`.
+/// Cuts all polygons into triangles; `kept[v]` represents vertex `v`.
 ///
 /// # Errors
 /// There would be more triangles than can be indexed.
@@ -111,7 +111,7 @@ fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
         }
         polygon.push(v);
     }
-    // The same across the seam between the last corner and the first.
+    // Across the seam between the last corner and the first as well.
     let mut start = 0;
     while polygon.len() - start >= 2 {
         let (first, last) = (polygon[start], polygon[polygon.len() - 1]);
@@ -197,8 +197,9 @@ impl Cutter {
         false
     }
 
-    /// The constrained Delaunay triangulation of what the polygon encloses; nothing where it crosses itself, goes round anything
-    /// twice, or has a corner inside of a side. It may come to a vertex or along an edge twice, as at slits to holes.
+    /// The constrained Delaunay triangulation of the polygon's inside; nothing where it crosses
+    /// itself, goes round anything twice, or has a corner inside of a side. It may visit a vertex
+    /// or an edge twice, as at slits to holes.
     fn cut_delaunay(&mut self, polygon: &[u32]) -> Option<()> {
         // By vertex, the first corner there; by corner, the number of its vertex.
         let mut firsts: Vec<(u32, u32)> = polygon.iter().copied().zip(0..).collect();

@@ -1,4 +1,4 @@
-//! Welding: which vertices stand for one.
+//! Welding: merging vertices at one position.
 //!
 //! Takes positions, gives for each vertex the lowest index of the vertices it is merged with (those in
 //! no face take no part). Equal positions

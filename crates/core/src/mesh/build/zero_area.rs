@@ -15,8 +15,8 @@ use crate::vector::vector;
 /// needs few each; coincident vertices that were not welded can ask for ever more.
 const SPLITS_A_FACE: usize = 64;
 
-/// Removes faces of zero area; `polygon_sizes` tells which input faces are polygons, whose own straight
-/// corners are no defect.
+/// Removes faces of zero area; by `polygon_sizes` input faces that are polygons are known, whose
+/// own straight corners are no defect.
 pub(super) fn remove_zero_area(
     faces: &mut Faces,
     flatness: Flatness<'_>,

@@ -185,7 +185,8 @@ fn a_moebius_strip_is_cut_once() {
     assert_eq!(groups(&mesh.junctions().edges).len(), 1);
 }
 
-/// A square of two triangles, one of which shows its other side, beside a third that agrees with the first.
+/// A square of two triangles, one of which shows its other side, next to a third that agrees with
+/// the first.
 #[test]
 fn windings_that_count_are_kept_and_cut_apart() {
     let p = [

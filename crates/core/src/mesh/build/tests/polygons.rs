@@ -383,7 +383,8 @@ fn polygons_with_slits_are_no_twists() {
     assert_eq!(mesh.triangles().len(), face.len() - 2);
 }
 
-/// Thousands of holes, each joined to the same corner by a slit: the triangles cover what is between them.
+/// Thousands of holes, each joined to the same corner by a slit: the triangles cover the region
+/// between them.
 #[test]
 fn thousands_of_slits_to_one_corner_are_no_twist() {
     let (mut points, mut face) = (vec![[0.0, 0.0]], vec![0u32]);
