@@ -41,8 +41,8 @@ impl Place {
         }
     }
 
-    /// The node `depth` levels below in column i and row j, as rows run along edge 0 from the first corner: the one that stands
-    /// upright there, or the one to its right that stands on its head.
+    /// The node `depth` levels below in column i and row j, as rows run along edge 0 from the first
+    /// corner: the upright one, or the inverted one to its right.
     pub(crate) fn leaf(
         self,
         depth: u32,
@@ -117,7 +117,7 @@ pub(crate) fn along_edge(edge: usize, second: bool) -> usize {
     if second { (edge + 1) % 3 } else { edge }
 }
 
-/// What lies beyond an edge of a node.
+/// The region beyond an edge of a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Beyond {
     /// The node of the same level in the same control face; its edge has the same number.
@@ -151,7 +151,7 @@ impl Along {
     }
 }
 
-/// What lies beyond an edge of a node, on the node's own level.
+/// The region beyond an edge of a node, on the node's own level.
 pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
     let (mut path, mut level) = (place.path, place.level);
     let (mut index, mut depth) = (0u32, 0u32);

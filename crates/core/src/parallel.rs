@@ -103,7 +103,7 @@ pub(crate) fn pieces<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(n: usize, 
     pieces_of(n, PIECE, f)
 }
 
-/// The same with pieces of `length` elements, for work that takes long at each.
+/// Pieces of `length` elements, for work that takes long at each.
 pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
     n: usize,
     length: usize,
@@ -205,18 +205,19 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
 #[error("cancelled by the observer")]
 pub struct Cancelled;
 
-/// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
-/// done by then.
+/// The callback of a loop that can be cancelled, between its blocks and always on the calling
+/// thread, with the number of elements done by then.
 pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;
 
-/// What blocks ask now and then that may take longer than some milliseconds: whether what they do is of no use any more, so that
-/// they may leave it as it is. On the calling thread it polls.
+/// The question of blocks that may take longer than some milliseconds: whether their result is no
+/// longer needed, so that they may end early. On the calling thread it polls.
 pub(crate) type IsStopped<'a> = dyn Fn() -> bool + 'a;
 
 /// Items of which each takes much less than a microsecond and that blocks take between two such questions.
 const ASKED: usize = 1 << 12;
 
-/// The same items, with the question now and then whether they are still of use; there are no more of them where they are not.
+/// The items, with a check now and then whether they are still needed; the iterator ends where they
+/// are not.
 pub(crate) fn asking<I: IntoIterator>(
     items: I,
     is_stopped: &IsStopped<'_>,
@@ -394,18 +395,18 @@ fn led<B, R>(
 #[cfg(feature = "parallel")]
 struct Blocks<I, R> {
     state: Mutex<BlocksState<I, R>>,
-    /// Told when a thread has ended.
+    /// Notified when a thread has ended.
     ended: Condvar,
     is_cancelled: AtomicBool,
 }
 
 #[cfg(feature = "parallel")]
 struct BlocksState<I, R> {
-    /// Blocks that nobody has begun.
+    /// Blocks that no thread has begun.
     left: core::iter::Enumerate<I>,
     /// Results by number of block, in the order in which they came about.
     results: Vec<(usize, R)>,
-    /// Threads at work beside the calling one.
+    /// Working threads, without the calling one.
     working: usize,
 }
 
@@ -510,7 +511,8 @@ impl<I, R> BlocksState<I, R> {
     }
 }
 
-/// Says that a thread has ended, also where its work panicked: nobody then waits for it for ever.
+/// Reports that a thread has ended, also where its work panicked, so that no thread waits for it
+/// for ever.
 #[cfg(feature = "parallel")]
 struct Ended<'b, B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send>(&'b Blocks<I, R>);
 

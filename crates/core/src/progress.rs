@@ -1,11 +1,12 @@
 //! Progress and cancellation, in one dialect for every long function of the library.
 //!
-//! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`], called on the calling
-//! thread, also while other threads work, and told what is being done, how much of it is done and how many triangles
-//! there are by then. It is called often: after each block of work, mostly every few milliseconds and at least every
-//! 100, and costs little if it does little. Whoever draws something limits how often that is. When it breaks, the
-//! function ends as soon as the blocks in hand are finished, with an error that says [`Cancelled`]; until then it has
-//! no influence on any result.
+//! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`],
+//! called on the calling thread, also while other threads work, that receives the stage, how much
+//! of it is done and the number of triangles. It is called often: after each block of work, mostly
+//! every few milliseconds and at least every 100, and costs little if it does little. An observer
+//! that draws should limit how often it does. When it breaks, the function ends as soon as the
+//! blocks in hand are finished, with an error that says [`Cancelled`]; an observer never influences
+//! a result.
 //!
 //! ```
 //! use core::ops::ControlFlow;
@@ -36,7 +37,7 @@ use crate::parallel::{self, IsStopped};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// What is being done.
+    /// The current stage.
     pub stage: Stage,
     /// Units of this stage that are done; see [`Stage`] for what they are.
     pub done: usize,
@@ -46,7 +47,7 @@ pub struct Progress {
     pub triangles: usize,
 }
 
-/// What a long function is doing.
+/// The stages of long functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
@@ -65,8 +66,8 @@ pub enum Stage {
     Indexing,
     /// Distances are being measured at points; the units are points.
     Sampling,
-    /// A distance is being bounded from above; the units are triangles, and then pieces of them, whose number nobody
-    /// knows before.
+    /// A distance is being bounded from above; the units are triangles, and then pieces of them,
+    /// whose number is not known in advance.
     Bounding,
     /// Edges are being matched and counted; the units are triangles.
     Matching,
@@ -97,7 +98,7 @@ impl fmt::Display for Stage {
     }
 }
 
-/// What is told of progress, and says whether to go on.
+/// A callback that receives progress and decides whether to go on.
 pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + 'a;
 
 /// The observer of those who do not watch.
@@ -105,13 +106,13 @@ pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// What `work` gives if nobody watches: then nothing cancels it.
+/// The result of `work` without an observer: nothing cancels it.
 pub(crate) fn uncancelled<T>(work: impl FnOnce(&mut Observer<'_>) -> Result<T, Cancelled>) -> T {
     work(&mut unobserved)
         .unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
 }
 
-/// An observer and what it is told: what long functions pass on to the loops that they consist of.
+/// An observer and its last progress, which long functions pass on to their loops.
 pub(crate) struct Watch<'a> {
     observer: &'a mut Observer<'a>,
     progress: Progress,
@@ -142,7 +143,7 @@ impl<'a> Watch<'a> {
         self.poll()
     }
 
-    /// How many triangles there are by now; told with the next call.
+    /// Sets the number of triangles, reported with the next call.
     pub(crate) fn triangles(&mut self, triangles: usize) {
         self.progress.triangles = triangles;
     }
@@ -159,7 +160,7 @@ impl<'a> Watch<'a> {
         self.done(done)
     }
 
-    /// Calls the observer with what it was told before.
+    /// Calls the observer with its last progress.
     pub(crate) fn poll(&mut self) -> Result<(), Cancelled> {
         match (self.observer)(&self.progress) {
             ControlFlow::Continue(()) => Ok(()),
@@ -167,13 +168,14 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// An observer for functions that take one: what these tell is not passed on, whether to go on is.
+    /// An observer for functions that take one: it does not pass on their progress, but whether to
+    /// go on.
     pub(crate) fn observer(&mut self) -> impl FnMut(&Progress) -> ControlFlow<()> + '_ {
         |_| flow(self.poll())
     }
 }
 
-/// What an observer says to go on, or not.
+/// The outcome of a poll as an observer's answer.
 fn flow(polled: Result<(), Cancelled>) -> ControlFlow<()> {
     match polled {
         Ok(()) => ControlFlow::Continue(()),
@@ -213,7 +215,7 @@ impl<'a> SharedWatch<'a> {
         self.watch.borrow_mut().done(done)
     }
 
-    /// One more round of refinement came to its end, with so many triangles.
+    /// Reports the end of a round of refinement and the number of triangles.
     pub(crate) fn round(&self, triangles: usize) -> Result<(), Cancelled> {
         self.rounds.set(self.rounds.get() + 1);
         self.triangles(triangles);

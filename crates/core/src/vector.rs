@@ -5,7 +5,7 @@ use core::ops::{Add, Div, Mul, Sub, SubAssign};
 
 pub(crate) use glam::DVec3;
 
-/// What can be blended: points, or some of their coordinates.
+/// Values that can be blended: points, or some of their coordinates.
 pub(crate) trait Blend:
     Copy
     + Default
@@ -24,7 +24,7 @@ impl Blend for DVec3 {}
 pub(crate) struct Coordinates<const AXES: usize>(pub(crate) [f64; AXES]);
 
 impl<const AXES: usize> Coordinates<AXES> {
-    /// Those of a point in space, of which there are 3 at most.
+    /// The coordinates of a point in space, of which there are at most 3.
     #[inline]
     pub(crate) fn of(point: DVec3) -> Self {
         Self(from_fn(|axis| point[axis]))

@@ -1,4 +1,4 @@
-//! Where channels tell the two sides of an edge apart.
+//! The edges on whose two sides channels have different values.
 
 use crate::mesh::{Channel, Domain, Mesh};
 

@@ -201,7 +201,7 @@ fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
         let [first, second, third] =
             [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
         for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
-            // What is at a corner, or the same at all, is that to the bit.
+            // A value that is equal at all three corners is copied to the bit.
             let is_one = a == b && b == c;
             let sum = at_first * a + at_second * b + at_third * c;
             values.push(if is_one { a } else { sum });

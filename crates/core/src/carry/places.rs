@@ -1,6 +1,7 @@
 //! Where the corners of refined triangles are in their own control faces.
 //!
-//! A vertex knows one face that it came from; a triangle that has it may be in another beside that one.
+//! A vertex has the origin of one of its faces; a triangle with this vertex may be in an adjacent
+//! face.
 
 use crate::geometry::NONE;
 use crate::index::HalfEdgeId;
@@ -105,7 +106,7 @@ impl<'a> Places<'a> {
     /// The place of a corner.
     ///
     /// # Errors
-    /// Its triangle reaches over several control faces, of which nobody knows where.
+    /// Its triangle covers parts of several control faces, so that the origin is ambiguous.
     pub(super) fn known_place(&self, corner: usize) -> Result<Origin, ChannelError> {
         let corner = HalfEdgeId(corner as u32);
         self.result

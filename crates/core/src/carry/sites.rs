@@ -45,7 +45,7 @@ impl<'a> Sites<'a> {
             });
         }
         let mut others: Vec<Origin> = Vec::new();
-        // What each depends on, and the one of its vertex before it; by vertex, the last.
+        // The sources of each item, and the previous item of its vertex; by vertex, the last.
         let mut chained: Vec<(Key, u32)> = Vec::new();
         let mut last = vec![NONE; origins.len()];
         let mut indices = Vec::with_capacity(corners.len());

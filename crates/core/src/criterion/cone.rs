@@ -82,7 +82,8 @@ pub(crate) fn ratio(normal: DVec3, corners: [DVec3; 3], limit: f64) -> f64 {
     }
 }
 
-/// What exact refinement makes of it: it goes on until the criterion is met, which by equation (11) it could not be on a
+/// Exact refinement continues until the criterion is met, which by equation (11) is impossible on a
+/// silhouette. it goes on until the criterion is met, which by equation (11) it could not be on a
 /// silhouette.
 impl LimitNormal {
     /// Control faces are divided for the cone's sake until triangles would be this part of them and its angle smaller:
@@ -100,8 +101,9 @@ impl LimitNormal {
     /// The least angle that any triangle in a region may have: infinite where all look away. Never less for a region
     /// within another.
     ///
-    /// With a view it is equation (11)'s, but not below α itself: a viewer never asks for more than no viewer would, and
-    /// silhouettes come to an end. So it takes a dilatation above 1 to have faces that look at the viewer coarser.
+    /// With a view it is equation (11)'s, but not below α itself: a viewer never needs more
+    /// triangles than no viewer, and refinement ends at silhouettes. Only a dilatation above 1
+    /// makes faces towards the viewer coarser.
     pub(crate) fn allowed_angle(&self, region: &Region) -> f64 {
         match self.view.map(|view| view.least_limit(self.angle, region)) {
             None | Some(AngleLimit::Always) => self.angle,

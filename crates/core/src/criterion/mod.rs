@@ -1,9 +1,10 @@
-//! Criteria: how badly a triangle stands for the surface, as a ratio: 1 is just good enough, 2 twice too bad.
+//! Criteria: the error of a triangle relative to what is allowed. At 1 it is just good enough, at 2
+//! it is twice as large.
 //!
-//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table of its scheme and
-//! answer with the ratio of each face; stepwise refinement divides the faces above 1. Exact refinement asks the same
-//! of a triangle and the piece of the surface that it stands for (`Criteria`) and divides the worst first.
-//! A criterion never changes anything.
+//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table
+//! of its scheme and answer with the ratio of each face; stepwise refinement divides the faces
+//! above 1. Exact refinement computes the ratio of a triangle and the piece of the surface that it
+//! approximates (`Criteria`), and divides the worst first. A criterion never changes anything.
 
 mod cone;
 mod criteria;
@@ -40,7 +41,7 @@ pub enum CriterionError {
         name: &'static str,
         /// The value met.
         value: f64,
-        /// What it may be.
+        /// The range of valid values.
         expected: &'static str,
     },
 }
@@ -72,7 +73,7 @@ fn angle_ratio(cosine: f64, limit: f64) -> f64 {
     }
 }
 
-/// Says how badly faces stand for the surface.
+/// The ratio of a face's error to the allowed one.
 pub trait Criterion: Sync {
     /// A short name, as on the command line.
     fn name(&self) -> &str;

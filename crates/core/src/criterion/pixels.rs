@@ -1,4 +1,5 @@
-//! Perspective cameras: how many pixels a distance in space comes to at most, and how long one may be to stay below.
+//! Perspective cameras: the greatest number of pixels of a distance in space, and the greatest
+//! length below a number of pixels.
 //!
 //! **One camera.** Let e be its eye and a point p stand at depth z before it, at the picture's (x, y)/z = u, F being
 //! the pixels of a unit length at depth 1. A point p + δ is seen F(δ′ − u δ_z)/(z + δ_z) away from it, δ′ being the
@@ -18,9 +19,10 @@
 //! are within an angle κ of an axis. Then |δ| sin θ ≤ a + h sin θ, θ at most the angle between axis and the line of sight
 //! to the ball's middle, κ, and the angle at which the ball is seen, together.
 //!
-//! What looks away from all cameras is not seen on closed surfaces: of them a picture shows the front alone, and its
-//! outlines bound the front. The back of an open one may be seen. Which that is, whoever asks has to know ([`Backs`]): nothing here
-//! knows how a surface bends over a region.
+//! Regions that face away from all cameras are not visible on closed surfaces: a picture shows only
+//! the front, which its outlines bound. The back of an open surface may be visible. The caller
+//! decides which regions are backs ([`Backs`]), since this file does not know how a surface bends
+//! over a region.
 
 use smallvec::SmallVec;
 
@@ -57,7 +59,8 @@ impl Camera {
 /// keeps some accuracy, for shading and for what happens when the camera moves a little.
 const LEAST_SINE: f64 = 0.25;
 
-/// What is not certain of a piece that looks away may be as near to a corner as this part of what is allowed.
+/// The uncertain part of a piece facing away may be as near to a corner as this part of the allowed
+/// length.
 const REST: f64 = 0.125;
 
 /// Sines of angles up to this are 0 but for rounding.
@@ -87,7 +90,7 @@ pub(crate) struct Backs {
 }
 
 impl Backs {
-    /// Nobody.
+    /// The backs where no viewer sees only the back.
     pub(crate) fn nobodys() -> Self {
         Self::default()
     }
@@ -101,7 +104,7 @@ impl Backs {
 #[derive(Clone, Debug)]
 pub(crate) struct Pixels {
     limit: f64,
-    /// What looks away is not seen.
+    /// Whether the surface is closed, so that backs are not visible.
     is_closed: bool,
     lenses: Vec<Lens>,
 }
@@ -129,8 +132,9 @@ impl Pixels {
         if self.is_closed { self.lenses.len() } else { 0 }
     }
 
-    /// Who sees nothing but the back of a region. `is_back` tells that of a camera and its place: how far from a corner of the region's
-    /// triangle what is not certain is, if that is hardly more than the given length.
+    /// The cameras that see only the back of a region. For a camera and its position `is_back`
+    /// gives the distance from the corners of the region's triangle of the uncertain part, if that
+    /// is hardly more than the given length.
     pub(crate) fn backs(
         &self,
         region: &Region,
@@ -169,7 +173,8 @@ impl Pixels {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The same in any direction and along the normals of a region. Neither is less than [`Self::allowed_length`].
+    /// The allowed lengths in any direction and along the normals of a region. Neither is less than
+    /// [`Self::allowed_length`].
     ///
     /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
     /// half of the other are within the limit together.
@@ -497,7 +502,7 @@ mod tests {
                         );
                         closest_along = closest_along.max(found / limit);
                     }
-                    // Both parts together, and the number of pixels that is told.
+                    // Both parts together, and the number of pixels that is reported.
                     let (share, total) = (random.signed().abs(), 3.0 * random.signed().abs());
                     let (part, rest) = (share * total * height, (1.0 - share) * total * length);
                     let told = pixels.seen(&region, (part, rest), &nobodys);
@@ -613,7 +618,8 @@ mod tests {
                     .seen(&region, (0.01, 0.02), &nobodys)
                     .max(2.0 * pixels.rest_ratio(&backs))
             );
-            // An eighth of what is allowed comes to a little more where it is nearer to the eye than the region.
+            // An eighth of the allowed length has a little more pixels where it is nearer to the
+            // eye than the region.
             assert!(pixels.rest_ratio(&backs) < 0.25);
             half += usize::from(told > 0.0);
             rests = rests.max(pixels.rest_ratio(&backs));

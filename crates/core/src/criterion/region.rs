@@ -1,7 +1,7 @@
 //! Where a part of the surface lies and which way it looks: what criteria that depend on a viewer are asked about.
 //!
-//! Angles stand as sines of half angles from 0 to 90°; 1 also stands for all beyond, every direction. Sums saturate
-//! there, so that a cone of 1 means "anything".
+//! Angles are stored as sines of half angles from 0 to 90°; 1 also means every greater angle, that
+//! is every direction. Sums saturate there, so that a cone of 1 means "anything".
 
 use crate::vector::DVec3;
 
@@ -38,7 +38,7 @@ impl Region {
         }
     }
 
-    /// The same for all that is within `distance` of the ball.
+    /// The region grown to all points within `distance` of the ball.
     pub(crate) fn grown(self, distance: f64) -> Self {
         Self {
             radius: self.radius + distance,
@@ -46,7 +46,8 @@ impl Region {
         }
     }
 
-    /// The same with normals that differ by an angle with this chord (2 sin(θ/2)) from what the cone holds.
+    /// The region with normals that differ by an angle with this chord (2 sin(θ/2)) from those in
+    /// the cone.
     pub(crate) fn turned(self, chord: f64) -> Self {
         Self {
             sine: sum_of_angles(self.sine, sine_of_chord(chord)),

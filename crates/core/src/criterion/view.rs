@@ -25,7 +25,7 @@ pub struct View {
     pub dilatation: f64,
 }
 
-/// What a face's place in the view makes of the cone's angle α.
+/// The effect of a face's position in the view on the cone's angle α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AngleLimit {
     /// The face looks away: never divided (α f(β) = π).

@@ -18,7 +18,8 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Levels after which parts at irregular vertices are given up. What fades there dies away more slowly the more edges a vertex has.
+/// Levels after which parts at irregular vertices are given up. The subdominant terms there shrink
+/// more slowly the more edges a vertex has.
 pub(crate) const DEEPEST: u32 = 24;
 
 /// Divisions into four of regular parts that may look one way, though their coefficients have both signs.
@@ -35,7 +36,7 @@ pub enum Facing {
     Undecided,
 }
 
-/// What is known of a piece.
+/// How a piece faces the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Look {
     /// All of it is seen from this side.
@@ -65,7 +66,7 @@ impl Look {
         }
     }
 
-    /// That of two pieces together.
+    /// The facing of two pieces together.
     fn and(self, other: Self) -> Self {
         match (self, other) {
             _ if self == other => self,
@@ -323,7 +324,8 @@ mod tests {
         assert!(found > 800 && 20 * found > 17 * all, "{found} of {all}");
     }
 
-    /// All that is seen from the front of what is said to be a back is as near to a corner as is said, beside creases, boundaries and darts.
+    /// All points seen from the front on a reported back are as near to a corner as reported,
+    /// except at creases, boundaries and darts.
     #[test]
     fn backs_but_for_corners_are_backs_elsewhere() {
         let mut random = Random::new(29);

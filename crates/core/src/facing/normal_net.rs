@@ -36,7 +36,7 @@ const LONGEST: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalNet {
     pub(super) normals: [DVec3; SEXTIC],
-    /// What rounding may do to them.
+    /// The greatest rounding error of the normals.
     pub(super) rounding: f64,
     /// The net's points, scaled, and what rounding may do to these.
     points: [DVec3; QUARTIC],
@@ -108,7 +108,8 @@ impl NormalNet {
         self.normals.iter().all(is_back) || self.from(eye) == Look::All(Side::Back)
     }
 
-    /// What rounding may do to products of normals and vectors up to so long towards an eye.
+    /// The greatest rounding error of products of normals and vectors up to this length towards an
+    /// eye.
     fn rounding_of(&self, eye: DVec3, farthest: f64) -> f64 {
         let of_sight = self.point_rounding + 8.0 * f64::EPSILON * eye.abs().max_element();
         let of_normals = self.rounding + LONGEST * SUM_ROUNDING;

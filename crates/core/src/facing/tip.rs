@@ -6,8 +6,9 @@
 //!
 //! > `λ²ʲ (J_t · t₁ × t₂ + e_t)`, `|e_t| ≤ 2ρτ + ρ²`,
 //!
-//! J_t being the net of the map's Jacobian, which is positive, and τ the greatest `|t₁||∂χ₁| + |t₂||∂χ₂|`. So all normals are within
-//! the angle of sine `|e|/(J |t₁ × t₂|)` of t₁ × t₂. As a piece is refined, ρ falls beside t: from some level on there is a cone.
+//! J_t being the net of the map's Jacobian, which is positive, and τ the greatest
+//! `|t₁||∂χ₁| + |t₂||∂χ₂|`. So all normals are within the angle of sine `|e|/(J |t₁ × t₂|)` of t₁ ×
+//! t₂. As a piece is refined, ρ falls relative to t: from some level on there is a cone.
 
 use super::Cone;
 use crate::patch::Rules;
@@ -44,7 +45,7 @@ pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone
     let off = left * (2.0 * steepest + left);
     let axis = unit_or_zero(normal);
     let sine = off / (map.least_jacobian * normal.length());
-    // What is not a number is no cone.
+    // A cone with a NaN is none.
     let is_one =
         scale > 0.0 && axis != DVec3::ZERO && map.least_jacobian > 0.0 && sine < 1.0 - 1e-9;
     is_one.then_some(Cone {

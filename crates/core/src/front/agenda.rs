@@ -22,7 +22,7 @@ enum Scale {
 const STEPS: usize = 1 << 14;
 const RING: usize = 1 << 12;
 
-/// Bits of a number's fraction that tell buckets apart.
+/// Bits of a number's fraction that distinguish buckets.
 const FRACTION: u32 = 8;
 
 /// Nodes by key.
@@ -81,7 +81,7 @@ impl Agenda {
         }
     }
 
-    /// Puts a node down; `stamp` tells it from others that had its number.
+    /// Puts a node down; `stamp` distinguishes it from earlier nodes of its number.
     pub(super) fn put(&mut self, key: f64, node: u32, stamp: u32) {
         let bucket = self.bucket(key);
         self.buckets[bucket].push(Entry { key, node, stamp });
@@ -105,8 +105,8 @@ impl Agenda {
         }
     }
 
-    /// Turns the hand of a ring to `time`, and takes out the nodes that are due by then; `is_current` tells from a node's number and stamp
-    /// whether it is still there.
+    /// Turns the hand of a ring to `time`, and takes out the nodes that are due by then;
+    /// `is_current` decides by a node's number and stamp whether it still exists.
     pub(super) fn turn_to(
         &mut self,
         time: f64,

@@ -7,7 +7,7 @@ use crate::vector::DVec3;
 /// Marks a slot whose triangle is gone.
 const NOBODY: u32 = u32::MAX;
 
-/// What an update changed in a front's buffers: what is not named is as it was.
+/// The changes of an update in a front's buffers: slots that are not named are unchanged.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Changes {
@@ -31,7 +31,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Brings the triangles up to date, and tells which slots were written.
+    /// Brings the triangles up to date, and reports the slots that were written.
     pub(super) fn update(&mut self, forest: &mut Forest<'_>) -> Vec<u32> {
         let mut holes = core::mem::take(&mut forest.released);
         holes

@@ -1,13 +1,15 @@
-//! What is asked of a front, and what that means for a node: whether it is too far from the surface, and for how long that is certain
-//! while cameras move.
+//! The demand on a front and its test for a node: whether it is too far from the surface, and for
+//! how long the outcome is certain while cameras move.
 //!
 //! **Cameras.** As the criterion for pixels proves, a distance V from a point that is seen at depth z, φ off the axis, is at most F V / (cos φ (z − V))
 //! pixels, F being those of a unit length at depth 1. With d the distance from the eye to a ball that holds the node, z ≥ d cos φ, and
 //! cos φ ≥ 1/G at the picture's corners, that is within a limit of p pixels if d ≥ V G (F G + p)/p. So a node is divided where its ball is
 //! nearer to the eye than that and not outside a side of the frame: which does not depend on how the camera is turned, but for the frame.
 //!
-//! **For how long.** An eye that moves by m changes d by m at most. Where it moves from e to e′ and the outward normal n of a side of the
-//! frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ + (c − e)·(n′ − n), at most |e − e′| + |c − e| |n′ − n|. So beside a clock that advances by
+//! **For how long.** An eye that moves by m changes d by m at most. Where it moves from e to e′ and
+//! the outward normal n of a side of the frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ +
+//! (c − e)·(n′ − n), at most |e − e′| + |c − e| |n′ − n|. So in addition to a clock that advances
+//! by
 //! |e − e′|, which what is too far away keeps to, there is one that advances by |e − e′| + Λ|n′ − n|, Λ any length, margins shrink no faster than the clock advances, those of sides at a distance beyond Λ
 //! no faster than that times distance/Λ.
 
@@ -24,7 +26,8 @@ pub(super) const MOST_TRIANGLES: usize = 10_000_000;
 /// Rounding takes no more than this of what margins are made of.
 const ROUNDING: f64 = 1e-12;
 
-/// What is asked of a front: how far triangles may be from the limit surface, and how many there may be.
+/// The demand on a front: the greatest distance of its triangles from the limit surface, and the
+/// greatest number of triangles.
 ///
 /// ```
 /// use limitmesh::front::Demand;
@@ -40,7 +43,7 @@ pub struct Demand {
     pub(super) max_levels: u32,
 }
 
-/// What a node must keep.
+/// The goal that a node must meet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Goal {
     /// A distance.
@@ -208,7 +211,7 @@ impl Eye {
     }
 }
 
-/// What a node answers.
+/// The outcome of a node's test.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     /// Whether it wants to be divided.
@@ -220,7 +223,8 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// The answer for this camera and another one: one is enough, and none may come to want it.
+    /// The answer for this camera and another one: one that wants the node is enough, and neither
+    /// may begin to want it.
     fn and(self, other: Self) -> Self {
         let turns = self.turns || other.turns;
         match (self.wants, other.wants) {
@@ -240,7 +244,7 @@ impl Answer {
     }
 }
 
-/// What nodes are asked: whether a measure of theirs is above a limit.
+/// The test of nodes: whether a measure is above a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Question {
     /// The cameras; without, distances are what is measured.
@@ -267,7 +271,7 @@ impl Question {
         })
     }
 
-    /// What is compared with the limit.
+    /// The value that is compared with the limit.
     pub(super) fn measure(&self, extent: &Extent) -> f64 {
         match &self.eyes {
             None => extent.value,
@@ -299,7 +303,8 @@ impl Question {
         }
     }
 
-    /// How far clocks advance from another question to this one, without turns and with them; infinitely far where margins do not tell.
+    /// How far clocks advance from another question to this one, without turns and with them;
+    /// infinitely far where margins do not apply.
     pub(super) fn moved(&self, from: &Self, length: f64) -> [f64; 2] {
         match (&self.eyes, &from.eyes) {
             (Some(eyes), Some(before))

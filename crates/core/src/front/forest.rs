@@ -1,8 +1,9 @@
 //! Quadtrees over the control faces with their neighbours and vertices, divided and merged node by node. Knows no demands.
 //!
-//! A node may be divided when the nodes of its own level beyond its edges exist, and merged when its children are not divided. Edges
-//! along which sheets were cut apart have copies: their nodes count as neighbours, and where one of them is divided, those beside it that
-//! are not have a *hanging* vertex of their own at the same place.
+//! A node may be divided when the nodes of its own level beyond its edges exist, and merged when
+//! its children are not divided. Edges along which sheets were cut apart have copies: their nodes
+//! count as neighbours, and where one of them is divided, the neighbours that are not divided have
+//! *hanging* vertices of their own at one position.
 
 use std::collections::HashMap;
 
@@ -21,7 +22,7 @@ use crate::vector::{DVec3, vector};
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// What is beyond an edge of a node, on its level.
+/// The region beyond an edge of a node, on its level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Across {
     /// Nothing, or copies of the edge.
@@ -49,7 +50,7 @@ pub(super) struct Node {
     ground: Ground,
 }
 
-/// What a demand looks at, in one line of the cache.
+/// The values that a demand reads, in one line of the cache.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Extent {
@@ -180,7 +181,7 @@ impl<'a> Forest<'a> {
         self.pieces.surface()
     }
 
-    /// What values are.
+    /// The measure of the values.
     pub(super) fn measure(&self) -> Measure {
         self.pieces.measure()
     }
@@ -434,8 +435,8 @@ impl<'a> Forest<'a> {
         vertex
     }
 
-    /// The point in the middle of an edge: all sides could tell, and the first in order of control faces and paths does, so that it has
-    /// the same bits whoever asks.
+    /// The point in the middle of an edge. The first side in order of control faces and paths
+    /// computes it, so that it has the same bits on all sides.
     fn middle_position(&self, node: u32, edge: u8) -> DVec3 {
         let key = |node: u32| (self.node(node).place.face, self.node(node).place.path);
         let beside = self.beside(node, edge);

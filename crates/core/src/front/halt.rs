@@ -36,7 +36,7 @@ impl<'o> Halt<'o> {
         self.is_asked
     }
 
-    /// What is polled from other loops.
+    /// The watch that other loops poll.
     pub(super) fn watch(&mut self) -> &mut Watch<'o> {
         &mut self.watch
     }

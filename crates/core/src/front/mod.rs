@@ -1,12 +1,14 @@
-//! A front: triangles that stand for a limit surface, refined and coarsened from one demand to the next.
+//! A front: triangles that approximate a limit surface, refined and coarsened from one demand to
+//! the next.
 //!
 //! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by local operations, so that every other
 //! adaptive mesh is reached from any given one. Here the result does not depend on where one comes from: the mesh for a demand is a
 //! function of the demand, to the byte, and an update looks only at what differs.
 //!
-//! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the pictures of cameras, a number of
-//! triangles. Gives a conforming mesh ([`Front::mesh`]), the same in buffers of which an update tells what it changed
-//! ([`Front::positions`], [`Front::triangles`], [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
+//! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the
+//! pictures of cameras, a number of triangles. Gives a conforming mesh ([`Front::mesh`]), its
+//! buffers, whose changes an update reports ([`Front::positions`], [`Front::triangles`],
+//! [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
 //!
 //! A front may go by other criteria of the literature instead of distances ([`Measure`]), to be compared with them.
 //!
@@ -73,7 +75,7 @@ pub enum FrontError {
     /// The scheme has no limit at the shape of some ring.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// What is asked is out of range.
+    /// The demand is out of range.
     #[error(transparent)]
     Demand(#[from] CriterionError),
     /// The result is no mesh.
@@ -84,12 +86,12 @@ pub enum FrontError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Triangles that stand for the limit surface of a control mesh, kept up to date with what is asked of them.
+/// Triangles that approximate the limit surface of a control mesh, updated to the current demand.
 pub struct Front<'a> {
     forest: Forest<'a>,
     buffers: Buffers,
     changes: Changes,
-    /// What was asked for last.
+    /// The last demand.
     demand: Option<Demand>,
     question: Question,
     /// Nodes by what they are measured, or by when cameras have moved so far that they are to be asked again.
@@ -127,8 +129,8 @@ impl<'a> Front<'a> {
         Self::measured_by(control, scheme, Measure::Distance)
     }
 
-    /// The same going by another measure than distances: what [`Demand::tolerance`] asks is then in that measure's unit. Cameras go with
-    /// distances alone.
+    /// A front with another measure than distances: [`Demand::tolerance`] is then in that measure's
+    /// unit. Cameras need distances.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -190,7 +192,8 @@ impl<'a> Front<'a> {
         Ok(front)
     }
 
-    /// Brings the front to another demand. What it is then depends on the demand alone; only what differs is looked at, and is told.
+    /// Brings the front to another demand. The front depends on the last demand alone. Only the
+    /// difference is computed, and the changes are reported.
     ///
     /// Everything is looked at once where a demand is of another kind than the one before: cameras after a tolerance, other
     /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
@@ -234,7 +237,7 @@ impl<'a> Front<'a> {
         self.demand = Some(demand.clone());
         let (mut counts, mut halt) = ((0, 0), Halt::new(observer));
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
-        // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
+        // A demand is mostly close to the last one; the first demand begins with the coarsest mesh.
         if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
             let greatest = self.forest.greatest(|extent| question.measure(extent));
             let is_near =
@@ -366,7 +369,8 @@ impl<'a> Front<'a> {
         self.settle(lost, gained, (most, counts, halt))
     }
 
-    /// The same by measures that are kept for all nodes: for distances, and while a limit is searched for.
+    /// The test by measures that are kept for all nodes: for distances, and while a limit is
+    /// searched for.
     fn ask_kept(
         &mut self,
         question: Question,
@@ -502,12 +506,13 @@ impl<'a> Front<'a> {
         &self.buffers.triangles
     }
 
-    /// What the last update changed.
+    /// The changes of the last update.
     pub fn changes(&self) -> &Changes {
         &self.changes
     }
 
-    /// The mesh, in an order of its own: the control mesh's vertices, then others as one comes to them on a way over the control faces.
+    /// The mesh, in an order of its own: the control mesh's vertices, then the others in the order
+    /// of a walk over the control faces.
     ///
     /// # Errors
     /// A coordinate is not finite.
@@ -519,7 +524,7 @@ impl<'a> Front<'a> {
         )?)
     }
 
-    /// The same mesh with the tags that last, and with where it came from.
+    /// The mesh with its infinitely sharp tags and its origins.
     ///
     /// # Errors
     /// A coordinate is not finite.

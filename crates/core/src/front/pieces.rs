@@ -40,7 +40,7 @@ struct General {
     middles: [DVec3; 3],
 }
 
-/// What stands in places that are numbered, freed and taken again.
+/// Items in numbered slots, which are freed and used again.
 #[derive(Debug)]
 struct Shelf<T> {
     all: Vec<Option<T>>,
@@ -262,7 +262,7 @@ fn quartic(points: &Points) -> Quartic {
     Quartic::of(&BezierTriangle::of(points), 0)
 }
 
-/// A point of a piece: the same to the bit for whoever asks.
+/// A point of a piece, with the same bits for each caller.
 fn at(piece: &Quartic, [u, v]: [f64; 2]) -> DVec3 {
     let [[x], [y], [z]] = piece.points_at(&[u], &[v], 3);
     DVec3::new(x, y, z)

@@ -1,6 +1,7 @@
 //! A front's mesh in an order that the forest alone decides, and where its vertices and triangles came from on the control mesh.
 //!
-//! Vertices of the control mesh come first, the others as a walk over the control faces comes to them.
+//! Vertices of the control mesh come first, the others in the order of a walk over the control
+//! faces.
 
 use super::buffers::covering;
 use super::forest::{Forest, NONE};
@@ -114,7 +115,7 @@ pub(super) struct Numbered {
     parents: Vec<u32>,
 }
 
-/// What stands in the forest.
+/// The elements of the forest, numbered.
 pub(super) fn numbered(forest: &Forest<'_>) -> Numbered {
     let control = forest.surface().control();
     let (vertices, faces) = (control.vertex_count(), control.face_count());

@@ -1,7 +1,8 @@
 //! A binary tree of boxes over anything that has one, for searches that look at what is near, or in the way of a ray, first.
 //!
-//! Items are ordered by median cuts across the longest side of the box of their middles; those with equal coordinates are told apart by
-//! their numbers, so that the tree depends on the boxes alone. A node's items stand together in that order.
+//! Items are ordered by median cuts across the longest side of the box of their middles; those with
+//! equal coordinates are ordered by their numbers, so that the tree depends on the boxes alone. A
+//! node's items stand together in that order.
 
 use smallvec::SmallVec;
 
@@ -59,7 +60,7 @@ pub(crate) struct BoxTree {
     items: Vec<u32>,
 }
 
-/// What a search wants of a tree.
+/// The query of a search.
 pub(crate) trait Search {
     /// A bound from below on what is in a box, in whatever it is that the search wants little of; infinite where it wants nothing.
     fn bound(&self, bounds: &Bounds) -> f64;
@@ -70,7 +71,7 @@ pub(crate) trait Search {
     /// Looks at an item.
     fn visit(&mut self, item: u32);
 
-    /// What has this bound is passed over.
+    /// Called with the bound of each node that is skipped.
     fn pass_over(&mut self, _bound: f64) {}
 }
 

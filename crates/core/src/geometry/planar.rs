@@ -11,9 +11,10 @@ const ASKED: usize = 256;
 /// Halvings of a square in each direction along the curve through it.
 const ORDER: u32 = 16;
 
-/// Triangles that cover what lies to the left of the directed rim edges, with all points for vertices. `None` where two points are
-/// at one place or rim edges cross or touch, and when stopped. Points are at most some units from the origin.
-/// Coordinates too small to be told from 0 are 0.
+/// Triangles that cover what lies to the left of the directed rim edges, with all points for
+/// vertices. `None` where two points are at one place or rim edges cross or touch, and when
+/// stopped. Points are at most some units from the origin. Coordinates too close to 0 to be
+/// distinguished are 0.
 pub(crate) fn triangulated(
     points: &[[f64; 2]],
     rim: &[[u32; 2]],
@@ -72,8 +73,8 @@ pub(crate) fn triangulated(
     )
 }
 
-/// The numbers of points in the order in which Hilbert's curve passes them: each is inserted beside the one before, so that it is found in a few steps
-/// however the points were numbered.
+/// The numbers of points in the order in which Hilbert's curve passes them: each is inserted next
+/// to the one before, so that it is found in a few steps however the points were numbered.
 fn along_curve(points: &[[f64; 2]], is_stopped: &IsStopped<'_>) -> Vec<u32> {
     let corner = [0, 1].map(|axis| {
         points

@@ -1,10 +1,10 @@
 //! The point of a triangle closest to the origin, in double precision, for any triangle: slivers, needles and
 //! triangles without area included.
 //!
-//! The Voronoi regions of the triangle's corners, sides and inside are told apart by the signs of dot products
-//! (Ericson, Real-Time Collision Detection, section 5.1.5). Their products of products lose too many digits on
-//! slivers and far away from small triangles; there the three sides are measured one by one and the inside
-//! through the triangle's normal.
+//! The Voronoi regions of the triangle's corners, sides and inside are distinguished by the signs
+//! of dot products (Ericson, Real-Time Collision Detection, section 5.1.5). Their products of
+//! products lose too many digits on slivers and far away from small triangles; there the three
+//! sides are measured one by one and the inside through the triangle's normal.
 
 use crate::vector::DVec3;
 
@@ -22,7 +22,7 @@ pub(crate) struct Foot {
 /// of the height, and its effect on the distance below rounding.
 const WELL_SHAPED: f64 = 1e-7;
 
-/// The foot on the corner-weighted point.
+/// The projection with these corner weights.
 #[inline]
 fn foot(weights: [f64; 3], at: DVec3) -> Foot {
     Foot {

@@ -21,10 +21,10 @@ use crate::progress::{Cancelled, Watch};
 use crate::vector::{DVec3, vector};
 use std::collections::{HashMap, HashSet};
 
-/// Residuals below this, beside the greatest distance of a limit from its vertex, are nothing.
+/// Residuals below this, relative to the greatest distance of a limit from its vertex, are zero.
 const ACCURACY: f64 = 1e-14;
 
-/// Residuals below this, beside the greatest coordinate, are what rounding leaves of nothing.
+/// Residuals below this, relative to the greatest coordinate, are within rounding.
 const ROUNDING: f64 = 1e-17;
 
 /// Units in the last place that rounding the control points and adding up a limit can make.
@@ -58,9 +58,9 @@ pub(super) enum Limits<'a> {
 pub(super) struct Near<'a> {
     /// By vertex.
     pub(super) reach: &'a [f64],
-    /// How much being near counts beside being fair.
+    /// The weight of nearness relative to fairness.
     pub(super) nearness: f64,
-    /// How much less fair than possible they may be, beside limits at the vertices.
+    /// How much less fair than possible they may be, relative to limits at the vertices.
     pub(super) nothing: f64,
     /// By vertex, how far limits are from them to begin with.
     pub(super) from: &'a [DVec3],
@@ -89,7 +89,8 @@ pub(super) struct ControlPoints<'m> {
     matrix: Sparse,
     /// First copies that keep their place, wherever their limit is.
     kept: HashSet<u32>,
-    /// These, and first copies whose rows are for an edge beside them that is shorter than it is.
+    /// The relaxed vertices, and first copies whose rows are for an adjacent edge that is shorter
+    /// than theirs.
     passed_by: HashSet<u32>,
     /// First copies that keep their place though their limit is elsewhere in its plane, with the unit normal of that.
     planes: HashMap<u32, DVec3>,
@@ -172,8 +173,8 @@ impl<'m> ControlPoints<'m> {
         Ok(true)
     }
 
-    /// How far the surface misses a vertex whose limit is so far away: only across its plane where it keeps its place, and not at all
-    /// where it is passed by.
+    /// The distance of the surface from a vertex whose limit is at this offset: only across its
+    /// plane where its control point is kept, and zero where it is relaxed.
     pub(super) fn missed(&self, v: usize, away: DVec3) -> DVec3 {
         let first = self.first_copy[v];
         match self.planes.get(&first) {
@@ -183,7 +184,7 @@ impl<'m> ControlPoints<'m> {
         }
     }
 
-    /// The vertices that are passed by, ascending.
+    /// The relaxed vertices, ascending.
     pub(super) fn passed_by(&self) -> Vec<VertexId> {
         if self.passed_by.is_empty() {
             return Vec::new();
@@ -367,15 +368,16 @@ impl<'m> ControlPoints<'m> {
         self.matrix.row(v).map(towards).sum()
     }
 
-    /// What rounding leaves of limits at their vertices: some units in the last place of the greatest coordinate.
+    /// The rounding error of limits at their vertices: some units in the last place of the greatest
+    /// coordinate.
     pub(super) fn rounding(&self) -> f64 {
         ROUNDINGS * f64::EPSILON / self.unit
     }
 
-    /// Where a control point comes to stand.
+    /// The position of a control point.
     pub(super) fn position(&self, v: usize, by: DVec3) -> [f64; 3] {
         let from = self.mesh.positions()[v];
-        // What stays keeps its bits.
+        // A vertex that does not move keeps its bits.
         if by == DVec3::ZERO {
             from
         } else {
@@ -416,7 +418,7 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
     matrix
 }
 
-/// The same rows, but for vertices that keep their place.
+/// The rows, except for vertices that keep their control point.
 fn keeping(rows: &Sparse, is_kept: impl Fn(u32) -> bool) -> Sparse {
     let mut matrix = Sparse::empty();
     for v in 0..rows.rows() as u32 {

@@ -11,8 +11,8 @@
 //! y, so that what is needed where the method looks ahead follows from the iterates without solving again. ε makes the answer
 //! unique: of equally fair ones that nearest to the vertices.
 //!
-//! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the gap of Frank and Wolfe;
-//! Jaggi 2013). The iteration ends where that gap is small, and tells it.
+//! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the
+//! gap of Frank and Wolfe; Jaggi 2013). The iteration ends where that gap is small, and reports it.
 
 use super::sparse::{Sparse, greatest, sum, update};
 use super::system::{Solution, System};
@@ -25,10 +25,10 @@ use crate::vector::DVec3;
 /// An ε that is far below the curvature of the energy in any but the longest waves.
 pub(super) const NEARNESS: f64 = 1e-6;
 
-/// The gap that is small enough, beside the energy and beside what can be gained.
+/// The sufficient gap, relative to the energy and to the possible gain.
 const GAP: f64 = 1e-2;
 
-/// An energy that is as good as none, beside that of limits at the vertices.
+/// A negligible energy, relative to that of limits at the vertices.
 pub(super) const NOTHING: f64 = 1e-9;
 
 /// Steps of the projected gradient at most.
@@ -37,16 +37,18 @@ const MOST_STEPS: usize = 500;
 /// The greatest curvature of the energy that is tried first; doubled where that is too little.
 const CURVATURE: f64 = 8.0;
 
-/// Residuals of the systems on the way, beside what they change.
+/// Residuals of the systems on the way, relative to their changes.
 const ACCURACY: f64 = 1e-7;
 
 /// How fair a control mesh is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Fairness {
-    /// The energy, beside that of the control points whose limits are the vertices: 1 where nothing was gained.
+    /// The energy, relative to that of the control points whose limits are the vertices: 1 where
+    /// nothing was gained.
     pub energy: f64,
-    /// What the least energy is at least, in the same measure: the answer is as good as this is near.
+    /// A lower bound of the least energy, relative to the energy at which [`Self::energy`] is 1:
+    /// the answer is as good as this is near.
     pub least_energy: f64,
     /// Steps of the projected gradient, in the part of the mesh that took most.
     pub steps: usize,
@@ -160,7 +162,7 @@ pub(super) struct Bounds<'a> {
     pub(super) reach: &'a [f64],
     /// ε.
     pub(super) nearness: f64,
-    /// The gap that is small enough in any case, beside the energy of limits at the vertices.
+    /// The gap that is sufficient in any case, relative to the energy of limits at the vertices.
     pub(super) nothing: f64,
 }
 
@@ -242,7 +244,7 @@ impl Problem<'_> {
     }
 }
 
-/// What was found for a block.
+/// The result for a block.
 pub(super) struct Found {
     pub(super) solution: Solution,
     /// How far limits are from their vertices.

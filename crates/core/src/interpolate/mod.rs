@@ -20,14 +20,16 @@
 //! six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients at any size. Lines have 4 on the
 //! diagonal and two neighbours. No length enters: slivers are as good as other triangles.
 //!
-//! Where a dart or a tag that fades gives the neighbours of a vertex weights of their own, and for schemes outside the Loop
-//! family, the system may not be symmetric: conjugate gradients on the normal equations take its place, and where there is no
-//! solution they give the least squares answer. [`Interpolated::method`] says which it was.
+//! Where a dart or a semi-sharp tag gives the neighbours of a vertex weights of their own, and for
+//! schemes outside the Loop family, the system may not be symmetric: conjugate gradients on the
+//! normal equations take its place, and where there is no solution they give the least squares
+//! answer. [`Interpolated::method`] says which it was.
 //!
 //! # Lines whose edges are of very different lengths
-//! Along a crease or boundary a vertex beside a much longer edge is passed by, not through: `spacing.rs` says how, and why. Inside a region
-//! that lies in a plane and that sharp lines close off it keeps its place as a control point; the surface passes through it as through
-//! all of the plane (`planes.rs`).
+//! Along a crease or boundary a vertex adjacent to a much longer edge is relaxed: the curve passes
+//! near it, not through it. `spacing.rs` gives the rule and its reason. Inside a region that lies
+//! in a plane and that sharp lines close off it keeps its place as a control point; the surface
+//! passes through it as through all of the plane (`planes.rs`).
 //!
 //! # Near rather than through
 //! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
@@ -101,9 +103,9 @@ pub enum InterpolateError {
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,
-        /// The distance that it came to.
+        /// The distance that was reached.
         distance: f64,
-        /// What was asked for.
+        /// The requested distance.
         within: f64,
     },
     /// The observer asked to stop.
@@ -147,12 +149,15 @@ pub struct Interpolated {
     /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
     /// last solution.
     pub iterations: usize,
-    /// The greatest distance of a limit from its vertex, but for those [passed by](Self::passed_by), and from its plane where the surface is
-    /// all of that: what rounding leaves, unless limits may leave their vertices or the answer is one of least squares.
+    /// The greatest distance of a limit from its vertex, except for those
+    /// [relaxed](Self::passed_by), and from its plane where the surface fills that. It is the
+    /// rounding error, unless limits may leave their vertices or the answer is one of least
+    /// squares.
     pub residual: f64,
-    /// Vertices on creases and boundaries beside edges that are much longer than those around: the curve does not pass through them, but by
-    /// them, by less than it turns there; through them it would leave the mesh and come back. And those that keep their place so that the
-    /// surface [does not fold](crate::part::interpolate_unfolded).
+    /// The relaxed vertices. On creases and boundaries these are vertices adjacent to edges much
+    /// longer than their neighbours: the curve passes near them, at a distance smaller than its
+    /// turn there; a curve through them would leave the mesh and come back. Others keep their
+    /// control point so that the surface [does not fold](crate::part::interpolate_unfolded).
     pub passed_by: Vec<VertexId>,
     /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
     pub displacement: f64,

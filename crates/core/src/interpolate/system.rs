@@ -20,7 +20,8 @@ const MOST_STEPS: usize = 1000;
 /// Steps at most on the normal equations, whose condition is that of the system squared.
 const MOST_NORMAL_STEPS: usize = 20_000;
 
-/// Gradients of the sum of squares shorter than this, beside the residual, are what rounding leaves of zero: A's weights sum to 1.
+/// Gradients of the sum of squares shorter than this, relative to the residual, are within
+/// rounding: A's weights sum to 1.
 const NO_GRADIENT: f64 = 1e-14;
 
 /// How far weights of a row may differ that are called the same: rounding of their formulas.

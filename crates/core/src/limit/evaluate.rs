@@ -449,9 +449,7 @@ impl Tangents {
         self.greatest = self.greatest.max(difference.abs().max_element());
     }
 
-    /// The unit normal of the plane they span, if they do span one.
-    #[inline]
-    /// The values for a closed ring counted from another edge, at this angle on the regular ring.
+    /// The tangents of a closed ring counted from another edge, at this angle on the regular ring.
     fn turned(&self, angle: f64) -> Self {
         let (sine, cosine) = angle.sin_cos();
         let first = cosine * self.first + sine * self.second;
@@ -462,6 +460,8 @@ impl Tangents {
         }
     }
 
+    /// The unit normal of the plane they span, if they do span one.
+    #[inline]
     fn normal(&self) -> Option<DVec3> {
         let squares = [self.first.length_squared(), self.second.length_squared()];
         let least = LEAST_LENGTH * self.greatest;

@@ -86,8 +86,8 @@ const RUN: usize = 1024;
 
 /// Samples both surfaces and measures each against the other (equations 14 to 16).
 ///
-/// The greatest distances are lower bounds: the surfaces are measured at samples, not everywhere. The same
-/// surfaces and options give the same bytes for any number of threads.
+/// The greatest distances are lower bounds: the surfaces are measured at samples, not everywhere.
+/// The bytes of the result do not depend on the number of threads.
 ///
 /// ```
 /// use limitmesh::Triangles;
@@ -176,7 +176,8 @@ fn one_sided(
             (farthest, max) = (index, distance);
         }
     }
-    // A surface without area has no samples inside; its vertices and sides then stand for it.
+    // A surface without area has no samples inside; its vertices and sides are then measured
+    // instead.
     let insides = samples.insides();
     let over_the_surface = if insides.is_empty() {
         0..distances.len()

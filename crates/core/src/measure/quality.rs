@@ -49,7 +49,7 @@ pub fn triangle_quality(surface: Triangles<'_>) -> TriangleQuality {
     }
 }
 
-/// What is known of some of the triangles.
+/// The sums over some of the triangles.
 struct Tally {
     sum: f64,
     least: Option<(f64, usize)>,

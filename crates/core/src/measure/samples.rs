@@ -16,8 +16,8 @@ use crate::vector::{DVec3, vector};
 /// many enough that the list of sums stays small.
 const PIECE: usize = 16;
 
-/// Share of the samples beside the vertices that goes to the sides: 1 in 5. They matter where the greatest
-/// distance lies on a sharp edge; the mean needs the points inside.
+/// Share of the samples other than the vertices that goes to the sides: 1 in 5. They matter where
+/// the greatest distance lies on a sharp edge; the mean needs the points inside.
 const SIDE_SHARE: usize = 5;
 
 /// Where the vertices alone are more than the samples asked for, sides and insides still get this share of the
@@ -110,7 +110,8 @@ impl<'s, 'a> Samples<'s, 'a> {
         self.vertices.len() + self.sides.count + self.insides.count
     }
 
-    /// The samples inside triangles, each standing for the same area; empty if the surface has no area.
+    /// The samples inside triangles, each representing an equal area; empty if the surface has no
+    /// area.
     pub(super) fn insides(&self) -> Range<usize> {
         self.vertices.len() + self.sides.count..self.len()
     }
@@ -164,7 +165,7 @@ impl<'s, 'a> Samples<'s, 'a> {
         self.vertices.len()..self.len()
     }
 
-    /// The triangle, by its place in the tree's order, that a sample beside the vertices was taken from.
+    /// The triangle, by its position in the tree's order, of a sample that is no vertex.
     pub(super) fn triangle(&self, index: usize) -> usize {
         let mut found = 0;
         let first_inside = self.vertices.len() + self.sides.count;

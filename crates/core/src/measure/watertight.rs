@@ -13,7 +13,7 @@ use crate::geometry::{DisjointSets, for_each_edge};
 use crate::mesh::Triangles;
 use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled};
 
-/// What keeps a surface from being a closed, conforming manifold.
+/// The defects that keep a surface from being a closed, conforming manifold.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Watertightness {

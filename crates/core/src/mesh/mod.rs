@@ -223,7 +223,8 @@ impl Mesh {
 
     /// [`Self::from_soup`], with the faces and corners of the soup that those of the mesh are from.
     ///
-    /// # Errors Those of [`Self::from_soup`].
+    /// # Errors
+    /// Those of [`Self::from_soup`].
     pub fn from_soup_traced(
         soup: &PolygonSoup,
         options: &BuildOptions,

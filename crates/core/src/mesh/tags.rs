@@ -20,7 +20,7 @@ pub struct CreaseTag {
 pub struct CornerTag {
     /// The vertex.
     pub vertex: u32,
-    /// As many levels as [`CreaseTag::sharpness`] says.
+    /// Levels of refinement for which the tag holds; see [`CreaseTag::sharpness`].
     pub sharpness: f64,
 }
 

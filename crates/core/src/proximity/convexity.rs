@@ -13,7 +13,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, SEXTIC, multinomials, place, tangents};
 use crate::vector::DVec3;
 
-/// What of a piece decides how its distance from points bends.
+/// The part of a piece that decides how its distance from points bends.
 #[derive(Clone, Debug)]
 pub(super) struct Convexity {
     /// The least and greatest of `S_i·S_j + S·S_ij`: both by the first parameter, one by each, both by the second.

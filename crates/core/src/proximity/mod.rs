@@ -1,9 +1,11 @@
 //! How points lie to a limit surface: the closest point, certified, and whether a point is inside.
 //!
-//! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is in the hull of control points
-//! ([`pieces`]), so that no point of it is farther from the triangle of its limit corners than the hull's points are; boxes of hulls
-//! stand in a tree. What a search ([`nearest`]) passes over is at least so far away, and where the squared distance bends little over a piece
-//! ([`convexity`]), its value and derivatives at one place bound it. What is inside is told by the winding number ([`winding`]).
+//! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is
+//! in the hull of control points ([`pieces`]), so that no point of it is farther from the triangle
+//! of its limit corners than the hull's points are; boxes of hulls stand in a tree. A search
+//! ([`nearest`]) skips a box by its distance, and where the squared distance bends little over a
+//! piece ([`convexity`]), its value and derivatives at one place bound it. The winding number
+//! decides whether a point is inside ([`winding`]).
 
 mod convexity;
 mod nearest;
@@ -84,7 +86,7 @@ pub enum ProximityError {
     /// A tolerance that is none.
     #[error("the tolerance must be a length above 0, but is {tolerance}")]
     Tolerance {
-        /// What was given.
+        /// The given value.
         tolerance: f64,
     },
     /// The observer asked to stop.

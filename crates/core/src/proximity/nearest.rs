@@ -1,8 +1,10 @@
 //! The closest point, by branch and bound over boxes, faces and pieces, what may be nearest first.
 //!
-//! What has a bound that is not below the least distance found less the tolerance need not be looked at: its box is that far, or the triangle
-//! that it is near, or the squared distance bends so little downwards that its value and derivatives at one place bound it
-//! ([`super::convexity`]). Others are searched by Newton's method within their triangle, and quartered where that does not decide.
+//! A piece is skipped if a lower bound of its distance is not below the least distance found less
+//! the tolerance: the bound is by its box, or by the triangle that it is near, or the squared
+//! distance bends so little downwards that its value and derivatives at one place bound it
+//! ([`super::convexity`]). Others are searched by Newton's method within their triangle, and
+//! quartered where that does not decide.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,7 +21,7 @@ use crate::vector::{DVec3, vector};
 /// Newton's steps on a piece at most: it converges within five, or it is better to quarter the piece.
 const STEPS: usize = 8;
 
-/// The same where nothing is known of convexity, only to find a near point.
+/// The number of steps where nothing is known of convexity, only to find a near point.
 const FEW_STEPS: usize = 2;
 
 /// Pieces between two questions whether to stop: some milliseconds at most.
@@ -33,14 +35,14 @@ pub(super) struct Query<'q> {
     proximity: &'q Proximity<'q>,
     tolerance: f64,
     is_stopped: &'q IsStopped<'q>,
-    /// What is still to be looked at.
+    /// The pieces that wait.
     waiting: BinaryHeap<Waiting>,
     /// Pieces until the next question whether to stop.
     left: u32,
     /// The point, and the nearest one so far.
     from: DVec3,
     best: Best,
-    /// What was passed over is no nearer than this.
+    /// A lower bound of the distance of all skipped pieces.
     passed_over: f64,
 }
 
@@ -63,7 +65,7 @@ const NOTHING: Best = Best {
 /// Something that is no nearer than its bound.
 struct Waiting {
     bound: f64,
-    /// Tells those with equal bounds apart.
+    /// The order of pieces with equal bounds.
     number: u32,
     what: What,
 }
@@ -120,7 +122,7 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// What it finds is of no use once it was stopped.
+    /// The closest point; meaningless once the search was stopped.
     pub(super) fn closest(&mut self, point: [f64; 3]) -> Closest {
         let frame = &self.proximity.frame;
         (self.from, self.best, self.passed_over) =
@@ -267,7 +269,7 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// Takes a point if it is nearer than any before, and tells whether it is.
+    /// Takes a point if it is nearer than any before, and reports whether it is.
     fn offer(
         &mut self,
         distance: f64,
@@ -312,7 +314,7 @@ impl<'q> Query<'q> {
             let is_nearest = self.offer(away.length(), point + piece.origin, over, at);
             let gradient = [away.dot(by_u), away.dot(by_v)];
             let lower = convexity.bound(0.5 * away.length_squared(), at, gradient, eigenvalue);
-            // What is no number is no bound.
+            // NaN is no bound.
             let lower = if lower > 0.0 {
                 (2.0 * lower).sqrt()
             } else {

@@ -34,12 +34,12 @@ pub(super) struct Piece {
     pub(super) form: Form,
 }
 
-/// What a piece is made of.
+/// The form of a piece.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
     /// A polynomial.
     Regular(Box<RegularPiece>),
-    /// What is still to be refined.
+    /// A piece that is still to be refined.
     Irregular(Box<Patch>),
 }
 

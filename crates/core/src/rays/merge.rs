@@ -1,4 +1,4 @@
-//! What two pieces found on their common edge is one hit.
+//! Hits of two pieces on their common edge are merged to one.
 
 use super::Crossing;
 use super::search::Found;

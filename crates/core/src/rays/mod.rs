@@ -1,9 +1,10 @@
 //! Where rays meet a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision Surfaces", 1998).
 //!
-//! Their envelopes of the control mesh become hulls of pieces: a ray that passes beside the hull of a piece's control points misses it.
-//! A regular piece whose projection along the ray is injective ([`planar`]) is met once at most, and Newton's method finds where; any
-//! other is divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing is passed over in any other
-//! way, so no hit is missed. Boxes of pieces stand in a tree.
+//! Their envelopes of the control mesh become hulls of pieces: a ray that misses the hull of a
+//! piece's control points misses the piece. A regular piece whose projection along the ray is
+//! injective ([`planar`]) is met once at most, and Newton's method finds where; any other is
+//! divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing
+//! else is skipped, so no hit is missed. Boxes of pieces are in a tree.
 
 mod merge;
 mod pieces;
@@ -37,7 +38,7 @@ pub struct Ray {
     pub direction: [f64; 3],
 }
 
-/// What of a ray counts, and how exactly.
+/// Options of the queries of a ray: which hits count, and the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RayOptions {
@@ -45,8 +46,8 @@ pub struct RayOptions {
     pub from: f64,
     /// The greatest t that counts. Default: infinite.
     pub to: f64,
-    /// A length in the control mesh's units: a ray that touches the surface without being told to cross it within so little of it grazes
-    /// it. Default: 1e-10 of the control mesh's diagonal.
+    /// A length in the control mesh's units: a ray that touches the surface without certainly
+    /// crossing it, within this distance, grazes it. Default: 1e-10 of the control mesh's diagonal.
     pub tolerance: Option<f64>,
 }
 
@@ -198,8 +199,9 @@ impl<'a> RayCaster<'a> {
         })
     }
 
-    /// All points where a ray meets the surface, in their order along it. None is missed; what lies on an edge or a vertex is told once.
-    /// Rays without a direction, or that are not finite, meet nothing.
+    /// All points where a ray meets the surface, in their order along it. None is missed; a hit on
+    /// an edge or a vertex is reported once. Rays without a direction, or that are not finite, meet
+    /// nothing.
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Vec<Hit> {
         let Some((search, tolerance)) = self.searched(ray, options, false) else {
             return Vec::new();
@@ -258,7 +260,7 @@ impl<'a> RayCaster<'a> {
         Ok(blocks.into_iter().flatten().collect())
     }
 
-    /// What there is of each ray, in blocks of rays.
+    /// The results for each ray, in blocks of rays.
     fn of_all<T: Send>(
         &self,
         rays: &[Ray],

@@ -16,7 +16,7 @@ const KEPT_LEVELS: u32 = 3;
 /// Control faces up to which that is done: each takes some kilobytes. Beyond, pieces are refined when they are looked at.
 const MOST_DIVIDED: usize = 40_000;
 
-/// What rounding may do to a box, as a part of the surface's size.
+/// The rounding error of a box, as a part of the surface's size.
 const ROUNDING: f64 = 1e-13;
 
 /// A piece of the surface.
@@ -27,12 +27,12 @@ pub(super) struct Piece {
     pub(super) form: Form,
 }
 
-/// What a piece is made of.
+/// The form of a piece.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
     /// The points of a polynomial, scaled.
     Regular(Box<Points>),
-    /// What is still to be refined, as it is in the control mesh.
+    /// A piece that is still to be refined, as it is in the control mesh.
     Irregular(Box<Patch>),
 }
 

@@ -94,8 +94,8 @@ pub(super) struct Meeting {
     pub(super) is_front: bool,
 }
 
-/// Where the ray meets an injective piece, by Newton's method; `None` where that comes to no place of it, which does not say that there is
-/// none.
+/// Where the ray meets an injective piece, by Newton's method; `None` where that does not converge
+/// to a point of the piece, which does not prove that there is none.
 pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
     let quartic = Quartic::of(net, 0);
     let [mut u, mut v] = on_triangle(net.corners()).unwrap_or([1.0 / 3.0; 2]);

@@ -16,7 +16,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// Pieces that are looked at for a ray before those that are left count as grazed: a ray that runs within a surface that is nowhere flat.
 const MOST_PIECES: usize = 100_000;
 
-/// What is left undecided is no larger than this many times the tolerance.
+/// An undecided part is no larger than this many times the tolerance.
 const SIZE: f64 = 10.0;
 
 /// Coordinates along a ray.
@@ -150,7 +150,7 @@ impl<'a> RaySearch<'a> {
             return;
         }
         if self.is_first_enough {
-            // What is met twice there is still found twice.
+            // A point met twice there is still found twice.
             self.last = self.last.min(depth + self.tolerance);
         }
         self.found.push(Found {
@@ -161,7 +161,8 @@ impl<'a> RaySearch<'a> {
         });
     }
 
-    /// Whether points in whose hull a piece is are beside the ray, or before its start or behind its end.
+    /// Whether the hull of a piece's points is beyond the ray's sides, before its start or behind
+    /// its end.
     fn is_missed(
         &self,
         points: impl Iterator<Item = DVec3> + Clone,

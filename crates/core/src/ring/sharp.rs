@@ -11,7 +11,7 @@
 
 use super::RingShape;
 
-/// Sharpness from which nothing ever fades: OpenSubdiv's convention for files.
+/// Sharpness from which edges are infinitely sharp: OpenSubdiv's convention for files.
 pub const INFINITELY_SHARP: f64 = 10.0;
 
 /// Which rule a vertex follows.
@@ -48,7 +48,7 @@ pub struct SharpRing {
     pub spokes: Vec<f64>,
 }
 
-/// What is left of a sharpness after one refinement.
+/// The sharpness after one refinement.
 #[inline]
 pub(crate) fn faded(sharpness: f64) -> f64 {
     if sharpness >= INFINITELY_SHARP {
@@ -127,7 +127,7 @@ impl SharpRing {
         }
     }
 
-    /// The greatest sharpness that fades; 0 where nothing does.
+    /// The greatest semi-sharp sharpness; 0 without semi-sharp tags.
     pub fn fading(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]);
         all.copied()
@@ -135,14 +135,15 @@ impl SharpRing {
             .fold(0.0, f64::max)
     }
 
-    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
+    /// The least semi-sharp sharpness; [`INFINITELY_SHARP`] without semi-sharp tags.
     pub(crate) fn fades_first(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]).copied();
         all.filter(|&s| s > 0.0).fold(INFINITELY_SHARP, f64::min)
     }
 
-    /// How much of the next refinement follows the rules of the ring as sharp as it is now; the rest follows those
-    /// of the ring after it. Less than 1 where something is about to fade: the mean sharpness of all that is.
+    /// The share of the next refinement that follows the rules of the present ring; the rest
+    /// follows those of the ring after it. It is below 1 where semi-sharp tags are about to end:
+    /// their mean sharpness.
     pub fn present_weight(&self) -> f64 {
         present_weight(self.vertex, &self.spokes)
     }

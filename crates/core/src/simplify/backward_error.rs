@@ -16,7 +16,7 @@ const LANES: usize = 4;
 pub(super) struct BackwardProbes {
     origin: DVec3,
     sites: Vec<(u32, DVec3)>,
-    /// The same relative to the first of them; single precision is enough to tell which is nearest.
+    /// The positions relative to the first one; single precision is enough to find the nearest.
     near: Vec<Vec3>,
     points: Vec<DVec3>,
 }

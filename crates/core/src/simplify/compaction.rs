@@ -5,7 +5,7 @@ use super::kept_features::Kind;
 use crate::index::VertexId;
 use crate::mesh::{CornerTag, CreaseTag, Junctions, Mesh, MeshError, NONE, Tags, Topology};
 
-/// Builds the mesh, and tells which fine vertex each of its vertices is.
+/// Builds the mesh, and gives the fine vertex of each of its vertices.
 pub(super) fn mesh(
     fine: &Mesh,
     surface: &EditableMesh,
@@ -39,7 +39,7 @@ pub(super) fn mesh(
     ))
 }
 
-/// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it stands for.
+/// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it replaces.
 fn creases(
     fine: &Mesh,
     surface: &EditableMesh,
@@ -53,7 +53,7 @@ fn creases(
             if surface.is_alive(start) {
                 let end = super::kept_features::end_of_chain(start, step, surface, kinds);
                 let ends = [number(start), number(end)];
-                // Seen from both ends, told from one.
+                // Seen from both ends, handled from one.
                 if ends[0] < ends[1] {
                     creases.push(CreaseTag {
                         vertices: ends,

@@ -1,8 +1,9 @@
 //! Edge collapses in the order of the error that they leave behind, up to a threshold that rises from round to round.
 //!
-//! A round passes over the vertices in their order, so that what is near in the mesh is near in memory, and collapses
-//! those whose best collapse stays below the threshold. What the others would cost is remembered; since that almost only
-//! rises while the stars grow, they are left alone until the threshold has reached it.
+//! A round passes over the vertices in their order, so that neighbours are near in memory, and
+//! collapses those whose best collapse stays below the threshold. The costs of the others are kept;
+//! since they almost only rise while the stars grow, they are left alone until the threshold has
+//! reached it.
 
 use super::Goals;
 use super::edge_flip::{Flipper, edges};
@@ -53,7 +54,7 @@ pub(super) struct Collapser<'t, 's, 'a> {
     flipper: Flipper,
     /// Asked before each change.
     prover: Option<Prover<'t, 's, 'a>>,
-    /// What costs no more is proven in the end.
+    /// The cost below which a collapse is proven in the end.
     sure: f64,
     /// Kept where there may be anything to take back.
     history: Option<History>,
@@ -158,7 +159,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         (0..self.refused.len()).filter(is_refused).count()
     }
 
-    /// Counts a look at a change, and tells the observer after every some hundred of them.
+    /// Counts the trial of a change, and calls the observer after every few hundred.
     fn observe(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         self.unobserved += 1;
         if self.unobserved < OBSERVED {
@@ -167,7 +168,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         self.unobserved = 0;
         let (all, left) = (self.reference.fine.face_count(), self.surface.faces_left());
         watch.triangles(left);
-        // What is left at a cost falls with its reciprocal: heights grow with the square of a triangle's size.
+        // The number left at a cost falls with its reciprocal: heights grow with the square of a
+        // triangle's size.
         let expected = (left as f64 * self.share) as usize;
         watch.done_of(all - left, all - expected.max(goals.triangles).min(left))
     }
@@ -314,7 +316,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         self.star.hand_over(&mut self.samples);
         self.reached = self.reached.max(cost);
         for &neighbour in &self.star.ring {
-            // What could not go may do so now.
+            // A collapse that was refused may be possible now.
             let known = &mut self.costs[neighbour as usize];
             if known.is_infinite() {
                 *known = cost;

@@ -19,7 +19,7 @@ pub(super) struct Flipper {
     region: StarRegion,
 }
 
-/// What proves that the new faces keep a distance, that distance, and where changes are recorded if they are.
+/// The prover of the new faces' distance, that distance, and the record of changes if there is one.
 pub(super) type Proof<'p, 't, 's, 'a> = (&'p mut Prover<'t, 's, 'a>, f64, Option<&'p mut History>);
 
 /// The two faces at an edge: their corners counter-clockwise, the edge running from the first to the third.
@@ -29,7 +29,7 @@ struct Quadrilateral {
     faces: [u32; 2],
 }
 
-/// What two new triangles are measured by: those that are there.
+/// The standard for two new triangles: the existing ones.
 #[derive(Clone, Copy)]
 struct Standard {
     worst: Worst,

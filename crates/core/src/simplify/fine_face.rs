@@ -142,8 +142,8 @@ impl Candidates {
         Corner::near(at, place, distance)
     }
 
-    /// What the face with these corners is within of the triangles, and which of them served, as bits; `None` if it is not
-    /// found to be within `goal`.
+    /// A bound of the distance of the face with these corners from the triangles, and the triangles
+    /// used, as bits; `None` if it is not found to be within `goal`.
     pub(super) fn bound(&mut self, mut corners: [Corner; 3], goal: f64) -> Option<(f64, u64)> {
         (self.goal, self.cuts, self.used) = (goal, MOST_CUTS, 0);
         for corner in &mut corners {
@@ -157,7 +157,7 @@ impl Candidates {
         Some((bound, self.used))
     }
 
-    /// What a corner is within of one of the triangles.
+    /// The distance of a corner from one of the triangles.
     #[inline]
     fn distance(&self, corner: &Corner, place: usize) -> f64 {
         let triangle = &self.triangles[place];
@@ -372,7 +372,8 @@ mod tests {
             .collect()
     }
 
-    /// The greatest distance of dense points of a face from a fan, each against all triangles one by one, and what is told of the face.
+    /// The greatest distance of dense points of a face from a fan, each against all triangles one
+    /// by one, and the bound reported for the face.
     fn looked_at(
         heights: &[f64],
         corners: [(f64, f64, f64); 3],

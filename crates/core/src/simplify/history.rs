@@ -103,8 +103,8 @@ impl History {
             .max()
     }
 
-    /// Takes back a change and those that came after it where it was; tells of each which faces are as they were again, and
-    /// the vertex that is back.
+    /// Takes back a change and those that came after it where it was; reports for each the restored
+    /// faces and vertex.
     pub(super) fn take_back(
         &mut self,
         change: u32,
@@ -188,7 +188,7 @@ mod tests {
     use crate::random::Random;
     use crate::vector::vector;
 
-    /// Whatever was collapsed and flipped, and in whichever order it is taken back, the mesh is what it was in the end.
+    /// Regardless of which changes are taken back and in which order, the mesh is as it was.
     #[test]
     fn what_is_taken_back_leaves_no_trace() {
         for name in ["sphere", "sheet", "bunny"] {

@@ -4,11 +4,12 @@
 //! they were. Closed meshes stay closed, manifolds stay manifolds of the same genus, boundaries and creases stay along
 //! their lines, and no triangle folds over.
 //!
-//! What a collapse costs is estimated from samples, locally and in both directions: the vertices that are gone are points of
-//! the surface, each cared for by the face nearest to it (`fine_samples.rs`); points of the new faces are measured from the
-//! tangent planes of the samples around (`backward_error.rs`); and where samples are few, the normals at the ends of an edge
-//! tell how far the surface bulges over it (`reference.rs`). Where the surface is curved more in one direction than in the
-//! other, long triangles come out of this by themselves.
+//! The cost of a collapse is estimated from samples, locally and in both directions: the vertices
+//! that are gone are points of the surface, each cared for by the face nearest to it
+//! (`fine_samples.rs`); points of the new faces are measured from the tangent planes of the samples
+//! around (`backward_error.rs`); and where samples are few, the normals at the ends of an edge give
+//! the height of the surface over it (`reference.rs`). Where the surface is curved more in one
+//! direction than in the other, long triangles come out of this by themselves.
 //!
 //! Whether a collapse may happen is proven before it happens, for what it touches (`proof.rs`, `fine_face.rs`). Where there
 //! is no proof the edge stays, and everything else goes on.
@@ -236,7 +237,7 @@ pub fn simplify_observed(
         .map(|bvh| Target::of_mesh(bvh, fine.topology()))
         .transpose()?;
     let mut watch = Watch::new(observer, Stage::Simplifying);
-    // Where their number alone stops the collapses nobody knows what is far from the limit.
+    // If the number alone stops the collapses, it is unknown which vertices are far from the limit.
     let sure = if goals.tolerance < f64::MAX {
         SURE * goals.tolerance
     } else {

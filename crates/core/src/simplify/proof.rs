@@ -18,7 +18,7 @@ use crate::measure::{Target, Worker};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Watch};
 
-/// Fine faces in a sheet at most: as many as a triangle of a mesh made this coarse stands for.
+/// The most fine faces of a sheet: as many as a triangle of a mesh made this coarse replaces.
 const SHEET: usize = 4096;
 
 /// The observer is called at faces whose numbers are multiples of this.
@@ -31,7 +31,7 @@ const MOST_AROUND: usize = 16;
 pub(super) struct Change<'a> {
     /// The faces that go or get other corners.
     pub(super) old: &'a [u32],
-    /// Those across the border, which stay.
+    /// The faces across the border, which stay.
     pub(super) around: &'a [u32],
     /// The vertex that goes, or [`NONE`].
     pub(super) gone: u32,
@@ -39,7 +39,7 @@ pub(super) struct Change<'a> {
     pub(super) region: &'a StarRegion,
 }
 
-/// What a fine face rests on after a change.
+/// The triangles that the proof of a fine face uses after a change.
 struct Rest {
     fine: u32,
     /// Places among the candidates, as bits.
@@ -47,19 +47,20 @@ struct Rest {
     bound: f64,
 }
 
-/// What has been proven, and what it rests on.
+/// The proven distances, and the triangles that they use.
 pub(super) struct Prover<'t, 's, 'a> {
     worker: Worker<'t, 's, 'a>,
     fine: &'a Mesh,
-    /// What rounding may have made of a distance.
+    /// The rounding error of a distance.
     slack: f64,
     /// For each face of the mesh the fine faces that rest on it, perhaps among others.
     resting: Vec<Vec<u32>>,
-    /// What each face of the mesh is within of the fine mesh; infinite where no proof has been taken yet.
+    /// A bound of the distance of each face of the mesh from the fine mesh; infinite before the
+    /// first proof.
     forward: Vec<f64>,
-    /// What each fine face is within of the mesh; likewise.
+    /// A bound of the distance of each fine face from the mesh; infinite before the first proof.
     backward: Vec<f64>,
-    /// The fine faces that the change asks for, each once: `stamps` tells those met in this round.
+    /// The fine faces that the change affects, each once: `stamps` marks those met in this round.
     affected: Vec<u32>,
     stamps: Vec<u32>,
     round: u32,

@@ -1,5 +1,5 @@
-//! What does not change while edges collapse: what kind each fine vertex is, the surface's normals there, and the
-//! conditions on a triangle that follow from them.
+//! The data that stay constant while edges collapse: the kind of each fine vertex, the surface's
+//! normals there, and the conditions on a triangle that follow from them.
 
 use super::kept_features::Kind;
 use super::triangle_plane::Plane;
@@ -15,15 +15,16 @@ pub(super) const LEAST_TURN: f64 = 0.2;
 /// thinner ones than this gain nothing more, and whoever works with the mesh suffers from them.
 const LEAST_SHAPE: f64 = 0.01;
 
-/// The least cosine between the normal of a vertex and those of the fine faces around for it to speak for the surface
-/// there: beyond 18° there is an edge that nobody tagged, or the fine mesh is too coarse.
+/// The least cosine between the normal of a vertex and those of the fine faces around for it to be
+/// the surface's normal there: beyond 18° there is an untagged edge, or the fine mesh is too
+/// coarse.
 pub(super) const LEAST_AGREEMENT: f64 = 0.95;
 
 /// Kinds and normals of the fine mesh's vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Reference<'a> {
     pub(super) kinds: &'a [Kind],
-    /// Unit normals; not used at creases and boundaries, where one does not tell.
+    /// Unit normals; not used at creases and boundaries, where one is not enough.
     pub(super) normals: &'a [DVec3],
     /// Whether the faces around a vertex agree with its normal.
     pub(super) agreed: &'a [bool],

@@ -1,4 +1,5 @@
-//! A piece of the surface, by its samples, and triangles that would stand for it: how far they are from each other.
+//! A piece of the surface, by its samples, and triangles that would replace it: their distance from
+//! each other.
 //!
 //! The error is looked for in both directions: samples of the surface against the nearest triangle, and points of the
 //! triangles against the surface ([`super::backward_error`]).

@@ -26,7 +26,7 @@ fn within(tolerance: f64) -> SimplifyOptions {
     SimplifyOptions::default().tolerance(Some(tolerance))
 }
 
-/// What holds for any mesh and any goal.
+/// The invariants for any mesh and any goal.
 fn check_invariants(fine: &Mesh, coarse: &Simplified) {
     let mesh = &coarse.mesh;
     mesh.validate().unwrap();
@@ -73,7 +73,8 @@ fn square(n: usize, height: impl Fn(f64, f64) -> f64) -> Mesh {
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
-/// Each triangle cut in four, the new vertices in the middles of the edges: the same surface.
+/// Each triangle cut in four, the new vertices in the middles of the edges, which keeps the
+/// surface.
 fn split_flat(mesh: &Mesh, times: usize) -> Mesh {
     let mut mesh = mesh.clone();
     for _ in 0..times {

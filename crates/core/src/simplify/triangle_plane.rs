@@ -108,7 +108,7 @@ pub(super) fn nearest(planes: &[Plane], point: DVec3) -> (f64, usize) {
     }
 }
 
-/// The same for a point that is above none of them.
+/// The nearest side for a point that is above none of them.
 #[cold]
 fn nearest_side(planes: &[Plane], point: DVec3) -> (f64, usize) {
     let mut best = (f64::INFINITY, 0);

@@ -109,7 +109,8 @@ impl VertexStar {
             .unwrap_or_else(|| previous(self.spokes[slot - 1]))
     }
 
-    /// The faces of the star as places in the ring: those of their two corners beside the centre.
+    /// The faces of the star as pairs of positions in the ring: their two corners other than the
+    /// centre.
     fn sectors(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let neighbours = self.ring.len();
         (0..self.spokes.len()).map(move |i| [i, if i + 1 == neighbours { 0 } else { i + 1 }])
@@ -231,14 +232,14 @@ impl VertexStar {
         let error = self
             .region
             .forward_error(self.chain_error().max(way.bulge), bound)?;
-        // With few samples the normals at the corners tell as much.
+        // With few samples the normals at the corners are as good.
         if self.region.sample_count() <= 2 * self.spokes.len() {
             return Some(error);
         }
         let (slot, n) = (way.slot, self.ring.len());
         let at = self.ring_positions[slot];
         for (i, &to) in self.ring_positions.iter().enumerate() {
-            // The edges to the neighbours beside it are there already.
+            // The edges to the adjacent neighbours exist already.
             let apart = (i + n - slot) % n;
             if (2..n - 1).contains(&apart) {
                 self.region.probe_edge(at, to);

@@ -14,7 +14,7 @@ use crate::refine::{ExactStop, Origin, RefineError, Traced};
 /// Divisions between two calls of the observer: some milliseconds.
 const POLLED: usize = 64;
 
-/// What adaptive √3-subdivision gave.
+/// The result of adaptive √3-subdivision.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Sqrt3 {
@@ -29,8 +29,8 @@ pub struct Sqrt3 {
     pub parents: Vec<u32>,
     /// Steps of the most divided part.
     pub levels: usize,
-    /// The greatest distance of samples of the limit surface from the triangles that stand for them: **estimated**, not proven. `None`
-    /// if angles alone were asked for.
+    /// The greatest distance of samples of the limit surface from the triangles that approximate
+    /// it: **estimated**, not proven. `None` if only angles were goals.
     pub estimated_distance: Option<f64>,
     /// How many times over the worst triangle fails the goals on quality; 0 without any.
     pub worst: f64,
@@ -59,8 +59,9 @@ impl Traced for Sqrt3 {
 /// divided ones is flipped. Where goals are met the result is the least such mesh, whatever the order of the divisions.
 ///
 /// # Errors
-/// A goal that is no positive number, a mesh whose diagonal is not within 1e-70 to 1e70, a tag that fades ([`RefineError::FadingTag`]), a vertex without a limit, or more
-/// elements than can be numbered.
+/// A goal that is no positive number, a mesh whose diagonal is not within 1e-70 to 1e70, a
+/// semi-sharp tag ([`RefineError::FadingTag`]), a vertex without a limit, or more elements than can
+/// be numbered.
 pub fn adaptive(control: &Mesh, options: &Sqrt3Options) -> Result<Sqrt3, RefineError> {
     adaptive_observed(control, options, &mut unobserved)
 }
@@ -214,7 +215,7 @@ impl Run<'_> {
     }
 
     fn look(&mut self, triangle: Triangle) {
-        // What came about on the way may be divided already.
+        // A triangle that arose on the way may be divided already.
         if !self.forest.is_there(triangle) {
             return;
         }

@@ -1,4 +1,5 @@
-//! How badly a triangle of the forest stands for the √3 limit surface: the paper's cone, and a distance that is estimated.
+//! The error of a triangle of the forest against the √3 limit surface: the paper's cone, and a
+//! distance that is estimated.
 //!
 //! The surface has no pieces that are polynomials, so distances are not proven: they are those of the limits of some vertices of
 //! later levels on and in a triangle, up to seven, from its plane part.
@@ -9,7 +10,7 @@ use crate::criterion::cone_ratio;
 use crate::geometry::closest_to_origin;
 use crate::vector::{DVec3, unit_normal};
 
-/// What is asked of triangles.
+/// The goals of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Goals {
     angle: Option<f64>,
@@ -18,7 +19,7 @@ pub(super) struct Goals {
     by_distance: bool,
 }
 
-/// What was found of a triangle.
+/// The measured errors of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// How many times over it fails: at most 1 is good enough. Without a goal on quality, its distance.

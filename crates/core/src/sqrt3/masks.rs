@@ -19,8 +19,8 @@ pub(super) fn alpha(valence: u32) -> f64 {
     (4.0 - 2.0 * (TAU / f64::from(valence)).cos()) / 9.0
 }
 
-/// What an interior vertex's distance from its limit shrinks by in one step: 2/3 − α, the square of the ring's first
-/// eigenvalue.
+/// The factor of an interior vertex's distance from its limit in one step: 2/3 − α, the square of
+/// the ring's first eigenvalue.
 pub(super) fn shrinking(valence: u32) -> f64 {
     2.0 / 3.0 - alpha(valence)
 }

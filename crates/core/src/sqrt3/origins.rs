@@ -12,11 +12,11 @@ use crate::refine::Origin;
 /// How a vertex of a step came about.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Made {
-    /// As the centre of a face.
+    /// The centre of a face.
     Centre(u32),
-    /// On a sharp edge of a face, beside the origin of its half-edge.
+    /// On a sharp edge of a face, next to the origin of its half-edge.
     BesideOrigin(HalfEdgeId),
-    /// The same beside its target.
+    /// On a sharp edge of a face, next to the target of its half-edge.
     BesideTarget(HalfEdgeId),
 }
 
@@ -93,7 +93,7 @@ impl<'m> Origins<'m> {
         self.parents = topology.half_edges().map(parent).collect();
     }
 
-    /// What is known in the end.
+    /// The origins at the end.
     pub(super) fn finish(self) -> (Vec<Origin>, Vec<u32>) {
         (self.vertices, self.parents)
     }

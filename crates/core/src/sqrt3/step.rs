@@ -45,7 +45,7 @@ struct Numbering<'m> {
 
 impl Level {
     /// # Errors
-    /// A tag fades.
+    /// A semi-sharp tag.
     pub(super) fn control(mesh: &Mesh) -> Result<Self, RefineError> {
         let sharp = SharpEdges::of(mesh)?;
         check_valences(mesh)?;
@@ -176,7 +176,7 @@ impl Level {
         dart.map_or_else(|_| self.at(vertex), |place| self.darts[place].1)
     }
 
-    /// The new point beside `near` on the sharp edge to `far`.
+    /// The new point next to `near` on the sharp edge to `far`.
     fn beside(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
         let (here, there) = (self.on_even(near), self.on_even(far));
         let other = || {
@@ -304,7 +304,7 @@ impl<'m> Numbering<'m> {
         ]
     }
 
-    /// What is across part `part` of a sharp edge that is cut.
+    /// The face across part `part` of a sharp edge that is cut.
     fn across_part(&self, s: HalfEdgeId, part: usize) -> Option<u32> {
         self.parts(self.topology.twin(s)?)[2 - part]
     }

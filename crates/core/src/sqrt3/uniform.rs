@@ -18,7 +18,7 @@ use crate::refine::{RefineError, Refinement, StepReport, Stop, UniformOptions};
 /// half-edges give stand together. Edges that are tagged to be sharp for ever are treated as boundaries of both sides.
 ///
 /// # Errors
-/// A tag that fades ([`RefineError::FadingTag`]), and as for [`crate::refine::uniform`].
+/// A semi-sharp tag ([`RefineError::FadingTag`]), or an error of [`crate::refine::uniform`].
 pub fn uniform(mesh: &Mesh, options: &UniformOptions) -> Result<Refinement, RefineError> {
     uniform_observed(mesh, options, &mut unobserved)
 }
@@ -147,7 +147,7 @@ fn odd_normals(
 /// Limit position of every vertex of a control mesh under √3-subdivision.
 ///
 /// # Errors
-/// A tag that fades, or a vertex without a limit.
+/// A semi-sharp tag, or a vertex without a limit.
 pub fn limit_positions(mesh: &Mesh) -> Result<Vec<[f64; 3]>, RefineError> {
     SharpEdges::of(mesh)?;
     Ok(LimitTable::new(&DoubleStep).positions(mesh)?)
@@ -156,16 +156,17 @@ pub fn limit_positions(mesh: &Mesh) -> Result<Vec<[f64; 3]>, RefineError> {
 /// Unit limit normals of a control mesh under √3-subdivision, one for each side of its sharp edges.
 ///
 /// # Errors
-/// A tag that fades, or a vertex without a limit.
+/// A semi-sharp tag, or a vertex without a limit.
 pub fn limit_normals(mesh: &Mesh) -> Result<SidedNormals, RefineError> {
     SharpEdges::of(mesh)?;
     Ok(LimitTable::new(&DoubleStep).sided_normals(mesh)?)
 }
 
-/// What the limit tangents of a vertex span: the tangent plane of the surface, or less where it has none.
+/// The span of the limit tangents of a vertex: the tangent plane of the surface, or less where it
+/// has none.
 ///
 /// # Errors
-/// A tag that fades, or a ring without a limit.
+/// A semi-sharp tag, or a ring without a limit.
 pub fn tangent_plane(mesh: &Mesh, vertex: VertexId) -> Result<Vec<TangentPlane>, RefineError> {
     SharpEdges::of(mesh)?;
     let ring = Sharpness::of(mesh).ring(vertex);

@@ -167,7 +167,7 @@ fn sheets_of_every_size_of_tree() {
 
 #[test]
 fn ties_go_to_the_least_index() {
-    // The same triangle many times over, and a query with the same distance to all.
+    // One triangle many times over, and a query with an equal distance to all.
     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let triangles = [[0, 1, 2]; 100];
     let bvh = Bvh::new(Triangles {

@@ -131,9 +131,10 @@ impl CertifiedHausdorff {
 
 /// Bounds the distance between two surfaces, in both directions and from both sides.
 ///
-/// Any triangles will do: open, non-manifold, intersecting, without area. The search is fast where the surfaces are near
-/// each other and the triangles of the one measured to are connected, as by [`Mesh::from_soup`](crate::Mesh::from_soup).
-/// The same surfaces and options give the same bytes for any number of threads.
+/// Any triangles will do: open, non-manifold, intersecting, without area. The search is fast where
+/// the surfaces are near each other and the triangles of the one measured to are connected, as by
+/// [`Mesh::from_soup`](crate::Mesh::from_soup). The bytes of the result do not depend on the number
+/// of threads.
 ///
 /// ```
 /// use limitmesh::Triangles;
@@ -164,7 +165,8 @@ pub fn certified_hausdorff(
 
 /// [`certified_hausdorff`], telling an observer how it goes on.
 ///
-/// # Errors Those of [`certified_hausdorff`], or the observer asked to stop.
+/// # Errors
+/// Those of [`certified_hausdorff`], or the observer asked to stop.
 pub fn certified_hausdorff_observed(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
@@ -190,7 +192,8 @@ pub fn certified_hausdorff_between(
 
 /// [`certified_hausdorff_between`], telling an observer how it goes on.
 ///
-/// # Errors Those of [`certified_hausdorff_between`], or the observer asked to stop.
+/// # Errors
+/// Those of [`certified_hausdorff_between`], or the observer asked to stop.
 pub fn certified_hausdorff_between_observed(
     surface: &Bvh<'_>,
     reference: &Bvh<'_>,

@@ -162,8 +162,8 @@ fn a_larger_square_is_farther_one_way() {
 fn nested_spheres() {
     let (inner, outer) = (sphere(4), sphere(5).moved([0.0; 3], 1.5));
     let distance = measure(&inner, &outer, 100_000);
-    // A point of a facet is at most its longest edge / √3 from a corner, and so no deeper below the sphere than
-    // the foot of a chord of twice that.
+    // A point of a facet is at most its longest edge / √3 from a corner, and so no deeper below the
+    // sphere than the middle of a chord of twice that.
     let depth = |shape: &Shape, radius: f64| {
         let sides = (0..shape.triangles.len()).flat_map(|face| {
             let [a, b, c] = shape.as_triangles().corners(face).map(vector);

@@ -13,9 +13,10 @@ use crate::parallel;
 use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
-/// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how far from its ends
-/// it must be to lie inside. Wide enough for midpoints rounded to single precision in edges down to about a hundredth
-/// of the model; a gap this narrow cannot be told from a crack.
+/// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how
+/// far from its ends it must be to lie inside. Wide enough for midpoints rounded to single
+/// precision in edges down to about a hundredth of the model; a gap this narrow cannot be
+/// distinguished from a crack.
 const ON_EDGE: f64 = 1e-5;
 
 /// The reach of an edge is taken so many times as wide where places are passed over unseen, for rounding.

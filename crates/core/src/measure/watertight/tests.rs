@@ -97,7 +97,7 @@ fn a_square_cut_on_one_side_only() {
     assert_eq!(w.t_junctions, 1);
     assert_eq!(w.boundary_edges, 1 + 2 + 6);
 
-    // The same at other scales and places: the tolerance goes with the edge.
+    // At other scales and positions, too: the tolerance is relative to the edge.
     for (scale, offset) in [(1e-200, 0.0), (1e-6, 3.0), (1e6, -1e7), (1e150, 0.0)] {
         let moved: Vec<_> = positions
             .iter()
@@ -239,7 +239,7 @@ fn t_junctions_are_those_that_looking_at_all_finds() {
         let mut positions = vec![[0.0; 3], [0.0, 0.0, 1.0]];
         positions.extend((0..count).map(scattered));
         let mut triangles: Vec<[u32; 3]> = (0..count as u32).map(|i| [0, 1, i + 2]).collect();
-        // Some in the middle of an edge, some beside one.
+        // Some in the middle of an edge, some next to one.
         for i in (0..count).step_by(3) {
             let shift = if i % 2 == 0 { 0.0 } else { 1e-3 };
             let on_edge = scattered(i).map(|x| 0.4 * x);

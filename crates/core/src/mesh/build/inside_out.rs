@@ -1,8 +1,9 @@
 //! Closed components whose normals point inwards, turned round.
 //!
-//! Takes triangles that agree on an orientation within each component. A component is inside out if its volume is negative and
-//! no other component is around it whose cavity it could bound. What lies inside it is turned along with it: a file that was
-//! mirrored has all of it inside out, and a cavity in it stays a cavity.
+//! Takes triangles that agree on an orientation within each component. A component is inside out if
+//! its volume is negative and no other component is around it whose cavity it could bound. All
+//! components inside it are turned with it: a file that was mirrored has all of it inside out, and
+//! a cavity in it stays a cavity.
 
 use super::orient::{Components, Neighbours, turn};
 use super::triangulate::Faces;

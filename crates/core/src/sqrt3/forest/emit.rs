@@ -1,4 +1,4 @@
-//! The result: nodes that are not split, and thirds of split nodes beside such.
+//! The result: nodes that are not split, and thirds of split nodes next to such.
 //!
 //! At every moment these are a conforming mesh. Its vertices are at their limits; those of the control mesh keep their numbers.
 

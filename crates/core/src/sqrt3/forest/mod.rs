@@ -147,7 +147,7 @@ impl Forest<'_> {
         Some(self.node(side).across[edge_of(side)]).filter(|&across| across != NONE)
     }
 
-    /// What a half-edge gave.
+    /// The child of a half-edge.
     fn child(&self, side: Side) -> Option<usize> {
         Some(self.node(side).children[edge_of(side)])
             .filter(|&child| child != NONE)
@@ -169,7 +169,7 @@ impl Forest<'_> {
             Some(edge) => self.cut(side(t, edge)),
             None => [self.make_centre(t); 2],
         };
-        // What it needed may have grown it.
+        // A split of a neighbour may have grown it.
         if self.nodes[t].is_grown() {
             return;
         }
@@ -227,7 +227,7 @@ impl Forest<'_> {
             self.node(own).apex(edge_of(own)),
         ];
         let corners = [self.ends(own)[0], apexes[0], apexes[1]];
-        // Beside an edge that was cut, it has one of the outer parts.
+        // Next to a cut edge, it has one of the outer parts.
         let first = self
             .node(other)
             .cut_edge()
@@ -283,7 +283,7 @@ impl Forest<'_> {
         }
     }
 
-    /// What is across an edge of a node, by its parents.
+    /// The neighbour across an edge of a node, by its parents.
     fn neighbour(&self, node: usize, edge: usize) -> Neighbour {
         let Node { parent, sharp, .. } = self.nodes[node];
         if parent == NONE || sharp >> edge & 1 != 0 {

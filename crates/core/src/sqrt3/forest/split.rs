@@ -53,7 +53,7 @@ impl Forest<'_> {
     /// Divides a triangle: splits its node, or the one across its old edge.
     ///
     /// # Errors
-    /// There would be too many triangles. What was split by then is a result, too.
+    /// There would be too many triangles. The splits done by then are a valid result.
     pub(in crate::sqrt3) fn divide(&mut self, triangle: Triangle) -> Result<(), Full> {
         match triangle {
             Triangle::Leaf(node) => self.split(node as usize),
@@ -79,7 +79,7 @@ impl Forest<'_> {
             .into_iter()
             .filter(|&other| !self.nodes[other].is_split)
             .collect();
-        // Each split gives three triangles for one, or two more where the thirds beside it become nodes.
+        // Each split gives three triangles for one, or two more where adjacent thirds become nodes.
         if self.triangles + 2 * new.len() > self.max_triangles {
             return Err(Full);
         }
