@@ -34,10 +34,10 @@ const REMAINDER: f64 = 0.5;
 /// Numbers by axis and place.
 type Row = [[f64; WIDTH]; 3];
 
-/// The same in single precision.
+/// A row of points in single precision.
 type NarrowRow = [[f32; WIDTH]; 3];
 
-/// What becomes of a part.
+/// The test outcome of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Mark {
@@ -49,16 +49,17 @@ pub(crate) enum Mark {
     Open,
 }
 
-/// What parts are tested for.
+/// The target of the tests of parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowTarget {
     /// Greatest bound of the distance.
     pub(crate) distance: f64,
-    /// The range of heights counts by this, beside the greatest height on one side; 0 where it does not.
+    /// The weight of the range of heights, relative to the greatest height on one side; 0 where it
+    /// does not count.
     pub(crate) range_share: f64,
-    /// Tilt of the triangles beside a part at most, as a chord.
+    /// The greatest normal deviation of the adjacent triangles, as a chord.
     pub(crate) tilt: f64,
-    /// Tangents of the angles of the triangles beside a part at least.
+    /// The least tangent of the angles of the adjacent triangles.
     pub(crate) slope: f64,
     /// Drifts over an edge may have so much of the least of 1 and the tangents of a part's own angles there ([`TriangleFrame::slope_at`]).
     ///
@@ -66,7 +67,7 @@ pub(crate) struct RowTarget {
     pub(crate) drift_share: f64,
 }
 
-/// What the parts that passed have at most.
+/// The greatest bounds of the parts that passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowExtent {
     pub(crate) tilt: f64,
@@ -120,7 +121,7 @@ impl Marks {
 /// Second derivatives along the edges of a row, in single precision.
 struct Bends {
     along: NarrowRow,
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     size: f32,
 }
 
@@ -132,7 +133,8 @@ struct CornerRow {
     bends: Bends,
 }
 
-/// What is between two rows of corners: edges from row to row, and the second derivatives along these and along those of the third kind.
+/// The differences between two rows of corners: edges from row to row, and the second derivatives
+/// along these and along those of the third kind.
 struct Between {
     edges: NarrowRow,
     upward: Bends,
@@ -233,8 +235,8 @@ impl<'a> RowBlock<'a> {
         }
     }
 
-    /// The divisions below which parts certainly fail, as far as the second derivatives in a few places tell, and those by which
-    /// they pass.
+    /// The divisions below which parts certainly fail by the second derivatives in a few places,
+    /// and those at which they pass.
     pub(crate) fn levels(
         &self,
         &RowTarget {
@@ -278,7 +280,7 @@ impl<'a> RowBlock<'a> {
         self.height[0] * cube + self.height[1] * cube * step
     }
 
-    /// What bounds all parts of a size, times a factor.
+    /// The bound of all parts of a size, times a factor.
     fn remainder(&self, step: f64, scale: f64) -> Remainder {
         let (third, fourth) = self.jet.most(step);
         let bounds = [
@@ -409,7 +411,8 @@ impl CornerRow {
 }
 
 impl Between {
-    /// What is between row j, with so many edges, and the next, by the corners of both.
+    /// Fills the differences between row j, with so many edges, and the next, by the corners of
+    /// both.
     fn fill(
         &mut self,
         block: &RowBlock<'_>,

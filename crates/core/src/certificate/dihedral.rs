@@ -10,8 +10,9 @@ pub(crate) const STEEP: f64 = f64::MAX;
 /// neighbours.
 const UNSETTLED: (f64, [f64; 3]) = (4.0, [0.0; 3]);
 
-/// The greatest squared chord of the angles between the planes of a triangle and its neighbours, given by their corners
-/// opposite, and the greatest slopes at which points may drift over them, by edge.
+/// The greatest squared chord of the angles between the planes of a triangle and its neighbours,
+/// given by their corners opposite, and the greatest slopes at which points may move tangentially
+/// over them, by edge.
 pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f64; 3]) {
     let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
     let Some((normal, area)) = plane(edges[0], edges[1]) else {

@@ -1,5 +1,5 @@
-//! The greatest of what points come to over a triangle that has a plane and neighbours all round, by their heights and trilinear
-//! coordinates.
+//! The greatest bounds of points over a triangle that has a plane and neighbours all round, by
+//! their heights and trilinear coordinates.
 //!
 //! Most points of the surface stand inside the lines of all edges: only where the greatest coordinates do not are they looked at one after the
 //! other. Points of curves over edges are taken four at a time.
@@ -30,20 +30,21 @@ struct Greatest<'a> {
     slopes: [f64; 3],
     /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
     swings: [f64; 3],
-    /// A foot stood beyond the ends of its edge.
+    /// A projection is beyond the ends of its edge.
     beyond: bool,
 }
 
 /// All bits of trilinear coordinates, and those of a height but its sign.
 const UNSIGNED_HEIGHT: [u64; 4] = [u64::MAX >> 1, u64::MAX, u64::MAX, u64::MAX];
 
-/// The same with heights as sizes.
+/// The point with the absolute height.
 #[inline(always)]
 fn with_size(Trilinear(point): Trilinear) -> f64x4 {
     point & f64x4::new(UNSIGNED_HEIGHT.map(f64::from_bits))
 }
 
-/// What a net comes to, `None` if its points have to be looked at one by one, and a height that the piece itself attains.
+/// The bound of a net, `None` if its points have to be tested one by one, and a height that the
+/// piece itself attains.
 pub(super) fn of_net(
     frame: &TrilinearFrame,
     net: &BezierTriangle<Trilinear>,
@@ -87,7 +88,8 @@ pub(super) fn of_net(
     (greatest.deviation(), attained)
 }
 
-/// What points of the surface, and of curves over edges, come to; `None` if they have to be looked at one by one.
+/// The bound of points of the surface, and of curves over edges; `None` if they have to be tested
+/// one by one.
 pub(super) fn of_points(
     frame: &TrilinearFrame,
     inner: &[Trilinear],
@@ -216,7 +218,7 @@ impl<'a> Greatest<'a> {
         self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
 
-    /// What that comes to; `None` if the points have to be looked at one by one.
+    /// The deviation; `None` if the points have to be tested one by one.
     #[inline]
     fn deviation(self) -> Option<Deviation> {
         let Self {

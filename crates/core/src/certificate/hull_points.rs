@@ -40,14 +40,16 @@ pub(super) trait HullPoint: Blend {
     /// The squared length of a difference.
     fn length_squared(self, frame: &Self::Frame) -> f64;
 
-    /// What a net comes to if its points can be looked at together, and a height that the piece itself attains.
+    /// The bound of a net if its points can be tested together, and a height that the piece itself
+    /// attains.
     fn net_together(
         frame: &Self::Frame,
         net: &BezierTriangle<Self>,
         borders: Borders,
     ) -> (Option<Deviation>, f64);
 
-    /// What points of the surface, and of curves over edges, come to if they can be looked at together.
+    /// The bound of points of the surface, and of curves over edges, if they can be tested
+    /// together.
     fn points_together(
         frame: &Self::Frame,
         inner: &[Self],
@@ -306,7 +308,8 @@ impl<P: HullPoint> DeviationBound<'_, P> {
 mod tests {
     use super::*;
 
-    /// Points that are seen together come to what they come to one by one, whatever the net's edges are.
+    /// The bound of points tested together equals the bound one by one, whatever the net's edges
+    /// are.
     #[test]
     fn nets_come_to_what_their_points_come_to() {
         let mut count = 0.0;
@@ -372,7 +375,8 @@ mod tests {
                     "{case}: {found:?} {each:?}"
                 );
             } else {
-                // What crosses an edge far off is seen by the angles at its own edge or by each point.
+                // A crossing of an edge far off shows in the angles at its own edge or at each
+                // point.
                 told += usize::from(found.slopes == each.slopes);
             }
         }

@@ -21,7 +21,7 @@ const SAMPLED_LEVELS: usize = 3;
 /// Halvings of a net whose bound is too great.
 const HALVINGS: usize = 3;
 
-/// What is left at an irregular vertex is good enough at this part of what is asked.
+/// The rest at an irregular vertex is good enough at this part of the tolerance.
 const NEGLIGIBLE: f64 = 0.125;
 
 /// A function over a piece of the control mesh, and its values at the corners.
@@ -32,7 +32,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Those over the four parts.
+    /// The bounds over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);
         let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
@@ -68,8 +68,9 @@ impl Sheet {
         )
     }
 
-    /// The same for the linear function with other values at the part's corners. Where the function is not regular over a part that is
-    /// neither all nor a quarter, the bound goes by the linear function with the second values, at the corners of the whole.
+    /// The bound for the linear function with other values at the part's corners. Where the
+    /// function is not regular over a part that is neither all nor a quarter, the bound is by the
+    /// linear function with the second values, at the corners of the whole.
     pub(crate) fn off(
         &self,
         part: SubTriangle,

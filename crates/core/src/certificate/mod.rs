@@ -1,9 +1,11 @@
-//! How far a triangle can be from the piece of the limit surface that it stands for. Knows no forest.
+//! The greatest distance of a triangle from the piece of the limit surface that it approximates.
+//! Knows no forest.
 //!
-//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate from samples for other
-//! schemes. A triangle is prepared once as a [`TriangleFrame`], and stands for a [`SubTriangle`] of a patch.
+//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate
+//! from samples for other schemes. A triangle is prepared once as a [`TriangleFrame`], and
+//! approximates a [`SubTriangle`] of a patch.
 //!
-//! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
+//! NaN fails: every comparison with a limit requires that the value is known to be below it.
 
 mod bent_parts;
 mod borders;

@@ -26,7 +26,7 @@ impl Samples {
         Self(piece.samples(rules))
     }
 
-    /// What the points over a part show of the deviation of the triangle that stands for it.
+    /// The deviation, by the points over a part, of the triangle that approximates it.
     pub(crate) fn deviation(&self, part: SubTriangle, bound: &DeviationBound<'_>) -> Deviation {
         let corners = places_of(part, UNIT);
         let mut deviation = Deviation::default();

@@ -1,5 +1,6 @@
-//! The search for the bound of one triangle, by the nets of regular pieces, halved where that helps, and by pieces at irregular vertices, refined
-//! where they are not good enough as they are. What it adds up is proven in [`super::bounds`].
+//! The search for the bound of one triangle, by the nets of regular pieces, halved where that
+//! helps, and by pieces at irregular vertices, refined where they are not good enough as they are.
+//! The sum is proven in [`super::bounds`].
 
 mod irregular;
 
@@ -14,8 +15,8 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::{Patch, Points, RefinedPatch, Rules};
 
-/// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
-/// told apart even if they may not be split.
+/// Pieces that reach this many times as far as the target will not pass; bounds of others stay
+/// tight, so that they can be compared even if they may not be split.
 const HOPELESS: f64 = 1.5;
 
 /// A part of a refinement by its number, which part of that, and what its edges are.
@@ -153,7 +154,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// What a deviation comes to.
+    /// The value of a deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
         deviation.bound(self.effort.chord, self.effort.slopes)
     }
@@ -163,7 +164,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         self.effort.target.max(self.value(&self.found))
     }
 
-    /// What was found so far together with one more.
+    /// The result so far together with one more deviation.
     fn with(&self, deviation: Deviation) -> Deviation {
         // A slope that is too great must not spoil what others are good for.
         let counts = deviation.is_within(self.effort.slopes);
@@ -201,7 +202,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
             self.add(Deviation::alone(f64::INFINITY));
             return;
         }
-        // What is much too far away for sure stays so however it is divided.
+        // A part that is certainly much too far away stays so however it is divided.
         let is_hopeless = self.effort.target > 0.0 && attained > HOPELESS * self.effort.target;
         if halvings == 0 || is_hopeless || self.value(&deviation) <= self.aim() {
             self.add(deviation);

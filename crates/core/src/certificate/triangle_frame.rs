@@ -26,7 +26,7 @@ pub(crate) struct TriangleFrame {
     normal: DVec3,
     /// In the plane, at right angles to the edges, pointing outwards.
     outward: [DVec3; 3],
-    /// What is no farther outside an edge than this stands on it, but for rounding.
+    /// A point no farther outside an edge than this is on it, within rounding.
     on_edge: f64,
     /// Where the edges' lines stand outwards of the first corner.
     offsets: [f64; 3],
@@ -118,7 +118,7 @@ impl TriangleFrame {
             on_edge: Self::ROUNDING * greatest_coordinate(edges.iter().chain(&corners)),
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
-            // What is not a number allows nothing.
+            // NaN allows nothing.
             tangents: cosines.map(|cosine| (area / cosine.abs()).max(0.0)),
             least_slope: area / cosines[0].larger(cosines[1]).larger(cosines[2]),
         }
@@ -225,8 +225,9 @@ impl TriangleFrame {
             / self.parallelogram().powi(2)
     }
 
-    /// What that metric stretches lengths within the plane by at most. With the barycentric gradients' squares, whose sum is twice the
-    /// trace of the metric, and the areas of both triangles, whose ratio is its determinant's root.
+    /// The greatest stretch by that metric of lengths within the plane. It follows from the
+    /// barycentric gradients' squares, whose sum is twice the trace of the metric, and from the
+    /// areas of both triangles, whose ratio is the root of its determinant.
     #[inline]
     pub(super) fn stretch(&self) -> f64 {
         let square = self.parallelogram().powi(2);
@@ -247,7 +248,7 @@ impl TriangleFrame {
         self.offsets[1] * self.lengths[1]
     }
 
-    /// What is no farther outside an edge than this stands on it, but for rounding.
+    /// A point no farther outside an edge than this is on it, within rounding.
     pub(crate) fn on_edge(&self) -> f64 {
         self.on_edge
     }

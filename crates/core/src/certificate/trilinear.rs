@@ -1,12 +1,14 @@
-//! Points as a triangle sees them: the height over its plane, and the trilinear coordinates, the distances of the point's foot from the
-//! lines of the edges, positive outside.
+//! Points relative to a triangle: the height over its plane, and the trilinear coordinates, the
+//! distances of the point's projection from the lines of the edges, positive outside.
 //!
-//! All four are affine functions of the point. So whatever is made of points with weights whose sum is 1 (refinements, nets, halves)
-//! can be made of these four numbers in their place, in registers of their own, and what a bound asks of a point is there at once. What
-//! it asks besides follows from the trilinear coordinates o₀, o₁, o₂, edge e running along tₑ from the triangle's angle αₑ to the next:
+//! All four are affine functions of the point. So combinations of points with weights whose sum is
+//! 1 (refinements, nets, halves) can be made of these four numbers instead, in registers, and a
+//! bound reads them at once. Its other values follow from the trilinear coordinates o₀, o₁, o₂,
+//! edge e running along tₑ from the triangle's angle αₑ to the next:
 //!
-//! * how far along edge e the foot stands from its start: −(oₑ₋₁ + oₑ cos αₑ)/sin αₑ, for oₑ₋₁ falls by sin αₑ for each unit along the
-//!   edge and by cos αₑ for each unit outwards, and vanishes at the start;
+//! * the distance along edge e of the base point from its start: −(oₑ₋₁ + oₑ cos αₑ)/sin αₑ, for
+//!   oₑ₋₁ falls by sin αₑ for each unit along the edge and by cos αₑ for each unit outwards, and
+//!   vanishes at the start;
 //! * the squared length of a vector: h² + Σ wₑoₑ² with wₑ = cos γₑ/(sin αₑ sin αₑ₊₁), γₑ being the angle opposite to the edge. For vectors along two
 //!   edges j ≠ k the sum's bilinear form is wᵢ oᵢ(tⱼ) oᵢ(tₖ), as the other two terms vanish, and has to be tⱼ · tₖ.
 //!
@@ -32,10 +34,10 @@ pub(super) struct TrilinearFrame {
     /// The first corner.
     origin: DVec3,
     pub(super) lengths: [f64; 3],
-    /// As [`TriangleFrame::on_edge`] and [`TriangleFrame::slope_at`] have it.
+    /// As in [`TriangleFrame::on_edge`] and [`TriangleFrame::slope_at`].
     pub(super) on_edge: f64,
     pub(super) slopes: [f64; 3],
-    /// What a point's coordinates count, by axis, and what is taken away.
+    /// The weights of a point's coordinates, by axis, and the constant that is subtracted.
     axes: [f64x4; 3],
     offsets: f64x4,
     /// Of the squares in a squared length.
@@ -98,7 +100,8 @@ impl TrilinearFrame {
         (difference * difference * self.squares).reduce_add()
     }
 
-    /// What the distances from the lines of the edge before and of an edge itself count for the place along that.
+    /// The weights of the distances from the lines of the edge before and of an edge itself in the
+    /// position along that.
     #[inline]
     pub(super) fn shares_along(&self, edge: usize) -> [f64; 2] {
         self.along[edge]
@@ -113,7 +116,7 @@ impl Trilinear {
         (height, [a, b, c])
     }
 
-    /// Where the foot stands to an edge.
+    /// The position of the projection relative to an edge.
     pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
         let (_, outside) = self.split();
         let own = outside[edge];
@@ -210,7 +213,7 @@ impl Div<f64> for Trilinear {
 mod tests {
     use super::*;
 
-    /// As the triangle in space says, whatever its shape.
+    /// The coordinates of a point agree with the triangle in space, whatever its shape.
     #[test]
     fn what_is_asked_of_a_point_is_what_it_is_in_space() {
         let mut count = 0.0;

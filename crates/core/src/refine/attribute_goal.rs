@@ -1,8 +1,9 @@
-//! Goals for what a mesh carries beside its shape: values at its vertices, or where its vertices move to.
+//! Goals for the data that a mesh carries in addition to its shape: values at its vertices, or
+//! other positions of its vertices.
 
 use crate::mesh::{Mesh, MeshError};
 
-/// What is bounded.
+/// The function that is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GoalKind {
     /// The difference at the same place.
@@ -11,8 +12,9 @@ pub(crate) enum GoalKind {
     Surface,
 }
 
-/// A goal for a function on the control mesh's faces that triangles hold at their corners only and that is linear between: it must be
-/// within a tolerance of what it stands for, everywhere ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
+/// A goal for a function on the control mesh's faces that triangles hold at their corners only and
+/// that is linear between: it must be within a tolerance of the original, everywhere
+/// ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
 ///
 /// The function is the limit surface of a mesh with the control mesh's faces in the same order, whose positions are the values. Its
 /// vertices may be others: where they are divided, values have a seam.

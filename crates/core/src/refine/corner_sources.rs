@@ -9,7 +9,7 @@ use crate::index::VertexId;
 use crate::mesh::{Mesh, NONE, Topology};
 use crate::simplify::Features;
 
-/// Edges of a mesh along which its sides are told apart: its tags' and some others.
+/// Edges of a mesh along which its sides are distinct: its tags' and some others.
 pub(super) struct SharpLines {
     /// Both ways, ascending.
     edges: Vec<[u32; 2]>,

@@ -6,7 +6,7 @@ use super::exact_result::ExactStop;
 use crate::criterion::{Camera, View};
 use crate::mesh::{Mesh, MeshError};
 
-/// What exact refinement is to reach, and what it must not exceed.
+/// The goals of exact refinement, and its caps.
 ///
 /// Of the goals on quality (tolerance, angle) each that is given is to be met everywhere; a number of triangles ends
 /// the refinement early, with the worst places refined first.
@@ -20,9 +20,10 @@ pub struct ExactOptions {
     /// smaller: where it is not met by then, at cusps and where the surface is not regular, it cannot be, and
     /// [`Exact::open_cones`](super::Exact::open_cones) says so. Default: none.
     pub angle: Option<f64>,
-    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never smaller than
-    /// [`Self::angle`], so that silhouettes come to an end and a viewer asks for no more than none: what looks away is not
-    /// divided for its own sake, and with a dilatation above 1 what looks at the viewer has greater angles. Default: none.
+    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never
+    /// smaller than [`Self::angle`], so that refinement ends at silhouettes and a viewer never
+    /// needs more triangles than no viewer: faces that face away have the angle of no viewer, and
+    /// with a dilatation above 1 faces towards the viewer have greater angles. Default: none.
     pub view: Option<View>,
     /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: of each point of one that is in a
     /// picture from the other. Of closed surfaces what looks away from a camera is not seen, and where it certainly does it is not divided for its
@@ -44,8 +45,8 @@ pub struct ExactOptions {
     /// creases and boundaries: seams of textures, borders of materials ([`crate::carry::borders`]). They bound [`Self::flat_regions`], too.
     /// Default: none.
     pub kept_edges: Vec<[u32; 2]>,
-    /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
-    /// Default: yes.
+    /// Whether to report the origin of each vertex, [`Exact::origins`](super::Exact::origins), a
+    /// quarter of the memory of a result. Default: yes.
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
     /// inside but those of the control mesh. Triangles that lie in one plane side by side though the surface is curved elsewhere, as on a
@@ -61,13 +62,14 @@ pub struct ExactOptions {
     pub(crate) strips: bool,
     /// Whether bounds that are far above what was found are measured anew.
     pub(crate) tightens: bool,
-    /// What is to be met beside the shape ([`AttributeGoal`]): with goals on quality, without a number of triangles, [`Self::balance`] and
-    /// [`Self::optimize`]; flat regions follow the hierarchy then. Default: none.
+    /// Goals in addition to the shape ([`AttributeGoal`]): with goals on quality, without a number
+    /// of triangles, [`Self::balance`] and [`Self::optimize`]; flat regions then follow the
+    /// hierarchy. Default: none.
     pub attributes: Vec<AttributeGoal>,
     /// Levels at most below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
-    /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
-    /// million, so that tolerances that nothing meets come to an end.
+    /// The most triangles, as a cap rather than a goal: reaching it is a failure to meet the goals.
+    /// Default: 50 million, so that refinement ends at tolerances that cannot be met.
     pub max_triangles: Option<usize>,
     /// Bytes that the refinement and its result may take, about. Default: no limit.
     pub max_memory: Option<usize>,
@@ -76,7 +78,7 @@ pub struct ExactOptions {
 /// Levels that are tried where none are given: edges are divided by more than ten million then.
 const USUAL_LEVELS: usize = 24;
 
-/// Levels at most: places along the edge of a control face are told apart by 32 bits.
+/// The most levels: places along the edge of a control face are distinguished by 32 bits.
 pub(super) const MOST_LEVELS: usize = 30;
 
 /// Triangles at most where no cap is given.

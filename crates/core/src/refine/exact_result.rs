@@ -18,7 +18,7 @@ pub enum ExactStop {
     TriangleCap,
     /// The next split would have taken more memory than allowed.
     MemoryCap,
-    /// What still fails has been divided as often as allowed.
+    /// The triangles that still fail have been divided as often as allowed.
     LevelCap,
     /// The tolerance is below what rounding leaves certain.
     Rounding,
@@ -40,7 +40,8 @@ pub struct ErrorBounds {
     /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
     /// combinations.
     pub certified: bool,
-    /// That point: one of the mesh, or of the limit surface, give or take an eighth of `lower`.
+    /// The point at which `lower` is attained: one of the mesh, or of the limit surface, within an
+    /// eighth of `lower`.
     pub at: [f64; 3],
 }
 
@@ -62,8 +63,9 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// The same point in another face of the control mesh, whose triangles these are; `None` where that face hasn't it. A point of
-    /// two faces is on a vertex or an edge of both, so its coordinates go by the names of vertices.
+    /// The point in another face of the control mesh, whose triangles these are; `None` where that
+    /// face hasn't it. A point of two faces is on a vertex or an edge of both, so its coordinates
+    /// go by the names of vertices.
     pub fn in_face(&self, triangles: &[[u32; 3]], face: u32) -> Option<Self> {
         if self.face == face {
             return Some(*self);
@@ -97,8 +99,9 @@ pub struct Exact {
     pub sides: Vec<(u32, [f64; 3])>,
     /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
     pub origins: Vec<Origin>,
-    /// How far the limit surface, and the triangles that stand for it, can be off the planes of the regions that were triangulated
-    /// from their rims ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
+    /// The greatest distance of the limit surface, and of its triangles, from the planes of the
+    /// regions that were triangulated from their rims
+    /// ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
     pub off_planes: f64,
     /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
     /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
@@ -206,7 +209,7 @@ impl Traced for Exact {
     }
 }
 
-/// What an exact refinement would give.
+/// The expected result of an exact refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {

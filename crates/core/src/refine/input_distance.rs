@@ -9,9 +9,9 @@
 //! is not in the other lies on a segment between partners of the rims: moved along these, the one rim must pass it to become the
 //! other. So the rims bound the distance, but for what both are off the plane.
 //!
-//! Below stand true distances of the points that were moved most along
-//! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there. Of a mesh that is not
-//! too large the two are measured then, by the certified search.
+//! The lower bounds are true distances of the points that were moved most along normals: vertices
+//! move along the surface where triangles are of different sizes, and the interval is wide there.
+//! Of a mesh that is not too large the two are measured then, by the certified search.
 
 use super::{Exact, Origin};
 use crate::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
@@ -34,7 +34,8 @@ const MOST_TRIANGLES: usize = 200_000;
 /// How narrow it is to be where a bound is to be kept that lies inside.
 const NARROWEST: f64 = 0.01;
 
-/// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
+/// The rounding error of a computed point or distance, as a share of the greatest coordinate: some
+/// hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
 
 /// The symmetric Hausdorff distance between the mesh that was given and the refined one lies between these, in the mesh's unit.
@@ -42,7 +43,7 @@ const ROUNDING: f64 = 2e-14;
 pub struct InputDistance {
     /// Some point of the one is so far from the other.
     pub lower: f64,
-    /// What is not exceeded, proven.
+    /// A proven upper bound.
     pub upper: f64,
 }
 
@@ -78,7 +79,8 @@ impl InputDistance {
         }))
     }
 
-    /// Of another mesh that stands for the limit surface of this one's, where these are within `apart` of each other.
+    /// The distance of another mesh that approximates the limit surface of this one, where these
+    /// are within `apart` of each other.
     ///
     /// # Errors
     /// Coordinates too large to be measured.
@@ -186,7 +188,7 @@ pub(super) fn place(input: Triangles<'_>, origin: &Origin) -> DVec3 {
 struct Moves {
     /// The greatest.
     greatest: f64,
-    /// Those that were moved most along normals, in their order.
+    /// The points that were moved most along normals, in their order.
     most: Vec<usize>,
 }
 

@@ -1,4 +1,5 @@
-//! Keeps the copies of cut vertices and edges together through a step: the same splits, the same bits.
+//! Keeps the copies of cut vertices and edges together through a step: they are split alike and
+//! have equal bits.
 
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::HalfEdgeId;

@@ -29,7 +29,7 @@ pub struct Geomorph {
     pub positions: Vec<[f64; 3]>,
     /// By vertex, the coarser mesh's normal there as it is shaded: linear between the normals of its corners, not of unit length.
     pub normals: Vec<[f64; 3]>,
-    /// Those of triangles' corners at sharp edges, as in [`Exact::sides`].
+    /// The normals of triangles' corners at sharp edges, as in [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,
     /// How far the mesh is from the limit surface before it has moved, place by place as [`Level::parametric`] is afterwards.
     pub start: f64,
@@ -77,8 +77,9 @@ impl Level {
     }
 }
 
-/// How near a camera may come to a surface until a deviation shows as more than so many pixels, in the middle of a picture of so many
-/// pixels' height and with a vertical field of view (in radians): `deviation · height / (2 tan(field of view / 2) · pixels)`.
+/// The least distance of a camera from a surface at which a deviation covers at most `pixels`
+/// pixels, in the middle of a picture `height` pixels high with the vertical `field_of_view` in
+/// radians: `deviation · height / (2 tan(field of view / 2) · pixels)`.
 pub fn switching_distance(deviation: f64, pixels: f64, height: f64, field_of_view: f64) -> f64 {
     deviation * height / (2.0 * (0.5 * field_of_view).tan() * pixels)
 }

@@ -35,7 +35,7 @@ use crate::mesh::{Mesh, MeshError};
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// What levels of detail are to be, and what they must not exceed.
+/// The goals of levels of detail, and their caps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LodOptions {
@@ -107,7 +107,7 @@ impl LodOptions {
         Ok(())
     }
 
-    /// What the engine is asked for.
+    /// The options of the engine.
     fn exact(&self, tolerance: f64) -> ExactOptions {
         ExactOptions {
             max_levels: self.max_levels,
@@ -120,8 +120,9 @@ impl LodOptions {
     }
 }
 
-/// Levels of detail, from the coarsest to the finest, each nested in the next: a level for each tolerance, or up to the first that could
-/// not be reached, as the last one's [`stop`](super::Exact::stop) tells. None has fewer triangles than the control mesh.
+/// Levels of detail, from the coarsest to the finest, each nested in the next: a level for each
+/// tolerance, or up to the first that could not be reached, by the last one's
+/// [`stop`](super::Exact::stop). None has fewer triangles than the control mesh.
 ///
 /// ```
 /// use limitmesh::refine::{LodOptions, levels_of_detail};

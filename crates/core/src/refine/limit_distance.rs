@@ -1,9 +1,9 @@
 //! The distance between any triangles and a true limit surface, bounded from both sides.
 //!
-//! Exact refinement of the control mesh stands for its limit surface. The distance to that mesh is certified, and as no
-//! point of the one is farther from the other than exact refinement proves, the interval widened by that much holds the
-//! distance to the limit surface (the triangle inequality, in either direction): finer and finer meshes are taken until it is as
-//! narrow as asked for.
+//! Exact refinement of the control mesh approximates its limit surface. The distance to that mesh
+//! is certified, and widened by the proven error of the refinement the interval holds the distance
+//! to the limit surface (the triangle inequality, in either direction): finer and finer meshes are
+//! taken until it is narrow enough.
 
 use super::{ExactOptions, ExactStop, RefineError, exact_observed, is_certified};
 use crate::measure::{
@@ -23,11 +23,12 @@ const USUAL_SHARE: f64 = 0.1;
 /// Without a gap, an interval of this share of the diagonal is narrow enough.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// As long as no distance is found that could not be the mesh's own error, that is divided by this: an eighth takes about
-/// eight times the triangles, as many as all before together.
+/// As long as no distance is found that could not be the mesh's own error, that is divided by this:
+/// an eighth takes about eight times the triangles, more than all before together.
 const STEP: f64 = 8.0;
 
-/// Triangles of the mesh that stands for the limit surface: with its search tree, about two gigabytes.
+/// Triangles of the mesh that approximates the limit surface: with its search tree, about two
+/// gigabytes.
 const MOST_TRIANGLES: usize = 6_000_000;
 
 options! {
@@ -37,20 +38,21 @@ options! {
         /// An interval no wider than this is narrow enough, in the mesh's unit. `None`, the default: a tenth of the distance, or a
         /// millionth of the control mesh's diagonal.
         pub gap: Option<f64> = None,
-        /// As [`CertifiedOptions::max_work`], for each mesh that stands for the limit surface.
+        /// The limit [`CertifiedOptions::max_work`] for each mesh that approximates the limit
+        /// surface.
         pub max_work: u64 = 1_000_000_000,
-        /// As [`ExactOptions::unfold`].
+        /// See [`ExactOptions::unfold`].
         pub unfold: bool = false,
     }
 }
 
-/// A distance to a limit surface, and the mesh that stood for it.
+/// A distance to a limit surface, and the mesh that approximates it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LimitDistance {
     /// To the limit surface itself: the interval is widened by [`Self::error`].
     pub distance: CertifiedHausdorff,
-    /// The mesh that stands for the limit surface.
+    /// The mesh that approximates the limit surface.
     pub reference: Mesh,
     /// How far it is from the limit surface at most.
     pub error: f64,

@@ -19,10 +19,11 @@ const FINER: usize = 2;
 /// Triangles that a reference has at most for that: four gigabytes.
 const MOST_TRIANGLES: usize = 1 << 24;
 
-/// Levels of [`limit_reference`] that suit a mesh of so many triangles which is measured against the limit surface of a
-/// control mesh of `control_faces` faces: five, or as many as come to four million triangles, but at least two more
-/// than take the control mesh about to the measured mesh's number of triangles, so that a mesh is not compared with itself. `None`
-/// where these come to more than 16 million triangles: [`limit_distance`](super::limit_distance()) needs fewer.
+/// Levels of [`limit_reference`] that suit a mesh of so many triangles which is measured against
+/// the limit surface of a control mesh of `control_faces` faces: five, or as many as give four
+/// million triangles, but at least two more than take the control mesh about to the measured mesh's
+/// number of triangles, so that a mesh is not compared with itself. `None` where these give more
+/// than 16 million triangles: [`limit_distance`](super::limit_distance()) needs fewer.
 pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Option<usize> {
     let fits = |levels: usize, most: usize| {
         4usize
@@ -44,8 +45,9 @@ pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Opti
 /// The limit surface of `control` under `scheme`, as triangles after `levels` uniform refinements with all vertices on
 /// the surface: what the paper measures distances to (section 5).
 ///
-/// Each level has four times the triangles of the one before; the chords still leave the surface by about a
-/// quarter of what they did a level earlier, which bounds what a distance to this reference can tell.
+/// Each level has four times the triangles of the one before; the chords still leave the surface by
+/// about a quarter of what they did a level earlier, which bounds the precision of a distance to
+/// this reference.
 ///
 /// # Errors
 /// See [`RefineError`].

@@ -73,7 +73,7 @@ pub enum RefineError {
     /// The result would not be a mesh, or an option is out of range.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A tag that fades, for a method that knows only what is smooth and what is sharp for ever.
+    /// A semi-sharp tag, for a method that supports only smooth and infinitely sharp ones.
     #[error(
         "{tag} has the sharpness {sharpness}, which fades: √3-subdivision knows edges and vertices that are smooth (0) \
          or sharp for ever ({INFINITELY_SHARP} and more); the schemes that split triangles in four follow such tags"
@@ -147,7 +147,7 @@ impl From<ReplayError> for RefineError {
     }
 }
 
-/// What one step did.
+/// The result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {
@@ -192,7 +192,7 @@ pub struct Refinement {
     pub origins: Vec<Origin>,
     /// The control face of each triangle; empty unless options ask for it.
     pub parents: Vec<u32>,
-    /// What each step did.
+    /// The reports of all steps.
     pub steps: Vec<StepReport>,
     /// Why there were no more steps.
     pub stop: Stop,

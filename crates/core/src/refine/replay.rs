@@ -33,7 +33,7 @@ pub enum ReplayError {
         /// Its name.
         scheme: String,
     },
-    /// Nobody knows where the vertices came from.
+    /// The origins of the vertices are not known.
     #[error("{origins} origins for {vertices} vertices: a replay needs a refinement with origins")]
     NoOrigins {
         /// Origins that are known.
@@ -49,7 +49,7 @@ pub enum ReplayError {
         /// The vertex of the refined mesh.
         vertex: u32,
     },
-    /// A place over a control face comes to no polynomial.
+    /// A place over a control face is on no polynomial.
     #[error("the limit surface over control face {face} comes to no polynomial")]
     NoPolynomial {
         /// The control face, or one like it.
@@ -60,7 +60,7 @@ pub enum ReplayError {
     Frame {
         /// Its number, from 0.
         frame: usize,
-        /// What is wrong with it.
+        /// The cause.
         why: MeshError,
     },
     /// A frame's surface takes too many triangles.
@@ -85,7 +85,7 @@ pub enum ReplayError {
     Cancelled(#[from] Cancelled),
 }
 
-/// What it takes to give a refinement's vertices for other positions of the control vertices.
+/// The data that compute a refinement's vertices for other positions of the control vertices.
 ///
 /// ```
 /// use limitmesh::refine::{ExactOptions, Frame, Replay, exact};
@@ -114,7 +114,7 @@ pub struct Replay {
     control_vertices: usize,
     /// The vertices around control vertices of very many edges, whose means count as points.
     rings: Groups,
-    /// Half-edges beside sharp edges, and the slots of their normals.
+    /// Half-edges adjacent to sharp edges, and the slots of their normals.
     sides: Vec<(u32, u32)>,
     /// Vertices with several sides, and the slots of these.
     averages: Vec<(u32, Vec<u32>)>,
@@ -131,7 +131,7 @@ pub struct Frame {
     pub normals: Vec<[f64; 3]>,
     /// Normals by side as in [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,
-    /// What is kept from one use to the next.
+    /// Memory that is used again.
     slots: [Vec<[f64; 3]>; 2],
     inputs: Vec<[f64; LANES]>,
 }
@@ -301,8 +301,8 @@ fn mean(ring: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl Exact {
-    /// The same triangles with the vertices of a frame. Nothing is proven of them: the bounds are infinite, and what is told of other goals
-    /// is that of the refinement.
+    /// The triangles with the vertices of a frame. Nothing is proven of them: the bounds are
+    /// infinite, and the other reports are those of the refinement.
     ///
     /// # Errors
     /// The frame is that of another mesh, or a coordinate is not finite.

@@ -10,7 +10,7 @@ use crate::refine::RefineError;
 
 /// All three edges of a face are split.
 pub(super) const ALL_EDGES: u8 = 0b111;
-/// Set beside the edge bits where the diagonal starts at the unsplit edge's end.
+/// Set in addition to the edge bits where the diagonal starts at the unsplit edge's end.
 const DIAGONAL_BIT: u8 = 0b1000;
 
 /// Which edges of each face are split: bit `c` for the edge from corner `c`.
@@ -276,7 +276,7 @@ impl SplitTopology {
         self.vertex_on[h.index()]
     }
 
-    /// What the pattern labels 0 to 5 stand for in `face`.
+    /// The vertices of the pattern's labels 0 to 5 in `face`.
     #[inline]
     fn labels(&self, topology: &Topology, face: usize) -> [u32; 6] {
         let [a, b, c] = topology.triangles()[face];

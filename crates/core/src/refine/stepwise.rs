@@ -35,7 +35,8 @@ options! {
         pub seam: SeamRule = SeamRule::All,
         /// Move the vertices to the limit surface of the last mesh at the end.
         pub limit: bool = false,
-        /// Tells where vertices and triangles came from ([`Refinement::origins`](crate::refine::Refinement::origins)).
+        /// Whether to report the origins of vertices and triangles
+        /// ([`Refinement::origins`](crate::refine::Refinement::origins)).
         pub origins: bool = false,
         /// Stop before the step that would give more triangles.
         pub max_triangles: Option<usize> = None,

@@ -36,7 +36,7 @@ pub struct UniformOptions {
     pub limit: bool,
     /// Give the limit normals of the vertices, too ([`Refinement::normals`]).
     pub normals: bool,
-    /// Tells where vertices and triangles came from ([`Refinement::origins`]).
+    /// Whether to report the origins of vertices and triangles ([`Refinement::origins`]).
     pub origins: bool,
     /// Stop before the level that would have more triangles.
     pub max_triangles: Option<usize>,
@@ -139,7 +139,7 @@ pub fn uniform_observed(
     })
 }
 
-/// What uniform refinement gives whoever needs no connections, as to draw, to measure or to write it.
+/// The result of uniform refinement without connections, to draw, to measure or to write.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UniformTriangles {
@@ -147,7 +147,8 @@ pub struct UniformTriangles {
     pub positions: Vec<[f64; 3]>,
     /// The vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Unit limit normals of the vertices, an average of the sides at sharp edges; empty where nobody asked for them.
+    /// Unit limit normals of the vertices, an average of the sides at sharp edges; empty if not
+    /// requested.
     pub normals: Vec<[f64; 3]>,
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by 3 · triangle + corner, ascending. Empty
     /// without sharp edges.
@@ -189,11 +190,13 @@ impl UniformTriangles {
     }
 }
 
-/// [`uniform`] without origins and without the mesh's connections: the same vertices, triangles and normals in the same order.
+/// [`uniform`] without origins and without the mesh's connections: its vertices, triangles and
+/// normals are those of [`uniform`], in the same order.
 ///
-/// Connections are more than a third of a mesh's bytes, a quarter beside normals. They are spared where the last levels are done
-/// together: on the limit surface of schemes of Loop's family, where nothing fades any more and no sheets were cut apart. Elsewhere they
-/// are made for the steps, and given up at the end.
+/// Connections are more than a third of a mesh's bytes, a quarter where it has normals. They are
+/// spared where the last levels are done together: on the limit surface of schemes of Loop's
+/// family, where no semi-sharp tags are left and no sheets were cut apart. Elsewhere they are made
+/// for the steps, and given up at the end.
 ///
 /// ```
 /// use limitmesh::Mesh;
@@ -319,8 +322,9 @@ impl End {
     }
 }
 
-/// How many of the last levels can be done together: none for other schemes, while tags fade, where sheets were cut apart
-/// (whose copies of vertices the steps keep alike), and at the first level, after which most faces are regular.
+/// How many of the last levels can be done together: none for other schemes, while there are
+/// semi-sharp tags, where sheets were cut apart (whose copies of vertices the steps keep alike),
+/// and at the first level, after which most faces are regular.
 fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     if !rules.is_certified() || !mesh.junctions().is_empty() {
         return 0;
@@ -424,9 +428,10 @@ impl<'a> LastLevels<'a> {
     }
 }
 
-/// Whether no point of the limit surface can overflow. Points are combinations of control points by weights whose sizes come to 1, and
-/// what they are computed from, differences and coefficients of quartics, is within some thousand times these, or at a vertex as
-/// many times as it has edges, which are fewer than [`MAX_FACES`].
+/// Whether no point of the limit surface can overflow. Points are combinations of control points by
+/// weights whose absolute values sum to 1; the intermediate values, differences and coefficients of
+/// quartics, are within some thousand times these, or at a vertex as many times as it has edges,
+/// which are fewer than [`MAX_FACES`].
 fn stays_finite(control: &Mesh) -> bool {
     const FAR: f64 = 1e290;
     control

@@ -1,8 +1,11 @@
-//! Triangles whose corners were moved off the surface, over parts that are known ([`BentFour`]), among the triangles beside them.
+//! Triangles whose corners were moved off the surface, over parts that are known ([`BentFour`]),
+//! among their neighbours.
 //!
-//! The bounds are those of [`super::super::quartic_cell`] and [`super::super::deviation`], written for four at once: heights over
-//! the triangle's own plane by the quadratic part, whose corners stand where the surface's do; what curves do beside their edges and whether the
-//! surface folds by the bends within that plane; chords and slopes among the neighbours as [`super::super::dihedral::around`] has them.
+//! The bounds are those of [`super::super::quartic_cell`] and [`super::super::deviation`], written
+//! for four at once: heights over the triangle's own plane by the quadratic part, whose corners
+//! stand where the surface's do; the distances of curves from their edges, and whether the surface
+//! folds, by the bends within that plane; chords and slopes among the neighbours as in
+//! [`super::super::dihedral::around`].
 
 use super::super::deviation::SHARPEST;
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
@@ -21,7 +24,7 @@ pub(crate) struct MovedFour {
     pub(crate) opposite: [[[f64; FOUR]; 3]; 3],
 }
 
-/// What triangles come to.
+/// The bounds of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundFour {
     /// No less than the distance between each triangle and its part of the surface; infinite where nothing is known.
@@ -46,7 +49,7 @@ struct Triangle {
     has_plane: f64x4,
 }
 
-/// What parts of the surface do beside the edges of their triangles.
+/// The distances of parts of the surface from the edges of their triangles.
 struct Beside {
     /// How far curves are from their edges, and how far they reach over them.
     side: f64x4,
@@ -65,7 +68,8 @@ struct Around {
 }
 
 impl MovedFour {
-    /// What the triangles come to over their parts, which are kept in a unit that makes so much of lengths.
+    /// The bounds of the triangles over their parts, which are kept in a unit that multiplies
+    /// lengths by `scale`.
     #[inline(never)]
     pub(crate) fn bounds(&self, part: &BentFour, scale: f64) -> FoundFour {
         let [from, second, third] = self.corners.each_ref().map(vectors);
@@ -155,7 +159,7 @@ impl Triangle {
         (lifts, moved.sqrt(), aside.sqrt())
     }
 
-    /// As [`super::super::quartic_cell::QuarticJet::beside`] has it.
+    /// As in [`super::super::quartic_cell::QuarticJet::beside`].
     #[inline(always)]
     fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> Beside {
         let zero = f64x4::ZERO;
@@ -184,7 +188,7 @@ impl Triangle {
         }
     }
 
-    /// Whether no two points come to one place, by changes of barycentric coordinates times the area.
+    /// Whether the map is injective, by changes of barycentric coordinates times the area.
     #[inline(always)]
     fn is_unfolded(&self, bends: &[Vectors; 3], first: f64x4) -> f64x4 {
         let across = [&self.edges[0], &self.edges[2]].map(|edge| cross(edge, &self.normal));
@@ -196,7 +200,7 @@ impl Triangle {
         }
         let square = self.area * self.area;
         let [a, b, c] = self.lengths.map(|length| length * length);
-        // What the metric stretches lengths by at most, times the area.
+        // The greatest stretch of lengths by the metric, times the area.
         let half_trace = 0.25 * (a + b + c);
         let stretch = (half_trace
             + (half_trace * half_trace - 0.75 * square)
@@ -206,7 +210,7 @@ impl Triangle {
         (most.sqrt() + DIRECTIONS * first * stretch).simd_lt(NEARLY_ONE * self.area)
     }
 
-    /// As [`super::super::dihedral::around`] has it, of triangles with neighbours beyond all edges.
+    /// As in [`super::super::dihedral::around`], for triangles with neighbours beyond all edges.
     #[inline(always)]
     fn around(&self, corners: &[Vectors; 3], opposite: [Vectors; 3], scale: f64) -> Around {
         let share = 1.0 / self.area;

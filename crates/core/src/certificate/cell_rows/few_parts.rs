@@ -29,9 +29,9 @@ pub(super) struct FewParts {
     edges: [Few; 2],
     normals: [Few; 3],
     bends: [Few; 3],
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     size: f32,
-    /// Column, row, and whether on its head.
+    /// Column, row, and whether the part is inverted.
     pub(super) places: [(usize, usize, bool); FEW],
 }
 

@@ -11,12 +11,14 @@
 //! * A and the products of edges are off by 8u|a||b|: A by the part η of it, and the greatest product, at least L/4, by 3η;
 //! * products of bends with edges, or with what is at right angles to them, are off by 2ηw√L.
 //!
-//! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point where both derivatives vanish, if it is
-//! inside. The point's barycentric coordinates are the three products of [`quadratic_height`] over their sum. Each of them is off by
-//! 12uW², the sum by 40uW²: where the sum is more than W²/256, coordinates are off by less than 2⁻¹⁰, and so is the height, relatively
-//! ([`NEARLY`]). Where it is less, the quadratic is nearly one of one direction. If there is a greatest height inside, then the ridge
-//! through the middle of the edge that bends most is concave and starts with the slope ¼(W₁ + W₂ − W), the other bends counted as W
-//! is: its height is W/8 and as much more as that comes to, and never more than W/6.
+//! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point
+//! where both derivatives vanish, if it is inside. The point's barycentric coordinates are the
+//! three products of [`quadratic_height`] over their sum. Each of them is off by 12uW², the sum by
+//! 40uW²: where the sum is more than W²/256, coordinates are off by less than 2⁻¹⁰, and so is the
+//! height, relatively ([`NEARLY`]). Where it is less, the quadratic is nearly one of one direction.
+//! If there is a greatest height inside, then the ridge through the middle of the edge that bends
+//! most is concave and starts with the slope ¼(W₁ + W₂ − W), the other bends relative to the sign of W:
+//! its height is W/8 plus the rise by that slope, and never more than W/6.
 //!
 //! [`quadratic_height`]: super::super::quartic_cell::quadratic_height
 
@@ -31,13 +33,14 @@ pub(super) const LANES: usize = 4;
 /// By this times L/A a part is known less well than it is: 16 times 2⁻²⁴.
 const UNSURE: f32 = 1.0 / (1 << 20) as f32;
 
-/// What coordinates of the highest point are off by at most, and the part of its height.
+/// The error of coordinates of the highest point, and of the height as a part of it.
 const NEARLY: f32 = 1.0 / (1 << 10) as f32;
 
-/// Sums of products of bends below this part of the greatest bend's square tell nothing of the highest point.
+/// Sums of products of bends below this part of the greatest bend's square do not determine the
+/// highest point.
 const UNKNOWN: f32 = 1.0 / (1 << 8) as f32;
 
-/// The same for sums as such: products below vanish.
+/// The absolute bound for sums: products below vanish.
 const VANISHING: f32 = 1e-24;
 
 /// For what the last few operations do.
@@ -59,7 +62,7 @@ pub(super) struct Parts<'a> {
     pub(super) normals: [Slices<'a>; 3],
     /// The second derivatives along the edges from the first corner to the second, on to the third, and back.
     pub(super) bends: [Slices<'a>; 3],
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     pub(super) size: f32,
 }
 
@@ -185,7 +188,7 @@ struct Triangle {
     unsure: f32x4,
 }
 
-/// What parts of the surface do beside the edges of their triangles.
+/// The distances of parts of the surface from the edges of their triangles.
 struct Beside {
     /// How far they reach over them.
     drift: f32x4,
@@ -288,7 +291,8 @@ impl Triangle {
         }
     }
 
-    /// Whether no two points come to one place (see `quartic_cell`), by changes of barycentric coordinates times the area.
+    /// Whether the map is injective (see `quartic_cell`), by changes of barycentric coordinates
+    /// times the area.
     #[inline(always)]
     fn is_unfolded(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> f32x4 {
         let across = [self.a, self.b].map(|edge| cross(edge, self.normal));
@@ -304,8 +308,9 @@ impl Triangle {
     }
 }
 
-/// What the greatest height of a quadratic that is 0 at the corners is about, and no greater than, by its second derivatives along the
-/// edges from the first corner to the second, on to the third, and back.
+/// An approximation and an upper bound of the greatest height of a quadratic that is 0 at the
+/// corners, by its second derivatives along the edges from the first corner to the second, on to
+/// the third, and back.
 #[inline(always)]
 fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
     let most = larger([p, q, s].map(f32x4::abs));
@@ -353,7 +358,7 @@ impl Found {
         extent: &mut RowExtent,
         marks: &mut [Mark],
     ) {
-        // What has no bound, which is infinite, must not pass, however great the target is.
+        // A part without a bound, which is infinite, must not pass, however great the target is.
         let most = (target.distance * scale).smaller(f64::from(f32::MAX));
         let mut greatest = 0.0f64;
         for (i, mark) in marks.iter_mut().enumerate().take(count) {

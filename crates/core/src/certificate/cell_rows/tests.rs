@@ -25,7 +25,7 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
     samples_lie_within(0.0);
 }
 
-/// The same where the range of heights counts beside the greatest.
+/// The ranges of heights, where these count in addition to the greatest.
 #[test]
 fn ranges_of_heights_of_parts_that_pass_lie_within_the_target() {
     samples_lie_within(0.95);
@@ -140,7 +140,8 @@ fn samples_lie_within(range_share: f64) {
     }
 }
 
-/// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.
+/// The bound of their rounding holds against the polynomial in double precision, at sizes from 1e-9
+/// to 1e9.
 #[test]
 fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
     let mut random = Random::new(11);

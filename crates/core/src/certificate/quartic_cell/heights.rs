@@ -59,7 +59,7 @@ impl Heights {
         ((quadratic - rest).larger(0.0), quadratic + rest)
     }
 
-    /// The range of heights from one side to the other is no less, as far as the edges tell.
+    /// A lower bound, by the edges, of the range of heights from one side to the other.
     pub(crate) fn least_range(&self) -> f64 {
         edge_range(self.bends())
     }
@@ -99,7 +99,7 @@ impl Heights {
         [first, both, last]
     }
 
-    /// What the parts of third and fourth degree come to at most.
+    /// The bound of the parts of third and fourth degree.
     #[inline]
     fn rest(&self) -> f64 {
         let Self {
@@ -269,7 +269,7 @@ fn halves(net: &[f64; 15]) -> [[f64; 15]; 2] {
     halves
 }
 
-/// What the K-th row of a net gives. (With K known no index needs a check.)
+/// The halves of the K-th row of a net. (With K known no index needs a check.)
 #[inline(always)]
 fn halved_row<const K: usize>(net: &[f64; 15], halves: &mut [[f64; 15]; 2]) {
     let degree = 4 - K;

@@ -1,5 +1,6 @@
-//! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the hull of their control points, or by
-//! what stands for them while tags fade (see [`super::super::bounds`]).
+//! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the
+//! hull of their control points, or by their twins at semi-sharp tags (see
+//! [`super::super::bounds`]).
 
 use super::super::hull_points::HullPoint;
 use super::super::{exceeds, greater};
@@ -13,8 +14,8 @@ use smallvec::SmallVec;
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
 const DEEPEST: usize = 40;
 
-/// Where the lasting twin of a piece is farther away than the target by this many times what lies between the two, the piece is
-/// taken to be too far as well.
+/// Where the infinitely sharp twin of a piece is farther away than the target by this many times
+/// the distance between the two, the piece is taken to be too far as well.
 const CERTAIN: f64 = 3.0;
 
 /// Down to this level pieces must be good enough together with others.
@@ -24,8 +25,8 @@ const TOGETHER: usize = 3;
 const CLEARLY: f64 = 1.0 + 1e-9;
 
 impl<P: HullPoint> Search<'_, P> {
-    /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
-    /// whether it did.
+    /// Replaces a semi-sharp piece by its infinitely sharp twin if that decides; returns whether it
+    /// did.
     fn by_twin(
         &mut self,
         patch: &Patch,

@@ -36,11 +36,12 @@ const COLLAPSED: usize = 15_000;
 /// Halving a distance at most doubles the triangles in the long run, halving an angle makes them four times as many.
 const MOST_GROWTH: f64 = 4.0;
 
-/// The triangles and the memory that [`super::exact`] would come to with the same options.
+/// Estimates the triangles and the memory of [`super::exact`] with these options.
 ///
-/// Numbers of triangles follow a power of the tolerance once the triangles are small against the surface's features; they
-/// are extrapolated from the last two halvings that could be counted quickly. What collapses leave of them is seen at a tolerance
-/// that takes few; it hardly depends on it. Of large meshes a sample of faces is looked at.
+/// Numbers of triangles follow a power of the tolerance once the triangles are small against the
+/// surface's features; they are extrapolated from the last two halvings that could be counted
+/// quickly. The share that collapses leave is measured at a tolerance that needs few; it hardly
+/// depends on the tolerance. Of large meshes a sample of faces is used.
 ///
 /// # Errors
 /// As for [`super::exact`].
@@ -141,7 +142,7 @@ fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
     times.log2().ceil().min(MOST_HALVINGS).exp2()
 }
 
-/// The same where edges are collapsed.
+/// The estimate where edges are collapsed.
 fn optimised(
     control: &Mesh,
     scheme: &dyn Scheme,

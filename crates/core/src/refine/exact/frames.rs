@@ -1,4 +1,5 @@
-//! Exact refinement of an animation: the same triangles for all frames, each frame within the goals.
+//! Exact refinement of an animation: one set of triangles for all frames, each frame within the
+//! goals.
 
 use super::{met, scale, tighter};
 use crate::mesh::{Mesh, MeshError, Triangles};
@@ -23,9 +24,10 @@ pub struct Frames {
     pub errors: Vec<ErrorBounds>,
 }
 
-/// Refines `control` so that the goals are met for all frames, with the same triangles: a part is divided if it has to be in any
-/// frame. A frame is the positions of the control vertices; those of `control` itself mean nothing, its tags hold for all. What
-/// the mesh carries beside positions does not change with frames, nor do the places of vertices: channels are carried once, from the control mesh to
+/// Refines `control` so that the goals are met for all frames, with one set of triangles: a part is
+/// divided if it has to be in any frame. A frame is the positions of the control vertices; those of
+/// `control` itself mean nothing, its tags hold for all. Channels do not change with frames, nor do
+/// the origins of vertices: channels are carried once, from the control mesh to
 /// [`Frames::refined`].
 ///
 /// Of the goals a tolerance, an angle and pixels are followed. Flat regions are divided like others.
@@ -107,7 +109,7 @@ pub fn exact_frames_observed(
     })
 }
 
-/// The same for models of a middling size.
+/// Exact refinement of frames scaled to a middling size.
 fn middling(
     (control, scheme): (&Mesh, &dyn Scheme),
     all: &[Vec<[f64; 3]>],

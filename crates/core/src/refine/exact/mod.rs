@@ -1,6 +1,6 @@
-//! Exact refinement: triangles within a tolerance of the true limit surface. What is asked is checked here, brought to a
-//! middling size, and handed to the engine ([`super::adaptive`]) or to the collapse of a finer mesh
-//! ([`super::simplified`]).
+//! Exact refinement: triangles within a tolerance of the true limit surface. Options are checked
+//! here, the mesh is scaled to a middling size, and both are handed to the engine
+//! ([`super::adaptive`]) or to the collapse of a finer mesh ([`super::simplified`]).
 
 mod estimate;
 mod frames;
@@ -59,7 +59,8 @@ pub fn exact_observed(
     Ok(met(found, upper, options))
 }
 
-/// The same, met where a tolerance is all that is asked and `upper` shows that it is: what triangles come to one by one can be more.
+/// The result, marked as met where a tolerance is the only goal and `upper` shows that it is met:
+/// the sum of the bounds of single triangles can be greater.
 fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     match options.tolerance {
         Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => Exact {

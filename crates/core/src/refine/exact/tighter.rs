@@ -1,9 +1,11 @@
 //! Bounds that are far above what was found, measured anew.
 //!
-//! What refinement proves adds up from bounds of each triangle against its own part of the surface, as far as the neighbours leave
-//! room. Where triangles are small for another reason than their distance, edges were collapsed or the surface is folded, the
-//! mesh can be much nearer to the whole surface than that says. Then it is measured against a mesh that is nearer still, within e of
-//! the surface: a distance to that mesh and one to the surface differ by e at most (the triangle inequality, in either direction).
+//! The proven bound of refinement adds up from bounds of each triangle against its own part of the
+//! surface, as far as the neighbours leave room. Where triangles are small for another reason than
+//! their distance, edges were collapsed or the surface is folded, the mesh can be much nearer to
+//! the whole surface than that. Then it is measured against a mesh that is nearer still, within e
+//! of the surface: a distance to that mesh and one to the surface differ by e at most (the triangle
+//! inequality, in either direction).
 
 use crate::measure::{Bvh, certified_known};
 use crate::mesh::{Mesh, Triangles};
@@ -45,7 +47,8 @@ const MET_FOR_EACH: usize = 3;
 /// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
 const GROWTH: f64 = 2.0;
 
-/// Whether there may be tighter bounds for triangles that stand for the limit surface of `control`.
+/// Whether there may be tighter bounds for triangles that approximate the limit surface of
+/// `control`.
 pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
     let known = Known::new(*error, control);
     error.certified && known.distance().is_normal() && !known.is_tight()
@@ -142,7 +145,7 @@ fn triangles_at(near: f64, count: usize, far: f64) -> f64 {
     count as f64 * GROWTH.powf((far / near).log(FINER))
 }
 
-/// What is known of a distance.
+/// The known interval of a distance.
 struct Known {
     bounds: ErrorBounds,
     /// Distances below count as that.
@@ -166,7 +169,7 @@ impl Known {
         self.bounds.upper <= ErrorBounds::TIGHT * self.distance()
     }
 
-    /// As far as a nearer mesh may be off.
+    /// The least useful error of a nearer mesh.
     fn finest(&self) -> f64 {
         SHARE * self.distance()
     }
@@ -179,7 +182,7 @@ impl Known {
         observer: &mut Observer<'_>,
     ) -> Result<bool, RefineError> {
         let lower = self.bounds.lower;
-        // What is found is at most that much above what was, or what turns out to be the distance.
+        // The result is at most that much above the known bound, or above the distance.
         let gap = (ErrorBounds::TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
         let found = certified_known(trees, lower - off, gap, observer)?.widened(off);
         self.bounds.upper = self.bounds.upper.min(found.upper);

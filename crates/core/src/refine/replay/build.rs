@@ -66,7 +66,7 @@ struct Weighed {
     members: Vec<MemberRows>,
 }
 
-/// What a face takes of the weights of its shape.
+/// The rows that a face uses of the weights of its shape.
 #[derive(Default)]
 struct MemberRows {
     /// Where rows start, with their spots.
@@ -89,7 +89,8 @@ pub(super) fn build(
     watch: &mut Watch<'_>,
 ) -> Result<(Table, Vec<u32>), ReplayError> {
     let (mut corners, faces) = groups_of(&wants.spots);
-    // Those of the same stencil follow each other: the same weights, the same number of points.
+    // Corners with one stencil follow each other: they have equal weights and an equal number of
+    // points.
     corners.sort_by_key(|corner| control.stencils.by_vertex[corner.of as usize]);
     let mut building = Building {
         table: Table::default(),
@@ -218,7 +219,7 @@ fn shapes(
     Ok(shapes)
 }
 
-/// The weights of a shape; `None` where a place comes to no polynomial.
+/// The weights of a shape; `None` where a place is on no polynomial.
 fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighed> {
     let first = shape.members.first()?;
     let face = FaceId(faces[first.group].of);

@@ -23,7 +23,7 @@ pub(super) enum Spot {
 /// All that is asked for.
 #[derive(Debug, Default)]
 pub(super) struct Wants {
-    /// Those of the vertices, by their numbers, then others.
+    /// The places of the vertices, by their numbers, then others.
     pub(super) spots: Vec<Spot>,
     /// The half-edges of [`Exact::sides`], and the spots of their normals.
     pub(super) sides: Vec<(u32, u32)>,
@@ -37,7 +37,7 @@ impl Spot {
         bits.map(f64::from_bits)
     }
 
-    /// That of a point of the control mesh.
+    /// The place of a point of the control mesh.
     fn of(control: &Mesh, stencils: &VertexStencils, origin: &Origin) -> Option<Self> {
         let corners = control.triangles().get(origin.face as usize)?;
         let [_, u, v] = origin.barycentric;
@@ -72,7 +72,7 @@ fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
 }
 
 impl Wants {
-    /// What the vertices and sides of `refined` ask for, a refinement of `control`.
+    /// The values needed by the vertices and sides of `refined`, a refinement of `control`.
     pub(super) fn of(
         control: &Mesh,
         stencils: &VertexStencils,

@@ -126,10 +126,10 @@ pub(super) struct Pieces<'a> {
     weights: [OnceLock<Weights>; TABULATED + 1],
 }
 
-/// What evaluating a face gives, by slot.
+/// The values of a face, by slot.
 pub(super) struct Values {
     pub(super) points: Vec<[f64; 3]>,
-    /// Unit normals on the face's side, zero where there is none; empty where nobody asked for them.
+    /// Unit normals on the face's side, zero where there is none; empty if not requested.
     pub(super) normals: Vec<[f64; 3]>,
     controls: Vec<DVec3>,
 }
@@ -343,7 +343,7 @@ impl<'a> Pieces<'a> {
                 .into_iter()
                 .enumerate()
             {
-                // The middle part stands on its head; it is regular, so that none of its own does.
+                // The middle part is inverted; it is regular, so that no part of it is.
                 self.for_each_regular(&refined.part(part), half, origin, part == 3, visit);
             }
         }

@@ -3,7 +3,7 @@ use crate::limit::LimitTable;
 use crate::mesh::{CornerTag, CreaseTag, Tags};
 use crate::scheme::{Loop, LoopWarren};
 
-/// The same by steps, one after another, and stencils at every vertex.
+/// The result by steps, one after another, and stencils at every vertex.
 fn by_steps(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -35,7 +35,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         .sqrt()
 }
 
-/// What is given without connections is what stands in the mesh.
+/// The result without connections equals the mesh.
 fn check_triangles(name: &str, control: &Mesh, scheme: &dyn Scheme, options: &UniformOptions) {
     let found = uniform_triangles(control, scheme, options).unwrap();
     let Refinement {
@@ -311,7 +311,7 @@ fn whoever_needs_no_connections_gets_the_same_whatever_is_asked_for() {
     }
 }
 
-/// Coordinates so large that sums of a few of them overflow are told of, by whichever way.
+/// Coordinates so large that sums of a few of them overflow are reported, by either way.
 #[test]
 fn what_overflows_is_an_error() {
     let huge = |scale: f64| {

@@ -1,4 +1,5 @@
-//! The mesh that was given, its faces divided in four where they lie: the same surface, with more points that can be moved.
+//! The given mesh, its faces divided in four in their planes: the surface is unchanged, with more
+//! points that can be moved.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{CornerTag, FaceParts, Mesh, Sharpness, VertexRule};

@@ -1,10 +1,12 @@
 //! Meshes that are certainly within a distance of the mesh that was given, and as smooth as that allows.
 //!
-//! Vertices are taken for measured points that are off by so much at most, as those of scans and of voxels are. The surface is the fairest
-//! whose limits stay within a reach of the vertices ([`mod@crate::interpolate`]), shifted along its normals so that closed parts keep their
-//! volume (`volume.rs`). What comes between the vertices is found by refining it: where a triangle is farther from its partner on the given
-//! mesh ([`InputDistance`]) than it may be, or turned over, the reach of the vertices around is made smaller, and all is solved again from
-//! there. So the bound costs smoothness where it has to, and nowhere else.
+//! Vertices are taken for measured points within this distance of the truth, as those of scans and
+//! of voxels are. The surface is the fairest whose limits stay within a reach of the vertices
+//! ([`mod@crate::interpolate`]), shifted along its normals so that closed parts keep their volume
+//! (`volume.rs`). The surface between the vertices is found by refinement: where a triangle is
+//! farther from its partner on the given mesh ([`InputDistance`]) than it may be, or turned over,
+//! the reach of the vertices around is made smaller, and all is solved again from there. So the
+//! bound costs smoothness only where it must.
 //!
 //! A surface through all vertices leaves large faces by some part of their size. Where that is more than it may be, faces are divided in four
 //! where they lie (`finer.rs`), which halves it. Where that would have to be done too often, or does not help, edges become sharp
@@ -14,12 +16,14 @@
 //! **Coarse first.** What is far too far off shows on a coarse result as well. Results get finer as long as nothing is too far off, so that
 //! a tiny distance does not take millions of triangles before it is given up.
 //!
-//! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would take the whole reach, close thin tubes and
-//! swell thick ones. So how far limits are from their vertices counts, too, ε|y|² beside |Bx|² on edges of the length h. Waves of the length ℓ
-//! are bent by (πh/ℓ)², so that with ε = (πh/ℓ)⁴ those of less than ℓ are smoothed and longer ones kept. ℓ is 20 times the
-//! distance, as far as steps of its height reach on slopes that are hardly inclined, and at least 18 edges. On a ball of voxels of the radius
-//! 10, within 0.87, the radius has a standard deviation of 0.05; with ε near 0 it has 0.055, and within 3 it has 0.15, where the bound does
-//! not hold the surface any more.
+//! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would use
+//! the whole reach, close thin tubes and swell thick ones. So the distance of limits from their
+//! vertices counts, too, as ε|y|² in addition to |Bx|² on edges of the length h. Waves of the
+//! length ℓ are bent by (πh/ℓ)², so that with ε = (πh/ℓ)⁴ those of less than ℓ are smoothed and
+//! longer ones kept. ℓ is 20 times the distance, as far as steps of its height reach on slopes that
+//! are hardly inclined, and at least 18 edges. On a ball of voxels of the radius 10, within 0.87,
+//! the radius has a standard deviation of 0.05; with ε near 0 it has 0.055, and within 3 it has
+//! 0.15, where the bound does not hold the surface any more.
 //!
 //! ```
 //! use limitmesh::refine::{WithinOptions, within};
@@ -69,7 +73,8 @@ const LEAST_NEARNESS: f64 = 1e-6;
 /// How many times the surface is solved for at most.
 const MOST_ROUNDS: usize = 12;
 
-/// How much the limits around a triangle are brought nearer, beside what it is too far off: what is left over would take further rounds.
+/// The factor by which the limits around a triangle are brought nearer than its excess requires: a
+/// rest would take further rounds.
 const NEARER: f64 = 1.5;
 
 /// How far limits are left where they turn triangles over, from one time to the next, and the part of the room below which they are left at
@@ -89,7 +94,7 @@ const FINER: f64 = 8.0;
 const MOST_UNFOLDING: usize = 2;
 
 options! {
-    /// What is asked of a mesh near another.
+    /// The options of a mesh near another.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WithinOptions {
         /// The greatest distance between the result and the mesh that is given, either way, as a length above 0. Default: 0, which is none.
@@ -122,7 +127,7 @@ pub struct Within {
     pub refined: Exact,
     /// How far the result is from the mesh that was given.
     pub distance: InputDistance,
-    /// What was asked for.
+    /// The requested distance.
     pub within: f64,
     /// Triangles of the result that are turned over ([`turned_over_triangles`]).
     pub inverted: usize,
@@ -281,7 +286,8 @@ impl Smoothed {
         self.faults.iter().map(distance).fold(0.0, f64::max)
     }
 
-    /// Whether something is turned over, or farther from its face than it may be: not only beside its partner.
+    /// Whether a triangle is turned over, or farther from its face than allowed: not only from its
+    /// partner.
     fn is_wrong(&self, bound: &Bound) -> bool {
         self.farthest(|fault| fault.off) > bound.within
             || self.faults.iter().any(|fault| fault.is_inverted)
@@ -390,7 +396,7 @@ fn smoothed(
     }
 }
 
-/// What being near counts beside being fair.
+/// The weight of nearness relative to fairness.
 fn nearness(mesh: &Mesh, within: f64) -> f64 {
     let sum: f64 = (0..mesh.face_count())
         .map(|face| perimeter(mesh, face))
@@ -405,7 +411,7 @@ fn perimeter(mesh: &Mesh, face: usize) -> f64 {
     a.distance(b) + b.distance(c) + c.distance(a)
 }
 
-/// What may be wrong with the triangles over a face.
+/// The fault of the triangles over a face.
 #[derive(Clone, Copy, Default)]
 struct Fault {
     /// How far they are from their partners, and from the face itself.

@@ -1,9 +1,11 @@
 //! Edges that are made sharp where no smooth surface stays near.
 //!
-//! A surface that is smooth across an edge leaves the faces there by some part of their size times the angle. So the edges around a fault
-//! that bend most become sharp first: those of a part, with round faces left round between them. What is too far off then, or turned over,
-//! are faces that a surface folds on, such as slivers: all their edges become sharp and their vertices corners, which makes each the flat
-//! triangle that it was, and at last so the faces around them, too.
+//! A surface that is smooth across an edge leaves the faces there by some part of their size times
+//! the angle. So the edges around a fault that bend most become sharp first: those of a part, with
+//! round faces left round between them. Faces that are still too far off, or turned over, are those
+//! on which a surface folds, such as slivers: all their edges become sharp and their vertices
+//! corners, which makes each the flat triangle that it was; at last this is done to the faces
+//! around them, too.
 
 use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};

@@ -30,7 +30,7 @@ pub(super) struct Shift {
     parts: Vec<Part>,
 }
 
-/// What hangs together by vertices, and by the copies of these where sheets were cut apart.
+/// A component connected by vertices, and by their copies where sheets were cut apart.
 struct Part {
     is_closed: bool,
     volume: f64,

@@ -191,7 +191,8 @@ fn single_precision_is_on_the_safe_side() {
     );
 }
 
-/// The greatest height of a quadratic, by the places where it can be and none other, is never above what is told.
+/// The greatest height of a quadratic, by all places where it can be, is never above the reported
+/// one.
 #[test]
 fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
     let mut random = Random::new(7);
