@@ -44,7 +44,7 @@ const BLOCK: usize = 64;
 pub struct SurfacePoint {
     /// Where it is, in the control mesh's units.
     pub position: [f64; 3],
-    /// The unit normal, on the side of the face that was asked; zero where there is none.
+    /// The unit normal, on the side of the given face; zero where there is none.
     pub normal: [f64; 3],
 }
 
@@ -92,7 +92,7 @@ impl<'a> LimitSurface<'a> {
         Self::by_rules(mesh, Rules::of(scheme))
     }
 
-    /// [`Self::without_normals`] by rules that may share what is found with those of other surfaces.
+    /// [`Self::without_normals`] by rules that may share stencils with those of other surfaces.
     fn by_rules(mesh: &'a Mesh, rules: Rules<'a>) -> Result<Self, LimitError> {
         let positions = rules.table().positions(mesh)?;
         let sharpness = Sharpness::of(mesh);
@@ -148,8 +148,8 @@ impl<'a> LimitSurface<'a> {
         blocks.concat()
     }
 
-    /// The first coordinates of points over places of faces, face by face, in blocks; `places` calls what it is given with each place
-    /// of a face.
+    /// The first coordinates of points over places of faces, face by face, in blocks; `places`
+    /// calls its argument with each place of a face.
     pub(crate) fn coordinates<const AXES: usize>(
         &self,
         places: impl Fn(usize, &mut dyn FnMut([f64; 3])) + Sync + Send,
@@ -241,7 +241,7 @@ impl<'a> LimitSurface<'a> {
         self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]))
     }
 
-    /// Why what was computed means nothing, if a stencil failed on the way.
+    /// The reason why results are invalid, if a stencil failed on the way.
     pub fn failure(&self) -> Option<&LimitError> {
         self.rules.failure()
     }

@@ -1,4 +1,5 @@
-//! Nodes of quadtrees over the control faces: where they are, and what lies beyond their edges. Knows no trees.
+//! Nodes of quadtrees over the control faces: their addresses, and the nodes beyond their edges.
+//! Knows no trees.
 //!
 //! Children 0 to 2 of a node keep the corner of their number at its place; corner `i` of child 3, the middle one, is the new
 //! vertex opposite corner `i`. So child `i` lies along the first half of edge `i` and the second half of edge `i + 2` of its
@@ -104,8 +105,8 @@ impl Place {
     }
 }
 
-/// Whether what lies beyond an edge of a child is a child of the same node: every edge of the middle one, and that of any other which
-/// faces the middle.
+/// Whether the node beyond an edge of a child is a child of the same parent: every edge of the
+/// middle one, and that of any other which faces the middle.
 #[inline]
 fn is_beside_sibling(child: usize, edge: usize) -> bool {
     child == 3 || edge == (child + 1) % 3

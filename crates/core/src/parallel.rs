@@ -12,7 +12,8 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 const SHARES: usize = 48;
 const MOST_IN_SHARE: usize = 256;
 
-/// How many of so many elements one call takes together where each may take long: few enough for threads to end together.
+/// The number of elements that one call processes together where each may take long: few enough for
+/// threads to end together.
 pub(crate) fn share(elements: usize) -> usize {
     (elements / SHARES).clamp(1, MOST_IN_SHARE)
 }
@@ -44,7 +45,8 @@ pub(crate) fn map<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> V
     (0..n).map(f).collect()
 }
 
-/// So many default values, with room for more: as [`limitmesh_pages::defaults_with_room`], but that all threads touch what must be.
+/// `count` default values, with room for more: like [`limitmesh_pages::defaults_with_room`], but
+/// all threads touch the pages.
 pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(
     length: usize,
     capacity: usize,
@@ -88,7 +90,7 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
         .for_each(|(i, chunk)| f(i, chunk));
 }
 
-/// Bytes that are touched by several threads from so many on.
+/// The number of bytes from which several threads touch them.
 #[cfg(feature = "parallel")]
 const TOUCHED: usize = 1 << 18;
 
@@ -323,7 +325,7 @@ pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     map_chunks_polled(n, SEQUENTIAL_BELOW, poll, f)
 }
 
-/// [`map_polled`], `length` items at a time; so many should take a few milliseconds at most.
+/// [`map_polled`], `length` items at a time; these should take a few milliseconds at most.
 pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     n: usize,
     length: usize,
@@ -339,9 +341,9 @@ pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + S
     Ok(slots)
 }
 
-/// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
-/// does, with the number of blocks done, and while it waits for others, and by blocks that ask for it; once it fails it is not called
-/// again and no further block is begun.
+/// Runs `work` on every block and gives the results in order. `poll` is called after each block
+/// that the calling thread does, with the number of blocks done, and while it waits for others, and
+/// by blocks that request it; once it fails it is not called again and no further block is begun.
 fn hand_out<
     B: Send,
     R: Send,

@@ -39,7 +39,7 @@ use crate::parallel::{self, IsStopped};
 pub struct Progress {
     /// The current stage.
     pub stage: Stage,
-    /// Units of this stage that are done; see [`Stage`] for what they are.
+    /// Units of this stage that are done; see [`Stage`] for the units.
     pub done: usize,
     /// Units that there will be, where that is known.
     pub total: Option<usize>,
@@ -51,7 +51,8 @@ pub struct Progress {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Faces are being divided; the units are levels or steps, of exact refinement rounds over what has changed.
+    /// Faces are being divided; the units are levels or steps, in exact refinement rounds over the
+    /// changed faces.
     Refining,
     /// Vertices are being moved to the limit surface; the units are vertices.
     Limits,
@@ -108,8 +109,7 @@ pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
 
 /// The result of `work` without an observer: nothing cancels it.
 pub(crate) fn uncancelled<T>(work: impl FnOnce(&mut Observer<'_>) -> Result<T, Cancelled>) -> T {
-    work(&mut unobserved)
-        .unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
+    work(&mut unobserved).unwrap_or_else(|Cancelled| unreachable!("cancelled without an observer"))
 }
 
 /// An observer and its last progress, which long functions pass on to their loops.
@@ -148,13 +148,13 @@ impl<'a> Watch<'a> {
         self.progress.triangles = triangles;
     }
 
-    /// So many units of the stage are done.
+    /// Reports the units of the stage that are done.
     pub(crate) fn done(&mut self, done: usize) -> Result<(), Cancelled> {
         self.progress.done = done;
         self.poll()
     }
 
-    /// So many units of the stage are done, and so many there will be, as it looks by now.
+    /// Reports the units of the stage that are done, and their expected total.
     pub(crate) fn done_of(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.progress.total = Some(total);
         self.done(done)

@@ -104,8 +104,8 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
     }
 }
 
-/// `√(a² + b²)`, also where squares vanish or overflow. Unlike what the system's library has for that, it gives the same bytes everywhere, and
-/// takes a few instructions.
+/// `√(a² + b²)`, also where squares vanish or overflow. Unlike the system's library, it gives the
+/// same bytes everywhere, and takes a few instructions.
 #[inline]
 pub(crate) fn hypotenuse(a: f64, b: f64) -> f64 {
     let squared = a * a + b * b;
@@ -129,8 +129,8 @@ fn hypotenuse_of_any(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Comparisons of numbers by one instruction each: what is not a number is not larger, nor smaller, than anything. `f64::max` gives the other
-/// one whichever of two is not a number, which takes five.
+/// Comparisons of numbers by one instruction each: NaN is neither larger nor smaller than anything.
+/// `f64::max` ignores NaN in either argument, which takes five.
 pub(crate) trait Extremes {
     /// `other` if that is larger.
     fn larger(self, other: Self) -> Self;

@@ -1,4 +1,4 @@
-//! Channels carried from a control mesh to what was refined from it.
+//! Carries channels from a control mesh to its refinement.
 //!
 //! Takes channels of the control mesh, and a refined mesh whose triangles each come from one control face and whose vertices know where
 //! on the control mesh they came from; gives the channels of the refined mesh. Linear ones are linear over each control face, so exact on

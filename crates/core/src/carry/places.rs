@@ -8,8 +8,8 @@ use crate::index::HalfEdgeId;
 use crate::mesh::{Channel, ChannelError, Mesh};
 use crate::refine::{Origin, Traced};
 
-/// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
-/// channels are linear, and on which side of seams it is.
+/// The numbers of the values at the control vertices of the face, edge or vertex that a place is
+/// in: the values on which it depends where channels are linear, and its side of seams.
 pub(super) type Key = [u32; 3];
 
 /// A refined mesh's places on its control mesh.

@@ -111,7 +111,8 @@ pub(super) fn value_mesh(
     })
 }
 
-/// Whether a fan's value stays what it is, given all fans of its vertex and whether that is on the control mesh's boundary.
+/// Whether the value of a fan is kept, given all fans of its vertex and whether that is on the
+/// control mesh's boundary.
 fn is_kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> bool {
     let fan = &fans[own];
     if (0..fans.len()).any(|other| other != own && fans[other].value == fan.value) {

@@ -2,10 +2,8 @@
 //!
 //! The data of a part in [`super::quartic_cell`] do not depend on the plane of projection: the
 //! second derivatives along the edges in their middles, as vectors, and bounds of third and fourth
-//! ones. the second derivatives along the edges in their middles, as vectors, and what third and
-//! fourth ones come to at most. So they are derived once ([`Bender`]) and kept ([`BentFour`]), and
-//! each time that corners were moved their triangles are bounded by it, without the surface
-//! ([`MovedFour`]).
+//! ones. They are derived once ([`Bender`]) and kept ([`BentFour`]), and each time that corners
+//! were moved their triangles are bounded by it, without the surface ([`MovedFour`]).
 //!
 //! Numbers are kept in single precision, in a unit that makes the edges of control faces about 1.
 //! That turns a bend W by 2⁻²⁴|W|₁ at most, and so the height of the quadratic part, distances of
@@ -25,10 +23,10 @@ use wide::f64x4;
 /// Parts that are taken together.
 pub(crate) const FOUR: usize = 4;
 
-/// By this times the sum of the sizes of their coordinates bends may be off: twice what rounding does.
+/// Bends may be off by this times the sum of their absolute coordinates: twice the rounding error.
 const ROUNDED: f64 = 1.0 / (1 << 23) as f64;
 
-/// Rounds up what becomes a single number.
+/// Rounds up values that are stored in single precision.
 const A_LITTLE_MORE: f64 = 1.0 + 1e-6;
 
 /// Bends whose coordinates' sizes sum up to more have no bound.

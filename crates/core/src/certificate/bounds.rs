@@ -38,11 +38,12 @@
 //! at the boundary of the mesh, sharp ones, and those whose other triangle does: its own bound
 //! holds the distance of the curve from e.
 //!
-//! **Pieces at irregular vertices.** Let a piece be Ŝ + ρ with |ρ| ≤ R, both functions of the same parameter. With Ŝ
-//! in place of S the above holds as it stands, but for gaps of Ŝ where two pieces meet: at S(x) one ends at a(x), the
-//! other at b(x), both within R of S(x). So does the segment from a to b, being in the ball; it is no higher than its
-//! ends, and filling the gaps with such segments closes what is covered again. Each point of Ŝ and of the fills has S
-//! within R: heights and own bounds grow by R, drifts and slopes do not. Three such Ŝ are taken.
+//! **Pieces at irregular vertices.** Let a piece be Ŝ + ρ with |ρ| ≤ R, both functions of the same
+//! parameter. With Ŝ in place of S the above holds, except for gaps of Ŝ where two pieces meet: at
+//! S(x) one ends at a(x), the other at b(x), both within R of S(x). So does the segment from a to
+//! b, being in the ball; it is no higher than its ends, and filling the gaps with such segments
+//! closes the cover again. Each point of Ŝ and of the fills has S within R: heights and own bounds
+//! grow by R, tangential displacements and slopes do not. Three such Ŝ are taken.
 //!
 //! Inside the surface, at a vertex of valence k with the characteristic map χ ([`crate::patch::characteristic`]), the control
 //! points are Pᵢ = p + t₁χᵢ₁ + t₂χᵢ₂ + rᵢ, p being the limit position and t₁, t₂ = (2/k) Σ cos(2πj/k) rⱼ, (2/k) Σ
@@ -80,7 +81,7 @@ use crate::vector::DVec3;
 /// of them.
 pub(crate) struct Pieces<'a> {
     patch: &'a Patch,
-    /// Its refinement, where somebody has it already.
+    /// Its refinement, if it exists already.
     known: Option<&'a RefinedPatch<'a>>,
     refined: Option<RefinedPatch<'a>>,
     net: Option<BezierTriangle>,
@@ -121,7 +122,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// The limits of the vertices down to so many levels below the patch, its corners left out.
+    /// The limits of the vertices down to `levels` levels below the patch, its corners left out.
     pub(crate) fn points(&mut self, levels: usize, rules: &'a Rules<'a>) -> Vec<DVec3> {
         let mut points = Vec::new();
         let refined = self.refined(rules);

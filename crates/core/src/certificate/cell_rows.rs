@@ -1,10 +1,11 @@
 //! All parts of a regular piece that a number of divisions into four gives, tested at once, row by row.
 //!
-//! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the quadratic part by each
-//! part's own plane, what is left by one bound for all parts, which shrinks with the cube of their size; tilts against the limit
-//! normals at the corners; drifts and slopes by the second derivatives in the middles of the edges. A part passes, or
-//! fails for sure, or has to be looked at by itself. Places and normals are computed in double precision, all that follows from them in
-//! single ([`part_bounds`]).
+//! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the
+//! quadratic part by each part's own plane, the rest by one bound for all parts, which shrinks with
+//! the cube of their size; normal deviations against the limit normals at the corners; tangential
+//! displacements and slopes by the second derivatives in the middles of the edges. A part passes,
+//! or fails for sure, or has to be tested by itself. Places and normals are computed in double
+//! precision, everything else in single ([`part_bounds`]).
 
 mod few_parts;
 mod part_bounds;
@@ -141,7 +142,7 @@ struct Between {
     across: Bends,
 }
 
-/// Rows of what a level needs, kept from call to call.
+/// Memory for the rows of a level, used again from call to call.
 pub(crate) struct CellRows {
     /// The row at hand and the next, by turns.
     corners: [CornerRow; 2],
@@ -179,7 +180,7 @@ impl Default for CellRows {
     }
 }
 
-/// A node of a regular piece, and what bounds derivatives all over it.
+/// A node of a regular piece, and bounds of the derivatives over it.
 pub(crate) struct RowBlock<'a> {
     piece: &'a Quartic,
     jet: &'a QuarticJet,
@@ -316,7 +317,7 @@ impl<'a> RowBlock<'a> {
 }
 
 impl CellRows {
-    /// Tests the parts that so many divisions give.
+    /// Tests the parts of so many divisions.
     pub(crate) fn test(
         &mut self,
         block: &RowBlock<'_>,
@@ -411,7 +412,7 @@ impl CornerRow {
 }
 
 impl Between {
-    /// Fills the differences between row j, with so many edges, and the next, by the corners of
+    /// Fills the differences between row j, with `edges` edges, and the next, by the corners of
     /// both.
     fn fill(
         &mut self,

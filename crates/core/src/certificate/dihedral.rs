@@ -1,5 +1,5 @@
-//! The angles between a triangle and its neighbours, and how far they let drifts reach: what [`super::Deviation::bound`] is
-//! given once the triangles are known.
+//! The angles between a triangle and its neighbours, and the limits of tangential displacements by
+//! them: the arguments of [`super::Deviation::bound`] once the triangles are known.
 
 use crate::vector::DVec3;
 
@@ -19,7 +19,8 @@ pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f
         return UNSETTLED;
     };
     let lengths = edges.map(DVec3::length);
-    // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
+    // Half of the complement to π of a corner's angle, at most π/2: its tangent is the cotangent of
+    // half the angle.
     let free = [0, 1, 2].map(|corner| {
         let before = (corner + 2) % 3;
         (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area

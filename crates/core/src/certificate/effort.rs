@@ -25,8 +25,8 @@ pub(crate) struct Effort {
     pub(crate) slopes: [f64; 3],
     /// Whether the distance of a triangle that certainly misses the target is not needed.
     pub(crate) gives_up: bool,
-    /// Then the least chord of angles that can count, with slopes no greater than those expected: what is beyond the target with
-    /// it is beyond it whatever is still to come.
+    /// Then the least chord of angles that can count, with slopes no greater than those expected: a
+    /// bound beyond the target with it stays beyond it.
     pub(crate) least_chord: Option<f64>,
 }
 

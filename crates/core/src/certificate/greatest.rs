@@ -17,7 +17,7 @@ use wide::f64x4;
 /// Points of curves that are taken together.
 const TOGETHER: usize = 4;
 
-/// The greatest of what was met. All points are finite.
+/// The greatest values of the points so far. All points are finite.
 struct Greatest<'a> {
     frame: &'a TrilinearFrame,
     /// The greatest size of a height, and the greatest distances outside the lines of the edges.

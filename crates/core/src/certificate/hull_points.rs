@@ -1,11 +1,12 @@
-//! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bounds`] are the greatest of.
+//! The distances of hull points from a triangle, its plane and its edges: the bounds of
+//! [`super::bounds`] are the greatest of these.
 //!
 //! Points are taken in space, for any triangle, or as the triangle sees them ([`Trilinear`]), several together.
 
 use super::borders::{Borders, Corner, INSIDE, corner};
 use super::deviation::Deviation;
 use super::greatest;
-use super::triangle_frame::{Beside, TriangleFrame};
+use super::triangle_frame::{EdgePosition, TriangleFrame};
 use super::trilinear::{Trilinear, TrilinearFrame};
 use super::{exceeds, greater};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
@@ -29,7 +30,7 @@ pub(super) trait HullPoint: Blend {
     fn height(self, frame: &Self::Frame) -> f64;
 
     /// Where the point stands to an edge.
-    fn beside(self, frame: &Self::Frame, edge: usize) -> Beside;
+    fn beside(self, frame: &Self::Frame, edge: usize) -> EdgePosition;
 
     /// Squared distance to the triangle.
     fn squared(self, frame: &Self::Frame) -> f64;
@@ -76,7 +77,7 @@ impl HullPoint for DVec3 {
         frame.height(self)
     }
 
-    fn beside(self, frame: &TriangleFrame, edge: usize) -> Beside {
+    fn beside(self, frame: &TriangleFrame, edge: usize) -> EdgePosition {
         frame.beside(edge, self)
     }
 
@@ -121,7 +122,7 @@ impl HullPoint for Trilinear {
         self.split().0
     }
 
-    fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
+    fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
         self.beside(frame, edge)
     }
 
@@ -292,7 +293,7 @@ impl<P: HullPoint> DeviationBound<'_, P> {
         });
     }
 
-    fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
+    fn drifted(&self, edge: usize, beside: EdgePosition, deviation: &mut Deviation) {
         let room = beside.along.min(P::length(self.frame, edge) - beside.along);
         deviation.drift = greater(deviation.drift, beside.outside);
         let slope = if room > 0.0 {
@@ -318,7 +319,7 @@ mod tests {
             let t: f64 = count;
             (t * t * 0.37 + t * 1.9).sin()
         };
-        let (mut told, mut compared) = (0, 0);
+        let (mut reported, mut compared) = (0, 0);
         for case in 0..4000 {
             // A net over the triangle or a part of it, stirred.
             let noise = 0.15 * 0.5f64.powi(case % 12);
@@ -377,9 +378,9 @@ mod tests {
             } else {
                 // A crossing of an edge far off shows in the angles at its own edge or at each
                 // point.
-                told += usize::from(found.slopes == each.slopes);
+                reported += usize::from(found.slopes == each.slopes);
             }
         }
-        assert!(compared > 500 && told > 100, "{compared}, {told}");
+        assert!(compared > 500 && reported > 100, "{compared}, {reported}");
     }
 }

@@ -1,9 +1,10 @@
 //! How far a function over a piece is from its linear interpolation: values at the same places, not surfaces.
 //!
-//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being linear in their indices; so is their
-//! difference, whose points' lengths bound its own (Farin, "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex
-//! the piece is refined, and what is left at the vertex is bounded by its control points: two convex hulls are nowhere farther
-//! from each other than two of their points.
+//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being
+//! linear in their indices; so is their difference, whose points' lengths bound its own (Farin,
+//! "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex the piece is refined,
+//! and the rest at the vertex is bounded by its control points: two convex hulls are nowhere
+//! farther from each other than two of their points.
 
 use super::greater;
 use super::net_part::NetPart;
@@ -12,7 +13,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules, child_corners};
 use crate::vector::DVec3;
 
-/// Refinements at most: what is left has shrunk below rounding then.
+/// Refinements at most: the rest has shrunk below rounding then.
 const DEEPEST: usize = 40;
 
 /// Levels whose vertices are compared where nothing can be certified.

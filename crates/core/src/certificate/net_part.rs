@@ -1,4 +1,5 @@
-//! Bézier nets of parts of regular pieces, with what their edges are to the triangle.
+//! Bézier nets of parts of regular pieces, with the position of their edges relative to the
+//! triangle.
 
 use super::borders::{ALL, Borders};
 use super::hull_points::HullPoint;

@@ -88,7 +88,8 @@ impl SecondDerivatives {
     }
 }
 
-/// The greatest of |S − T| over the whole and what may close it, by bounds along the edges and along the medians to them.
+/// The greatest of |S − T| over the whole and its closing triangles, by bounds along the edges and
+/// along the medians to them.
 fn worst(along: [f64; 3], medians: [f64; 3]) -> f64 {
     let mut most = quadratic_height(along);
     for edge in 0..3 {

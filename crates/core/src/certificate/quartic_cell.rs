@@ -119,7 +119,7 @@ where
     }
 }
 
-/// A regular piece with what bounds its parts.
+/// A regular piece with bounds of its parts.
 #[derive(Clone, Debug)]
 pub(crate) struct QuarticJet {
     jet: Jet<DVec3>,
@@ -325,7 +325,7 @@ pub(crate) struct BesideEdges {
     slopes: [f64; 3],
     /// The distance of the surface from the triangle, where none of the others is bounded.
     loose: Option<f64>,
-    /// Second derivatives along the edges in their middles, and what they may be off at most anywhere.
+    /// Second derivatives along the edges in their middles, and their greatest deviation anywhere.
     bends: [DVec3; 3],
     rest: f64,
 }
@@ -385,8 +385,9 @@ struct EdgeRest {
 }
 
 impl BesideEdges {
-    /// By the second derivatives along the edges in their middles, what third and fourth ones add to the curves, whether the surface may
-    /// fold, and what second derivatives along edges may be off at most anywhere.
+    /// By the second derivatives along the edges in their middles, the share of third and fourth
+    /// ones in the curves, whether the surface may fold, and the greatest deviation of second
+    /// derivatives along edges.
     #[inline]
     fn of(
         frame: &TriangleFrame,
@@ -467,10 +468,12 @@ impl BesideEdges {
     /// The deviation, at this height of the surface, of a triangle whose corners were moved off the
     /// surface by up to `moved`, up to `aside` of that within its plane.
     ///
-    /// Let the piece be moved within the plane so that each corner stands over that of the triangle, points between as barycentric
-    /// coordinates say. Its curves stand to the triangle's edges as those of the surface stand to its own chords; its heights are what
-    /// they were; and no point was moved farther than a corner. So the surface's own curves are no more than `aside` farther from the
-    /// edges, at right angles to heights, and [`Deviation::off`] says what that leaves at the corners.
+    /// Let the piece be moved within the plane so that each corner is over that of the triangle,
+    /// and points between by their barycentric coordinates. Its curves are relative to the
+    /// triangle's edges as those of the surface to its own chords; its heights are unchanged; and
+    /// no point was moved farther than a corner. So the surface's own curves are no more than
+    /// `aside` farther from the edges, at right angles to heights, and [`Deviation::off`] bounds
+    /// the gaps at the corners.
     pub(crate) fn deviation_off(&self, height: f64, moved: f64, aside: f64) -> Deviation {
         if self.loose.is_some() {
             return self.deviation(height).grown(moved);
@@ -491,8 +494,9 @@ impl BesideEdges {
     }
 }
 
-/// Whether a map over the triangle may take two points to one place, by its second derivatives along the edges in their middles,
-/// and what third and fourth ones may change in the first derivatives along edges, in the metric of the triangle.
+/// Whether a map over the triangle may take two points to one place, by its second derivatives
+/// along the edges in their middles, and the change by third and fourth ones of the first
+/// derivatives along edges, in the metric of the triangle.
 #[inline]
 fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
     let most = bends
@@ -500,7 +504,7 @@ fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
         .map(|&bend| frame.stretched_squared(bend))
         .fold(0.0, f64::max)
         .sqrt();
-    // Fails for what is not a number.
+    // Fails for NaN.
     let is_apart = most + DIRECTIONS * rest < NEARLY_ONE;
     !is_apart
 }

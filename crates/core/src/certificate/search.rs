@@ -19,7 +19,7 @@ use crate::patch::{Patch, Points, RefinedPatch, Rules};
 /// tight, so that they can be compared even if they may not be split.
 const HOPELESS: f64 = 1.5;
 
-/// A part of a refinement by its number, which part of that, and what its edges are.
+/// A part of a refinement by its number, the sub-part, and its edges relative to the triangle.
 type PartOf = (usize, SubTriangle, Borders);
 
 /// A refined piece, whose parts a bound looks at as they are at hand.
@@ -54,7 +54,7 @@ impl<P: HullPoint> Parts<P> for RefinedExtraordinary<P> {
 
     fn look(&self, search: &mut Search<'_, P>, (part, of_part, borders): PartOf, depth: usize) {
         match self.places(part) {
-            // In place: copies of so many are not free.
+            // In place: copies of many are not free.
             Some(places) => {
                 let points: [P; 12] = core::array::from_fn(|i| self.near(places[i]));
                 search.regular(&points, of_part, borders);
@@ -159,14 +159,14 @@ impl<'a, P: HullPoint> Search<'a, P> {
         deviation.bound(self.effort.chord, self.effort.slopes)
     }
 
-    /// The value that is good enough for what is left: less than what stands already adds nothing.
+    /// The value that is good enough for the rest: values below the present bound add nothing.
     fn aim(&self) -> f64 {
         self.effort.target.max(self.value(&self.found))
     }
 
     /// The result so far together with one more deviation.
     fn with(&self, deviation: Deviation) -> Deviation {
-        // A slope that is too great must not spoil what others are good for.
+        // A slope that is too great must not spoil the bound of others.
         let counts = deviation.is_within(self.effort.slopes);
         self.found.max(if counts {
             deviation

@@ -12,10 +12,10 @@ const FLAT: f64 = 1e-7;
 /// Triangles with a smaller sine are slivers, whose plane is straightened.
 pub(super) const SLIVER: f64 = 1e-2;
 
-/// Squared lengths between these neither overflow nor vanish in what is computed from them.
+/// Squared lengths between these neither overflow nor vanish in further computations.
 const SAFE: core::ops::Range<f64> = 1e-140..1e140;
 
-/// A triangle with what its distances need.
+/// A triangle with the data for distances from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleFrame {
     corners: [DVec3; 3],
@@ -30,21 +30,21 @@ pub(crate) struct TriangleFrame {
     on_edge: f64,
     /// Where the edges' lines stand outwards of the first corner.
     offsets: [f64; 3],
-    /// By corner, the tangent of its angle, or of what an obtuse one leaves of π.
+    /// By corner, the tangent of its angle, or of an obtuse one's complement to π.
     tangents: [f64; 3],
     least_slope: f64,
 }
 
 /// Where a point stands to an edge, within the triangle's plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Beside {
+pub(crate) struct EdgePosition {
     /// How far outside the edge's line; 0 inside.
     pub(crate) outside: f64,
     /// How far along the edge from its start.
     pub(crate) along: f64,
 }
 
-/// [`TriangleFrame::least_slope`] of a triangle of which nothing else is asked.
+/// [`TriangleFrame::least_slope`] of a triangle without a frame.
 #[inline]
 pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
     let edges = [b - a, c - b, a - c];
@@ -67,7 +67,8 @@ fn greatest_coordinate<'a>(vectors: impl Iterator<Item = &'a DVec3>) -> f64 {
 }
 
 impl TriangleFrame {
-    /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
+    /// Distances below this part of the coordinates' size are within rounding where points
+    /// coincide.
     pub(crate) const ROUNDING: f64 = 5e-14;
 
     /// The triangle with those corners.
@@ -164,10 +165,10 @@ impl TriangleFrame {
 
     /// Where a point stands to the edge from corner `edge`.
     #[inline]
-    pub(crate) fn beside(&self, edge: usize, point: DVec3) -> Beside {
+    pub(crate) fn beside(&self, edge: usize, point: DVec3) -> EdgePosition {
         let offset = point - self.corners[edge];
         let outside = self.outward[edge].dot(offset);
-        Beside {
+        EdgePosition {
             outside: if exceeds(outside, self.on_edge) {
                 outside
             } else {
@@ -209,8 +210,9 @@ impl TriangleFrame {
         self.least_slope
     }
 
-    /// Tangent of the lesser of the angles at an edge, or of what an obtuse one leaves of π: a curve that leaves the edge by less than
-    /// this from either end crosses no line of another edge.
+    /// Tangent of the lesser of the angles at an edge, or of an obtuse one's complement to π: a
+    /// curve that leaves the edge by less than this from either end crosses no line of another
+    /// edge.
     #[inline]
     pub(crate) fn slope_at(&self, edge: usize) -> f64 {
         self.tangents[edge].min(self.tangents[(edge + 1) % 3])

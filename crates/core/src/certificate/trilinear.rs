@@ -15,13 +15,13 @@
 //! Both lose digits as angles get small, so triangles that lose more than rounding is given are left to points in space.
 
 use super::exceeds;
-use super::triangle_frame::{Beside, SLIVER, TriangleFrame};
+use super::triangle_frame::{EdgePosition, SLIVER, TriangleFrame};
 use crate::vector::{Blend, DVec3};
 use core::ops::{Add, Div, Mul, Sub, SubAssign};
 use wide::f64x4;
 
-/// The squares of trilinear coordinates count so many times in a squared length at most: what cancels leaves less than
-/// [`TriangleFrame::ROUNDING`].
+/// The squares of trilinear coordinates count at most this many times in a squared length:
+/// cancellation leaves less than [`TriangleFrame::ROUNDING`].
 const MOST_LOST: f64 = 128.0;
 
 /// A point's height and trilinear coordinates, or the differences of two points'.
@@ -42,7 +42,8 @@ pub(super) struct TrilinearFrame {
     offsets: f64x4,
     /// Of the squares in a squared length.
     squares: f64x4,
-    /// By edge, what the trilinear coordinates of the edge before and of its own count for the place along it.
+    /// By edge, the weights of the trilinear coordinates of the edge before and of its own in the
+    /// position along it.
     along: [[f64; 2]; 3],
 }
 
@@ -117,12 +118,12 @@ impl Trilinear {
     }
 
     /// The position of the projection relative to an edge.
-    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
+    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
         let (_, outside) = self.split();
         let own = outside[edge];
         let [by_before, by_own] = frame.shares_along(edge);
         let along = by_before * outside[(edge + 2) % 3] + by_own * own;
-        Beside {
+        EdgePosition {
             outside: if exceeds(own, frame.on_edge) {
                 own
             } else {
@@ -136,7 +137,7 @@ impl Trilinear {
         self.0.to_array().iter().all(|number| number.is_finite())
     }
 
-    /// The squared distance to an edge; infinite for what is not a point.
+    /// The squared distance to an edge; infinite for NaN.
     pub(super) fn squared_to_edge(self, frame: &TrilinearFrame, edge: usize) -> f64 {
         if !self.is_finite() {
             return f64::INFINITY;
@@ -147,7 +148,7 @@ impl Trilinear {
         height * height + outside[edge] * outside[edge] + beyond * beyond
     }
 
-    /// The squared distance to the triangle; infinite for what is not a point.
+    /// The squared distance to the triangle; infinite for NaN.
     pub(super) fn squared(self, frame: &TrilinearFrame) -> f64 {
         if !self.is_finite() {
             return f64::INFINITY;

@@ -86,9 +86,9 @@ pub(crate) fn ratio(normal: DVec3, corners: [DVec3; 3], limit: f64) -> f64 {
 /// silhouette. it goes on until the criterion is met, which by equation (11) it could not be on a
 /// silhouette.
 impl LimitNormal {
-    /// Control faces are divided for the cone's sake until triangles would be this part of them and its angle smaller:
-    /// what does not close by then turns within a thousandth of a control face, where the surface has no tangent
-    /// plane or as good as none.
+    /// Control faces are divided by the cone until triangles would be this part of them and its
+    /// angle smaller: a cone still too wide then turns within a thousandth of a control face, where
+    /// the surface has hardly a tangent plane.
     const LEAST_PART: f64 = 1.0 / 1024.0;
 
     /// Levels below the control faces at which the cone is given up: triangles at which it stays open there lie at cusps,
@@ -223,7 +223,7 @@ mod tests {
         }
     }
 
-    /// Without a viewer, and with one who sees nothing but silhouettes, the angle is the one that was asked for.
+    /// Without a viewer, and with one who sees only silhouettes, the angle is the requested one.
     #[test]
     fn a_viewer_never_asks_for_more() {
         let region = Region {

@@ -54,7 +54,7 @@ impl Criteria {
         })
     }
 
-    /// Whether anything is asked for.
+    /// Whether there is any goal.
     pub(crate) fn is_some(&self) -> bool {
         self.distance.is_some() || self.cone.is_some() || self.pixels.is_some()
     }
@@ -69,7 +69,7 @@ impl Criteria {
         self.cone.is_some()
     }
 
-    /// Levels below the control faces at which what fails by the cone alone is given up.
+    /// Levels below the control faces at which triangles that fail by the cone alone are given up.
     pub(crate) fn deepest_cone(&self) -> usize {
         self.cone.map_or(usize::MAX, |cone| cone.deepest())
     }

@@ -1,4 +1,4 @@
-//! Criteria: the error of a triangle relative to what is allowed. At 1 it is just good enough, at 2
+//! Criteria: the error of a triangle relative to the allowed one. At 1 it is just good enough, at 2
 //! it is twice as large.
 //!
 //! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table
@@ -46,7 +46,7 @@ pub enum CriterionError {
     },
 }
 
-/// Refuses what is no angle, in radians.
+/// Refuses values that are no angles in radians.
 fn check_angle(angle: f64) -> Result<(), CriterionError> {
     if (0.0..=core::f64::consts::PI).contains(&angle) {
         return Ok(());
@@ -78,7 +78,7 @@ pub trait Criterion: Sync {
     /// A short name, as on the command line.
     fn name(&self) -> &str;
 
-    /// For each face of `mesh` how many times over it fails: 1 is just good enough, what is above is to be divided;
+    /// The ratio of each face of `mesh`: 1 is just good enough, faces above are to be divided;
     /// infinite where nothing is good enough.
     ///
     /// # Errors

@@ -55,8 +55,8 @@ impl Camera {
     }
 }
 
-/// The least sine that the angle between line of sight and normal is taken to have: what looks straight at the camera
-/// keeps some accuracy, for shading and for what happens when the camera moves a little.
+/// The least sine assumed of the angle between line of sight and normal: surfaces that face the
+/// camera keep some accuracy, for shading and for what happens when the camera moves a little.
 const LEAST_SINE: f64 = 0.25;
 
 /// The uncertain part of a piece facing away may be as near to a corner as this part of the allowed
@@ -83,7 +83,8 @@ pub(crate) struct Allowed {
 pub(crate) struct Backs {
     /// By camera; nothing where none does.
     cameras: SmallVec<[bool; 8]>,
-    /// At most so many pixels from a corner of the triangle is what is not certain of that.
+    /// The part of which that is not certain is at most this many pixels from a corner of the
+    /// triangle.
     rest: f64,
     /// The viewer that an angle depends on.
     pub(crate) view: bool,
@@ -176,8 +177,8 @@ impl Pixels {
     /// The allowed lengths in any direction and along the normals of a region. Neither is less than
     /// [`Self::allowed_length`].
     ///
-    /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
-    /// half of the other are within the limit together.
+    /// Never less for a region within the region. Parts of the allowed lengths may be added: half
+    /// of one and half of the other are within the limit together.
     pub(crate) fn allowed(&self, region: &Region, backs: &Backs) -> Allowed {
         let nothing = Allowed {
             length: f64::INFINITY,
@@ -192,7 +193,7 @@ impl Pixels {
             })
     }
 
-    /// How many times over what is not certain of those that see the back is more than the limit.
+    /// The ratio to the limit of the uncertain part for cameras that see the back.
     pub(crate) fn rest_ratio(&self, backs: &Backs) -> f64 {
         backs.rest / self.limit
     }
@@ -223,7 +224,7 @@ impl Pixels {
 struct Glance {
     /// Pixels of a unit length at depth 1, stretched as much as it can be off the axis.
     pixels: f64,
-    /// The least depth of what is seen of the ball; 0 where the eye stands in it.
+    /// The least depth of the visible part of the ball; 0 where the eye is in it.
     depth: f64,
     /// Unit direction to the ball's middle.
     toward: DVec3,
@@ -242,7 +243,8 @@ impl Glance {
         sum_of_angles(sine.min(1.0), spread).max(LEAST_SINE)
     }
 
-    /// The greatest length that stays within so many pixels at angles to the line of sight up to that of the sine.
+    /// The greatest length that stays within `limit` pixels at angles to the line of sight up to
+    /// that of the sine.
     fn allowed(&self, limit: f64, sine: f64) -> f64 {
         limit * self.depth / (self.pixels * sine + limit)
     }
@@ -505,10 +507,13 @@ mod tests {
                     // Both parts together, and the number of pixels that is reported.
                     let (share, total) = (random.signed().abs(), 3.0 * random.signed().abs());
                     let (part, rest) = (share * total * height, (1.0 - share) * total * length);
-                    let told = pixels.seen(&region, (part, rest), &nobodys);
+                    let reported = pixels.seen(&region, (part, rest), &nobodys);
                     let found = pixels_between(camera, point, point + part * normal + rest * aside);
-                    assert!(found <= told * (1.0 + 1e-9), "{found} of {told}");
-                    assert!(told <= limit || total > 1.0 - 1e-9, "{told} of {limit}");
+                    assert!(found <= reported * (1.0 + 1e-9), "{found} of {reported}");
+                    assert!(
+                        reported <= limit || total > 1.0 - 1e-9,
+                        "{reported} of {limit}"
+                    );
                 }
             }
         }
@@ -591,7 +596,8 @@ mod tests {
         );
     }
 
-    /// Cameras that see nothing but the back ask for nothing but that what is not certain is within the limit; the others go on asking.
+    /// Cameras that see only the back require only that the uncertain part is within the limit;
+    /// others are unaffected.
     #[test]
     fn backs_are_not_seen() {
         let mut random = Random::new(17);
@@ -611,9 +617,9 @@ mod tests {
                 pixels.allowed(&region, &backs),
                 first.allowed(&region, &nobodys)
             );
-            let told = pixels.seen(&region, (0.01, 0.02), &backs);
+            let reported = pixels.seen(&region, (0.01, 0.02), &backs);
             assert_eq!(
-                told,
+                reported,
                 first
                     .seen(&region, (0.01, 0.02), &nobodys)
                     .max(2.0 * pixels.rest_ratio(&backs))
@@ -621,7 +627,7 @@ mod tests {
             // An eighth of the allowed length has a little more pixels where it is nearer to the
             // eye than the region.
             assert!(pixels.rest_ratio(&backs) < 0.25);
-            half += usize::from(told > 0.0);
+            half += usize::from(reported > 0.0);
             rests = rests.max(pixels.rest_ratio(&backs));
             let open = Pixels::new(2.0, &cameras, false).unwrap();
             assert_eq!(

@@ -1,4 +1,5 @@
-//! Where a part of the surface lies and which way it looks: what criteria that depend on a viewer are asked about.
+//! The position and the normals of a part of the surface: the arguments of criteria that depend on
+//! a viewer.
 //!
 //! Angles are stored as sines of half angles from 0 to 90°; 1 also means every greater angle, that
 //! is every direction. Sums saturate there, so that a cone of 1 means "anything".

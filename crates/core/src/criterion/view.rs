@@ -82,7 +82,7 @@ impl View {
         self.limit(angle, (cosine * cosine_of(spread) + sine * spread).min(0.0))
     }
 
-    /// Refuses a dilatation below 0, a direction without length, and what is no number.
+    /// Refuses a dilatation below 0, a direction without length, and NaN.
     pub(crate) fn check(&self) -> Result<(), CriterionError> {
         let bad = |name, value, expected| {
             Err(CriterionError::BadParameter {

@@ -159,9 +159,11 @@ pub struct NormalCone {
     pub axis: [f64; 3],
     /// Half angle in radians, below π/2.
     pub half_angle: f64,
-    /// Whoever is, seen from here, less than π/2 − `half_angle` off the axis sees nothing but the surface's front.
+    /// A viewer seen from here at less than π/2 − `half_angle` off the axis sees only the surface's
+    /// front.
     pub front_apex: [f64; 3],
-    /// Whoever is, seen from here, less than π/2 − `half_angle` off the opposite of the axis sees nothing but its back.
+    /// A viewer seen from here at less than π/2 − `half_angle` off the opposite of the axis sees
+    /// only its back.
     pub back_apex: [f64; 3],
 }
 

@@ -1,9 +1,10 @@
 //! Which way whole pieces of the limit surface look, for certain.
 //!
-//! Takes a piece and where somebody looks from; says that all of the piece shows its front, or its back, or that this is not known. A
-//! regular piece is decided by a cone of its normals ([`cone`]), else by signs of coefficients ([`normal_net`]); an irregular one by
-//! those of its parts, down to the part at an irregular vertex, whose normals are those of its characteristic map but for what dies away
-//! ([`tip`]). At vertices of other kinds nothing is known.
+//! Takes a piece and a viewer's position; decides whether all of the piece shows its front, or its
+//! back, or neither is known. A regular piece is decided by a cone of its normals ([`cone`]), else
+//! by signs of coefficients ([`normal_net`]); an irregular one by those of its parts, down to the
+//! part at an irregular vertex, whose normals are those of its characteristic map up to a term that
+//! vanishes ([`tip`]). At vertices of other kinds nothing is known.
 
 mod cone;
 mod normal_net;
@@ -25,7 +26,8 @@ pub(crate) const DEEPEST: u32 = 24;
 /// Divisions into four of regular parts that may look one way, though their coefficients have both signs.
 const DIVISIONS: u32 = 2;
 
-/// Which side of a piece of the surface somebody sees. The front is where a face's corners run counter-clockwise.
+/// The side of a piece of the surface that a viewer sees. The front is where a face's corners run
+/// counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Facing {
     /// Every point shows its front.
@@ -105,7 +107,8 @@ fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
         .unwrap_or_else(|| normals.from(eye))
 }
 
-/// How a piece looks from there, of which parts at irregular vertices are looked at so many levels down.
+/// The side of a piece seen from there, with parts at irregular vertices tested this many levels
+/// down.
 pub(crate) fn of_patch(
     patch: &Patch,
     rules: &Rules<'_>,
@@ -128,8 +131,9 @@ pub(crate) fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
     }
 }
 
-/// How far from one of the given corners those parts of a piece are that are not known to show their back, so many levels down; `None` if that is
-/// more than `rest`, and for schemes outside the Loop family.
+/// The distance from one of the given corners of those parts of a piece that are not known to show
+/// their back, `levels` levels down; `None` if that is more than `rest`, and for schemes outside
+/// the Loop family.
 pub(crate) fn back_but_for(
     patch: &Patch,
     rules: &Rules<'_>,

@@ -22,8 +22,8 @@ const fn corners(n: usize) -> [usize; 3] {
 /// Net points are off by no more than this part of their greatest coordinate: sums of a dozen terms, after some levels.
 const POINT_ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// Cross products of differences up to 1 and their sums are off by no more than this, and by [`CROSS_ROUNDING`] times what the
-/// differences are off.
+/// Cross products of differences up to 1 and their sums are off by no more than this, and by
+/// [`CROSS_ROUNDING`] times the error of the differences.
 const SUM_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// See [`SUM_ROUNDING`]: two products of two factors, one of which is up to √3 long.
@@ -38,7 +38,7 @@ pub(crate) struct NormalNet {
     pub(super) normals: [DVec3; SEXTIC],
     /// The greatest rounding error of the normals.
     pub(super) rounding: f64,
-    /// The net's points, scaled, and what rounding may do to these.
+    /// The net's points, scaled, and their rounding error.
     points: [DVec3; QUARTIC],
     point_rounding: f64,
     scale: f64,

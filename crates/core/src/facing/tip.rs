@@ -22,7 +22,8 @@ pub(super) const NARROW: f64 = 0.25;
 /// Points are off by no more than this part of their greatest coordinate.
 const POINT_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
-/// A cone that holds all normals of a piece at an irregular vertex but that of the vertex itself, which is its axis; `None` where what dies away is still too much.
+/// A cone that holds all normals of a piece at an irregular vertex but that of the vertex itself,
+/// which is its axis; `None` where the vanishing term is still too great.
 pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone> {
     let valence = patch.ring.len();
     let (map, growth) = (rules.characteristic(valence)?, rules.settling(valence)?);

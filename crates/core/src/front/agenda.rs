@@ -73,7 +73,8 @@ impl Agenda {
                 let step = (key.to_bits() >> (52 - FRACTION)).saturating_sub(exponent << FRACTION);
                 (step as usize).min(STEPS - 1)
             }
-            // Conversions saturate; what is too far ahead is looked at before the hand comes round, and put off again.
+            // Conversions saturate; entries too far ahead are tested before the hand comes round,
+            // and put off again.
             Scale::Turning { width } => {
                 let ahead = ((key / width) as u64).clamp(self.now, self.now + RING as u64 - 1);
                 (ahead % RING as u64) as usize
@@ -179,7 +180,7 @@ mod tests {
         assert!(found[..19].iter().chain(&found[62..]).all(|found| !found));
         ladder.sweep(|node, stamp| stamps[node as usize] == stamp);
         assert_eq!(ladder.len(), keys.len() - 1);
-        // Zero, what is tiny and what is infinite have places, too.
+        // Zero, tiny and infinite keys have places, too.
         ladder.put(0.0, 0, 7);
         ladder.put(f64::INFINITY, 1, 7);
         let mut count = 0;

@@ -42,7 +42,7 @@ impl Buffers {
                 self.leaf(forest, node, &mut holes);
             }
         }
-        // From the end, so that what fills a hole is none.
+        // From the end, so that a hole is not filled by another.
         holes.sort_unstable_by(|a, b| b.cmp(a));
         for hole in holes {
             let last = self.triangles.len() - 1;

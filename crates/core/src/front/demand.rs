@@ -20,10 +20,10 @@ use crate::vector::DVec3;
 /// Levels at most below a control face: paths take two bits a level.
 pub const MOST_LEVELS: u32 = 30;
 
-/// Triangles at most, where nothing else is asked.
+/// The most triangles, without another goal.
 pub(super) const MOST_TRIANGLES: usize = 10_000_000;
 
-/// Rounding takes no more than this of what margins are made of.
+/// The rounding error of margins relative to their terms.
 const ROUNDING: f64 = 1e-12;
 
 /// The demand on a front: the greatest distance of its triangles from the limit surface, and the
@@ -38,7 +38,7 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     pub(super) goal: Goal,
-    /// Asked for.
+    /// The requested number.
     pub(super) most: Option<usize>,
     pub(super) max_levels: u32,
 }
@@ -58,8 +58,8 @@ impl Demand {
         Self::of(Goal::Tolerance(distance))
     }
 
-    /// Triangles within so many pixels of the limit surface wherever one of the cameras sees it; what none of them sees is left as coarse
-    /// as its neighbours allow.
+    /// Triangles within `limit` pixels of the limit surface wherever one of the cameras sees it;
+    /// invisible parts are left as coarse as their neighbours allow.
     pub fn pixels(limit: f64, cameras: &[Camera]) -> Self {
         Self::of(Goal::Pixels(limit, cameras.to_vec()))
     }
@@ -72,8 +72,8 @@ impl Demand {
         }
     }
 
-    /// No more than so many triangles; ten million by default. Where what is asked takes more, it is the least distance that does not.
-    /// The control mesh's own triangles are always there.
+    /// Limits the number of triangles; ten million by default. Where the goal needs more, the front
+    /// has the least distance that does not. The control mesh's own triangles are always there.
     pub fn triangles(mut self, most: usize) -> Self {
         self.most = Some(most);
         self
@@ -103,7 +103,7 @@ impl Demand {
     }
 }
 
-/// A camera, as nodes are asked about it.
+/// A camera, prepared for the test of nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Eye {
     at: DVec3,
@@ -111,7 +111,7 @@ pub(super) struct Eye {
     sides: [DVec3; 5],
     /// G, 1/cos φ at the frame's corners.
     stretch: f64,
-    /// F G², what pixels fall by with the distance.
+    /// F G², the factor by which pixels fall with the distance.
     pixels: f64,
 }
 
@@ -247,7 +247,7 @@ impl Answer {
 /// The test of nodes: whether a measure is above a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Question {
-    /// The cameras; without, distances are what is measured.
+    /// The cameras; without them, distances are measured.
     pub(super) eyes: Option<Vec<Eye>>,
     pub(super) limit: f64,
     pub(super) max_levels: u32,

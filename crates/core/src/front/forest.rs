@@ -71,7 +71,7 @@ pub(super) struct Extent {
 pub(super) struct Vertices {
     pub(super) positions: Vec<[f64; 3]>,
     free: Vec<u32>,
-    /// Slots that were written since somebody asked.
+    /// Slots that were written since the last query.
     pub(super) written: Vec<u32>,
 }
 
@@ -228,7 +228,7 @@ impl<'a> Forest<'a> {
     }
 
     /// The nodes of the same level that share an edge.
-    pub(super) fn beside(&self, node: u32, edge: u8) -> Copies {
+    pub(super) fn adjacent(&self, node: u32, edge: u8) -> Copies {
         match self.node(node).across[usize::from(edge)] {
             Across::Node(other, side) => SmallVec::from_slice(&[(other, side)]),
             Across::Border if self.has_copies => self.copies(node, edge),
@@ -331,7 +331,7 @@ impl<'a> Forest<'a> {
         touched
     }
 
-    /// Divides a node; what is beyond its edges exists.
+    /// Divides a node; the nodes beyond its edges exist.
     pub(super) fn divide(&mut self, node: u32) {
         if matches!(self.node(node).ground, Ground::Control) {
             let ground = self.pieces.control(self.node(node).place.face);
@@ -439,8 +439,8 @@ impl<'a> Forest<'a> {
     /// computes it, so that it has the same bits on all sides.
     fn middle_position(&self, node: u32, edge: u8) -> DVec3 {
         let key = |node: u32| (self.node(node).place.face, self.node(node).place.path);
-        let beside = self.beside(node, edge);
-        let all = beside.iter().copied().chain([(node, edge)]);
+        let adjacent = self.adjacent(node, edge);
+        let all = adjacent.iter().copied().chain([(node, edge)]);
         let (teller, side) = all
             .min_by_key(|&(node, edge)| (key(node), edge))
             .unwrap_or((node, edge));

@@ -5,9 +5,9 @@
 //! 1. a control face that wants is in S, and a child of a node in S that wants is, too;
 //! 2. where a node of S shares an edge with a node of its level, that one's parent is in S.
 //!
-//! S exists: the intersection of sets that keep both rules keeps them. A front divides just the nodes of S (the first rule says where, the
-//! second that neighbouring leaves are at most one level apart), so what it is depends on the demand alone. And the more nodes want,
-//! the greater is S.
+//! S exists: the intersection of sets that keep both rules keeps them. A front divides just the
+//! nodes of S (the first rule says where, the second that neighbouring leaves are at most one level
+//! apart), so it depends on the demand alone. And the more nodes want, the greater is S.
 //!
 //! **From one demand to the next.** A node that no longer wants may have been the reason of others,
 //! and two nodes may be each other's reason though neither is wanted. So a node that loses a reason
@@ -44,7 +44,7 @@ pub(super) struct Outcome {
     pub(super) merged: usize,
     /// Nodes that want and were not divided since the watch stopped it.
     pub(super) waiting: Vec<u32>,
-    /// Nodes that are to be merged and were not since somebody asked to stop.
+    /// Nodes that are to be merged and were not since the observer asked to stop.
     pub(super) leaving: Vec<u32>,
 }
 
@@ -82,8 +82,8 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_
     outcome
 }
 
-/// Brings into the set what is in it now: `gained` want. Where the watch stops it, the set is that of a demand between, and what is
-/// missing waits.
+/// Adds to the set the nodes that are in it now: `gained` want. Where the watch stops it, the set
+/// is that of a demand between, and the missing nodes wait.
 pub(super) fn extend(forest: &mut Forest<'_>, gained: &[u32], watch: &mut dyn Watch) -> Outcome {
     let mut settling = Settling {
         forest,
@@ -112,7 +112,7 @@ fn suspected(forest: &mut Forest<'_>, lost: Vec<u32>) -> Vec<u32> {
         let first = forest.node(node).children;
         stack.extend(first..first + 4);
         for edge in 0..3 {
-            for (other, _) in forest.beside(node, edge) {
+            for (other, _) in forest.adjacent(node, edge) {
                 let above = forest.node(other).parent;
                 if above != NONE && above != forest.node(node).parent && !forest.wants(above) {
                     stack.push(above);
@@ -153,8 +153,8 @@ impl Settling<'_, '_, '_> {
         (0..3u8).any(|child| {
             let outer = [child, (child + 2) % 3];
             outer.into_iter().any(|edge| {
-                let beside = self.forest.beside(first + u32::from(child), edge);
-                beside.iter().any(|&(other, _)| self.is_in(other))
+                let adjacent = self.forest.adjacent(first + u32::from(child), edge);
+                adjacent.iter().any(|&(other, _)| self.is_in(other))
             })
         })
     }
@@ -210,7 +210,7 @@ impl Settling<'_, '_, '_> {
                 }
             }
             for edge in 0..3 {
-                for (other, _) in self.forest.beside(node, edge) {
+                for (other, _) in self.forest.adjacent(node, edge) {
                     let above = self.forest.node(other).parent;
                     if above != NONE && self.forest.node(above).is_suspect {
                         self.acquit(above);

@@ -1,9 +1,10 @@
 //! A front: triangles that approximate a limit surface, refined and coarsened from one demand to
 //! the next.
 //!
-//! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by local operations, so that every other
-//! adaptive mesh is reached from any given one. Here the result does not depend on where one comes from: the mesh for a demand is a
-//! function of the demand, to the byte, and an update looks only at what differs.
+//! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by
+//! local operations, so that every other adaptive mesh is reached from any given one. Here the
+//! result does not depend on the previous mesh: the mesh for a demand is a function of the demand,
+//! to the byte, and an update computes only the differences.
 //!
 //! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the
 //! pictures of cameras, a number of triangles. Gives a conforming mesh ([`Front::mesh`]), its
@@ -12,10 +13,12 @@
 //!
 //! A front may go by other criteria of the literature instead of distances ([`Measure`]), to be compared with them.
 //!
-//! Data flows from `pieces` (the surface over a node, its *value*: how far it is from the node's triangle, whatever the neighbours
-//! are; by another `measure`, what that sees) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
-//! is; `demand` says which nodes want to be divided and for how long that is certain while cameras move, `agenda` keeps nodes by
-//! when they are to be asked again, `asking` asks new ones; `buffers` has the triangles, `snapshot` the mesh with where it came from.
+//! Data flows from `pieces` (the surface over a node, its *value*: its distance from the node's
+//! triangle, whatever the neighbours are, or another `measure`) to `forest` (nodes, neighbours,
+//! vertices), which `least` brings from one least set of divided nodes to the next, where the proof
+//! is; `demand` says which nodes want to be divided and for how long that is certain while cameras
+//! move, `agenda` keeps nodes by the time of their next test, `asking` tests new ones; `buffers`
+//! has the triangles, `snapshot` the mesh with its origins.
 //!
 //! ```
 //! use limitmesh::front::{Demand, Front};
@@ -94,7 +97,7 @@ pub struct Front<'a> {
     /// The last demand.
     demand: Option<Demand>,
     question: Question,
-    /// Nodes by what they are measured, or by when cameras have moved so far that they are to be asked again.
+    /// Nodes by their measure, or by the movement of cameras until their next test.
     agenda: Agenda,
     /// Nodes by when cameras have moved and turned so far.
     turning: Agenda,
@@ -111,7 +114,7 @@ pub struct Front<'a> {
 const FIRST_STEP: f64 = 1.05;
 const GREATEST_STEP: f64 = 2.0;
 
-/// Entries of nodes that are gone may be as many as others, and so many more, before they are swept away.
+/// The number of outdated entries, beyond that of others, at which they are removed.
 const STALE: usize = 1 << 16;
 
 /// A ring's buckets are this part of the scene's length.
@@ -199,13 +202,14 @@ impl<'a> Front<'a> {
     /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
     ///
     /// # Errors
-    /// The demand is out of range, or asks for cameras where the front does not go by distances, or a stencil failed.
+    /// The demand is out of range, or has cameras where the front does not measure distances, or a
+    /// stencil failed.
     pub fn update(&mut self, demand: &Demand) -> Result<&Changes, FrontError> {
         self.update_observed(demand, &mut unobserved)
     }
 
-    /// [`Self::update`], telling an observer how it goes on. When that breaks, the front is one between both demands, [`Self::changes`] says what
-    /// is new in it, and it goes on from there with the next demand.
+    /// [`Self::update`] with an observer. When that breaks, the front is one between both demands,
+    /// [`Self::changes`] reports its changes, and the next demand continues from there.
     ///
     /// # Errors
     /// As for [`Self::update`], and [`FrontError::Cancelled`].
@@ -421,7 +425,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Asks all nodes another question.
+    /// Tests all nodes against another question.
     fn ask_all(&mut self, question: Question, halt: &mut Halt<'_>) -> (Vec<u32>, Vec<u32>) {
         self.question = question;
         let (mut lost, mut gained) = (Vec::new(), Vec::new());
@@ -435,7 +439,7 @@ impl<'a> Front<'a> {
         (lost, gained)
     }
 
-    /// Whether a node wants; it is put down for when it is to be asked again.
+    /// Whether a node wants; it is kept until its next test.
     fn asked(&mut self, node: u32) -> bool {
         let mut asking = Asking {
             question: &self.question,
@@ -455,7 +459,7 @@ impl<'a> Front<'a> {
         (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
     ) -> bool {
         lost.append(&mut self.leaving);
-        // First what goes, so that triangles are not counted that are about to.
+        // Nodes that leave come first, so that their triangles are not counted.
         let mut loosened = loosen(&mut self.forest, lost, halt);
         self.leaving = core::mem::take(&mut loosened.leaving);
         gained.append(&mut self.waiting);
@@ -541,13 +545,14 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The greatest value of a triangle's node, in the unit of what the front goes by: more than was asked only where levels or triangles
-    /// are limited.
+    /// The greatest value of a triangle's node, in the unit of the front's measure: above the
+    /// demand only where levels or triangles are limited.
     pub fn worst(&self) -> f64 {
         self.forest.worst(|extent| extent.value)
     }
 
-    /// How many pixels that is at most in the pictures of the cameras that were asked for; `None` where there are none.
+    /// The greatest number of pixels of [`Self::worst`] in the pictures of the demand's cameras;
+    /// `None` where there are none.
     pub fn pixels(&self) -> Option<f64> {
         self.question.eyes.as_ref()?;
         Some(self.forest.worst(|extent| self.question.measure(extent)))
@@ -558,8 +563,8 @@ impl<'a> Front<'a> {
         self.forest.worst(|extent| f64::from(extent.level)) as u32
     }
 
-    /// The distance, or number of pixels, that all triangles keep as far as levels allow: what was asked, or what so many triangles
-    /// allow.
+    /// The distance, or number of pixels, that all triangles keep as far as levels allow: the
+    /// demanded one, or the one that the number of triangles allows.
     pub fn limit(&self) -> f64 {
         self.question.limit
     }

@@ -2,10 +2,11 @@
 //!
 //! Where a front goes by another [`Measure`], all nodes have their own pieces, with the points that it looks at ([`Sampled`]).
 //!
-//! A node over part of a regular piece keeps the piece's number and its place there; any other its own piece. Values belong to nodes
-//! alone: of parts of regular pieces by second derivatives ([`SecondDerivatives`]); of others what [`Sheet::off_linear`] finds for the
-//! node's triangle, and for closing triangles how far the middles of edges are from those of the triangle, since linear interpolation
-//! of these differences is no greater than they are.
+//! A node over part of a regular piece keeps the piece's number and its place there; any other its
+//! own piece. Values belong to nodes alone: of parts of regular pieces by second derivatives
+//! ([`SecondDerivatives`]); of others by [`Sheet::off_linear`] for the node's triangle, and for
+//! closing triangles by the distances of the middles of edges from those of the triangle, since
+//! linear interpolation of these differences is no greater than they are.
 
 use core::array::from_fn;
 

@@ -14,7 +14,7 @@ use crate::refine::{Origin, Traced};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Snapshot {
-    /// The mesh, with the tags that are sharp for ever.
+    /// The mesh, with the infinitely sharp tags.
     pub mesh: Mesh,
     /// Where each vertex came from, in the control face of the first triangle that has it.
     pub origins: Vec<Origin>,
@@ -55,7 +55,7 @@ impl Snapshot {
         Ok(found)
     }
 
-    /// The tags of what lies along edges of the control mesh that are sharp for ever.
+    /// The tags of edges that lie on infinitely sharp edges of the control mesh.
     fn lasting_tags(&self, control: &Mesh) -> Tags {
         let lasts = |sharpness: f64| sharpness >= INFINITELY_SHARP;
         let tags = control.tags();

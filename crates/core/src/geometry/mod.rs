@@ -1,5 +1,5 @@
 //! Geometry that several rooms share: edges and their triangles, disjoint sets, the closest point
-//! of a triangle and its solid angle, what a rim in the plane encloses, a tree of boxes,
+//! of a triangle and its solid angle, the inside of a rim in the plane, a tree of boxes,
 //! coordinates in which a surface is about as large as 1. Knows no mesh.
 
 pub(crate) mod box_tree;

@@ -18,7 +18,8 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// The groups of a square matrix, whose rows say what each unknown depends on; each group ascending.
+    /// The groups of a square matrix, whose rows are the dependencies of the unknowns; each group
+    /// ascending.
     pub(super) fn of(matrix: &Sparse) -> Self {
         let n = matrix.rows();
         let mut search = Search {
@@ -76,7 +77,7 @@ struct Search<'m> {
     matrix: &'m Sparse,
     /// When each unknown was visited, from 1 on; 0 for not yet.
     order: Vec<u32>,
-    /// The earliest visit among what is still open and was found from it.
+    /// The earliest open visit that was found from it.
     lowest: Vec<u32>,
     is_open: Vec<bool>,
     open: Vec<u32>,

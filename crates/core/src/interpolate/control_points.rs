@@ -48,7 +48,7 @@ pub(super) struct Moved {
 
 /// Where the limits of vertices are to be.
 pub(super) enum Limits<'a> {
-    /// So far from them, by vertex.
+    /// At these offsets from them, by vertex.
     At(&'a [DVec3]),
     /// Within a reach of each, and as fair as they can be.
     Near(&'a Near<'a>),
@@ -91,7 +91,7 @@ pub(super) struct ControlPoints<'m> {
     kept: HashSet<u32>,
     /// The relaxed vertices, and first copies whose rows are for an adjacent edge that is shorter
     /// than theirs.
-    passed_by: HashSet<u32>,
+    relaxed: HashSet<u32>,
     /// First copies that keep their place though their limit is elsewhere in its plane, with the unit normal of that.
     planes: HashMap<u32, DVec3>,
     points: Vec<DVec3>,
@@ -121,7 +121,7 @@ impl<'m> ControlPoints<'m> {
         let planes = kept_in_planes(&rows, mesh, &sharpness, poll)?;
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
-        let (matrix, passed_by) = (Sparse::empty(), HashSet::new());
+        let (matrix, relaxed) = (Sparse::empty(), HashSet::new());
         let mut found = Self {
             mesh,
             sharpness,
@@ -129,7 +129,7 @@ impl<'m> ControlPoints<'m> {
             rows: None,
             matrix,
             kept,
-            passed_by,
+            relaxed,
             planes,
             points,
             unit,
@@ -144,8 +144,8 @@ impl<'m> ControlPoints<'m> {
             true => (rows, None),
             false => (keeping(&rows, |v| self.planes.contains_key(&v)), Some(rows)),
         };
-        self.passed_by = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
-        self.passed_by.extend(&self.kept);
+        self.relaxed = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
+        self.relaxed.extend(&self.kept);
         Ok(())
     }
 
@@ -178,20 +178,20 @@ impl<'m> ControlPoints<'m> {
     pub(super) fn missed(&self, v: usize, away: DVec3) -> DVec3 {
         let first = self.first_copy[v];
         match self.planes.get(&first) {
-            _ if self.passed_by.contains(&first) => DVec3::ZERO,
+            _ if self.relaxed.contains(&first) => DVec3::ZERO,
             Some(&normal) => away.dot(normal) * normal,
             None => away,
         }
     }
 
     /// The relaxed vertices, ascending.
-    pub(super) fn passed_by(&self) -> Vec<VertexId> {
-        if self.passed_by.is_empty() {
+    pub(super) fn relaxed(&self) -> Vec<VertexId> {
+        if self.relaxed.is_empty() {
             return Vec::new();
         }
         let all = (0..)
             .zip(&self.first_copy)
-            .filter(|(_, first)| self.passed_by.contains(first));
+            .filter(|(_, first)| self.relaxed.contains(first));
         all.map(|(v, _)| VertexId(v)).collect()
     }
 
@@ -274,7 +274,8 @@ impl<'m> ControlPoints<'m> {
         Ok(moved)
     }
 
-    /// Solves the system of a block, whose right side is that of limits at the vertices. Earlier blocks are moved `by` what is known.
+    /// Solves the system of a block, whose right side is that of limits at the vertices. Earlier
+    /// blocks are moved `by` known offsets.
     fn solve_block(
         &self,
         (number, blocks): (usize, &Blocks),
@@ -338,7 +339,7 @@ impl<'m> ControlPoints<'m> {
         reaches
     }
 
-    /// The system of a block, and its right side with what is known from earlier blocks.
+    /// The system of a block, and its right side with the known offsets of earlier blocks.
     fn system_of(
         &self,
         block: &[u32],

@@ -5,11 +5,12 @@
 //! Each row counts in the block where its last point is found, so that lines are as fair as they can be by themselves, and
 //! regions with the lines fixed.
 //!
-//! Unknown is y, how far limits are from their vertices, |yᵢ| ≤ Tᵢ; control points follow from it by A·x = v + y. So
-//! f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which projection is exact: accelerated projected
-//! gradients (Beck and Teboulle 2009) with restarts (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in
-//! y, so that what is needed where the method looks ahead follows from the iterates without solving again. ε makes the answer
-//! unique: of equally fair ones that nearest to the vertices.
+//! Unknown is y, the offsets of limits from their vertices, |yᵢ| ≤ Tᵢ; control points follow from
+//! it by A·x = v + y. So f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which
+//! projection is exact: accelerated projected gradients (Beck and Teboulle 2009) with restarts
+//! (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in y, so that the
+//! values at which the method looks ahead follow from the iterates without solving again. ε makes
+//! the answer unique: of equally fair ones that nearest to the vertices.
 //!
 //! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the
 //! gap of Frank and Wolfe; Jaggi 2013). The iteration ends where that gap is small, and reports it.
@@ -48,7 +49,7 @@ pub struct Fairness {
     /// nothing was gained.
     pub energy: f64,
     /// A lower bound of the least energy, relative to the energy at which [`Self::energy`] is 1:
-    /// the answer is as good as this is near.
+    /// the answer is good where both are close.
     pub least_energy: f64,
     /// Steps of the projected gradient, in the part of the mesh that took most.
     pub steps: usize,
@@ -205,7 +206,7 @@ impl Problem<'_> {
         Ok(gap.x.max(0.0))
     }
 
-    /// The state of given limits; what is solved for starts from that of `near`.
+    /// The state of given limits; the iteration starts from that of `near`.
     fn state(&self, y: Vec<DVec3>, near: State, poll: &mut Poll<'_>) -> Result<State, Cancelled> {
         let mut right = self.right.to_vec();
         update(&mut right, poll, |i, b| *b += y[i])?;

@@ -12,13 +12,15 @@
 //! (`blocks.rs`): corners keep their place, each line of a crease or a boundary is a system of its own, and then each region
 //! between them, with the lines fixed.
 //!
-//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k)) for the vertex, divided by
-//! a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is symmetric, and it is positive definite at all valences: the
-//! sum over the triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least
-//! −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence 2). So there is a solution
-//! for every mesh, and with the diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4 for
-//! six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients at any size. Lines have 4 on the
-//! diagonal and two neighbours. No length enters: slivers are as good as other triangles.
+//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k))
+//! for the vertex, divided by a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is
+//! symmetric, and it is positive definite at all valences: the sum over the triangles of (x_p + x_q
+//! + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least −k/2;
+//! and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence
+//! 2). So there is a solution for every mesh, and with the diagonal as preconditioner the condition
+//! number is at most that of (1 + k/a)/(1 − k/2a): 4 for six edges, 10 for three, 14 for two. That
+//! takes some thirty steps of conjugate gradients at any size. Lines have 4 on the diagonal and two
+//! neighbours. No length enters: slivers do not matter.
 //!
 //! Where a dart or a semi-sharp tag gives the neighbours of a vertex weights of their own, and for
 //! schemes outside the Loop family, the system may not be symmetric: conjugate gradients on the
@@ -32,10 +34,11 @@
 //! passes through it as through all of the plane (`planes.rs`).
 //!
 //! # Near rather than through
-//! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
-//! limits to be so far from their vertices, and asks for the fairest surface of those: the control net of least thin-plate
-//! energy (`fairness.rs`). It is as curved as it must be and no more, which takes all of the distance where the surface is
-//! curved. [`Interpolated::fairness`] says how near the energy is to the least that there can be.
+//! A surface that passes through every vertex undulates where vertices are out of line.
+//! [`InterpolateOptions::within`] allows limits at this distance from their vertices, and gives the
+//! fairest surface of those: the control net of least thin-plate energy (`fairness.rs`). It is as
+//! curved as it must be and no more, which takes all of the distance where the surface is curved.
+//! [`Interpolated::fairness`] says how near the energy is to the least that there can be.
 //!
 //! ```
 //! use limitmesh::interpolate::{InterpolateOptions, interpolate};
@@ -77,13 +80,14 @@ use system::Solver;
 /// Limits farther from their vertices than this share of the bounding box's diagonal are not at them.
 const THROUGH: f64 = 1e-10;
 
-/// How far beyond the distance that is asked for limits may be, as a share of the bounding box's diagonal.
+/// The tolerance of limits beyond the requested distance, as a share of the bounding box's
+/// diagonal.
 const NEAR: f64 = 1e-12;
 
 /// Vertices that are looked at between two calls of the observer: some milliseconds.
 const POLLED: u32 = 1 << 12;
 
-/// After so many attempts to keep vertices in planes all are led through.
+/// After this many attempts to keep vertices in planes, the surface passes through all.
 const MOST_ATTEMPTS: usize = 4;
 
 /// Why there are no control points.
@@ -173,8 +177,8 @@ pub struct Interpolated {
 /// sheets were cut apart stay together, bit for bit.
 ///
 /// # Errors
-/// A vertex has no limit, a control point would not be finite, or a distance is asked for that is negative, no number, or not
-/// reached.
+/// A vertex has no limit, a control point would not be finite, or the requested distance is
+/// negative, NaN, or not reached.
 pub fn interpolate(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -186,7 +190,7 @@ pub fn interpolate(
 /// [`interpolate`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`interpolate`], or the observer asked to stop.
 pub fn interpolate_observed(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -229,7 +233,7 @@ pub(crate) fn interpolate_but(
             method: InterpolationMethod::Unchanged,
             iterations: 0,
             residual: 0.0,
-            passed_by: points.passed_by(),
+            passed_by: points.relaxed(),
             displacement: 0.0,
             most_displaced: VertexId(0),
             fairness: None,
@@ -271,7 +275,7 @@ pub(crate) fn interpolate_but(
         }
         watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
     };
-    let passed_by = points.passed_by();
+    let relaxed = points.relaxed();
     let (residual, vertex) = farthest(&limits, mesh.positions(), |v, away| points.missed(v, away));
     let rounding = points.rounding();
     if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
@@ -295,7 +299,7 @@ pub(crate) fn interpolate_but(
         method,
         iterations: moved.steps,
         residual,
-        passed_by,
+        passed_by: relaxed,
         displacement,
         most_displaced,
         fairness: moved.energies.map(|energies| energies.fairness()),

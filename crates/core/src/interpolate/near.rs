@@ -1,5 +1,5 @@
-//! Control points of one mesh whose limits are a little away from its vertices, asked for again and again: the fairest within reaches, and
-//! those of given limits.
+//! Control points of one mesh whose limits are a little away from its vertices, computed
+//! repeatedly: the fairest within reaches, and those of given limits.
 
 use super::control_points::{ControlPoints, Limits, Near};
 use super::{InterpolateError, MOST_ATTEMPTS, THROUGH};

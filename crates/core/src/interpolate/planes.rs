@@ -20,7 +20,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// How far vertices may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 const IN_PLANE: f64 = 2e-7;
 
-/// The vertices whose own places are as good as their limits', with the unit normals of their planes.
+/// The vertices that keep their control points, with the unit normals of their planes.
 pub(super) fn kept_in_planes(
     matrix: &Sparse,
     mesh: &Mesh,

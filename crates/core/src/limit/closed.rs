@@ -30,7 +30,7 @@ struct Mode {
     frequency: usize,
 }
 
-/// The rows of one sector, and what follows from them for all the others.
+/// The rows of one sector, and their images for all the others.
 struct Sector<'n, 's> {
     neighbourhood: &'n Neighbourhood<'s>,
     /// Kinds of points a sector has.

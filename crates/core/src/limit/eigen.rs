@@ -16,7 +16,7 @@ const RESIDUAL: f64 = 1e-9;
 /// length even where the matrix is singular.
 const SINGULAR_VALUES_UP_TO: usize = 24;
 
-/// Where the iteration for singular values stops; at machine precision itself it may go on for ever.
+/// Where the iteration for singular values stops; at machine precision itself it may not end.
 const SINGULAR_VALUE_ACCURACY: f64 = 5.0 * f64::EPSILON;
 
 /// Eigenvalues of a real square matrix.

@@ -24,7 +24,8 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// 1e-16 for a flat ring, and a few digits are left to coordinates far from the origin.
 const LEAST_SINE: f64 = 1e-12;
 
-/// A tangent shorter than this fraction of the longest difference that entered it is what rounding left of zero.
+/// A tangent shorter than this fraction of the longest difference that entered it is zero within
+/// rounding.
 const LEAST_LENGTH: f64 = 1e-14;
 
 /// The most vertices adjacent to sharp edges that are evaluated together.
@@ -129,7 +130,7 @@ impl LimitTable<'_> {
         }
     }
 
-    /// Unit limit normals; `without_plane` says what stands where the limit surface has no tangent plane.
+    /// Unit limit normals; `without_plane` is used where the limit surface has no tangent plane.
     fn normals_or(
         &self,
         stencils: &Stencils,
@@ -429,7 +430,7 @@ pub(super) fn stays(weights: &[f64]) -> bool {
     weights[0] == 1.0 && weights[1..].iter().all(|&weight| weight == 0.0)
 }
 
-/// Sums of two tangents and the size of what entered them.
+/// Sums of two tangents and the size of their terms.
 #[derive(Clone, Copy, Default)]
 struct Tangents {
     first: DVec3,

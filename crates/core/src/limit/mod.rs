@@ -6,10 +6,10 @@
 //!
 //! # Theory
 //!
-//! A refinement takes the points around a vertex to new points around it by the **ring matrix** S (equation 3,
-//! [`ring_matrix`]), and their differences to the vertex by the **difference matrix** D (equation 6,
-//! [`difference_matrix`]). After n refinements a linear functional that is a *left* eigenvector, x·S = λx, has
-//! become λⁿ times what it was. Hence
+//! A refinement takes the points around a vertex to new points around it by the **ring matrix** S
+//! (equation 3, [`ring_matrix`]), and their differences to the vertex by the **difference matrix**
+//! D (equation 6, [`difference_matrix`]). After n refinements a linear functional that is a *left*
+//! eigenvector, x·S = λx, is multiplied by λⁿ. Hence
 //!
 //! * the limit position is given by the left eigenvector of S for the eigenvalue 1, with weights that sum to 1;
 //! * differences tend to the plane of the two dominant left eigenvectors u, w of D, and the normal to

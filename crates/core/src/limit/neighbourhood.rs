@@ -41,7 +41,7 @@ impl<'s> Neighbourhood<'s> {
     /// The neighbourhood of a vertex with the ring `shape`, as large as the scheme's support.
     ///
     /// # Errors
-    /// The ring has fewer than two edges, or is closed and has so many that indices overflow.
+    /// The ring has fewer than two edges, or is closed and so long that indices overflow.
     pub(super) fn new(scheme: &'s dyn Scheme, shape: RingShape) -> Result<Self, LimitError> {
         if shape.valence < 2 || shape.valence > u32::MAX / 4 {
             let what = format!(
@@ -236,9 +236,9 @@ impl<'s> Neighbourhood<'s> {
         } else {
             self.sharp.spokes[j].clamp(0.0, 1.0)
         };
-        let (ends, beside) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
+        let (ends, others) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
         let [at, previous, next] = [j, j + k - 1, j + 1].map(|j| self.ring_point(j));
-        [(0, ends), (at, ends), (previous, beside), (next, beside)]
+        [(0, ends), (at, ends), (previous, others), (next, others)]
     }
 
     fn vertex_row(&self, ring: &LabelledRing<usize>) -> Result<Vec<f64>, LimitError> {

@@ -161,7 +161,7 @@ fn modes(
     Ok(modes)
 }
 
-/// The modes of both tangents, what they span, and the greatest modulus among the others.
+/// The modes of both tangents, their span, and the greatest modulus among the others.
 fn choose(
     neighbourhood: &Neighbourhood<'_>,
     differences: &DMatrix<f64>,

@@ -70,7 +70,8 @@ impl SharpStencil {
         &self.position
     }
 
-    /// The sides of what stays sharp for ever, counter-clockwise; one where the limit surface is smooth.
+    /// The sides of the infinitely sharp edges, counter-clockwise; one where the limit surface is
+    /// smooth.
     pub fn sides(&self) -> &[SharpSide] {
         &self.sides
     }
@@ -220,7 +221,7 @@ impl Points {
             return Ok(side);
         };
         let row = |axis: usize| {
-            // On points rather than differences: the vertex has what the others lack to a sum of 0.
+            // On points rather than differences: the weight of the vertex makes the sum 0.
             let others = tangents.iter().map(|weights| weights[axis]);
             let centre = -others.clone().sum::<f64>();
             let weights: Vec<f64> = core::iter::once(centre).chain(others).collect();

@@ -34,7 +34,7 @@ impl SidedNormals {
         self.sides.extend(faces.map(|h| (h, normal)));
     }
 
-    /// Ready to be asked.
+    /// Sorts for queries.
     pub(crate) fn finished(mut self) -> Self {
         self.sides.sort_unstable_by_key(|&(h, _)| h);
         self

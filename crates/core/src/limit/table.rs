@@ -1,4 +1,4 @@
-//! The table of a scheme's limit stencils by ring shape, built when first asked for.
+//! The table of a scheme's limit stencils by ring shape, built on first use.
 
 use core::fmt;
 use core::hash::Hash;
@@ -31,7 +31,7 @@ impl fmt::Debug for LimitTable<'_> {
 }
 
 impl<'s> LimitTable<'s> {
-    /// An empty table for `scheme`; stencils are built when first asked for.
+    /// An empty table for `scheme`; stencils are built on first use.
     pub fn new(scheme: &'s dyn Scheme) -> Self {
         Self {
             scheme: declared(scheme),

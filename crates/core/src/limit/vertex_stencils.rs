@@ -26,7 +26,7 @@ pub(crate) struct VertexStencil {
     pub(crate) sides: Vec<StencilSide>,
 }
 
-/// A side of what is sharp for ever at a vertex.
+/// A side of the infinitely sharp edges at a vertex.
 pub(crate) struct StencilSide {
     /// The slot of its first edge, and its number of faces, counter-clockwise from there.
     pub(crate) first: usize,

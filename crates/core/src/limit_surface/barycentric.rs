@@ -6,7 +6,7 @@ const OF_SUMS: f64 = 2e-4;
 /// How far below 0 a weight may be that counts as 0, such as one that came out of a computation.
 const OF_WEIGHTS: f64 = 1e-6;
 
-/// How far a sum is from 1 by the rounding of its three terms: weights of such a sum stay to the bit what they are.
+/// The rounding error of three weights' sum of 1: weights with such a sum are kept to the bit.
 const OF_DOUBLES: f64 = 4.0 * f64::EPSILON;
 
 /// Why weights are no place on a face.

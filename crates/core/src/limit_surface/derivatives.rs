@@ -1,9 +1,10 @@
 //! First and second derivatives of the limit surface, and its curvature.
 //!
-//! Pieces are refined towards a place until its part is a polynomial, as [`super`] does, whose derivatives are those of the control
-//! face's barycentric coordinates but for a factor of 2 a level, −2 in middle parts, which stand on their heads. Near an irregular
-//! vertex what counts are differences that are far smaller than the coordinates themselves: so at each level the piece is moved to the
-//! origin, and the weights that are small are kept, not those near 1.
+//! Pieces are refined towards a place until its part is a polynomial, as [`super`] does, whose
+//! derivatives are those of the control face's barycentric coordinates but for a factor of 2 a
+//! level, −2 in middle parts, which are inverted. Near an irregular vertex the differences are far
+//! smaller than the coordinates themselves: so at each level the piece is moved to the origin, and
+//! the weights that are small are kept, not those near 1.
 //!
 //! Curvature follows from the first and second fundamental forms (do Carmo, Differential Geometry of Curves and Surfaces, 3-3).
 
@@ -214,7 +215,7 @@ fn nearest(weights: [f64; 3]) -> usize {
     })
 }
 
-/// Weights of which the greatest is what the others leave of 1; `None` where one is below 0 or none.
+/// Weights of which the greatest is 1 minus the others; `None` where one is below 0 or NaN.
 fn weights_in_order(mut weights: [f64; 3]) -> Option<[f64; 3]> {
     if !weights
         .iter()

@@ -1,4 +1,4 @@
-//! Places over a face, handed down to its parts as these are refined, and what is answered for them.
+//! Places over a face, handed down to its parts as these are refined, and their values.
 
 use core::array::from_fn;
 use core::ops::Range;

@@ -1,8 +1,9 @@
 //! Area and volume of the limit surface.
 //!
-//! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a polynomial of degree 10, which a product
-//! of Gauss rules with six nodes integrates exactly; the area's integrand |S_u × S_v| is none, and pieces are divided until two rules
-//! agree. Towards irregular vertices pieces are refined until what is left is a speck, for which a flat triangle stands.
+//! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a
+//! polynomial of degree 10, which a product of Gauss rules with six nodes integrates exactly; the
+//! area's integrand |S_u × S_v| is none, and pieces are divided until two rules agree. Towards
+//! irregular vertices pieces are refined down to a speck, which a flat triangle approximates.
 
 use super::{LimitSurface, regular};
 use crate::index::FaceId;
@@ -74,14 +75,15 @@ impl Integrand for Volume {
 }
 
 impl LimitSurface<'_> {
-    /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control mesh's unit; `None` for schemes outside the
-    /// Loop family, and where it is beyond what numbers hold.
+    /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control
+    /// mesh's unit; `None` for schemes outside the Loop family, and where it overflows.
     pub fn area(&self) -> Option<f64> {
         self.integrated(&Area, 2)
     }
 
-    /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control mesh's unit: below 0 where normals point
-    /// inwards. `None` for surfaces with a boundary, for schemes outside the Loop family, and where it is beyond what numbers hold.
+    /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control
+    /// mesh's unit: below 0 where normals point inwards. `None` for surfaces with a boundary, for
+    /// schemes outside the Loop family, and where it overflows.
     ///
     /// ```
     /// use limitmesh::{LimitSurface, Mesh, scheme::Loop};

@@ -27,7 +27,7 @@ options! {
 }
 
 impl SamplingOptions {
-    /// Samples asked for at most: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
+    /// The most samples: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
     pub const MOST_SAMPLES: usize = 1 << 28;
 }
 
@@ -118,7 +118,7 @@ pub fn hausdorff(
 /// [`hausdorff`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`hausdorff`], or the observer asked to stop.
 pub fn hausdorff_observed(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
@@ -265,7 +265,7 @@ pub fn distances_to(
 /// [`distances_to`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`distances_to`], or the observer asked to stop.
 pub fn distances_to_observed(
     points: &[[f64; 3]],
     reference: Triangles<'_>,

@@ -94,8 +94,8 @@ pub enum MeasureError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Refuses what has no distances: no triangles, an index out of range, a coordinate that is not finite. `which`
-/// names the surface in the error.
+/// Refuses surfaces without distances: no triangles, an index out of range, a coordinate that is
+/// not finite. `which` names the surface in the error.
 fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError> {
     if surface.triangles.is_empty() {
         return Err(MeasureError::Empty { which });

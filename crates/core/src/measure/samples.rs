@@ -20,8 +20,8 @@ const PIECE: usize = 16;
 /// the greatest distance lies on a sharp edge; the mean needs the points inside.
 const SIDE_SHARE: usize = 5;
 
-/// Where the vertices alone are more than the samples asked for, sides and insides still get this share of the
-/// number: 1 in 4. Without it the mean would not see the insides at all.
+/// Where the vertices alone are more than the requested samples, sides and insides still get this
+/// share of the number: 1 in 4. Without it the mean would not see the insides at all.
 const LEAST_SHARE: usize = 4;
 
 /// Reciprocals of the plastic number (the real root of x³ = x + 1) and of its square.
@@ -45,7 +45,7 @@ struct Spread {
 }
 
 /// Where a point of a spread stands.
-struct Spot {
+struct SpreadPoint {
     /// Its number.
     number: usize,
     /// Its triangle, by place in the tree's order.
@@ -247,7 +247,7 @@ impl Spread {
     }
 
     /// Calls `f` with each point of `range` in turn.
-    fn visit(&self, surface: &Bvh<'_>, range: Range<usize>, mut f: impl FnMut(Spot)) {
+    fn visit(&self, surface: &Bvh<'_>, range: Range<usize>, mut f: impl FnMut(SpreadPoint)) {
         if range.is_empty() {
             return;
         }
@@ -279,7 +279,7 @@ impl Spread {
                 corners = surface.scaled_corners(slot);
                 weight = (self.weight)(corners);
             }
-            f(Spot {
+            f(SpreadPoint {
                 number: k,
                 slot,
                 scaled: corners,

@@ -63,8 +63,8 @@ pub enum Interpolation {
     Nearest,
 }
 
-/// Where smooth channels keep their values along seams: OpenSubdiv's face-varying modes. A value that is kept stays what it is in the
-/// control mesh.
+/// Where smooth channels keep their values along seams: OpenSubdiv's face-varying modes. A kept
+/// value is that of the control mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SeamRule {
@@ -212,7 +212,7 @@ impl Trace {
 }
 
 impl Channel {
-    /// A channel that is interpolated as usual for what it means.
+    /// A channel with the usual interpolation for its meaning.
     pub fn new(name: impl Into<String>, semantic: Semantic, domain: Domain, arity: usize) -> Self {
         Self {
             name: name.into(),
@@ -273,7 +273,7 @@ impl Channel {
         self.domain != Domain::Face && !self.is_constant()
     }
 
-    /// Whether the channel fits a mesh of so many vertices, corners and faces.
+    /// Checks that the channel fits a mesh with these numbers of vertices, corners and faces.
     ///
     /// # Errors
     /// Names the first index or value that does not.

@@ -38,8 +38,9 @@ pub struct ConcaveCorners {
 }
 
 impl Mesh {
-    /// The mesh with every sector of 180° and more at its corners (vertices that keep their place, at three sharp edges or
-    /// by a tag) divided by sharp edges, so that flat faces stay flat there; and what that took.
+    /// The mesh with every sector of 180° and more at its corners (vertices that keep their place,
+    /// at three sharp edges or by a tag) divided by sharp edges, so that flat faces stay flat
+    /// there; and a report.
     ///
     /// Of the edges inside a sector those nearest to its bisector become sharp, in a plane all that
     /// lead to other corners. Where that would make a corner of the vertex at the other end, or
@@ -165,14 +166,14 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
                 twin.is_some_and(|twin| is_flat_beyond(mesh, sharpness, twin))
             };
             let dividing = fan.dividing(is_straight);
-            let lasts = lasting(&ring).min(fan.bounds(sharpness));
-            let lasts = if lasts >= INFINITELY_SHARP {
+            let levels = sharp_levels(&ring).min(fan.bounds(sharpness));
+            let levels = if levels >= INFINITELY_SHARP {
                 f64::INFINITY
             } else {
-                lasts
+                levels
             };
             let rib = |edge: usize| Rib {
-                sharpness: lasts,
+                sharpness: levels,
                 is_flat,
                 middle: fan.middle(edge),
             };
@@ -182,8 +183,8 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
     ribs
 }
 
-/// How long a corner stays one: as its own sharpness says, or that of its third edge.
-fn lasting(ring: &SharpRing) -> f64 {
+/// The number of levels for which a vertex is a corner: its own sharpness, or that of its third edge.
+fn sharp_levels(ring: &SharpRing) -> f64 {
     let mut spokes = ring.spokes.clone();
     spokes.sort_unstable_by(|a, b| b.total_cmp(a));
     spokes.get(2).copied().unwrap_or(0.0).max(ring.vertex)
@@ -279,7 +280,7 @@ impl Fan {
     }
 }
 
-/// Edges nearer to one line than this sine of their angle (5°) are not asked for their plane.
+/// Edges nearer to one line than this sine of their angle (5°) do not define a plane.
 const LEAST_SINE: f64 = 0.087;
 
 /// An edge that leaves the plane by more than this sine (15°) stays as it is: moving it so far would show more than a line.

@@ -76,8 +76,9 @@ pub struct Diagnosis {
     pub bow_tie_vertices: Finding,
     /// Tags that name no vertex or edge of the mesh, by their place among the input's tags (creases first).
     pub dropped_tags: Finding,
-    /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by their vertices in the mesh.
-    /// Whoever calls [`Mesh::with_divided_concave_corners`](super::Mesh::with_divided_concave_corners) adds them.
+    /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by
+    /// their vertices in the mesh. The caller of
+    /// [`Mesh::with_divided_concave_corners`](super::Mesh::with_divided_concave_corners) adds them.
     pub concave_corners: Finding,
 }
 
@@ -270,8 +271,8 @@ impl Diagnosis {
             .map(|(wording, finding)| (wording.name, finding))
     }
 
-    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld vertices. This is what
-    /// [`strict`](super::BuildOptions::strict) asks for.
+    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld
+    /// vertices. [`strict`](super::BuildOptions::strict) requires this.
     pub fn is_clean(&self) -> bool {
         WORDINGS
             .iter()
@@ -279,28 +280,28 @@ impl Diagnosis {
             .all(|(wording, finding)| !wording.defect || finding.is_empty())
     }
 
-    /// A line for each kind of defect that was found, and what was done about it.
+    /// A line for each kind of defect, with its repair.
     pub fn repairs(&self) -> Vec<String> {
-        self.told(true, Wording::line)
+        self.lines(true, Wording::line)
     }
 
-    /// A line for each finding that is no defect, and what was done about it.
+    /// A line for each finding that is no defect, with its treatment.
     pub fn preparations(&self) -> Vec<String> {
-        self.told(false, Wording::line)
+        self.lines(false, Wording::line)
     }
 
     /// The defects in one line, for errors.
     pub(crate) fn defects(&self) -> String {
-        self.told(true, |wording, finding| wording.found(finding, ""))
+        self.lines(true, |wording, finding| wording.found(finding, ""))
             .join("; ")
     }
 
-    fn told(&self, defects: bool, tell: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
+    fn lines(&self, defects: bool, format: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
         let all = WORDINGS.iter().zip(self.in_order());
         let found =
             all.filter(|(wording, finding)| wording.defect == defects && !finding.is_empty());
         found
-            .map(|(wording, finding)| tell(wording, finding))
+            .map(|(wording, finding)| format(wording, finding))
             .collect()
     }
 }

@@ -1,4 +1,4 @@
-//! Tags by rule: creases where faces meet at a sharp angle, and what happens at boundaries.
+//! Tags by rule: creases where faces meet at a sharp angle, and corners of boundaries.
 //!
 //! Takes a mesh, gives it with more tags; every method then honours them alike.
 
@@ -21,7 +21,7 @@ pub enum BoundaryRule {
 }
 
 impl Mesh {
-    /// The mesh with the corner tags that make its boundary what `rule` says; those that it has stay.
+    /// The mesh with the corner tags that `rule` gives its boundary; existing tags stay.
     ///
     /// ```
     /// use limitmesh::Mesh;

@@ -1,7 +1,7 @@
-//! Control meshes: manifold, oriented triangle meshes with half-edge topology, and what it takes to make one
-//! from any file's content.
+//! Control meshes: manifold, oriented triangle meshes with half-edge topology, and how they are
+//! made from any file's content.
 //!
-//! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of what was found and repaired on the way.
+//! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of the repaired defects.
 
 mod build;
 mod channel;
@@ -143,7 +143,8 @@ pub enum MeshError {
     },
 }
 
-/// A view of triangles over positions, manifold or not: what measuring, drawing and writing need.
+/// A view of triangles over positions, manifold or not: the input of measuring, drawing and
+/// writing.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
     /// Vertex positions.
@@ -455,7 +456,8 @@ pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
     }
 }
 
-/// Sizes of control meshes at which squares of areas neither vanish nor overflow, for what does not scale its input.
+/// Sizes of control meshes at which squares of areas neither vanish nor overflow, for functions
+/// that do not scale their input.
 const SAFE_DIAGONALS: core::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
 /// Refuses a mesh that is too large or too small to be computed with as it is.

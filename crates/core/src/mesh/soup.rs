@@ -1,4 +1,4 @@
-//! A polygon soup: what a file held, before anything is checked or repaired.
+//! A polygon soup: the contents of a file, before anything is checked or repaired.
 
 use super::{Channel, CornerTag, CreaseTag};
 

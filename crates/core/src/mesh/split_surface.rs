@@ -1,5 +1,5 @@
-//! A surface whose vertices on sharp edges stand once for each side, so that every vertex has one normal: what graphics cards and
-//! most files want.
+//! A surface whose vertices on sharp edges are repeated for each side, so that every vertex has one
+//! normal, as graphics cards and most files need.
 //!
 //! Takes a mesh and a normal for each of its corners; gives positions, normals and triangles, and which vertex of the mesh each is.
 
@@ -70,8 +70,8 @@ impl SplitSurface {
         split
     }
 
-    /// The mesh with the mean normals of the faces around each vertex, weighted by area, on each side of what its tags keep sharp for
-    /// ever: how a mesh of which nothing else is known is shaded.
+    /// The mesh with the mean normals of the faces around each vertex, weighted by area, on each
+    /// side of its infinitely sharp edges: the shading of a mesh without other data.
     pub fn by_faces(mesh: &Mesh) -> Self {
         let sharpness = Sharpness::of(mesh).lasting();
         let topology = mesh.topology();

@@ -11,7 +11,8 @@ use crate::ring::INFINITELY_SHARP;
 pub struct CreaseTag {
     /// The ends of the edge, in any order.
     pub vertices: [u32; 2],
-    /// 0 smooth, [`INFINITELY_SHARP`] and above for ever sharp, between them sharp for that many levels.
+    /// 0 is smooth, [`INFINITELY_SHARP`] and above infinitely sharp; between them the tag is sharp
+    /// for that many levels.
     pub sharpness: f64,
 }
 
@@ -24,10 +25,11 @@ pub struct CornerTag {
     pub sharpness: f64,
 }
 
-/// The tags of a mesh: what is to stay sharp where its surface would be smooth.
+/// The tags of a mesh: edges and vertices that stay sharp where the surface would be smooth.
 ///
-/// The rules are OpenSubdiv's (see [`crate::ring::SharpRing`]). Refinement hands the tags on to the pieces of what
-/// they name, less sharp by one; several tags on one edge count as the sharpest of them.
+/// The rules are OpenSubdiv's (see [`crate::ring::SharpRing`]). Refinement hands the tags on to the
+/// parts of their edges and vertices, less sharp by one; several tags on one edge count as the
+/// sharpest of them.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Tags {
     /// Sharp edges.
@@ -42,7 +44,7 @@ impl Tags {
         self.creases.is_empty() && self.corners.is_empty()
     }
 
-    /// Whether `vertex` keeps its place for ever.
+    /// Whether `vertex` is an infinitely sharp corner.
     #[inline]
     pub fn is_corner(&self, vertex: VertexId) -> bool {
         if self.corners.is_empty() {

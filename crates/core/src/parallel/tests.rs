@@ -147,7 +147,7 @@ fn what_is_sorted_in_parts_is_sorted() {
 /// gives.
 #[test]
 fn defaults_are_the_same_for_any_number_of_threads() {
-    // So many are touched by several, one less is not.
+    // This many are touched by several threads, one less is not.
     let many = (1usize << 18).div_ceil(size_of::<[u32; 3]>());
     for threads in [1, 3] {
         for (length, room) in [

@@ -35,7 +35,7 @@ const POINTS: usize = 64;
 /// Points up to this part of the surface's size from it are neither inside nor outside.
 const NEAR: f64 = 1e-9;
 
-/// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
+/// The least part of the surface's size that a tolerance can be: smaller ones are within rounding.
 const LEAST_TOLERANCE: f64 = 1e-13;
 
 /// Why there is nothing to be near to.
@@ -162,7 +162,7 @@ impl<'a> Proximity<'a> {
     /// [`Self::new`], telling an observer how it goes on.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
@@ -243,7 +243,7 @@ impl<'a> Proximity<'a> {
     /// [`Self::closest`], telling an observer how it goes on.
     ///
     /// # Errors
-    /// As for [`Self::closest`], or the observer asked to stop.
+    /// Those of [`Self::closest`], or the observer asked to stop.
     pub fn closest_observed(
         &self,
         points: &[[f64; 3]],
@@ -317,7 +317,7 @@ impl<'a> Proximity<'a> {
     /// [`Self::memberships`], telling an observer how it goes on.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`], or the observer asked to stop.
+    /// Those of [`Self::winding_number`], or the observer asked to stop.
     pub fn memberships_observed(
         &self,
         points: &[[f64; 3]],

@@ -1,4 +1,4 @@
-//! The closest point, by branch and bound over boxes, faces and pieces, what may be nearest first.
+//! The closest point, by branch and bound over boxes, faces and pieces, the least bound first.
 //!
 //! A piece is skipped if a lower bound of its distance is not below the least distance found less
 //! the tolerance: the bound is by its box, or by the triangle that it is near, or the squared
@@ -67,10 +67,10 @@ struct Waiting {
     bound: f64,
     /// The order of pieces with equal bounds.
     number: u32,
-    what: What,
+    pending: Pending,
 }
 
-enum What {
+enum Pending {
     /// A node of the tree.
     Node(usize),
     /// A piece that is kept, by its face and place there, and whether its bound is that of its triangle, not only of its box.
@@ -80,7 +80,8 @@ enum What {
 }
 
 impl Ord for Waiting {
-    /// The one with the least bound is the greatest, as heaps want it; among equals what waits shortest, which is smallest.
+    /// The entry with the least bound is the greatest, as heaps need it; among equals the latest,
+    /// which is smallest.
     fn cmp(&self, other: &Self) -> Ordering {
         other
             .bound
@@ -129,15 +130,15 @@ impl<'q> Query<'q> {
             (frame.inside(vector(point)), NOTHING, f64::INFINITY);
         let mut number = 0;
         self.waiting.clear();
-        self.wait(&mut number, 0.0, What::Node(0));
-        while let Some(Waiting { bound, what, .. }) = self.waiting.pop() {
+        self.wait(&mut number, 0.0, Pending::Node(0));
+        while let Some(Waiting { bound, pending, .. }) = self.waiting.pop() {
             if bound >= self.limit() {
                 self.pass_over(bound);
                 break;
             }
-            match what {
-                What::Node(node) => self.open(node, &mut number),
-                What::Kept(face, at, is_of_triangle) => {
+            match pending {
+                Pending::Node(node) => self.open(node, &mut number),
+                Pending::Kept(face, at, is_of_triangle) => {
                     let piece = &self.proximity.faces[face as usize].pieces[at as usize];
                     let own = if is_of_triangle {
                         bound
@@ -145,12 +146,12 @@ impl<'q> Query<'q> {
                         self.bound(piece)
                     };
                     if own > bound && self.waiting.peek().is_some_and(|next| next.bound < own) {
-                        self.wait(&mut number, own, What::Kept(face, at, true));
+                        self.wait(&mut number, own, Pending::Kept(face, at, true));
                     } else {
                         self.look_at(piece, face, &mut number);
                     }
                 }
-                What::Own(piece, face) => self.look_at(&piece, face, &mut number),
+                Pending::Own(piece, face) => self.look_at(&piece, face, &mut number),
             }
             self.left -= 1;
             if self.left == 0 {
@@ -179,12 +180,12 @@ impl<'q> Query<'q> {
         self.passed_over = self.passed_over.min(bound);
     }
 
-    fn wait(&mut self, number: &mut u32, bound: f64, what: What) {
+    fn wait(&mut self, number: &mut u32, bound: f64, pending: Pending) {
         *number = number.wrapping_add(1);
         self.waiting.push(Waiting {
             bound,
             number: *number,
-            what,
+            pending,
         });
     }
 
@@ -195,7 +196,7 @@ impl<'q> Query<'q> {
         if let Some(children) = tree.children(node) {
             for child in children {
                 let bound = distance_to(&tree.nodes()[child].bounds, self.from);
-                self.wait(number, bound, What::Node(child));
+                self.wait(number, bound, Pending::Node(child));
             }
             return;
         }
@@ -205,7 +206,7 @@ impl<'q> Query<'q> {
                 for (piece, at) in kept.pieces.iter().zip(0..) {
                     let bound = distance_to(&piece.bounds, self.from);
                     match bound < self.limit() {
-                        true => self.wait(number, bound, What::Kept(face, at, false)),
+                        true => self.wait(number, bound, Pending::Kept(face, at, false)),
                         false => self.pass_over(bound),
                     }
                 }
@@ -215,7 +216,7 @@ impl<'q> Query<'q> {
                     FacePieces::of(proximity.surface, &proximity.frame, FaceId(face)).pieces
                 {
                     let bound = self.bound(&piece);
-                    self.wait(number, bound, What::Own(Box::new(piece), face));
+                    self.wait(number, bound, Pending::Own(Box::new(piece), face));
                 }
             }
         }
@@ -264,7 +265,7 @@ impl<'q> Query<'q> {
             let bound = self.bound(&part);
             match bound >= self.limit() {
                 true => self.pass_over(bound),
-                false => self.wait(number, bound, What::Own(Box::new(part), face)),
+                false => self.wait(number, bound, Pending::Own(Box::new(part), face)),
             }
         }
     }

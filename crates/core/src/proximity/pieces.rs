@@ -139,7 +139,7 @@ impl Piece {
         }
     }
 
-    /// With what decides how distances from it bend.
+    /// With the data that decide how distances from it bend.
     fn with_convexity(mut self) -> Self {
         if let Form::Regular(regular) = &mut self.form {
             regular.convexity = Some(regular.convexity());
@@ -179,8 +179,8 @@ fn hull(points: impl Iterator<Item = DVec3>, [a, b, c]: [DVec3; 3]) -> (Bounds, 
 #[derive(Clone, Debug)]
 pub(super) struct FacePieces {
     pub(super) pieces: Vec<Piece>,
-    /// Triangles between edges and their halves, where pieces were divided: with those of the pieces they close what the face's own
-    /// triangle bounds.
+    /// Triangles between edges and their halves, where pieces were divided: together with the
+    /// triangles of the pieces they have the boundary of the face's own triangle.
     pub(super) closing: Vec<[DVec3; 3]>,
 }
 

@@ -23,7 +23,7 @@ use crate::vector::{DVec3, vector};
 /// Points this near to a triangle that closes a gap are moved: on which side of it they are is not certain.
 const ON_CLOSING: f64 = 1e-12;
 
-/// How they are moved, one after the other: far less than what counts as near.
+/// The displacements to try, one after the other: far less than the distance that counts as near.
 const MOVES: [[f64; 3]; 3] = [
     [0.0; 3],
     [3.1e-11, 5.3e-11, 7.9e-11],

@@ -23,10 +23,10 @@ use search::{Found, RayFrame, RaySearch};
 /// Control faces whose pieces are made together, and rays that are followed together.
 const BLOCK: usize = 64;
 
-/// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
+/// The least part of the surface's size that a tolerance can be: smaller ones are within rounding.
 const LEAST_TOLERANCE: f64 = 1e-12;
 
-/// The tolerance where none is asked for, as a part of the surface's size.
+/// The default tolerance, as a part of the surface's size.
 const TOLERANCE: f64 = 1e-10;
 
 /// A half line: all `origin + t · direction` with t from 0 on.
@@ -161,7 +161,7 @@ impl<'a> RayCaster<'a> {
     /// [`Self::new`], telling an observer how it goes on.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
@@ -330,7 +330,7 @@ mod tests {
     use crate::random::Random;
     use crate::scheme::Loop;
 
-    /// How many pieces rays look at; what is printed stands in docs/paper.md.
+    /// The number of pieces that rays test; docs/paper.md has the printed numbers.
     #[test]
     fn rays_look_at_few_pieces() {
         let soup = crate::models::find("head")

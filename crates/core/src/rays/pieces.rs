@@ -47,7 +47,7 @@ pub(super) fn control_corner(spot: Spot) -> [f64; 2] {
         .unwrap_or([1.0 / 3.0; 2])
 }
 
-/// The pieces over a face of a mesh with so many, and their boxes.
+/// The pieces over a face of a mesh with `faces` faces, and their boxes.
 pub(super) fn pieces(
     surface: &LimitSurface<'_>,
     frame: &SurfaceFrame,

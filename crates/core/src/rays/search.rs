@@ -83,7 +83,7 @@ impl RayFrame {
             let (a, b) = (low / sight[axis], high / sight[axis]);
             (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
         }
-        // Boxes have a margin for what rounding does here.
+        // Boxes have a margin for the rounding here.
         (first <= last).then_some([first, last])
     }
 }

@@ -46,7 +46,7 @@ impl AttributeGoal {
         }
     }
 
-    /// Refuses tolerances that are none, and meshes with other faces than so many.
+    /// Refuses tolerances that are not positive numbers, and meshes with another number of faces.
     pub(crate) fn check(&self, faces: usize) -> Result<(), MeshError> {
         let bad = |name, value, expected| {
             Err(MeshError::BadOption {

@@ -25,15 +25,16 @@ pub struct ExactOptions {
     /// needs more triangles than no viewer: faces that face away have the angle of no viewer, and
     /// with a dilatation above 1 faces towards the viewer have greater angles. Default: none.
     pub view: Option<View>,
-    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: of each point of one that is in a
-    /// picture from the other. Of closed surfaces what looks away from a camera is not seen, and where it certainly does it is not divided for its
-    /// own sake. Default: none.
+    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: from each
+    /// visible point of one to the other. Of closed surfaces what looks away from a camera is not
+    /// seen, and where it certainly does it is not divided for its own sake. Default: none.
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,
-    /// The best mesh with at most so many triangles. Up to 20,000 of them the face that is farthest off is divided next; of more, faces that
-    /// are about as far off are divided together. Then a 32nd may be left over, and more where many faces are alike, as on a
-    /// regular sphere: dividing some of those would bring the mesh no nearer. Default: none.
+    /// The best mesh with at most this many triangles. Up to 20,000 of them the face with the
+    /// greatest error is divided next; of more, faces with about equal errors are divided together.
+    /// Then a 32nd may be left over, and more where many faces are alike, as on a regular sphere:
+    /// dividing some of those would bring the mesh no nearer. Default: none.
     pub triangles: Option<usize>,
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
@@ -48,19 +49,22 @@ pub struct ExactOptions {
     /// Whether to report the origin of each vertex, [`Exact::origins`](super::Exact::origins), a
     /// quarter of the memory of a result. Default: yes.
     pub origins: bool,
-    /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
-    /// inside but those of the control mesh. Triangles that lie in one plane side by side though the surface is curved elsewhere, as on a
-    /// cylinder's side, are put together, too. None of these triangles reaches over one of [`Self::kept_edges`]. Else all follow the hierarchy. With [`Self::balance`] only regions for which [`Self::unfold`] takes what their
-    /// rims enclose. Default: yes.
+    /// Regions of control faces whose limit surface lies in a plane are triangulated from their
+    /// rims alone, with no vertices inside but those of the control mesh. Triangles that lie in one
+    /// plane side by side though the surface is curved elsewhere, as on a cylinder's side, are put
+    /// together, too. None of these triangles crosses one of [`Self::kept_edges`]. If false, all
+    /// triangles follow the hierarchy. With [`Self::balance`] this is done only for regions that
+    /// [`Self::unfold`] replaces by the inside of their rims. Default: yes.
     pub flat_regions: bool,
-    /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
-    /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
-    /// counts. It is the scheme's where limit curves around it are smooth, or cross so that nothing can be
-    /// triangulated, and without this option. Default: no.
+    /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of
+    /// a fan meet a hole, the plane inside the region's rim replaces the surface. This is mostly
+    /// the intended shape; [`Exact::unfolded`](super::Exact::unfolded) counts these regions. The
+    /// scheme's surface is kept where limit curves around it are smooth, or cross so that nothing
+    /// can be triangulated, and without this option. Default: no.
     pub unfold: bool,
     /// Whether triangles side by side in one plane are put together; with [`Self::flat_regions`].
     pub(crate) strips: bool,
-    /// Whether bounds that are far above what was found are measured anew.
+    /// Whether bounds that are far above the distance found are measured anew.
     pub(crate) tightens: bool,
     /// Goals in addition to the shape ([`AttributeGoal`]): with goals on quality, without a number
     /// of triangles, [`Self::balance`] and [`Self::optimize`]; flat regions then follow the
@@ -84,7 +88,8 @@ pub(super) const MOST_LEVELS: usize = 30;
 /// Triangles at most where no cap is given.
 const USUAL_TRIANGLES: usize = 50_000_000;
 
-/// Memory for a triangle and what belongs to it while the mesh grows, the result included: measured, with a margin.
+/// Memory for a triangle and its data while the mesh grows, the result included: measured, with a
+/// margin.
 pub(super) const BYTES_PER_TRIANGLE: usize = 320;
 
 impl Default for ExactOptions {

@@ -12,7 +12,7 @@ use crate::vector::vector;
 pub enum ExactStop {
     /// Every goal on quality is met.
     Met,
-    /// The number of triangles asked for is used up.
+    /// The requested number of triangles is used up.
     Triangles,
     /// The next split would have passed the cap on triangles.
     TriangleCap,
@@ -20,7 +20,7 @@ pub enum ExactStop {
     MemoryCap,
     /// The triangles that still fail have been divided as often as allowed.
     LevelCap,
-    /// The tolerance is below what rounding leaves certain.
+    /// The tolerance is within rounding.
     Rounding,
     /// Every goal is met, but for [`Exact::open_cones`]: triangles outside their cones where no division brings their
     /// normals nearer to the limit normals, such as at cusps and where the surface is not regular.
@@ -33,9 +33,10 @@ pub enum ExactStop {
 pub struct ErrorBounds {
     /// Some point of the one is so far from the other.
     pub lower: f64,
-    /// A distance that is not exceeded where [`Self::certified`] holds; infinite where nothing was asked of distances, nor a
-    /// number of triangles, and nothing near [`Self::lower`] could be proven. Otherwise an estimate, the greatest distance of
-    /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
+    /// A distance that is not exceeded where [`Self::certified`] holds; infinite without a goal for
+    /// distances or a number of triangles where nothing near [`Self::lower`] could be proven.
+    /// Otherwise an estimate, the greatest distance of the surface's points three levels below the
+    /// triangles, which the true one may exceed by some per cent.
     pub upper: f64,
     /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
     /// combinations.
@@ -46,7 +47,7 @@ pub struct ErrorBounds {
 }
 
 impl ErrorBounds {
-    /// Upper bounds up to so many times what was found are tight enough.
+    /// Upper bounds up to this many times the distance found are tight enough.
     pub(crate) const TIGHT: f64 = 1.25;
 
     /// Distances below this part of the control mesh's diagonal count as that.
@@ -97,17 +98,19 @@ pub struct Exact {
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
     /// ascending; see [`Self::corner_normal`]. Empty without sharp edges.
     pub sides: Vec<(u32, [f64; 3])>,
-    /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
+    /// The origin of each vertex; empty unless
+    /// [`ExactOptions::origins`](super::ExactOptions::origins) is set.
     pub origins: Vec<Origin>,
     /// The greatest distance of the limit surface, and of its triangles, from the planes of the
     /// regions that were triangulated from their rims
     /// ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
     pub off_planes: f64,
-    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
-    /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
+    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do
+    /// where a fan of slivers meets a hole: the plane inside the rim replaces them, and
+    /// [`Self::error`] is the distance from this surface.
     pub unfolded: usize,
-    /// Flat regions, by their first control faces, whose surface is taken to be what their rims enclose, whether the rules fold it or not;
-    /// ascending.
+    /// Flat regions, by their first control faces, whose surface is taken to be the plane inside
+    /// their rims, whether the rules fold it or not; ascending.
     pub(crate) within_rims: Vec<u32>,
     /// The control face of each triangle; after optimisation, whose triangles reach over several, one of these.
     pub parents: Vec<u32>,
@@ -122,8 +125,9 @@ pub struct Exact {
     /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
     /// that is in a picture, and on closed surfaces faces the camera, has a point of the other that near. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
-    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), how far values or surfaces are from what the triangles
-    /// hold at most: proven where [`ErrorBounds::certified`] says so of the distance.
+    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), the greatest
+    /// distance of values or surfaces from those of the triangles: proven where
+    /// [`ErrorBounds::certified`] says so of the distance.
     pub attribute_bounds: Vec<f64>,
     /// Triangles whose normals leave the cone of [`ExactOptions::angle`](super::ExactOptions::angle); 0 without that goal, or where it is met.
     pub open_cones: usize,

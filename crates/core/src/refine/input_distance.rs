@@ -5,9 +5,10 @@
 //! flat, no two partners are farther apart than those at the corners. The greatest distance between a vertex and where it came
 //! from bounds the Hausdorff distance, in both directions.
 //!
-//! Regions that lie in a plane are triangulated from their rims alone, which have partners as all edges have. A point of one region that
-//! is not in the other lies on a segment between partners of the rims: moved along these, the one rim must pass it to become the
-//! other. So the rims bound the distance, but for what both are off the plane.
+//! Regions that lie in a plane are triangulated from their rims alone, which have partners as all
+//! edges have. A point of one region that is not in the other lies on a segment between partners of
+//! the rims: moved along these, the one rim must pass it to become the other. So the rims bound the
+//! distance, up to the distances of both from the plane.
 //!
 //! The lower bounds are true distances of the points that were moved most along normals: vertices
 //! move along the surface where triangles are of different sizes, and the interval is wide there.
@@ -23,7 +24,7 @@ use crate::vector::{DVec3, vector};
 /// Points whose distance is measured.
 const MEASURED: usize = 4;
 
-/// An interval is wide where its upper end is more than so many times the lower one.
+/// An interval is wide where its upper end is more than this many times the lower one.
 const WIDE: f64 = 1.25;
 
 /// How narrow it is to be then, the work for that, about a second, and the triangles of both meshes at most.
@@ -98,7 +99,7 @@ impl InputDistance {
         })
     }
 
-    /// Measured anew where the interval is wide and reaches beyond what is `expected`.
+    /// Measured anew where the interval is wide and reaches beyond the `expected` distance.
     ///
     /// # Errors
     /// Coordinates too large to be measured, or the observer asked to stop.

@@ -1,4 +1,5 @@
-//! A level of detail: what it is, how far it is from the limit surface, and how it grows out of the coarser one.
+//! A level of detail: its mesh, its distance from the limit surface, and how it grows out of the
+//! coarser one.
 
 use super::exact_result::Exact;
 use crate::mesh::SplitSurface;
@@ -8,15 +9,16 @@ use crate::vector::vector;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Level {
-    /// The mesh, with what is known of it. Control vertices keep their numbers on all levels.
+    /// The mesh and its bounds. Control vertices keep their numbers on all levels.
     pub exact: Exact,
     /// The tolerance that it was refined to.
     pub tolerance: f64,
-    /// How far a point of the limit surface is from the point of the mesh with the same place on the control mesh, at most: more
-    /// than the distance between both, by a half and more, and what a texture slides by as well. Proven where
+    /// The greatest distance of a point of the limit surface from the point of the mesh with the
+    /// same place on the control mesh: more than the distance between both, by a half and more. It
+    /// also bounds how far a texture slides. Proven where
     /// [`ErrorBounds::certified`](super::ErrorBounds::certified) says so of the distance.
     pub parametric: f64,
-    /// How it grows out of the coarser level; `None` for the coarsest, and where that was not asked for.
+    /// How it grows out of the coarser level; `None` for the coarsest, and if not requested.
     pub geomorph: Option<Geomorph>,
 }
 

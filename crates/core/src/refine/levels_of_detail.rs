@@ -1,8 +1,9 @@
 //! Levels of detail: meshes of one limit surface, each nested in the next, and the geomorphs between them.
 //!
-//! Takes a control mesh, a scheme and tolerances from coarse to fine; gives a [`Level`] for each. Everything is exact refinement, so
-//! each level has the certified distance that a refinement to its tolerance has; what the coarser level divides is divided here as
-//! well, so that its triangles are unions of the finer ones but for those that close gaps.
+//! Takes a control mesh, a scheme and tolerances from coarse to fine; gives a [`Level`] for each.
+//! Everything is exact refinement, so each level has the certified distance that a refinement to
+//! its tolerance has; nodes that the coarser level divides are divided here as well, so that its
+//! triangles are unions of the finer ones but for those that close gaps.
 //!
 //! **Geomorphs** (Hoppe, "Progressive Meshes", 1996; "View-Dependent Refinement of Progressive Meshes", 1997). Each vertex of a level
 //! M knows its place u on the control mesh, so also its point c on the coarser mesh C: on C's triangle that holds u, by u's barycentric
@@ -154,7 +155,7 @@ pub fn levels_of_detail(
 /// [`levels_of_detail`], telling an observer how it goes on, level by level.
 ///
 /// # Errors
-/// The same, or the observer asked to stop; nothing comes with that.
+/// Those of [`levels_of_detail`], or the observer asked to stop; nothing comes with that.
 pub fn levels_of_detail_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -209,7 +210,7 @@ fn all(
     Ok(levels)
 }
 
-/// A level at the size that was asked for.
+/// A level at the original size.
 fn rescaled(level: Level, factor: f64) -> Result<Level, RefineError> {
     let Level {
         exact,

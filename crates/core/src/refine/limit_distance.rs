@@ -58,7 +58,8 @@ pub struct LimitDistance {
     pub error: f64,
     /// Levels of its most divided part.
     pub levels: usize,
-    /// Whether it was to be finer, for the interval asked for, than there may be triangles.
+    /// Whether the mesh had to be finer, for the requested interval, than the cap on triangles
+    /// allows.
     pub is_capped: bool,
 }
 
@@ -91,7 +92,7 @@ pub fn limit_distance(
 /// [`limit_distance`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`limit_distance`], or the observer asked to stop.
 pub fn limit_distance_observed(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -163,8 +164,8 @@ pub fn limit_distance_observed(
     }
 }
 
-/// How narrow the search's own interval is to be: half of what is asked for, as the mesh's error of a quarter counts on
-/// both sides.
+/// How narrow the search's own interval is to be: half of the requested width, as the mesh's error
+/// of a quarter counts on both sides.
 fn search(options: &LimitDistanceOptions, tolerance: f64) -> CertifiedOptions {
     let search = match options.gap {
         Some(gap) => CertifiedOptions::default()

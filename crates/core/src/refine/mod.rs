@@ -1,6 +1,7 @@
 //! Refinement: uniform, and the paper's stepwise adaptive method.
 //!
-//! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
+//! Takes a control mesh, a scheme and a rule (levels, a criterion); gives a finer mesh and a
+//! report.
 
 mod adaptive;
 mod attribute_goal;
@@ -75,8 +76,8 @@ pub enum RefineError {
     Mesh(#[from] MeshError),
     /// A semi-sharp tag, for a method that supports only smooth and infinitely sharp ones.
     #[error(
-        "{tag} has the sharpness {sharpness}, which fades: √3-subdivision knows edges and vertices that are smooth (0) \
-         or sharp for ever ({INFINITELY_SHARP} and more); the schemes that split triangles in four follow such tags"
+        "{tag} has the sharpness {sharpness}, which is semi-sharp: √3-subdivision supports smooth (0) \
+         and infinitely sharp ({INFINITELY_SHARP} and more) edges and vertices only; use a scheme that splits triangles in four"
     )]
     FadingTag {
         /// The edge or vertex that is tagged.
@@ -90,10 +91,11 @@ pub enum RefineError {
     /// Edges could not be collapsed.
     #[error(transparent)]
     Simplify(SimplifyError),
-    /// There are no control points for the limits that are asked for.
+    /// There are no control points for the requested limits.
     #[error(transparent)]
     Interpolate(InterpolateError),
-    /// A scheme that leaves vertices where they are, for what smooths by moving them.
+    /// A scheme that passes through its control points, for a method that smooths by moving
+    /// vertices.
     #[error(
         "the scheme {scheme} passes through its control points, so that it smooths nothing; Loop's and Warren's do"
     )]
@@ -169,7 +171,7 @@ pub struct StepReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// All the levels asked for were done.
+    /// All requested levels were done.
     Levels,
     /// No face was divisible any more.
     Satisfied,
@@ -186,11 +188,12 @@ pub enum Stop {
 pub struct Refinement {
     /// The refined mesh.
     pub mesh: Mesh,
-    /// Unit limit normals, where they were asked for.
+    /// Unit limit normals, if requested.
     pub normals: Option<SidedNormals>,
-    /// Where each vertex came from, in the control face of one of its triangles; empty unless options ask for it.
+    /// The origin of each vertex, in the control face of one of its triangles; empty unless
+    /// requested.
     pub origins: Vec<Origin>,
-    /// The control face of each triangle; empty unless options ask for it.
+    /// The control face of each triangle; empty unless requested.
     pub parents: Vec<u32>,
     /// The reports of all steps.
     pub steps: Vec<StepReport>,

@@ -1,9 +1,11 @@
 //! Replay: a refinement's vertices on the limit surfaces of other positions of its control mesh, such as the frames of an animation.
 //!
-//! Takes a control mesh and a refinement of it; gives a table of weights, and with it, for any positions of the control vertices, all
-//! positions and normals of the refined mesh, each on the true limit surface of these, with the same triangles. This is what stencils
-//! do for uniform refinement; here faces whose surroundings are alike share their weights, and where many vertices stand on one
-//! polynomial (Stam, "Evaluation of Loop Subdivision Surfaces", 1998) that is found once and evaluated.
+//! Takes a control mesh and a refinement of it; gives a table of weights, and with it, for any
+//! positions of the control vertices, all positions and normals of the refined mesh, each on the
+//! true limit surface of these; the triangles are unchanged. Stencils do this for uniform
+//! refinement; here faces whose surroundings are alike share their weights, and where many vertices
+//! are on one polynomial (Stam, "Evaluation of Loop Subdivision Surfaces", 1998), that is found
+//! once and evaluated.
 
 mod build;
 mod table;
@@ -50,7 +52,7 @@ pub enum ReplayError {
         vertex: u32,
     },
     /// A place over a control face is on no polynomial.
-    #[error("the limit surface over control face {face} comes to no polynomial")]
+    #[error("the limit surface over control face {face} is on no polynomial")]
     NoPolynomial {
         /// The control face, or one like it.
         face: u32,
@@ -151,7 +153,7 @@ impl Replay {
     /// [`Self::new`], telling an observer how it goes on.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         control: &Mesh,
         scheme: &dyn Scheme,

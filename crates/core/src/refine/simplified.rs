@@ -1,7 +1,7 @@
 //! Exact refinement followed by edge collapse: the fewest triangles for a tolerance.
 //!
-//! A mesh finer than asked for, certified against the limit surface, is collapsed with proof of how far the result is from
-//! it; both distances add up.
+//! A mesh finer than requested, certified against the limit surface, is collapsed with a proven
+//! distance of the result from it; both distances add up.
 
 use super::adaptive::adaptive;
 use super::corner_sources::{SharpLines, corner_sources, features};
@@ -18,7 +18,7 @@ use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
 /// collapse, eight times those of refinement alone where the surface is curved both ways.
 const FINE_SHARE: f64 = 1.0 / 8.0;
 
-/// Triangles of the fine mesh for each triangle asked for: with half as many its own error is felt.
+/// Triangles of the fine mesh for each requested triangle: with half as many its own error matters.
 const FINE_TIMES: usize = 16;
 
 /// The most triangles of a fine mesh without a cap: some gigabytes. A greater cap on the result is

@@ -1,5 +1,5 @@
-//! One step of refinement on the topology: which edges are split, what the new elements are called, and how
-//! they hang together. Knows no positions.
+//! One step of refinement on the topology: which edges are split, the numbers of the new elements,
+//! and their connections. Knows no positions.
 
 use crate::closure::{Diagonal, Pattern, closure};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -142,7 +142,7 @@ impl SplitTopology {
     /// Numbers the new vertices and triangles.
     ///
     /// # Errors
-    /// There are more than `u32` half-edge indices can name, or the observer asked to stop.
+    /// There are more elements than `u32` half-edge indices allow, or the observer asked to stop.
     pub(super) fn number(
         mesh: &Mesh,
         split: &SplitEdges,

@@ -43,7 +43,7 @@ options! {
     }
 }
 
-/// Refines `mesh` where `criterion` asks for it.
+/// Refines the faces of `mesh` that fail by `criterion`.
 ///
 /// Each step's mesh is the next step's control mesh. Its faces are flagged, every edge of a flagged face is
 /// split, the other faces are closed by the cases of Figure 5, and all points are computed from the old

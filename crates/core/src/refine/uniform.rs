@@ -1,7 +1,8 @@
 //! Uniform refinement: every triangle is split in four at each level.
 //!
-//! Takes a mesh, a scheme and a number of levels; gives the mesh of the last level, or its triangles alone, with the vertices on
-//! the limit surface and their normals if asked for. Levels are done one by one; the last ones before the limit of a scheme of Loop's family are done
+//! Takes a mesh, a scheme and a number of levels; gives the mesh of the last level, or its
+//! triangles alone, with the vertices on the limit surface and their normals if requested. Levels
+//! are done one by one; the last ones before the limit of a scheme of Loop's family are done
 //! together, by arithmetic and the exact surface instead of masks.
 
 mod grid;
@@ -377,7 +378,7 @@ impl<'a> LastLevels<'a> {
         }))
     }
 
-    /// The first levels by steps, then the last ones; with what each level did.
+    /// The first levels by steps, then the last ones; with a report of each level.
     fn refined(
         &self,
         mesh: &Mesh,

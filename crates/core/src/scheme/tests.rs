@@ -141,7 +141,7 @@ fn boundaries_use_boundary_vertices_only() {
     }
 }
 
-/// An edge as a map from vertices to weights, for vertices named by what both ends know of them.
+/// An edge as a map from vertices to weights, for vertices named from both ends.
 fn unified(mask: &EdgeMask, shape: &EdgeShape) -> Vec<(String, f64)> {
     let mut weights: Vec<(String, f64)> = Vec::new();
     let mut add =

@@ -1,4 +1,4 @@
-//! The mesh that is left: its vertices renumbered, with the tags and junctions of what is still there.
+//! The mesh after collapses: its vertices renumbered, with the tags and junctions that still exist.
 
 use super::editable_mesh::EditableMesh;
 use super::kept_features::Kind;

@@ -17,14 +17,14 @@ use super::vertex_star::{VertexStar, Way};
 use crate::geometry::NONE;
 use crate::progress::{Cancelled, Watch};
 
-/// Growth of the threshold far from the goal. In a round of that growth the order hardly matters yet: what it costs is
-/// made good for later, and larger steps save little more time.
+/// Growth of the threshold far from the goal. In a round of that growth the order hardly matters
+/// yet: its cost is recovered later, and larger steps save little more time.
 const FAST: f64 = 1.4;
 
 /// Growth of the threshold when the number of triangles is near: the last round decides how even the errors are.
 const SLOW: f64 = 1.03;
 
-/// How many times as many triangles as asked for count as far.
+/// A number of triangles is far above the requested one from this factor on.
 const FAR: usize = 2;
 
 /// How often collapses and flips take turns: later ones find next to nothing.
@@ -33,7 +33,8 @@ const MOST_RESUMPTIONS: usize = 4;
 /// Vertices with more edges than this wait until they have fewer: the time for one grows with the square.
 const MOST_EDGES: usize = 64;
 
-/// Where a number of triangles stops the collapses: what is proven of a new triangle over the threshold at most.
+/// Where a number of triangles stops the collapses: the greatest proven distance of a new triangle
+/// over the threshold.
 const UNEVEN: f64 = 1.03;
 
 /// Changes looked at between two calls of the observer: some milliseconds.
@@ -45,14 +46,14 @@ pub(super) struct Collapser<'t, 's, 'a> {
     pub(super) samples: FineSamples,
     pub(super) reference: Reference<'a>,
     star: VertexStar,
-    /// For each vertex what its best collapse would cost, or less; infinite if it has none.
+    /// For each vertex a lower bound of the cost of its best collapse; infinite if it has none.
     costs: Vec<f64>,
     /// Greatest error that a collapse has left so far.
     pub(super) reached: f64,
     /// Errors up to this are rounding.
     flat: f64,
     flipper: Flipper,
-    /// Asked before each change.
+    /// Proves each change before it is made.
     prover: Option<Prover<'t, 's, 'a>>,
     /// The cost below which a collapse is proven in the end.
     sure: f64,
@@ -108,7 +109,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         Ok(())
     }
 
-    /// Takes the proofs that were put off, and takes back what does not hold.
+    /// Does the proofs that were put off, and takes back changes without proof.
     pub(super) fn finish(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let mut back = Vec::new();
         if let Some(prover) = &mut self.prover {
@@ -257,8 +258,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         Ok(least)
     }
 
-    /// Collapses a vertex if that costs no more than `threshold`, and gives what it costs; infinite if it is gone, or
-    /// cannot go within the tolerance.
+    /// Collapses a vertex if that costs no more than `threshold`, and gives the cost; infinite if
+    /// it is gone, or cannot go within the tolerance.
     fn consider(&mut self, vertex: u32, threshold: f64, goals: Goals) -> f64 {
         self.refused[vertex as usize] = false;
         if self.reference.kind(vertex) == Kind::Fixed
@@ -339,12 +340,13 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             let Some(cost) = self.star.cost(way, &self.reference, bound) else {
                 continue;
             };
-            // Where it is flat, one way is as good as another for the distance.
+            // Where it is flat, all collapses are equal in distance.
             let shape = self.star.shape();
             if best.is_some_and(|best| best.1 <= self.flat && shape <= best_shape) {
                 continue;
             }
-            // Whether the mesh stays a manifold takes long to find out, and matters only for what is to be done now.
+            // Whether the mesh stays a manifold takes long to find out, and matters only for
+            // collapses to be done now.
             if cost > threshold
                 || self
                     .surface

@@ -181,8 +181,8 @@ impl EditableMesh {
         shared == 1 + usize::from(twin != NONE) && !is_tetrahedron()
     }
 
-    /// Collapses the edge of `h`: its end `from` goes, and its faces now meet at the other. The caller has asked
-    /// [`Self::can_collapse`].
+    /// Collapses the edge of `h`: its end `from` goes, and its faces now meet at the other. The
+    /// caller has checked [`Self::can_collapse`].
     pub(super) fn collapse(&mut self, h: u32, from: u32) {
         let into = if self.origin(h) == from {
             self.target(h)
@@ -263,7 +263,7 @@ impl EditableMesh {
         }
     }
 
-    /// Makes the half-edge `h` what it was.
+    /// Restores the half-edge `h`.
     pub(super) fn put(&mut self, h: u32, slot: Slot) {
         let at = h as usize;
         // A face that was gone is back.

@@ -20,7 +20,7 @@ struct Candidate {
     corners: [u32; 3],
     positions: [DVec3; 3],
     /// The triangles with which it shares an edge, as bits.
-    beside: u64,
+    adjacent: u64,
 }
 
 /// A corner of a piece.
@@ -29,7 +29,7 @@ pub(super) struct Corner {
     at: DVec3,
     /// The triangles that it is known to be near enough to.
     near: u64,
-    /// One of them, or a number too large, and what the distance to it does not exceed.
+    /// One of them, or a number too large, and a bound of the distance to it.
     known: (usize, f64),
     /// The vertex of the mesh that it is, or [`NONE`].
     vertex: u32,
@@ -100,22 +100,22 @@ impl Candidates {
         }
         let place = self.triangles.len();
         if place < MOST {
-            let mut beside = 0;
+            let mut adjacent = 0;
             for (other, triangle) in self.triangles.iter_mut().enumerate() {
                 let shared = corners
                     .iter()
                     .filter(|corner| triangle.corners.contains(corner))
                     .count();
                 if shared == 2 {
-                    beside |= 1 << other;
-                    triangle.beside |= 1 << place;
+                    adjacent |= 1 << other;
+                    triangle.adjacent |= 1 << place;
                 }
             }
             self.triangles.push(Candidate {
                 face,
                 corners,
                 positions,
-                beside,
+                adjacent,
             });
         }
         place
@@ -238,7 +238,7 @@ impl Candidates {
         let (p, q) = (corners[i], corners[j]);
         for (wanted, all) in [(q.near, false), (!p.near, true)] {
             for a in bits(p.near) {
-                for b in bits(self.triangles[a].beside & wanted) {
+                for b in bits(self.triangles[a].adjacent & wanted) {
                     let Some([from, to]) = self.edge_between(a, b) else {
                         continue;
                     };
@@ -303,7 +303,7 @@ enum Crossing {
     Corner,
 }
 
-/// Whether a distance is at most so much; what is not a number is not.
+/// Whether a distance is at most `goal`; false for NaN.
 #[inline]
 pub(super) fn is_within(distance: f64, goal: f64) -> bool {
     distance <= goal

@@ -1,7 +1,7 @@
 //! The changes of a mesh, so that single ones can be taken back: those whose proof was put off and does not hold.
 //!
-//! A change is recorded before it happens, by the faces that it touches as they are. Taking one back first takes back
-//! those that touched any of them since, which are few: what is far away stays.
+//! A change is recorded before it happens, by the state of the faces that it touches. Taking one
+//! back first takes back those that touched any of them since, which are few: distant changes stay.
 
 use super::editable_mesh::{EditableMesh, Slot};
 use super::fine_samples::FineSamples;
@@ -43,7 +43,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// None yet, of a mesh with so many faces.
+    /// An empty history of a mesh with `faces` faces.
     pub(super) fn new(faces: usize) -> Self {
         Self {
             changes: Vec::new(),
@@ -110,7 +110,7 @@ impl History {
         change: u32,
         surface: &mut EditableMesh,
         samples: &mut FineSamples,
-        mut told: impl FnMut(&mut dyn Iterator<Item = u32>, u32),
+        mut report: impl FnMut(&mut dyn Iterator<Item = u32>, u32),
     ) {
         let mut waiting = vec![change];
         while let Some(&change) = waiting.last() {
@@ -130,7 +130,7 @@ impl History {
             waiting.pop();
             self.restore(change, surface, samples);
             let faces = &self.faces[records.0];
-            told(
+            report(
                 &mut faces.iter().map(|old| old.face),
                 self.changes[change as usize].centre,
             );

@@ -11,8 +11,8 @@
 //! the height of the surface over it (`reference.rs`). Where the surface is curved more in one
 //! direction than in the other, long triangles come out of this by themselves.
 //!
-//! Whether a collapse may happen is proven before it happens, for what it touches (`proof.rs`, `fine_face.rs`). Where there
-//! is no proof the edge stays, and everything else goes on.
+//! A collapse is proven before it happens, for the faces that it touches (`proof.rs`,
+//! `fine_face.rs`). Where there is no proof the edge stays.
 //!
 //! How good the result can be is known: a smooth surface with Gaussian curvature K needs about
 //! 0.19245·∫√|K| dA / ε vertices for inscribed triangles within a distance ε where K > 0 (and fewer where K < 0).
@@ -58,7 +58,8 @@ pub enum SimplifyError {
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
-    /// The observer asked to stop. This is the mesh by then: as good as any result, with more triangles.
+    /// The observer asked to stop. This is the mesh by then: as valid as any result, with more
+    /// triangles.
     #[error("cancelled by the observer")]
     Cancelled(Box<Simplified>),
 }
@@ -146,8 +147,9 @@ struct Goals {
     triangles: usize,
 }
 
-/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: of what is left then, little was
-/// not changed again, and estimates are rarely wrong by so much. Where they are, changes are taken back.
+/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: most
+/// of them are changed again before, and estimates are rarely wrong by this factor. Where they are,
+/// changes are taken back.
 const SURE: f64 = 0.35;
 
 /// Errors up to this share of the diagonal are taken for rounding: some ten thousand units in the last place.
@@ -164,8 +166,9 @@ pub struct Simplified {
     /// The greatest distance between the mesh and the surface that was found while collapsing: an estimate, since only
     /// samples were measured.
     pub estimate: f64,
-    /// The greatest distance between the mesh and the fine one, in both directions, is certainly no more than this;
-    /// `None` if no proof was asked for, or if the observer stopped before there was one.
+    /// The greatest distance between the mesh and the fine one, in both directions, is certainly no
+    /// more than this; `None` if no proof was requested, or if the observer stopped before there
+    /// was one.
     pub bound: Option<f64>,
     /// How many of the vertices stayed only because their going was not proven to keep the goal, although the samples
     /// would have let them go: mostly since it would have gone beyond it by a little.
@@ -174,7 +177,7 @@ pub struct Simplified {
 
 /// Collapses edges of `fine` until a goal is reached.
 ///
-/// Where no more edges can go, the result has more triangles than asked for.
+/// Where no more edges can go, the result has more triangles than requested.
 ///
 /// ```
 /// use limitmesh::refine::limit_reference;
@@ -205,7 +208,7 @@ pub fn simplify(
 /// [`simplify`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop; what there was by then comes with the error.
+/// Those of [`simplify`], or the observer asked to stop; what there was by then comes with the error.
 pub fn simplify_observed(
     fine: &Mesh,
     features: &Features,

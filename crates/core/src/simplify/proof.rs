@@ -1,8 +1,10 @@
 //! Proof that a change of the mesh keeps it within a distance of the fine mesh, taken before the change is made.
 //!
-//! Each direction is proven triangle by triangle, so that a change asks for proof of what it touches and of nothing else.
+//! Each direction is proven triangle by triangle, so that a change needs proofs only of the
+//! triangles that it touches.
 //!
-//! Proofs of changes that are far from the limit may be put off: most of what they leave is changed again.
+//! Proofs of changes that are far from the limit may be put off: most of their triangles are
+//! changed again.
 //!
 //! * *From the mesh to the fine one*: each new triangle, by the sheet of fine faces over it ([`Worker::within`]).
 //! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests* on the faces that serve
@@ -68,7 +70,7 @@ pub(super) struct Prover<'t, 's, 'a> {
     /// Of the last [`Self::prove`].
     rests: Vec<Rest>,
     bounds: Vec<f64>,
-    /// For each sample that it asked for its place in the region.
+    /// For each requested sample its place in the region.
     places: Vec<u32>,
     /// Fine faces and faces without proof, perhaps among others, once the proofs that were put off are taken.
     open_fine: Vec<u32>,
@@ -184,7 +186,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         true
     }
 
-    /// A corner of a fine face, and what is known of the triangles near it.
+    /// A corner of a fine face, and the known distances of the triangles near it.
     fn corner(
         &mut self,
         v: u32,
@@ -389,7 +391,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         }
     }
 
-    /// Forgets what was proven of faces that have become what they were before.
+    /// Forgets the proofs of faces that were restored.
     pub(super) fn reopen(&mut self, faces: &mut dyn Iterator<Item = u32>) {
         for face in faces {
             for fine in self.resting[face as usize].drain(..) {

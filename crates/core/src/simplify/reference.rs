@@ -11,8 +11,9 @@ use crate::vector::{DVec3, vector};
 /// stands steeper is about to fold over.
 pub(super) const LEAST_TURN: f64 = 0.2;
 
-/// The least shape of a triangle (see [`Plane::shape`]). Long triangles along directions of low curvature are wanted;
-/// thinner ones than this gain nothing more, and whoever works with the mesh suffers from them.
+/// The least shape of a triangle (see [`Plane::shape`]). Long triangles along directions of low
+/// curvature are wanted; thinner ones than this gain nothing more, and are a burden to users of the
+/// mesh.
 const LEAST_SHAPE: f64 = 0.01;
 
 /// The least cosine between the normal of a vertex and those of the fine faces around for it to be
@@ -31,7 +32,7 @@ pub(super) struct Reference<'a> {
     pub(super) fine: &'a Mesh,
 }
 
-/// The worst among the triangles that are there already: what replaces them need not be better.
+/// The worst among the existing triangles: those that replace them need not be better.
 #[derive(Clone, Copy)]
 pub(super) struct Worst {
     pub(super) shape: f64,

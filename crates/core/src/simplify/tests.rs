@@ -127,7 +127,7 @@ fn a_flat_square_keeps_its_corners_alone() {
         (corners.to_vec(), 2)
     );
     assert!(coarse.estimate < 1e-15);
-    // Untold that they are corners, it keeps them all the same: to lose one would leave the surface.
+    // Without tags the corners are kept as well: to lose one would leave the surface.
     assert_eq!(run(&fine, &within(1e-9)).vertices, corners);
 }
 
@@ -540,6 +540,6 @@ fn the_observer_is_called_often() {
     let options = within(0.001 * fine.diagonal());
     let coarse = simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap();
     assert!(least < 2 * coarse.mesh.face_count(), "{least}");
-    // Ten times what is promised: other programs may be running.
+    // Ten times the documented time: other programs may be running.
     assert!(longest.as_millis() < 1000, "{longest:?}");
 }

@@ -1,5 +1,5 @@
-//! The faces around a vertex, gathered into one place, and what they would become if the vertex were collapsed into one
-//! of its neighbours.
+//! The faces around a vertex, gathered into one place, and their state if the vertex were collapsed
+//! into one of its neighbours.
 
 use super::editable_mesh::{EditableMesh, next, previous};
 use super::fine_samples::FineSamples;
@@ -25,7 +25,7 @@ pub(super) struct VertexStar {
     /// For each pair of neighbours how far the surface bulges over their chord.
     sagittas: Vec<f64>,
     ways: Vec<Way>,
-    /// Of the faces that are there, taken when first asked for.
+    /// The worst of the existing faces, computed on first use.
     worst: Option<Worst>,
     normals: Vec<DVec3>,
     /// The fine vertices of the chain between the centre's two neighbours on it, the centre's own included.

@@ -22,8 +22,8 @@ pub struct Sqrt3 {
     pub mesh: Mesh,
     /// Unit limit normals, one for each side of sharp edges.
     pub normals: SidedNormals,
-    /// Where each vertex came from, with coordinates that are multiples of a power of 1/3; empty unless
-    /// [`Sqrt3Options::origins`] asks for it.
+    /// The origin of each vertex, with coordinates that are multiples of a power of 1/3; empty
+    /// unless [`Sqrt3Options::origins`] is set.
     pub origins: Vec<Origin>,
     /// The control face of each triangle; one of the two where it lies across an edge.
     pub parents: Vec<u32>,
@@ -52,8 +52,8 @@ impl Traced for Sqrt3 {
     }
 }
 
-/// Refines `control` by adaptive √3-subdivision until the goals are met: each triangle within the cone or the tolerance, or as many
-/// triangles as asked for, whichever comes first.
+/// Refines `control` by adaptive √3-subdivision until the goals are met: each triangle within the
+/// cone or the tolerance, or the requested number of triangles, whichever comes first.
 ///
 /// Every division leaves a mesh without cracks and without closing triangles: a triangle is divided by its centre, and the edge between two
 /// divided ones is flipped. Where goals are met the result is the least such mesh, whatever the order of the divisions.
@@ -69,7 +69,7 @@ pub fn adaptive(control: &Mesh, options: &Sqrt3Options) -> Result<Sqrt3, RefineE
 /// [`adaptive`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`adaptive`], or the observer asked to stop.
 pub fn adaptive_observed(
     control: &Mesh,
     options: &Sqrt3Options,
@@ -144,7 +144,7 @@ struct Run<'m> {
     goals: Goals,
     max_levels: usize,
     waiting: BinaryHeap<Waiting>,
-    /// Every triangle that there was, and what was found of it.
+    /// Every triangle so far, and its measured errors.
     seen: Vec<(Triangle, Found)>,
 }
 

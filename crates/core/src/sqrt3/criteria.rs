@@ -15,7 +15,8 @@ use crate::vector::{DVec3, unit_normal};
 pub(super) struct Goals {
     angle: Option<f64>,
     tolerance: Option<f64>,
-    /// Whether distances decide which triangles are divided first, though none is asked for.
+    /// Whether distances decide which triangles are divided first, though there is no goal for
+    /// them.
     by_distance: bool,
 }
 
@@ -24,7 +25,7 @@ pub(super) struct Goals {
 pub(super) struct Found {
     /// How many times over it fails: at most 1 is good enough. Without a goal on quality, its distance.
     pub(super) ratio: f64,
-    /// Zero where nothing was asked of distances.
+    /// Zero without a goal for distances.
     pub(super) distance: f64,
 }
 

@@ -18,8 +18,8 @@ impl<'m> SharpEdges<'m> {
     /// A semi-sharp tag, which has no meaning here.
     pub(super) fn of(mesh: &'m Mesh) -> Result<Self, RefineError> {
         let tags = mesh.tags();
-        let fades = |sharpness: f64| sharpness > 0.0 && sharpness < INFINITELY_SHARP;
-        if let Some(tag) = tags.creases.iter().find(|tag| fades(tag.sharpness)) {
+        let is_semi_sharp = |sharpness: f64| sharpness > 0.0 && sharpness < INFINITELY_SHARP;
+        if let Some(tag) = tags.creases.iter().find(|tag| is_semi_sharp(tag.sharpness)) {
             let [a, b] = tag.vertices;
             let (tag, sharpness) = (
                 format!("the edge from vertex {a} to vertex {b}"),
@@ -27,7 +27,7 @@ impl<'m> SharpEdges<'m> {
             );
             return Err(RefineError::FadingTag { tag, sharpness });
         }
-        if let Some(tag) = tags.corners.iter().find(|tag| fades(tag.sharpness)) {
+        if let Some(tag) = tags.corners.iter().find(|tag| is_semi_sharp(tag.sharpness)) {
             let (tag, sharpness) = (format!("vertex {}", tag.vertex), tag.sharpness);
             return Err(RefineError::FadingTag { tag, sharpness });
         }

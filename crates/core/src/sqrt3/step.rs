@@ -5,7 +5,7 @@
 //! one it is cut by `l`, near A, and `r`, near B, there is no centre, and it gives `(l, r, c)` with the face's third corner c.
 //! Seen from its other edges, such a face's apex is `r` across from B → c and `l` across from c → A. So numbers and twins are arithmetic.
 
-use super::masks::{beside, centre, on_curve, smoothed};
+use super::masks::{centre, crease_point, on_curve, smoothed};
 use super::origins::{Made, Origins};
 use super::sharp_edges::SharpEdges;
 use crate::geometry::NONE;
@@ -140,8 +140,8 @@ impl Level {
                     .mesh
                     .topology()
                     .ends(HalfEdgeId(3 * face as u32 + u32::from(cut)));
-                positions[apexes[0] as usize] = self.beside(new.sharp, a, b).to_array();
-                positions[apexes[1] as usize] = self.beside(new.sharp, b, a).to_array();
+                positions[apexes[0] as usize] = self.crease_point(new.sharp, a, b).to_array();
+                positions[apexes[1] as usize] = self.crease_point(new.sharp, b, a).to_array();
             }
         }
         Ok(positions)
@@ -177,7 +177,7 @@ impl Level {
     }
 
     /// The new point next to `near` on the sharp edge to `far`.
-    fn beside(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
+    fn crease_point(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
         let (here, there) = (self.on_even(near), self.on_even(far));
         let other = || {
             sharp
@@ -188,7 +188,7 @@ impl Level {
         let beyond = (sharp.rule(near) == VertexRule::Crease)
             .then(other)
             .flatten();
-        beside(beyond.unwrap_or(2.0 * here - there), here, there)
+        crease_point(beyond.unwrap_or(2.0 * here - there), here, there)
     }
 }
 
@@ -270,7 +270,7 @@ impl<'m> Numbering<'m> {
                 let face = face as u32;
                 match self.cut_edge(HalfEdgeId(3 * face)) {
                     None => made.push(Made::Centre(face)),
-                    Some(h) => made.extend([Made::BesideOrigin(h), Made::BesideTarget(h)]),
+                    Some(h) => made.extend([Made::NearOrigin(h), Made::NearTarget(h)]),
                 }
                 next = apexes[1] + 1;
             }
@@ -325,7 +325,7 @@ impl<'m> Numbering<'m> {
     /// The twins of the three half-edges of that face.
     fn twins(&self, h: HalfEdgeId) -> [Option<u32>; 3] {
         let before = h.previous();
-        // Child of the face across the edge before, or what that edge gives itself where it is sharp.
+        // Child of the face across the edge before, or that edge's own child where it is sharp.
         let last = || self.across(before).map_or(3 * before.0 + 1, |w| 3 * w.0);
         if let Some(twin) = self.across(h) {
             let first = match self.cut_edge(twin) {

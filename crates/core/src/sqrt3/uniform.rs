@@ -1,4 +1,4 @@
-//! Uniform √3-subdivision: step after step, and the limits of what they give.
+//! Uniform √3-subdivision: step after step, and the limits of the result.
 
 use std::time::Instant;
 
@@ -14,8 +14,9 @@ use crate::refine::{RefineError, Refinement, StepReport, Stop, UniformOptions};
 
 /// Refines `mesh` by steps of √3-subdivision, each of which gives three times as many triangles.
 ///
-/// [`UniformOptions::levels`] counts single steps. Old vertices keep their numbers; the three triangles that a triangle's
-/// half-edges give stand together. Edges that are tagged to be sharp for ever are treated as boundaries of both sides.
+/// [`UniformOptions::levels`] counts single steps. Old vertices keep their numbers; the three
+/// triangles of a triangle's half-edges are adjacent in the order. Infinitely sharp edges are
+/// treated as boundaries of both sides.
 ///
 /// # Errors
 /// A semi-sharp tag ([`RefineError::FadingTag`]), or an error of [`crate::refine::uniform`].
@@ -26,7 +27,7 @@ pub fn uniform(mesh: &Mesh, options: &UniformOptions) -> Result<Refinement, Refi
 /// [`uniform`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`uniform`], or the observer asked to stop.
 pub fn uniform_observed(
     mesh: &Mesh,
     options: &UniformOptions,
@@ -82,7 +83,7 @@ pub fn uniform_observed(
 
 type Limits = (Option<Vec<[f64; 3]>>, Option<SidedNormals>);
 
-/// Limit positions and normals of the vertices of a level, of these what is asked for.
+/// Limit positions and normals of the vertices of a level, as far as requested.
 fn limits(
     level: &Level,
     (positions, normals): (bool, bool),

@@ -50,7 +50,7 @@ struct Triangle {
 }
 
 /// The distances of parts of the surface from the edges of their triangles.
-struct Beside {
+struct EdgeDeviations {
     /// How far curves are from their edges, and how far they reach over them.
     side: f64x4,
     drift: f64x4,
@@ -161,7 +161,7 @@ impl Triangle {
 
     /// As in [`super::super::quartic_cell::QuarticJet::beside`].
     #[inline(always)]
-    fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> Beside {
+    fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
         let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
         let (mut side, mut drift, mut slopes) = (zero, zero, [zero; 3]);
@@ -180,7 +180,7 @@ impl Triangle {
             drift = drift.fast_max(0.125 * outward.fast_max(zero) + curve);
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
-        Beside {
+        EdgeDeviations {
             side,
             drift,
             slopes,

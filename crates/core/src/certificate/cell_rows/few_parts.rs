@@ -86,8 +86,8 @@ impl FewParts {
                     [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)],
                     all,
                 );
-                let beside = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
-                for (bends, from) in self.bends.iter_mut().zip(beside) {
+                let adjacent = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
+                for (bends, from) in self.bends.iter_mut().zip(adjacent) {
                     bends
                         .iter_mut()
                         .for_each(|bends| bends[number] = bends[from]);

@@ -1,15 +1,16 @@
 //! Bounds of many parts of a regular piece at once, in single precision: twice as many parts to a register, and all that it takes away is
 //! added again.
 //!
-//! **What rounding may do.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the square L and whose edges span the
-//! parallelogram A ≤ √(3/4) L, and w what the sums of the sizes of bends' coordinates are no greater than. Edges and limit normals come
-//! rounded once, bends are off by 10uw. Then
+//! **Rounding.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the
+//! square L and whose edges span the parallelogram A ≤ √(3/4) L, and w a bound of the sums of the
+//! absolute coordinates of bends. Edges and limit normals come rounded once, bends are off by 10uw.
+//! Then
 //!
 //! * a × b is off by 8u|a||b| at most, so the unit normal by 8u|a||b|/A + 4u ≤ ¾η, products of bends with it by ¾ηw + 14uw ≤ 1.6ηw, and
 //!   the greatest height of the quadratic part, ½ Σ λᵢλⱼWᵢⱼ with Σ λᵢλⱼ ≤ 1/3, by 0.3ηw;
 //! * distances between the normal and limit normals are off by less than 2η;
 //! * A and the products of edges are off by 8u|a||b|: A by the part η of it, and the greatest product, at least L/4, by 3η;
-//! * products of bends with edges, or with what is at right angles to them, are off by 2ηw√L.
+//! * products of bends with edges, or with vectors perpendicular to them, are off by 2ηw√L.
 //!
 //! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point
 //! where both derivatives vanish, if it is inside. The point's barycentric coordinates are the
@@ -43,7 +44,7 @@ const UNKNOWN: f32 = 1.0 / (1 << 8) as f32;
 /// The absolute bound for sums: products below vanish.
 const VANISHING: f32 = 1e-24;
 
-/// For what the last few operations do.
+/// A margin for the last few operations.
 const A_LITTLE_MORE: f32 = 1.0 + 1.0 / (1 << 18) as f32;
 
 /// The greatest squared chord of the angle between triangles that help each other, as in [`super::super::deviation`].
@@ -189,10 +190,10 @@ struct Triangle {
 }
 
 /// The distances of parts of the surface from the edges of their triangles.
-struct Beside {
+struct EdgeDeviations {
     /// How far they reach over them.
     drift: f32x4,
-    /// The greatest slope of that, or of what there is inside.
+    /// The greatest slope of that displacement, or of the inner part.
     slope: f32x4,
     /// Whether each curve stays within the angles at its edge.
     is_plain: f32x4,
@@ -248,7 +249,7 @@ impl Triangle {
         off: f32x4,
         rest: &Remainder,
         share: f32,
-    ) -> Beside {
+    ) -> EdgeDeviations {
         let Self {
             a,
             b,
@@ -284,7 +285,7 @@ impl Triangle {
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
             & (rb * larger([third, first, area])).simd_le(most);
-        Beside {
+        EdgeDeviations {
             drift,
             slope: larger([ra, rb, rc]) * A_LITTLE_MORE,
             is_plain: is_roomy & stays,
@@ -350,7 +351,8 @@ fn by_fours([x, y, z]: Slices<'_>, count: usize) -> Fours<'_> {
 }
 
 impl Found {
-    /// Marks parts, and adds those that pass to an extent, `scale` being what their unit makes of lengths.
+    /// Marks parts, and adds those that pass to an extent, `scale` being the factor of lengths in
+    /// their unit.
     pub(super) fn mark(
         &self,
         (count, scale): (usize, f64),

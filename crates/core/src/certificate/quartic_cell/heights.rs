@@ -1,5 +1,6 @@
-//! The heights of a part of a regular piece over the plane of its corners: a quartic that is 0 at the corners, and what bounds
-//! its greatest size: the parts q, c and r of [`super`], or its coefficients in Bernstein's basis, halved as often as it takes.
+//! The heights of a part of a regular piece over the plane of its corners: a quartic that is 0 at
+//! the corners, and the bounds of its greatest size: by the parts q, c and r of [`super`], or by
+//! its coefficients in Bernstein's basis, halved as often as needed.
 
 use super::{CUBIC, Cell, Domain, Jet, QUARTIC, minus, quadratic};
 use crate::vector::Extremes;
@@ -246,7 +247,8 @@ const WEIGHTS: [[f64; 5]; 5] = [
 /// Where each row of a net starts.
 const ROWS: [usize; 5] = [0, 5, 9, 12, 14];
 
-/// The greatest size of a coefficient after so many halvings, but for parts with none above what is good enough.
+/// The greatest size of a coefficient after `halvings` halvings, except for parts with none above
+/// `enough`.
 pub(super) fn halved(net: &[f64; 15], halvings: u32, enough: f64) -> f64 {
     let most = net.iter().fold(0.0f64, |most, x| most.larger(x.abs()));
     if halvings == 0 || most <= enough {

@@ -203,10 +203,10 @@ fn triangles_off_the_surface_are_bounded() {
     for round in 0..2000 {
         let piece = piece(&mut random, [0.002, 0.02, 0.1][round % 3]);
         let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
-        let feet = cell.0.map(|[u, v]| piece.point(u, v));
-        let size = 0.1 * feet[0].distance(feet[1]);
-        let steps = feet.map(|_| random.vector() * size);
-        let frame = TriangleFrame::new([0, 1, 2].map(|i| feet[i] + steps[i]));
+        let bases = cell.0.map(|[u, v]| piece.point(u, v));
+        let size = 0.1 * bases[0].distance(bases[1]);
+        let steps = bases.map(|_| random.vector() * size);
+        let frame = TriangleFrame::new([0, 1, 2].map(|i| bases[i] + steps[i]));
         if frame.is_flat() {
             continue;
         }
@@ -365,8 +365,8 @@ fn the_quartic_constant_holds() {
         ];
         (heights, pairs)
     };
-    // r of a unit of each fourth derivative: what the quadratic and the cubic part leave of the polynomial, by the same
-    // formulas written for points.
+    // r of a unit of each fourth derivative: the polynomial without its quadratic and cubic part,
+    // by the same formulas written for points.
     let rest = |f: [f64; 5], [_, s, r]: [f64; 3]| remainder(&forms(f).0, s, r);
     let units: [[f64; 5]; 5] =
         core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));

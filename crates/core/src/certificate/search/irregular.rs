@@ -21,7 +21,7 @@ const CERTAIN: f64 = 3.0;
 /// Down to this level pieces must be good enough together with others.
 const TOGETHER: usize = 3;
 
-/// Lengths and squares that are so many times too great are too great, whatever rounding does.
+/// Lengths and squares this many times too great are too great, whatever the rounding.
 const CLEARLY: f64 = 1.0 + 1e-9;
 
 impl<P: HullPoint> Search<'_, P> {
@@ -148,14 +148,14 @@ impl<P: HullPoint> Search<'_, P> {
         self.is_enough(held, depth)
     }
 
-    /// Takes what a piece is good for as it is, if that is enough; says whether it did.
+    /// Takes the bound of a piece as it is, if that is enough; returns whether it did.
     fn is_enough(&mut self, held: Option<Deviation>, depth: usize) -> bool {
         let held = held.filter(|held| depth >= DEEPEST || self.is_good(held, depth));
         held.inspect(|&held| self.add(held)).is_some()
     }
 
-    /// Whether what a piece is good for is enough: at first also together with what was found elsewhere, as heights here and drifts there
-    /// may be too much though neither is.
+    /// Whether the bound of a piece is enough: at first also together with bounds found elsewhere,
+    /// as heights here and tangential displacements there may be too much though neither is.
     fn is_good(&self, held: &Deviation, depth: usize) -> bool {
         let target = self.effort.target;
         let is_enough = self.value(held) <= self.aim();
@@ -163,7 +163,8 @@ impl<P: HullPoint> Search<'_, P> {
         is_enough && (is_alone || self.value(&self.with(*held)) <= target)
     }
 
-    /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
+    /// The bound by an affine image of the characteristic map's sector, if the piece differs little
+    /// from it.
     fn affine(
         &self,
         piece: &ExtraordinaryPatch<P>,
@@ -187,7 +188,7 @@ impl<P: HullPoint> Search<'_, P> {
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
         let image = |at: DVec3| limit + tangents[0] * at.x + tangents[1] * at.y;
         let aim = self.aim();
-        // The greatest square of what points differ by, as long as that helps.
+        // The greatest square of the points' differences, as long as that helps.
         let farthest = |points: &mut dyn Iterator<Item = (&P, &DVec3)>, most: f64| {
             let (mut farthest, most) = (0.0, CLEARLY * most * most);
             for (&point, &at) in points {

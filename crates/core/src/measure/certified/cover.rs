@@ -5,12 +5,13 @@
 //! the triangle of shadows λ₁ ≥ 0, λ₂ ≥ 0, λ₃ = 1 − λ₁ − λ₂ ≥ 0. A sheet D of the other surface is gathered from one
 //! of its triangles: wherever the shadow of a side meets t, the triangle across is added.
 //!
-//! **Cover.** Every side of D that an odd number of its triangles share then casts its shadow outside t. So the number
-//! of shadows of D's triangles that cover a point is odd at all points of t or at none (the degree modulo two of a
-//! map is constant off the image of the boundary; nothing is asked of orientation, folds or planarity). If it is odd at
-//! one point, then at each point of t a line along u meets D, and the distance from t to the surface is at most the
-//! greatest |h| of D over t. Heights are linear on a triangle, so that it is attained at a corner of D's triangles
-//! clipped to t.
+//! **Cover.** Every side of D that an odd number of its triangles share then casts its shadow
+//! outside t. So the number of shadows of D's triangles that cover a point is odd at all points of
+//! t or at none (the degree modulo two of a map is constant off the image of the boundary;
+//! orientation, folds and planarity do not matter). If it is odd at one point, then at each point
+//! of t a line along u meets D, and the distance from t to the surface is at most the greatest |h|
+//! of D over t. Heights are linear on a triangle, so that it is attained at a corner of D's
+//! triangles clipped to t.
 //!
 //! **Inset.** The surface may end inside t, at a boundary or where it turns down a ridge so steeply that heights say
 //! nothing. Such sides are not crossed. The argument then holds for the part s = {λᵢ ≥ mᵢ} of t that they do not reach,
@@ -401,7 +402,8 @@ fn sideways(t: [DVec3; 3], inset: [f64; 3]) -> f64 {
     step(0).max(step(1)).max(step(2))
 }
 
-/// The greatest height, up or down, of a triangle over the inset t: at the corners of what is left of it after clipping.
+/// The greatest height, up or down, of a triangle over the inset t: at the corners of its clipped
+/// part.
 ///
 /// Where the cuts fall is known to a few roundings of the weights. The points of t in the strip between the computed and
 /// the true cut are that far from others, which [`View::new`] has room for.

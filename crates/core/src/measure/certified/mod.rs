@@ -5,15 +5,16 @@
 //! found and splits triangles until none of their pieces can be farther away by more than the gap; [`piece`] and
 //! [`cover`] bound the distance of a piece from above.
 //!
-//! *Rounding.* Lower ends are distances of points as the hierarchy finds them, less what the search and the points may
-//! be off; upper ends never rest on a search, only on points that lie on the other surface, and are increased by what
-//! those may be off. [`scale`] says by how much: about 1.5e-11 of the surface's size below, 4e-14 of
-//! the greatest coordinate above.
+//! *Rounding.* Lower ends are distances of points by the hierarchy, less the errors of the search
+//! and the points; upper ends never rest on a search, only on points that lie on the other surface,
+//! and are increased by the errors of those. [`scale`] gives the errors: about 1.5e-11 of the
+//! surface's size below, 4e-14 of the greatest coordinate above.
 //!
-//! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces nearly coincide a triangle
-//! must be split until its pieces are as small as the distance. Clipping each triangle along the triangles of the other
-//! surface, piece by piece: as tight as the cover, but a nearest point and a clip for every piece, where the cover
-//! asks for one nearest point and three scalar products a triangle.
+//! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces
+//! nearly coincide a triangle must be split until its pieces are as small as the distance. Clipping
+//! each triangle along the triangles of the other surface, piece by piece: as tight as the cover,
+//! but a nearest point and a clip for every piece, where the cover needs one nearest point and
+//! three scalar products a triangle.
 
 mod between;
 mod cover;
@@ -44,12 +45,14 @@ options! {
         /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
         /// allows (about 1e-10 of the surfaces' size) as that.
         pub gap: Option<f64> = None,
-        /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
+        /// An interval is narrow enough if no wider than this share of the lower bound; 0.01 by
+        /// default. Negative numbers and NaN count as 0.
         pub relative_gap: f64 = 0.01,
-        /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
-        /// wider than asked for but as certain. A unit is a piece bounded, or a triangle or box of triangles looked at for
-        /// that; the default, 10⁹, is about half a minute on one thread. A first bound of every triangle is always made, and
-        /// the search also ends where more than four million pieces wait to be split.
+        /// Work after which the search ends in each direction, with the interval reached by then,
+        /// which is wider than requested but as certain. A unit is a piece bounded, or a triangle
+        /// or box of triangles tested for that; the default, 10⁹, is about half a minute on one
+        /// thread. A first bound of every triangle is always made, and the search also ends where
+        /// more than four million pieces wait to be split.
         pub max_work: u64 = 1_000_000_000,
     }
 }
@@ -70,7 +73,7 @@ pub struct Bounds {
     pub at: [f64; 3],
     /// The other surface's closest point to it.
     pub to: [f64; 3],
-    /// Whether the interval is as narrow as was asked for.
+    /// Whether the interval is as narrow as requested.
     pub converged: bool,
 }
 
@@ -123,7 +126,7 @@ impl CertifiedHausdorff {
         }
     }
 
-    /// Whether both intervals are as narrow as was asked for.
+    /// Whether both intervals are as narrow as requested.
     pub fn converged(&self) -> bool {
         self.forward.converged && self.backward.converged
     }
@@ -203,8 +206,8 @@ pub fn certified_hausdorff_between_observed(
     between([surface, reference], None, options, observer)
 }
 
-/// Bounds a symmetric distance that is known to be at least so much, to within `gap`: little time is spent on what is below. Points are
-/// given where more was found than that.
+/// Bounds a symmetric distance with a known lower bound, to within `gap`: little time is spent
+/// below it. Points are given where a greater distance was found.
 pub(crate) fn certified_known(
     trees: [&Bvh<'_>; 2],
     known: f64,
@@ -247,7 +250,7 @@ fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
     }
 }
 
-/// Both directions; what is known of the greater one counts for each.
+/// Both directions; the known lower bound of the greater one counts for each.
 fn between(
     [surface, reference]: [&Bvh<'_>; 2],
     known: Option<f64>,

@@ -44,7 +44,8 @@ pub(super) struct Scale {
 impl Scale {
     /// The scale of surfaces whose coordinates are at most `magnitude`; the surfaces' longest box side is `extent`.
     pub(super) fn new(magnitude: f64, extent: f64) -> Self {
-        // Both powers of two must be normal numbers; what remains to the ends of the range does no harm.
+        // Both powers of two must be normal numbers; the rest to the ends of the range does no
+        // harm.
         let exponent = if magnitude > 0.0 {
             exponent_above(magnitude).clamp(-1000, 1000)
         } else {

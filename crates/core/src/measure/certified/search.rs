@@ -25,9 +25,9 @@ use crate::vector::{DVec3, vector};
 /// the work.
 const SAMPLES: usize = 50_000;
 
-/// It pays on surfaces of so many triangles. Smaller ones are searched whole in about the time that samples and climb take,
-/// which spare a third of the work at most. They spare nothing where the surface itself is the finer one, whose triangles
-/// are hardly ever split.
+/// The least number of triangles for which sampling pays. Smaller ones are searched whole in about
+/// the time that samples and climb take, which spare a third of the work at most. They spare
+/// nothing where the surface itself is the finer one, whose triangles are hardly ever split.
 const LARGE: usize = 100_000;
 
 /// Samples measured, and triangles bounded, in one go.
@@ -77,7 +77,7 @@ impl Eq for Waiting {}
 /// The result of a run over pieces.
 struct Found {
     kept: Vec<Piece>,
-    /// Greatest bound of what was dropped.
+    /// The greatest bound of the dropped pieces.
     dropped: f64,
     farthest: Sample,
     work: u64,
@@ -103,8 +103,8 @@ pub(super) struct Search<'t, 's, 'a> {
 }
 
 impl<'t, 's, 'a> Search<'t, 's, 'a> {
-    /// The greatest distance from `from` to the target, or what is `known`, if that is more. `gap` and `known` are in the
-    /// surfaces' unit.
+    /// The greatest distance from `from` to the target, or the `known` one, if that is more. `gap`
+    /// and `known` are in the surfaces' unit.
     pub(super) fn run(
         from: &'s Bvh<'a>,
         target: &'t Target<'s, 'a>,
@@ -112,7 +112,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         options: &CertifiedOptions,
         watch: &mut Watch<'_>,
     ) -> Result<(Bounds, u64), Cancelled> {
-        // No interval can be narrower than what rounding is allowed for.
+        // No interval can be narrower than the allowance for rounding.
         let least = 4.0 * (target.scale.slack + target.scale.search_slack);
         let mut search = Self {
             from,
@@ -293,7 +293,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         Ok(())
     }
 
-    /// Takes in what the runs found, in order.
+    /// Takes in the results of the runs, in order.
     fn take(&mut self, runs: Vec<Found>) {
         for run in runs {
             self.dropped = self.dropped.max(run.dropped);

@@ -108,7 +108,8 @@ fn narrow() -> CertifiedOptions {
     CertifiedOptions::default().relative_gap(1e-4)
 }
 
-/// The interval holds the truth, is as narrow as asked, and its places are where it says.
+/// The interval holds the truth, is as narrow as requested, and its distance is attained at its
+/// points.
 fn holds(bounds: &Bounds, truth: f64, gap: f64) {
     assert!(
         bounds.lower <= truth && truth <= bounds.upper,

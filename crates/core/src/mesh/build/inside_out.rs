@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-12;
 /// A component without boundary.
 struct Closed<'a> {
     faces: &'a [u32],
-    /// Half of what it takes up along the axis of which that is most.
+    /// Half of its greatest extent along an axis.
     size: f64,
     /// By the cube of its size: negative where its normals point inwards, 0 where that is not certain.
     volume: f64,

@@ -1,9 +1,10 @@
 //! From a polygon soup to a manifold, oriented triangle mesh.
 //!
-//! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero area,
-//! connect and orient the faces, turn what is inside out, cut where more than a manifold meets, carry the tags over. Each step counts
-//! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n,
-//! but for polygons of tens of thousands of corners, which may take n^1.5.
+//! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero
+//! area, connect and orient the faces, turn components that are inside out, cut where the surface
+//! is not a manifold, carry the tags over. Each step counts what it found in the [`Diagnosis`]. All
+//! of them take time proportional to the input, or n log n, but for polygons of tens of thousands
+//! of corners, which may take n^1.5.
 
 mod cut;
 mod inside_out;
@@ -55,7 +56,7 @@ options! {
     }
 }
 
-/// The mesh, what was found, and from which faces and corners of the input those of the mesh are.
+/// The mesh, the findings, and the faces and corners of the input for those of the mesh.
 pub(super) fn build(
     soup: &PolygonSoup,
     options: &BuildOptions,

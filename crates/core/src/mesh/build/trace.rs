@@ -27,8 +27,10 @@ pub(super) fn corners(
         let first = soup.faces.first_corner(input as usize);
         let vertices = triangle.map(|v| before_cutting(maps, v));
         for (corner, &vertex) in vertices.iter().enumerate() {
-            let beside = [1, 2].map(|step| vertices[(corner + step) % 3]);
-            let own = places.of(vertex, beside).map(|place| first + place as u32);
+            let adjacent = [1, 2].map(|step| vertices[(corner + step) % 3]);
+            let own = places
+                .of(vertex, adjacent)
+                .map(|place| first + place as u32);
             corners.push(own.unwrap_or_else(|| {
                 let all = elsewhere.get_or_insert_with(|| first_corners(soup, maps));
                 all.get(vertex as usize)
@@ -82,14 +84,14 @@ impl Places {
         let mut places = places.map(|&(_, place)| place);
         let first = places.next()?;
         let count = self.vertices.len();
-        let beside = |place: &usize| {
+        let adjacent = |place: &usize| {
             let around = [1, count - 1].map(|step| self.vertices[(place + step) % count]);
             around.contains(&Some(next)) || around.contains(&Some(previous))
         };
-        if beside(&first) {
+        if adjacent(&first) {
             Some(first)
         } else {
-            places.find(beside).or(Some(first))
+            places.find(adjacent).or(Some(first))
         }
     }
 }

@@ -173,7 +173,7 @@ impl SelfJoin<'_> {
         }
     }
 
-    /// Joins what lies near each other in two nodes.
+    /// Joins near vertices of two nodes.
     fn join(&mut self, a: usize, b: usize) {
         let (first, second) = (&self.tree.nodes[a], &self.tree.nodes[b]);
         let gap = (second.low - first.high)

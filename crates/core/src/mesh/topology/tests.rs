@@ -1,4 +1,4 @@
-//! Rings, twins and counts of known surfaces, and what validation must notice.
+//! Rings, twins and counts of known surfaces, and the errors that validation must find.
 
 use proptest::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Predicts what an exact refinement would give, from how a coarser one grows.
+//! Predicts the size of an exact refinement from the growth of coarser ones.
 
 use super::scale;
 use crate::index::{FaceId, HalfEdgeId};
@@ -26,11 +26,13 @@ const MOST_HALVINGS: f64 = 1000.0;
 /// Triangles that are counted before the rest is extrapolated.
 const COUNTED: usize = 60_000;
 
-/// Of meshes of so many faces about so many are looked at, at even steps through their order: they are cut out with the faces around them.
+/// Of meshes with more faces than this about this many are sampled, at even steps through their
+/// order: they are cut out with the faces around them.
 const SAMPLED_FROM: usize = 20_000;
 const SAMPLES: usize = 1000;
 
-/// Triangles of a refinement, without collapses, that is made to see what part of it collapses leave: some tenths of a second.
+/// Triangles of a refinement, without collapses, that measures the share left by collapses: some
+/// tenths of a second.
 const COLLAPSED: usize = 15_000;
 
 /// Halving a distance at most doubles the triangles in the long run, halving an angle makes them four times as many.
@@ -56,7 +58,7 @@ pub fn exact_estimate(
 /// [`exact_estimate`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`exact_estimate`], or the observer asked to stop.
 pub fn exact_estimate_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -187,7 +189,8 @@ fn optimised(
     })
 }
 
-/// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
+/// Counts triangles for goals that are too coarse by a factor until they are many or the goals the
+/// right ones.
 fn approached(
     faces: usize,
     coarsest: f64,

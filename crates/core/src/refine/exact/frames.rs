@@ -53,8 +53,9 @@ pub struct Frames {
 /// ```
 ///
 /// # Errors
-/// Goals that are none, other goals and options than those, a frame that is none of the mesh's, a scheme outside the Loop family, a cap
-/// that any frame passes, or what [`exact`](super::exact) refuses.
+/// Goals out of range, goals and options that frames do not support, a frame that is none of the
+/// mesh's, a scheme outside the Loop family, a cap that any frame exceeds, or an error of
+/// [`exact`](super::exact).
 pub fn exact_frames(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -67,7 +68,7 @@ pub fn exact_frames(
 /// [`exact_frames`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`exact_frames`], or the observer asked to stop.
 pub fn exact_frames_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -154,7 +155,7 @@ fn middling(
     })
 }
 
-/// Refuses what has no meaning for frames.
+/// Refuses options that have no meaning for frames.
 fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineError> {
     let refused = [
         (

@@ -35,8 +35,8 @@ pub fn exact(
 /// [`exact`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop. Nothing comes with that: as long as faces are being divided there is no mesh,
-/// and to close and measure what there is would take as long as the rest.
+/// Those of [`exact`], or the observer asked to stop. The latter comes without a mesh: to close and measure
+/// an unfinished one would take as long as the rest.
 pub fn exact_observed(
     control: &Mesh,
     scheme: &dyn Scheme,

@@ -81,7 +81,7 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
     }
 }
 
-/// The result at the size that was asked for.
+/// The result at the original size.
 pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let error = bounds(result.error, factor);
     let off_planes = result.off_planes / factor;
@@ -93,7 +93,7 @@ pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, Ref
     })
 }
 
-/// A distance at the size that was asked for.
+/// A distance at the original size.
 pub(super) fn bounds(error: ErrorBounds, factor: f64) -> ErrorBounds {
     let ErrorBounds {
         lower,

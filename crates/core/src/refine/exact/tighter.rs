@@ -1,4 +1,4 @@
-//! Bounds that are far above what was found, measured anew.
+//! Measures bounds anew that are far above the distance found.
 //!
 //! The proven bound of refinement adds up from bounds of each triangle against its own part of the
 //! surface, as far as the neighbours leave room. Where triangles are small for another reason than
@@ -20,31 +20,32 @@ use crate::scheme::Scheme;
 /// less to end with.
 const SHARE: f64 = 0.06;
 
-/// The first nearer mesh is off by this part of the bound that there is at least, the next ones by so many times less: meshes
-/// that would be far too fine are not begun with.
+/// The first nearer mesh has an error of this part of the existing bound, the next ones have errors
+/// smaller by a constant factor: meshes that would be far too fine are not begun.
 const FIRST: f64 = 1.0 / 32.0;
 const FINER: f64 = 8.0;
 
 /// Where that is too fine, this part is tried.
 const COARSE: f64 = 1.0 / 8.0;
 
-/// It is of use if what is proven may get smaller than this part of what it was.
+/// It is of use if the proven bound may get smaller than this part of itself.
 const WORTH_WHILE: f64 = 0.8;
 
-/// Places of distances that were found there count where the distances are at least so many times what it is off by.
+/// Points of found distances count where the distances are at least this many times the error.
 const PLACED: f64 = 8.0;
 
-/// Triangles of the nearer mesh at most: so many in any case, and for each of the other one.
+/// The most triangles of the nearer mesh: this many in any case, and for each of the other one.
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
-/// Where nothing but a tolerance was asked for, which is proven already, so many triangles are measured at most, against meshes of so
-/// few that it takes about as long as the refinement.
+/// If the only goal is a tolerance, which is proven already, at most this many triangles are
+/// measured, against meshes so small that it takes about as long as the refinement.
 const MET_MOST: usize = 20_000;
 const MET_IN_ANY_CASE: usize = 5_000;
 const MET_FOR_EACH: usize = 3;
 
-/// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
+/// Meshes that are [`FINER`] times nearer have at least this many times the triangles: the square
+/// root of that where only rims are curved.
 const GROWTH: f64 = 2.0;
 
 /// Whether there may be tighter bounds for triangles that approximate the limit surface of
@@ -54,7 +55,8 @@ pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
     error.certified && known.distance().is_normal() && !known.is_tight()
 }
 
-/// The bounds of a surface of which some [regions](Exact::within_rims) are what their rims enclose, as tight as it is worth while to make them.
+/// The bounds of a surface of which some [regions](Exact::within_rims) are the planes inside their
+/// rims, as tight as is worth the time.
 pub(super) fn tighter(
     error: ErrorBounds,
     (surface, within_rims): (Triangles<'_>, &[u32]),

@@ -27,7 +27,7 @@ pub(super) struct Standing {
     pub(super) at: Place,
 }
 
-/// A mesh whose control points are moved to see what that changes.
+/// A mesh whose control points are moved to measure the effect.
 pub(super) struct Probe<'a> {
     mesh: Mesh,
     sharpness: &'a Sharpness<'a>,
@@ -180,7 +180,7 @@ impl<'a> Probe<'a> {
         } else if levels > 0 {
             let refined = patch.refined(self.rules);
             places.iter_mut().for_each(Standpoint::enter_part);
-            // Stable: what is found does not depend on how this sorts.
+            // Stable: the result does not depend on how this sorts.
             places.sort_by_key(|place| place.part);
             for own in places.chunk_by_mut(|a, b| a.part == b.part) {
                 self.descend(&refined.part(own[0].part), own, levels - 1, visit);

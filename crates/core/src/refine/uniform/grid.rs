@@ -1,4 +1,5 @@
-//! One triangle refined a few times: what all faces of a mesh that are refined as often have in common.
+//! One triangle refined a few times: the common numbering of all faces of a mesh refined by equal
+//! levels.
 //!
 //! The tables are those of the steps themselves, taken on a mesh of one triangle, so that a mesh whose faces are filled in
 //! by them is the one that the steps give: the triangles of a face stand together and new vertices follow level by level,

@@ -251,8 +251,8 @@ impl<'a> Work<'a> {
         self.numbering.first(h.face().index()) + self.grid.borders[h.corner()][0]
     }
 
-    /// The normals with those of old vertices, both sides of sharp edges, and what stands where there is no tangent plane.
-    /// `flat` are faces on which that is so.
+    /// The normals with those of old vertices, both sides of sharp edges, and the replacements
+    /// where there is no tangent plane. `flat` are faces with such corners.
     fn finished_normals(
         &self,
         mut by_vertex: Vec<[f64; 3]>,

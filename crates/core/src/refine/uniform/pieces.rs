@@ -1,9 +1,10 @@
 //! The limit surface over one face at the places of a [`Grid`].
 //!
-//! A face far from boundaries and creases with one irregular corner at most depends on the corner, its ring and five points
-//! more, and every place on it is a fixed combination of these: the weights are tabulated for each valence. Where no corner is irregular
-//! and rows are long, those of the face's polynomial take less. Any other face is refined towards what is irregular, and its regular parts are
-//! evaluated as polynomials.
+//! A face far from boundaries and creases with one irregular corner at most depends on the corner,
+//! its ring and five points more, and every place on it is a fixed combination of these: the
+//! weights are tabulated for each valence. Where no corner is irregular and rows are long, those of
+//! the face's polynomial take less time. Any other face is refined towards its irregular parts, and
+//! its regular parts are evaluated as polynomials.
 
 use core::ops::Range;
 use std::sync::OnceLock;
@@ -28,8 +29,8 @@ const LANES: usize = 4;
 /// Rounding leaves no more of a cross product of tangents that is zero than this, by the square of the piece's size.
 const CROSS_ROUNDING: f64 = 1e-13;
 
-/// Regular faces of at least so many segments a side are evaluated by rows, which take a third of the products; short ones cost as much
-/// to begin.
+/// Regular faces of at least this many segments a side are evaluated by rows, which take a third of
+/// the products; short rows cost as much to begin.
 const ROWS_FROM: usize = 16;
 
 /// Sizes of pieces whose fourth powers neither vanish nor overflow.
@@ -171,8 +172,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Evaluates a face inside and on the given sides; what stands in other slots means nothing. Gives the corner of the
-    /// face that counts as the first in the slots.
+    /// Evaluates a face inside and on the given sides; other slots have no meaning. Gives the
+    /// corner of the face that counts as the first in the slots.
     pub(super) fn evaluate(&self, face: usize, sides: u8, values: &mut Values) -> usize {
         if let Some((turn, valence)) = self.gather(face, &mut values.controls) {
             if valence == 6 && self.segments >= ROWS_FROM {

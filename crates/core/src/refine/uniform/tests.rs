@@ -181,7 +181,7 @@ fn sharp_edges_and_corners_keep_both_their_sides() {
     let sheet = sheet();
     let inside: Vec<CreaseTag> = (15..20).map(|v| crease(v + 1, v, f64::INFINITY)).collect();
     let ends: Vec<CreaseTag> = inside[1..3].to_vec();
-    let fading: Vec<CreaseTag> = inside
+    let semi_sharp: Vec<CreaseTag> = inside
         .iter()
         .map(|tag| CreaseTag {
             sharpness: 1.6,
@@ -206,7 +206,7 @@ fn sharp_edges_and_corners_keep_both_their_sides() {
             cross,
             vec![corner(0, f64::INFINITY), corner(41, 2.5)],
         ),
-        ("fading", fading, vec![corner(12, 0.5)]),
+        ("semi_sharp", semi_sharp, vec![corner(12, 0.5)]),
     ] {
         let sheet = sheet.clone().with_tags(Tags { creases, corners }).unwrap();
         for levels in 2..=5 {

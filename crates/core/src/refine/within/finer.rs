@@ -28,7 +28,7 @@ impl Finer {
                 parts: FaceParts::default(),
             });
         }
-        // Only how faces hang together is taken from the scheme, and what becomes of tags.
+        // The scheme gives only the connections of faces, and the tags.
         let options = UniformOptions::default().levels(levels).origins(true);
         let divided = uniform_observed(mesh, &Loop, &options, observer)?;
         let positions = divided

@@ -13,8 +13,9 @@
 //! (`sharper.rs`), and at worst faces stay the flat triangles that they are: the mesh itself is within any distance. So a box of twelve triangles
 //! gets round edges within a tenth of its size, and stays a box within a hundredth.
 //!
-//! **Coarse first.** What is far too far off shows on a coarse result as well. Results get finer as long as nothing is too far off, so that
-//! a tiny distance does not take millions of triangles before it is given up.
+//! **Coarse first.** A part that is far too far off shows on a coarse result as well. Results get
+//! finer as long as no part is too far off, so that a tiny distance does not take millions of
+//! triangles before it is given up.
 //!
 //! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would use
 //! the whole reach, close thin tubes and swell thick ones. So the distance of limits from their
@@ -63,7 +64,7 @@ use volume::Shift;
 const OF_DISTANCE: f64 = 0.1;
 const OF_DIAGONAL: f64 = 1e-3;
 
-/// Waves that are longer than so many times the distance, and than so many edges, are kept.
+/// Waves that are longer than this many times the distance, and than this many edges, are kept.
 const DISTANCES: f64 = 20.0;
 const EDGES: f64 = 18.0;
 
@@ -136,7 +137,8 @@ pub struct Within {
 }
 
 impl Within {
-    /// Whether the result is proven to be as near as was asked for: unless triangles are capped, or rounding is more than the distance.
+    /// Whether the result is proven to be within the requested distance: unless triangles are
+    /// capped, or rounding is more than the distance.
     pub fn is_kept(&self) -> bool {
         self.distance.upper <= self.within
     }
@@ -158,7 +160,7 @@ pub fn within(
 /// [`within`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`within`], or the observer asked to stop.
 pub fn within_observed(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -267,7 +269,7 @@ impl Bound {
         })
     }
 
-    /// How far limits may be from vertices: what refining takes is left to it.
+    /// The greatest distance of limits from vertices: the rest is left to refinement.
     fn room(&self) -> f64 {
         self.within - self.tolerance
     }
@@ -420,7 +422,7 @@ struct Fault {
     is_inverted: bool,
 }
 
-/// By face, what is wrong with the refined mesh.
+/// By face, the faults of the refined mesh.
 fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault>, Cancelled> {
     let (input, positions) = (mesh.as_triangles(), refined.mesh.positions());
     let partners =
@@ -454,7 +456,8 @@ fn reduced(
     faults: &[Fault],
     bound: &Bound,
 ) -> bool {
-    // Half of what refining may take is for what another refinement of the same surface differs by.
+    // Half of the refinement's tolerance is for the difference to another refinement of the
+    // surface.
     let most = bound.room() + 0.5 * bound.tolerance;
     let mut is_reduced = false;
     for (triangle, fault) in mesh.triangles().iter().zip(faults) {

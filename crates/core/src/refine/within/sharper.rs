@@ -127,7 +127,7 @@ impl Sharper {
         }
     }
 
-    /// Faulty faces and so many rings of faces around them, or all faces of their components.
+    /// Faulty faces and `rings` rings of faces around them, or all faces of their components.
     fn around(&self, is_faulty: &[bool], rings: Option<usize>) -> Vec<bool> {
         let triangles = self.mesh.triangles();
         let Some(rings) = rings else {

@@ -64,7 +64,7 @@ struct Node {
 /// How positions and limits of a vertex go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// Inside, with what the distance to the limit shrinks by in a step.
+    /// Inside, with the factor by which the distance to the limit shrinks in a step.
     Smooth(f64),
     /// The centre of a control face, or of one of a later even level, with sharp edges: regular after one more step.
     BesideSharp,
@@ -109,7 +109,7 @@ pub(super) struct Forest<'m> {
     /// Triangles of the result.
     triangles: usize,
     max_triangles: usize,
-    /// Triangles of the result that came about since they were asked for.
+    /// Triangles of the result that arose since the last query.
     fresh: Vec<Triangle>,
 }
 
@@ -178,7 +178,7 @@ impl Forest<'_> {
         for edge in 0..3 {
             let own = side(t, edge);
             if self.nodes[t].is_sharp(edge) {
-                new.push(self.make_beside_sharp(own));
+                new.push(self.make_next_to_sharp(own));
             } else if let Some(other) = self
                 .across(own)
                 .filter(|&other| self.node(other).is_grown())
@@ -191,10 +191,11 @@ impl Forest<'_> {
         }
     }
 
-    /// The control face that what a half-edge gives is counted to.
+    /// The control face of the children of a half-edge.
     fn root(&self, own: Side) -> u32 {
         let node = self.node(own);
-        // (A, apex, apex): the second is in the face across the edge, and so is what comes of the edges at it.
+        // (A, apex, apex): the second is in the face across the edge, and so are the children of
+        // its edges.
         let across = (node.is_odd() && node.cut_edge().is_none() && edge_of(own) < 2)
             .then(|| self.across(side(node_of(own), 1)))
             .flatten();
@@ -248,7 +249,7 @@ impl Forest<'_> {
     }
 
     /// The child of a half-edge with a sharp edge.
-    fn make_beside_sharp(&mut self, own: Side) -> usize {
+    fn make_next_to_sharp(&mut self, own: Side) -> usize {
         let node = self.node(own);
         let ([a, b], third) = (self.ends(own), node.corners[(edge_of(own) + 2) % 3]);
         if node.is_odd() {
@@ -346,9 +347,9 @@ impl Forest<'_> {
 /// Where a node's neighbour comes from.
 #[derive(Clone, Copy, Debug)]
 enum Neighbour {
-    /// It is what a half-edge gives; this edge of it.
+    /// The child of a half-edge; this edge of it.
     Child(Side, usize),
-    /// It is what the half-edge across this one gives; its first edge.
+    /// The child of the half-edge across this one; its first edge.
     ChildAcross(Side),
     /// There is none.
     None,

@@ -1,4 +1,5 @@
-//! Splits that count for the result, and what they need: both parents of a node, and all sides of a sharp edge together.
+//! Splits that count for the result, and the splits that they need: both parents of a node, and all
+//! sides of a sharp edge together.
 
 use super::{Forest, Side, edge_of, node_of, side};
 use crate::geometry::NONE;
@@ -35,7 +36,7 @@ impl Forest<'_> {
         (0..self.control.face_count() as u32).map(Triangle::Leaf)
     }
 
-    /// The triangles that came about since this was asked.
+    /// The triangles that arose since the last query.
     pub(in crate::sqrt3) fn take_fresh(&mut self) -> Vec<Triangle> {
         core::mem::take(&mut self.fresh)
     }
@@ -64,7 +65,7 @@ impl Forest<'_> {
         }
     }
 
-    /// Splits a node, and before it what it needs.
+    /// Splits a node, and before it the nodes that this needs.
     fn split(&mut self, t: usize) -> Result<(), Full> {
         if self.nodes[t].is_split {
             return Ok(());

@@ -213,7 +213,7 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
     }
 }
 
-/// Nor is what is no number.
+/// Nor is NaN.
 #[test]
 fn what_has_no_bound_is_within_nothing() {
     for distance in [1.0, f64::MAX, f64::INFINITY] {

@@ -248,7 +248,7 @@ fn tags_go_to_all_copies() {
     let (mesh, diagnosis) = build_soup(&pages);
     assert!(diagnosis.dropped_tags.is_empty());
     assert_eq!(mesh.tags().creases.len(), 3);
-    // The copies are held for ever, which outlasts the tag; vertex 2 has only its own.
+    // The copies are held at all levels, more than those of the tag; vertex 2 has only its own.
     assert_eq!(fixed(&mesh).len(), 6);
     let own: Vec<_> = mesh
         .tags()

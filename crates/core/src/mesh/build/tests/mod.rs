@@ -52,7 +52,7 @@ fn check_mesh(mesh: &Mesh) {
     check_junctions_hold(mesh);
 }
 
-/// Computes what one step of refinement by boundary and corner rules does to the copies, from the definition:
+/// Computes one step of refinement of the copies by boundary and corner rules, from the definition:
 /// the members of a vertex group must end at one place, and so must the midpoints of an edge group.
 fn check_junctions_hold(mesh: &Mesh) {
     let topology = mesh.topology();
