@@ -83,7 +83,6 @@ pub(crate) fn ratio(normal: DVec3, corners: [DVec3; 3], limit: f64) -> f64 {
 }
 
 /// Exact refinement continues until the criterion is met, which by equation (11) is impossible on a
-/// silhouette. it goes on until the criterion is met, which by equation (11) it could not be on a
 /// silhouette.
 impl LimitNormal {
     /// Control faces are divided by the cone until triangles would be this part of them and its

@@ -1,9 +1,9 @@
 //! Limit positions and normals on a mesh.
 //!
-//! Takes a mesh and a table of stencils; gives a position or a unit normal for each vertex. A scheme with
-//! one-ring support is evaluated on the ring as it is. For one with two-ring support the neighbours of the ring
-//! may be irregular, where no stencil is tabulated: the neighbourhood is refined once by the scheme's own masks,
-//! after which it is regular, and its stencil is exact.
+//! Takes a mesh and a table of stencils; gives a position or a unit normal for each vertex. A
+//! scheme with one-ring support is evaluated on the ring itself. For one with two-ring support the
+//! neighbours of the ring may be irregular, where no stencil is tabulated: the neighbourhood is
+//! refined once by the scheme's own masks, after which it is regular, and its stencil is exact.
 
 use std::sync::Arc;
 
@@ -171,7 +171,8 @@ impl LimitTable<'_> {
         Ok(normals.finished())
     }
 
-    /// Limit normal at the vertex that `corner` leaves, on the side of its face, as [`Self::sided_normals`] gives it.
+    /// Limit normal at the vertex that `corner` leaves, on the side of its face, one of
+    /// [`Self::sided_normals`].
     ///
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
@@ -232,7 +233,7 @@ impl LimitTable<'_> {
         })
     }
 
-    /// Limit normal of one vertex, as [`Self::normals`] gives it.
+    /// Limit normal of one vertex, one of [`Self::normals`].
     ///
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
@@ -289,9 +290,9 @@ impl LimitTable<'_> {
 
 /// The weights of one vertex.
 pub(super) enum Stencil {
-    /// By the shape of its ring.
+    /// The stencil by the shape of its ring.
     Plain(Arc<LimitStencil>),
-    /// By the sharpness of its edges.
+    /// The stencil by the sharpness of its edges.
     Sharp(Arc<SharpStencil>),
 }
 

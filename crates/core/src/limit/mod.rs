@@ -27,9 +27,10 @@
 //! faces', and zero where that vanishes. At boundary vertices with seven or more edges Loop's surface is not
 //! smooth: the normal there is that of the ribbon along the boundary, to which the two boundary faces tend.
 //!
-//! Schemes with [`Support::TwoRing`](crate::scheme::Support::TwoRing) are analysed on the two-ring with regular
-//! neighbours. On a mesh, whose neighbours may be irregular, the vertex's neighbourhood is refined once by the
-//! actual masks, after which that is its shape; the limit is the same, so this is exact.
+//! Schemes with [`Support::TwoRing`](crate::scheme::Support::TwoRing) are analysed on the two-ring
+//! with regular neighbours. On a mesh, whose neighbours may be irregular, the vertex's
+//! neighbourhood is refined once by the actual masks, after which it has this shape; the limit does
+//! not change, so this is exact.
 //!
 //! # Your own scheme
 //!

@@ -1,4 +1,4 @@
-//! Sharp edges inside sectors that are too wide for the rules of corners.
+//! Divides sectors that are too wide for the rules of corners by sharp edges.
 //!
 //! A corner keeps its place, and its limit plane is that of the two sharp edges that bound each
 //! sector: the smooth surface fills the wedge between their directions, which is the sector's own
@@ -31,7 +31,7 @@ const FLAT: f64 = 0.1 * PI / 180.0;
 pub struct ConcaveCorners {
     /// The corners that had such sectors.
     pub corners: Finding,
-    /// Edges that became sharp, or half of them did.
+    /// Edges that became sharp, all or half of them.
     pub edges: usize,
     /// The faces that were divided, where an edge is sharp on one half only.
     pub parts: FaceParts,

@@ -47,7 +47,7 @@ use crate::vector::{DVec3, diagonal, normal, unit_or_zero, vector};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// More elements than `u32` indices can name.
+    /// More elements than `u32` indices allow.
     #[error("{count} {what} are too many: at most {limit} can be indexed")]
     TooMany {
         /// The kind of element.
@@ -111,13 +111,13 @@ pub enum MeshError {
         /// The vertex at fault.
         vertex: usize,
     },
-    /// Nothing is left to refine.
+    /// No face is left to refine.
     #[error("no face is left: {reason}")]
     NoFaces {
         /// The cause.
         reason: String,
     },
-    /// A repair would be needed and was forbidden.
+    /// A repair is needed and forbidden.
     #[error("the mesh needs repair, which strict mode refuses: {summary}")]
     NeedsRepair {
         /// A summary in words.
@@ -180,7 +180,7 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// A manifold, oriented triangle mesh: topology, positions, tags, and where cut sheets belong together.
+/// A manifold, oriented triangle mesh: topology, positions, tags, and junctions of cut sheets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     topology: Topology,
@@ -193,7 +193,7 @@ impl Mesh {
     /// A mesh from triangles that are already manifold and consistently oriented; repairs nothing.
     ///
     /// # Errors
-    /// Names the first element that breaks a condition: an index out of range, a coordinate that is not
+    /// The first element that breaks a condition: an index out of range, a coordinate that is not
     /// finite, an edge used twice in one direction, a vertex with several fans or none.
     pub fn from_triangles(
         positions: Vec<[f64; 3]>,
@@ -209,8 +209,8 @@ impl Mesh {
         })
     }
 
-    /// A mesh from whatever a file held: polygons are triangulated, equal positions welded, defects repaired
-    /// and counted.
+    /// A mesh from the contents of a file: polygons are triangulated, equal positions welded,
+    /// defects repaired and counted.
     ///
     /// # Errors
     /// Bad indices, coordinates that are not finite, nothing left to refine, or any repair under
@@ -309,8 +309,8 @@ impl Mesh {
         &self.junctions
     }
 
-    /// Number of half-edges without a partner: boundaries, but for those along cuts that go as often one way as the other. Solids that
-    /// touch along an edge have none.
+    /// Number of half-edges without a partner: boundaries, without cuts that are matched by as many
+    /// half-edges in either direction. Solids that touch along an edge have none.
     pub fn open_edge_count(&self) -> usize {
         let firsts = self.junctions.first_copies();
         let first = |v: VertexId| firsts.get(&v.0).copied().unwrap_or(v.0);
@@ -345,7 +345,7 @@ impl Mesh {
         self.topology.face_count()
     }
 
-    /// Positions and triangles without copying them; all else is given up.
+    /// Positions and triangles without copying them; everything else is dropped.
     pub fn into_positions_and_triangles(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         (self.positions, self.topology.into_triangles())
     }
@@ -377,7 +377,7 @@ impl Mesh {
         }
     }
 
-    /// The shapes of the rings at both ends of `edge`, and where it stands in them.
+    /// The shapes of the rings at both ends of `edge`, and its slots in them.
     pub fn edge_shape(&self, edge: HalfEdgeId) -> EdgeShape {
         let [from, to] = self.topology.ends(edge);
         let (origin, target) = (self.ring_shape(from), self.ring_shape(to));
@@ -425,7 +425,7 @@ impl Mesh {
     /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.
     ///
     /// # Errors
-    /// Names the first element that breaks one.
+    /// The first element that breaks one.
     pub fn validate(&self) -> Result<(), MeshError> {
         self.topology.validate()?;
         if self.positions.len() != self.topology.vertex_count() {

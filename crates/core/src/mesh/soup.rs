@@ -82,16 +82,16 @@ impl<'a> FromIterator<&'a [u32]> for PolygonFaces {
     }
 }
 
-/// The contents of a file: positions, polygons, tags. positions, polygons, tags. Indices may be
-/// anything; [`super::Mesh::from_soup`] checks.
+/// The contents of a file: positions, polygons, tags. Indices may be anything;
+/// [`super::Mesh::from_soup`] checks.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct PolygonSoup {
     /// Vertex positions in the file's units.
     pub positions: Vec<[f64; 3]>,
     /// Polygons over `positions`.
     pub faces: PolygonFaces,
-    /// Faces that count though they have no area, in ascending order: where something moves the vertices apart, such as a morph
-    /// target or a joint, they have one.
+    /// Faces without area that are kept, in ascending order: they have an area once a morph target
+    /// or a joint moves their vertices apart.
     pub opening: Vec<u32>,
     /// Sharp edges.
     pub creases: Vec<CreaseTag>,
@@ -101,7 +101,7 @@ pub struct PolygonSoup {
     pub channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub material_libraries: Vec<String>,
-    /// Pictures that texture coordinates are places on, where the file names them itself.
+    /// Pictures of the texture coordinates, where the file itself names them.
     pub texture_files: Vec<String>,
     /// Further contents of the file that were left out, in words such as "texture coordinates".
     pub left_out: Vec<String>,

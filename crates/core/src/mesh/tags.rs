@@ -6,7 +6,7 @@ use super::{Junctions, MeshError, Topology};
 use crate::index::VertexId;
 use crate::ring::INFINITELY_SHARP;
 
-/// An edge that is to stay sharp.
+/// The tag of a sharp edge.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct CreaseTag {
     /// The ends of the edge, in any order.
@@ -16,7 +16,7 @@ pub struct CreaseTag {
     pub sharpness: f64,
 }
 
-/// A vertex that is to stay where it is.
+/// The tag of a vertex that keeps its position.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct CornerTag {
     /// The vertex.

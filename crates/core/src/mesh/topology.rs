@@ -29,7 +29,7 @@ impl Topology {
     /// Connects triangles over `vertex_count` vertices.
     ///
     /// # Errors
-    /// As for [`super::Mesh::from_triangles`], but for positions.
+    /// Those of [`super::Mesh::from_triangles`], except for positions.
     pub fn from_triangles(
         triangles: Vec<[u32; 3]>,
         vertex_count: usize,
@@ -229,7 +229,7 @@ impl Topology {
     /// Checks every invariant.
     ///
     /// # Errors
-    /// Names the first element that breaks one.
+    /// The first element that breaks one.
     pub fn validate(&self) -> Result<(), MeshError> {
         check_indices(&self.triangles, self.vertex_count())?;
         let broken = |place: String, what| Err(MeshError::Broken { place, what });

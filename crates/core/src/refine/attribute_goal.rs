@@ -12,12 +12,13 @@ pub(crate) enum GoalKind {
     Surface,
 }
 
-/// A goal for a function on the control mesh's faces that triangles hold at their corners only and
-/// that is linear between: it must be within a tolerance of the original, everywhere
+/// A goal for a function on the control mesh's faces, which triangles store at their corners and
+/// interpolate linearly: it must be within a tolerance of the original, everywhere
 /// ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
 ///
-/// The function is the limit surface of a mesh with the control mesh's faces in the same order, whose positions are the values. Its
-/// vertices may be others: where they are divided, values have a seam.
+/// The function is the limit surface of a mesh with the control mesh's faces in the same order,
+/// whose positions are the values. Its vertices may differ: where one is repeated, values have a
+/// seam.
 #[derive(Clone, Debug)]
 pub struct AttributeGoal {
     pub(crate) meshes: Vec<Mesh>,
@@ -36,8 +37,8 @@ impl AttributeGoal {
         }
     }
 
-    /// The surface of `moved`, as a morph target or a pose makes it, and the refined triangles moved alike are within `tolerance` of each
-    /// other, both ways.
+    /// The surface of `moved`, by a morph target or a pose, and the refined triangles moved alike
+    /// are within `tolerance` of each other, both ways.
     pub fn surface(moved: Mesh, tolerance: f64) -> Self {
         Self {
             meshes: vec![moved],

@@ -8,33 +8,34 @@ use crate::mesh::{Mesh, MeshError};
 
 /// The goals of exact refinement, and its caps.
 ///
-/// Of the goals on quality (tolerance, angle) each that is given is to be met everywhere; a number of triangles ends
-/// the refinement early, with the worst places refined first.
+/// Each given goal on quality (tolerance, angle) is met everywhere; a number of triangles ends the
+/// refinement early, with the worst places refined first.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct ExactOptions {
     /// Greatest distance between mesh and limit surface, either way, as a length. Default: none.
     pub tolerance: Option<f64>,
-    /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
-    /// radians. Control faces are not divided for its sake once triangles are 1/1024 of them and the angle (in radians)
-    /// smaller: where it is not met by then, at cusps and where the surface is not regular, it cannot be, and
-    /// [`Exact::open_cones`](super::Exact::open_cones) says so. Default: none.
+    /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's
+    /// equation 2), in radians. Control faces are not divided for this goal once triangles are
+    /// 1/1024 of them and the angle (in radians) smaller. At cusps and where the surface is not
+    /// regular it may not be met then and cannot be;
+    /// [`Exact::open_cones`](super::Exact::open_cones) counts these triangles. Default: none.
     pub angle: Option<f64>,
-    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never
+    /// Makes the angle depend on the viewer's position, as in the paper's equation 11, but never
     /// smaller than [`Self::angle`], so that refinement ends at silhouettes and a viewer never
     /// needs more triangles than no viewer: faces that face away have the angle of no viewer, and
     /// with a dilatation above 1 faces towards the viewer have greater angles. Default: none.
     pub view: Option<View>,
     /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: from each
-    /// visible point of one to the other. Of closed surfaces what looks away from a camera is not
-    /// seen, and where it certainly does it is not divided for its own sake. Default: none.
+    /// visible point of one to the other. Parts of closed surfaces that face away from a camera are
+    /// invisible to it; parts that certainly do are not divided for it. Default: none.
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,
     /// The best mesh with at most this many triangles. Up to 20,000 of them the face with the
     /// greatest error is divided next; of more, faces with about equal errors are divided together.
-    /// Then a 32nd may be left over, and more where many faces are alike, as on a regular sphere:
-    /// dividing some of those would bring the mesh no nearer. Default: none.
+    /// Then a 32nd of the number may stay unused, and more where many faces are alike, as on a
+    /// regular sphere: dividing some of those would not reduce the distance. Default: none.
     pub triangles: Option<usize>,
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
@@ -51,8 +52,8 @@ pub struct ExactOptions {
     pub origins: bool,
     /// Regions of control faces whose limit surface lies in a plane are triangulated from their
     /// rims alone, with no vertices inside but those of the control mesh. Triangles that lie in one
-    /// plane side by side though the surface is curved elsewhere, as on a cylinder's side, are put
-    /// together, too. None of these triangles crosses one of [`Self::kept_edges`]. If false, all
+    /// plane side by side though the surface is curved elsewhere, as on a cylinder's side, are
+    /// merged, too. None of these triangles crosses one of [`Self::kept_edges`]. If false, all
     /// triangles follow the hierarchy. With [`Self::balance`] this is done only for regions that
     /// [`Self::unfold`] replaces by the inside of their rims. Default: yes.
     pub flat_regions: bool,
@@ -70,12 +71,12 @@ pub struct ExactOptions {
     /// of triangles, [`Self::balance`] and [`Self::optimize`]; flat regions then follow the
     /// hierarchy. Default: none.
     pub attributes: Vec<AttributeGoal>,
-    /// Levels at most below the control faces: up to 30. Default: 24.
+    /// The most levels below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
     /// The most triangles, as a cap rather than a goal: reaching it is a failure to meet the goals.
     /// Default: 50 million, so that refinement ends at tolerances that cannot be met.
     pub max_triangles: Option<usize>,
-    /// Bytes that the refinement and its result may take, about. Default: no limit.
+    /// The most bytes for the refinement and its result, approximately. Default: no limit.
     pub max_memory: Option<usize>,
 }
 

@@ -6,7 +6,7 @@ use crate::mesh::{Mesh, SplitSurface};
 use crate::parallel;
 use crate::vector::vector;
 
-/// Why an exact refinement ended.
+/// The reason why an exact refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ExactStop {
@@ -22,8 +22,9 @@ pub enum ExactStop {
     LevelCap,
     /// The tolerance is within rounding.
     Rounding,
-    /// Every goal is met, but for [`Exact::open_cones`]: triangles outside their cones where no division brings their
-    /// normals nearer to the limit normals, such as at cusps and where the surface is not regular.
+    /// Every goal is met, except for [`Exact::open_cones`]: triangles outside their cones where no
+    /// division brings their normals nearer to the limit normals, such as at cusps and where the
+    /// surface is not regular.
     Cones,
 }
 
@@ -31,15 +32,15 @@ pub enum ExactStop {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ErrorBounds {
-    /// Some point of the one is so far from the other.
+    /// A distance that some point of one has from the other.
     pub lower: f64,
-    /// A distance that is not exceeded where [`Self::certified`] holds; infinite without a goal for
-    /// distances or a number of triangles where nothing near [`Self::lower`] could be proven.
-    /// Otherwise an estimate, the greatest distance of the surface's points three levels below the
-    /// triangles, which the true one may exceed by some per cent.
+    /// An upper bound where [`Self::certified`] holds; infinite without a goal for distances or a
+    /// number of triangles where nothing near [`Self::lower`] could be proven. Otherwise an
+    /// estimate, the greatest distance of the surface's points three levels below the triangles,
+    /// which the true one may exceed by some per cent.
     pub upper: f64,
-    /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
-    /// combinations.
+    /// Whether `upper` is proven. It is for the Loop family ([`crate::scheme::LoopFamily`]), whose
+    /// masks are convex combinations.
     pub certified: bool,
     /// The point at which `lower` is attained: one of the mesh, or of the limit surface, within an
     /// eighth of `lower`.
@@ -54,7 +55,7 @@ impl ErrorBounds {
     pub(crate) const LEAST: f64 = 1e-6;
 }
 
-/// A point of the control mesh: where a vertex came from.
+/// A point of the control mesh: the origin of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {
     /// The control face, the first of those that share the point.
@@ -65,8 +66,8 @@ pub struct Origin {
 
 impl Origin {
     /// The point in another face of the control mesh, whose triangles these are; `None` where that
-    /// face hasn't it. A point of two faces is on a vertex or an edge of both, so its coordinates
-    /// go by the names of vertices.
+    /// face does not contain it. A point of two faces is on a vertex or an edge of both, so its
+    /// coordinates follow the vertices' indices.
     pub fn in_face(&self, triangles: &[[u32; 3]], face: u32) -> Option<Self> {
         if self.face == face {
             return Some(*self);
@@ -112,18 +113,21 @@ pub struct Exact {
     /// Flat regions, by their first control faces, whose surface is taken to be the plane inside
     /// their rims, whether the rules fold it or not; ascending.
     pub(crate) within_rims: Vec<u32>,
-    /// The control face of each triangle; after optimisation, whose triangles reach over several, one of these.
+    /// The control face of each triangle; after optimisation, when triangles cover parts of
+    /// several, one of these.
     pub parents: Vec<u32>,
-    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)): triangles reach over several control
-    /// faces then.
+    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)):
+    /// triangles then cover parts of several control faces.
     pub is_optimized: bool,
-    /// After optimisation, where triangles' corners on sharp and [kept](super::ExactOptions::kept_edges) edges came from, each on its own
-    /// side, by the half-edge that leaves the corner, ascending; see [`Traced::corner_origin`].
+    /// After optimisation, the origins of triangles' corners on sharp and
+    /// [kept](super::ExactOptions::kept_edges) edges, each on its own side, by the half-edge that
+    /// leaves the corner, ascending; see [`Traced::corner_origin`].
     pub side_origins: Vec<(u32, Origin)>,
-    /// How far mesh and limit surface can be from each other.
+    /// The distance between mesh and limit surface.
     pub error: ErrorBounds,
-    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
-    /// that is in a picture, and on closed surfaces faces the camera, has a point of the other that near. `None` without cameras; infinite where it is not bounded.
+    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels: each
+    /// point of one that is in a picture, and on closed surfaces faces the camera, has a point of
+    /// the other within this. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
     /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), the greatest
     /// distance of values or surfaces from those of the triangles: proven where
@@ -131,14 +135,15 @@ pub struct Exact {
     pub attribute_bounds: Vec<f64>,
     /// Triangles whose normals leave the cone of [`ExactOptions::angle`](super::ExactOptions::angle); 0 without that goal, or where it is met.
     pub open_cones: usize,
-    /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.
+    /// The greatest ratio of a triangle's error to the goals on quality: at most 1 where all are
+    /// met; 0 without any.
     pub worst: f64,
-    /// Why the refinement ended.
+    /// The reason why the refinement ended.
     pub stop: ExactStop,
     /// Levels of the deepest part of the hierarchy.
     pub levels: usize,
-    /// After optimisation, how many vertices stayed only because the proof failed where they are: around them the fine
-    /// triangles were not collapsed any further.
+    /// After optimisation, the number of vertices that stayed only because a proof failed there:
+    /// around them the fine triangles were not collapsed any further.
     pub refused: usize,
 }
 
@@ -156,8 +161,9 @@ impl Exact {
         SplitSurface::new(&self.mesh, |corner| self.corner_normal(corner))
     }
 
-    /// Triangles that are turned over: their normal is more than 90° from the limit normal at one of their corners, on their
-    /// own side of sharp edges. There the surface folds, or is not regular.
+    /// The number of triangles that are turned over: their normal is more than 90° from the limit
+    /// normal at one of their corners, on their own side of sharp edges. There the surface folds,
+    /// or is not regular.
     pub fn inverted_triangles(&self) -> usize {
         self.turned_over().len()
     }
@@ -217,9 +223,10 @@ impl Traced for Exact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
-    /// Triangles: exactly where there are few, extrapolated where there are many, from a sample of faces of large meshes.
+    /// The number of triangles: counted where there are few, extrapolated where there are many,
+    /// from a sample of faces of large meshes.
     pub triangles: usize,
-    /// Bytes that the refinement and its result would take at most, about.
+    /// The most bytes that the refinement and its result need, approximately.
     pub memory_bytes: usize,
     /// Whether all triangles were counted.
     pub is_counted: bool,

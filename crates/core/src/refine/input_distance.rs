@@ -1,9 +1,10 @@
-//! How far a refined mesh is from the mesh that was given, proven.
+//! The proven distance of a refined mesh from the given mesh.
 //!
-//! Exact refinement knows where on the control mesh each vertex comes from, and its triangles come from pieces that
-//! tile the control faces. So each triangle has a piece of the given mesh's surface as its partner, point by point; as both are
-//! flat, no two partners are farther apart than those at the corners. The greatest distance between a vertex and where it came
-//! from bounds the Hausdorff distance, in both directions.
+//! Exact refinement knows the origin of each vertex on the control mesh, and its triangles are of
+//! pieces that tile the control faces. So each triangle has a piece of the given mesh's surface as
+//! its partner, point by point; as both are flat, no two partners are farther apart than those at
+//! the corners. The greatest distance between a vertex and its origin bounds the Hausdorff
+//! distance, in both directions.
 //!
 //! Regions that lie in a plane are triangulated from their rims alone, which have partners as all
 //! edges have. A point of one region that is not in the other lies on a segment between partners of
@@ -39,18 +40,21 @@ const NARROWEST: f64 = 0.01;
 /// hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
 
-/// The symmetric Hausdorff distance between the mesh that was given and the refined one lies between these, in the mesh's unit.
+/// An interval for the symmetric Hausdorff distance between the given mesh and the refined one, in
+/// the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputDistance {
-    /// Some point of the one is so far from the other.
+    /// A distance that some point of one has from the other.
     pub lower: f64,
     /// A proven upper bound.
     pub upper: f64,
 }
 
 impl InputDistance {
-    /// Of a refined mesh whose triangles each come from one face of the control mesh, and where on the mesh that was given its vertices came
-    /// from ([`Exact::origins`], where that has the control mesh's faces); `None` where triangles reach over several, or origins are missing.
+    /// The distance of a refined mesh whose triangles each belong to one face of the control mesh,
+    /// by the origins of its vertices on the given mesh ([`Exact::origins`], where that has the
+    /// control mesh's faces); `None` where triangles cover parts of several faces, or origins are
+    /// missing.
     ///
     /// Where the surface lies in a plane, the given mesh's vertices are within `residual` of it.
     ///
@@ -99,7 +103,8 @@ impl InputDistance {
         })
     }
 
-    /// Measured anew where the interval is wide and reaches beyond the `expected` distance.
+    /// The distance, measured anew where the interval is wide and reaches beyond the `expected`
+    /// distance.
     ///
     /// # Errors
     /// Coordinates too large to be measured, or the observer asked to stop.
@@ -117,7 +122,7 @@ impl InputDistance {
         }
     }
 
-    /// Measured anew where it is open whether the distance is below a bound.
+    /// The distance, measured anew where the interval contains a bound.
     ///
     /// # Errors
     /// Coordinates too large to be measured, or the observer asked to stop.
@@ -158,7 +163,7 @@ impl InputDistance {
         })
     }
 
-    /// After vertices were rounded by so much at most.
+    /// The distance after vertices were rounded by at most `rounding`.
     pub fn rounded(self, rounding: f64) -> Self {
         Self {
             lower: (self.lower - rounding).max(0.0),

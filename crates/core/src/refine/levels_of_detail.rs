@@ -43,14 +43,14 @@ pub struct LodOptions {
     /// By level, from the coarsest to the finest, the greatest distance between mesh and limit surface, either way, as a length; each below the one
     /// before. With [`Self::geomorphs`] it holds place by place ([`Level::parametric`]).
     pub tolerances: Vec<f64>,
-    /// Finds how each level grows out of the coarser one ([`Level::geomorph`]), within the coarser one's tolerance at every moment.
-    /// Default: yes.
+    /// Whether to compute how each level grows out of the coarser one ([`Level::geomorph`]), within
+    /// the coarser one's tolerance at every moment. Default: yes.
     pub geomorphs: bool,
-    /// Levels of the hierarchy at most, as [`ExactOptions::max_levels`].
+    /// The most levels of the hierarchy; see [`ExactOptions::max_levels`].
     pub max_levels: usize,
-    /// Triangles of a level at most, as [`ExactOptions::max_triangles`].
+    /// The most triangles of a level; see [`ExactOptions::max_triangles`].
     pub max_triangles: Option<usize>,
-    /// Bytes that a level may take, about, as [`ExactOptions::max_memory`].
+    /// The most bytes for a level, approximately; see [`ExactOptions::max_memory`].
     pub max_memory: Option<usize>,
 }
 
@@ -152,7 +152,7 @@ pub fn levels_of_detail(
     levels_of_detail_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`levels_of_detail`], telling an observer how it goes on, level by level.
+/// [`levels_of_detail`], with an observer, called level by level.
 ///
 /// # Errors
 /// Those of [`levels_of_detail`], or the observer asked to stop; nothing comes with that.

@@ -32,7 +32,7 @@ const STEP: f64 = 8.0;
 const MOST_TRIANGLES: usize = 6_000_000;
 
 options! {
-    /// How narrow the interval is to be.
+    /// The requested width of the interval.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct LimitDistanceOptions {
         /// An interval no wider than this is narrow enough, in the mesh's unit. `None`, the default: a tenth of the distance, or a
@@ -50,13 +50,13 @@ options! {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LimitDistance {
-    /// To the limit surface itself: the interval is widened by [`Self::error`].
+    /// The distance to the limit surface itself: the interval is widened by [`Self::error`].
     pub distance: CertifiedHausdorff,
     /// The mesh that approximates the limit surface.
     pub reference: Mesh,
-    /// How far it is from the limit surface at most.
+    /// Its greatest distance from the limit surface.
     pub error: f64,
-    /// Levels of its most divided part.
+    /// The levels of its most divided part.
     pub levels: usize,
     /// Whether the mesh had to be finer, for the requested interval, than the cap on triangles
     /// allows.
@@ -79,7 +79,8 @@ pub struct LimitDistance {
 /// ```
 ///
 /// # Errors
-/// Nothing is proven for the scheme ([`is_certified`]), the gap is negative or no number, or a surface cannot be measured.
+/// A scheme without proofs ([`is_certified`]), a gap that is negative or NaN, or a surface that
+/// cannot be measured.
 pub fn limit_distance(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -89,7 +90,7 @@ pub fn limit_distance(
     limit_distance_observed(surface, control, scheme, options, &mut unobserved)
 }
 
-/// [`limit_distance`], telling an observer how it goes on.
+/// [`limit_distance`], with an observer.
 ///
 /// # Errors
 /// Those of [`limit_distance`], or the observer asked to stop.

@@ -61,7 +61,7 @@ use crate::progress::Cancelled;
 use crate::ring::INFINITELY_SHARP;
 use crate::simplify::SimplifyError;
 
-/// Why a refinement gave no mesh.
+/// The reason why a refinement gave no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefineError {
@@ -157,7 +157,7 @@ pub struct StepReport {
     pub step: usize,
     /// Faces before the step.
     pub faces_before: usize,
-    /// Faces that the criterion called divisible.
+    /// Faces that fail by the criterion.
     pub divisible: usize,
     /// Indivisible faces with 0, 1, 2 and 3 split edges: the cases (a) to (d) of the paper's Figure 5.
     pub closure: [usize; 4],
@@ -167,7 +167,7 @@ pub struct StepReport {
     pub duration: Duration,
 }
 
-/// Why a refinement ended.
+/// The reason why a refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
@@ -182,7 +182,7 @@ pub enum Stop {
     },
 }
 
-/// A refined mesh and how it came about.
+/// A refined mesh and a report.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Refinement {
@@ -197,7 +197,7 @@ pub struct Refinement {
     pub parents: Vec<u32>,
     /// The reports of all steps.
     pub steps: Vec<StepReport>,
-    /// Why there were no more steps.
+    /// The reason why there were no more steps.
     pub stop: Stop,
 }
 

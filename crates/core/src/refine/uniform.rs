@@ -27,19 +27,19 @@ use crate::scheme::Scheme;
 /// Levels that are done together at most: tables of the combined triangle then stay in the processor's caches.
 const MOST_TOGETHER: usize = 4;
 
-/// How to refine uniformly.
+/// The options of uniform refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UniformOptions {
     /// Number of levels.
     pub levels: usize,
-    /// Move the vertices to the limit surface at the end.
+    /// Whether to move the vertices to the limit surface at the end.
     pub limit: bool,
-    /// Give the limit normals of the vertices, too ([`Refinement::normals`]).
+    /// Whether to compute the limit normals of the vertices, too ([`Refinement::normals`]).
     pub normals: bool,
     /// Whether to report the origins of vertices and triangles ([`Refinement::origins`]).
     pub origins: bool,
-    /// Stop before the level that would have more triangles.
+    /// The most triangles: refinement stops before the level that would exceed them.
     pub max_triangles: Option<usize>,
 }
 
@@ -89,8 +89,9 @@ impl UniformOptions {
 
 /// Refines `mesh` uniformly.
 ///
-/// Old vertices keep their numbers, new ones follow level by level in the order of their edges' first half-edges; the four
-/// triangles of a face stand together, those at its corners first, then the middle one.
+/// Old vertices keep their numbers, new ones follow level by level in the order of their edges'
+/// first half-edges; the four triangles of a face are consecutive, those at its corners first, then
+/// the middle one.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -102,7 +103,7 @@ pub fn uniform(
     uniform_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`uniform`], telling an observer how it goes on.
+/// [`uniform`], with an observer.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -144,7 +145,7 @@ pub fn uniform_observed(
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UniformTriangles {
-    /// Where the vertices are.
+    /// The positions of the vertices.
     pub positions: Vec<[f64; 3]>,
     /// The vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
@@ -156,7 +157,7 @@ pub struct UniformTriangles {
     pub sides: Vec<(u32, [f64; 3])>,
     /// Levels that were done.
     pub levels: usize,
-    /// Why there were no more.
+    /// The reason why there were no more.
     pub stop: Stop,
 }
 
@@ -195,9 +196,9 @@ impl UniformTriangles {
 /// normals are those of [`uniform`], in the same order.
 ///
 /// Connections are more than a third of a mesh's bytes, a quarter where it has normals. They are
-/// spared where the last levels are done together: on the limit surface of schemes of Loop's
-/// family, where no semi-sharp tags are left and no sheets were cut apart. Elsewhere they are made
-/// for the steps, and given up at the end.
+/// not computed where the last levels are done together: on the limit surface of schemes of Loop's
+/// family, where no semi-sharp tags are left and no sheets were cut apart. Elsewhere they are
+/// computed for the steps, and dropped at the end.
 ///
 /// ```
 /// use limitmesh::Mesh;
@@ -222,7 +223,7 @@ pub fn uniform_triangles(
     uniform_triangles_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`uniform_triangles`], telling an observer how it goes on.
+/// [`uniform_triangles`], with an observer.
 ///
 /// # Errors
 /// See [`RefineError`].

@@ -1,8 +1,8 @@
 //! The modified butterfly scheme (Zorin, Schröder and Sweldens 1996), with the boundary rules of Zorin's course
 //! notes ("Subdivision for Modeling and Animation", SIGGRAPH 1998–2000).
 //!
-//! Vertices stay where they are. The point of an edge inside follows the kinds of its ends, where a boundary
-//! vertex is regular with four edges and an interior one with six:
+//! Vertices keep their positions. The point of an edge inside follows the kinds of its ends, where
+//! a boundary vertex is regular with four edges and an interior one with six:
 //!
 //! | ends | rule |
 //! |---|---|

@@ -62,8 +62,8 @@ pub enum Support {
 ///
 /// # Contract
 /// * Weights sum to 1 and do not depend on where in a closed ring it is cut.
-/// * A boundary vertex's mask, and a boundary edge's, use boundary vertices only, so that sheets that share a
-///   boundary stay together; edge masks do not depend on which end is called the origin.
+/// * A boundary vertex's mask, and a boundary edge's, use boundary vertices only, so that sheets
+///   that share a boundary stay together; edge masks do not depend on which end is the origin.
 /// * A corner ([`RingShape::corner`]) keeps its place.
 pub trait Scheme: Send + Sync {
     /// A short name, as on the command line.

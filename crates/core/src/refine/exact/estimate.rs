@@ -46,7 +46,7 @@ const MOST_GROWTH: f64 = 4.0;
 /// depends on the tolerance. Of large meshes a sample of faces is used.
 ///
 /// # Errors
-/// As for [`super::exact`].
+/// Those of [`super::exact`].
 pub fn exact_estimate(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -55,7 +55,7 @@ pub fn exact_estimate(
     exact_estimate_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`exact_estimate`], telling an observer how it goes on.
+/// [`exact_estimate`], with an observer.
 ///
 /// # Errors
 /// Those of [`exact_estimate`], or the observer asked to stop.

@@ -11,26 +11,28 @@ use crate::refine::exact_result::{ErrorBounds, Exact};
 use crate::refine::replay::{Frame, Replay};
 use crate::scheme::Scheme;
 
-/// A refinement that serves several frames.
+/// A refinement for several frames.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Frames {
-    /// The refined mesh, with the vertices of the first frame as [`Self::replay`] gives them. [`Exact::worst`], [`Exact::pixels`]
-    /// and [`Exact::open_cones`] are the greatest of any frame, and [`Exact::stop`] is about all of them.
+    /// The refined mesh, with the vertices of the first frame by [`Self::replay`].
+    /// [`Exact::worst`], [`Exact::pixels`] and [`Exact::open_cones`] are the greatest of any frame,
+    /// and [`Exact::stop`] holds for all of them.
     pub refined: Exact,
-    /// Gives the vertices of all frames.
+    /// Computes the vertices of all frames.
     pub replay: Replay,
-    /// By frame, how far the triangles, with the vertices that the replay gives, can be from the frame's limit surface.
+    /// By frame, bounds of the distance between the triangles, with the vertices of the replay, and
+    /// the frame's limit surface.
     pub errors: Vec<ErrorBounds>,
 }
 
 /// Refines `control` so that the goals are met for all frames, with one set of triangles: a part is
 /// divided if it has to be in any frame. A frame is the positions of the control vertices; those of
-/// `control` itself mean nothing, its tags hold for all. Channels do not change with frames, nor do
+/// `control` itself are ignored, its tags hold for all. Channels do not change with frames, nor do
 /// the origins of vertices: channels are carried once, from the control mesh to
 /// [`Frames::refined`].
 ///
-/// Of the goals a tolerance, an angle and pixels are followed. Flat regions are divided like others.
+/// Supported goals are a tolerance, an angle and pixels. Flat regions are divided like others.
 ///
 /// ```
 /// use limitmesh::refine::{ExactOptions, Frame, exact_frames};
@@ -65,7 +67,7 @@ pub fn exact_frames(
     exact_frames_observed(control, scheme, frames, options, &mut unobserved)
 }
 
-/// [`exact_frames`], telling an observer how it goes on.
+/// [`exact_frames`], with an observer.
 ///
 /// # Errors
 /// Those of [`exact_frames`], or the observer asked to stop.

@@ -19,8 +19,8 @@ use crate::mesh::Mesh;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or as many triangles as
-/// allowed, whichever comes first.
+/// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or the
+/// number of triangles, whichever comes first.
 ///
 /// # Errors
 /// A goal that is no positive number, a vertex without a limit, or more elements than can be numbered.
@@ -32,7 +32,7 @@ pub fn exact(
     exact_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`exact`], telling an observer how it goes on.
+/// [`exact`], with an observer.
 ///
 /// # Errors
 /// Those of [`exact`], or the observer asked to stop. The latter comes without a mesh: to close and measure
@@ -72,8 +72,8 @@ fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     }
 }
 
-/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are
-/// ([`Scheme::loop_family`]), others are estimated from samples.
+/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family
+/// are ([`Scheme::loop_family`]), for others they are estimated from samples.
 pub fn is_certified(scheme: &dyn Scheme) -> bool {
     scheme.loop_family().is_some()
 }

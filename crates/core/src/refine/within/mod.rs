@@ -1,4 +1,4 @@
-//! Meshes that are certainly within a distance of the mesh that was given, and as smooth as that allows.
+//! Meshes that are proven to be within a distance of the given mesh, and as smooth as that allows.
 //!
 //! Vertices are taken for measured points within this distance of the truth, as those of scans and
 //! of voxels are. The surface is the fairest whose limits stay within a reach of the vertices
@@ -8,10 +8,11 @@
 //! the reach of the vertices around is made smaller, and all is solved again from there. So the
 //! bound costs smoothness only where it must.
 //!
-//! A surface through all vertices leaves large faces by some part of their size. Where that is more than it may be, faces are divided in four
-//! where they lie (`finer.rs`), which halves it. Where that would have to be done too often, or does not help, edges become sharp
-//! (`sharper.rs`), and at worst faces stay the flat triangles that they are: the mesh itself is within any distance. So a box of twelve triangles
-//! gets round edges within a tenth of its size, and stays a box within a hundredth.
+//! A surface through all vertices leaves large faces by some part of their size. Where that is too
+//! much, faces are divided in four in their planes (`finer.rs`), which halves it. Where that would
+//! be needed too often, or does not help, edges become sharp (`sharper.rs`), and at worst faces
+//! stay flat triangles: the mesh itself is within any distance. So a box of twelve triangles gets
+//! round edges within a tenth of its size, and stays a box within a hundredth.
 //!
 //! **Coarse first.** A part that is far too far off shows on a coarse result as well. Results get
 //! finer as long as no part is too far off, so that a tiny distance does not take millions of
@@ -98,41 +99,42 @@ options! {
     /// The options of a mesh near another.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WithinOptions {
-        /// The greatest distance between the result and the mesh that is given, either way, as a length above 0. Default: 0, which is none.
+        /// The greatest distance between the result and the given mesh, either way, as a length
+        /// above 0. Default: 0, which is refused.
         pub within: f64 = 0.0,
-        /// The part of it that refining takes: how far the result may be from its own limit surface, as a length. Default:
-        /// [`Self::usual_tolerance`].
+        /// The part of it for refinement: the greatest distance of the result from its own limit
+        /// surface, as a length. Default: [`Self::usual_tolerance`].
         pub tolerance: Option<f64> = None,
-        /// Triangles at most, as a cap. Default: 50 million.
+        /// The most triangles, as a cap. Default: 50 million.
         pub max_triangles: Option<usize> = Some(50_000_000),
     }
 }
 
 impl WithinOptions {
-    /// How far a result may be from its own limit surface where nothing else is said, for a distance and a mesh with that diagonal: a tenth of
-    /// the distance, and a thousandth of the diagonal at most.
+    /// The default distance of a result from its own limit surface, for a distance and a mesh with
+    /// this diagonal: a tenth of the distance, and at most a thousandth of the diagonal.
     pub fn usual_tolerance(within: f64, diagonal: f64) -> f64 {
         (OF_DISTANCE * within).min(OF_DIAGONAL * diagonal)
     }
 }
 
-/// A smooth mesh near the one that was given.
+/// A smooth mesh near the given one.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Within {
-    /// The control mesh. Refined to [`WithinOptions::tolerance`] in another way, it stays about as near.
+    /// The control mesh. Another refinement of it to [`WithinOptions::tolerance`] is about as near.
     pub control: Mesh,
-    /// Where its faces are on those of the mesh that was given; empty where they are the same.
+    /// Its faces as parts of the given mesh's; empty where they are those.
     pub parts: FaceParts,
     /// The result: the control mesh refined.
     pub refined: Exact,
-    /// How far the result is from the mesh that was given.
+    /// The distance of the result from the given mesh.
     pub distance: InputDistance,
     /// The requested distance.
     pub within: f64,
     /// Triangles of the result that are turned over ([`turned_over_triangles`]).
     pub inverted: usize,
-    /// Edges of the mesh that was given that became sharp, because no smooth surface stays near there.
+    /// Edges of the given mesh that became sharp, because no smooth surface stays near there.
     pub sharpened: usize,
 }
 
@@ -144,11 +146,11 @@ impl Within {
     }
 }
 
-/// The smoothest mesh that is certainly within a distance of `mesh`, in both directions; closed parts keep their volume as far as the
-/// distance allows.
+/// The smoothest mesh that is proven to be within a distance of `mesh`, in both directions; closed
+/// parts keep their volume as far as the distance allows.
 ///
 /// # Errors
-/// The distance is not a length above 0, the scheme lets vertices stay where they are, or one of refinement's own.
+/// A distance that is not above 0, an interpolating scheme, or an error of refinement.
 pub fn within(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -157,7 +159,7 @@ pub fn within(
     within_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`within`], telling an observer how it goes on.
+/// [`within`], with an observer.
 ///
 /// # Errors
 /// Those of [`within`], or the observer asked to stop.
