@@ -1,4 +1,4 @@
-//! Progress and cancellation, in one dialect for every long function of the library.
+//! Progress and cancellation, alike for every long function of the library.
 //!
 //! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`],
 //! called on the calling thread, also while other threads work, that receives the stage, how much
@@ -33,7 +33,7 @@ use core::ops::{ControlFlow, Range};
 pub use crate::parallel::Cancelled;
 use crate::parallel::{self, IsStopped};
 
-/// How far a long function has come.
+/// The progress of a long function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
@@ -41,9 +41,9 @@ pub struct Progress {
     pub stage: Stage,
     /// Units of this stage that are done; see [`Stage`] for the units.
     pub done: usize,
-    /// Units that there will be, where that is known.
+    /// The total of units, where it is known.
     pub total: Option<usize>,
-    /// Triangles of the mesh that is being made, or of the surface that is being looked at.
+    /// Triangles of the mesh that is being built, or of the surface that is being processed.
     pub triangles: usize,
 }
 
@@ -60,8 +60,8 @@ pub enum Stage {
     Interpolating,
     /// A mesh is being put together; the units are its triangles.
     Assembling,
-    /// Edges are being collapsed; the units are triangles gone, and how many there will be is estimated where a tolerance
-    /// decides it.
+    /// Edges are being collapsed; the units are removed triangles; their total is estimated where a
+    /// tolerance decides it.
     Simplifying,
     /// A hierarchy for closest points or rays is being built; the units are triangles.
     Indexing,
@@ -74,7 +74,7 @@ pub enum Stage {
     Matching,
     /// Rays are being followed to a surface; the units are rays.
     Casting,
-    /// It is being found which way faces look; the units are faces.
+    /// The directions in which faces face are being found; the units are faces.
     Looking,
     /// Weights of control points are being found; the units are kinds of faces.
     Weighing,

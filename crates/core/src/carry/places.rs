@@ -1,4 +1,4 @@
-//! Where the corners of refined triangles are in their own control faces.
+//! The places of refined triangles' corners in their own control faces.
 //!
 //! A vertex has the origin of one of its faces; a triangle with this vertex may be in an adjacent
 //! face.

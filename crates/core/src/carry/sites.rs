@@ -1,7 +1,7 @@
-//! Where the values of a channel of corners stand on a refined mesh, and which of them each corner has.
+//! The values of a channel of corners on a refined mesh, and their numbers by corner.
 //!
-//! Nearly all vertices have one value, wherever one looks at them from: those are numbered first, in the order of the vertices. Vertices
-//! on seams have several, which follow in the order in which corners have them.
+//! Nearly all vertices have one value on all sides: those are numbered first, in the order of the
+//! vertices. Vertices on seams have several, which follow in the order in which corners have them.
 
 use core::ops::Range;
 

@@ -11,14 +11,14 @@ use crate::vector::{DVec3, vector};
 /// A face fails where its normal leaves the cone of angle α around the limit normal of one of its vertices:
 /// `min_i N_Vi · N_f < cos α`.
 ///
-/// Vertices on sharp edges have a limit normal for each side; each face is judged by that of its own. Faces without
-/// area and vertices without a limit normal have no say.
+/// Vertices on sharp edges have a limit normal for each side; each face is compared with that of
+/// its own. Faces without area and vertices without a limit normal are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LimitNormal {
     /// The cone's angle α, in radians.
     pub angle: f64,
-    /// Makes the angle depend on where the viewer stands.
+    /// Makes the angle depend on the viewer.
     pub view: Option<View>,
 }
 

@@ -4,7 +4,7 @@
 //! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table
 //! of its scheme and answer with the ratio of each face; stepwise refinement divides the faces
 //! above 1. Exact refinement computes the ratio of a triangle and the piece of the surface that it
-//! approximates (`Criteria`), and divides the worst first. A criterion never changes anything.
+//! approximates (`Criteria`), and divides the worst first. A criterion changes nothing.
 
 mod cone;
 mod criteria;
@@ -27,7 +27,7 @@ pub use view::{AngleLimit, View, Viewpoint};
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;
 
-/// Why a criterion has no answer.
+/// An error of a criterion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CriterionError {
@@ -88,7 +88,7 @@ pub trait Criterion: Sync {
     /// For each face of `mesh`, whether it is to be divided: whether it fails.
     ///
     /// # Errors
-    /// As for [`Self::ratios`].
+    /// Those of [`Self::ratios`].
     fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
         Ok(self
             .ratios(mesh, limits)?

@@ -1,11 +1,12 @@
 //! Perspective cameras: the greatest number of pixels of a distance in space, and the greatest
 //! length below a number of pixels.
 //!
-//! **One camera.** Let e be its eye and a point p stand at depth z before it, at the picture's (x, y)/z = u, F being
-//! the pixels of a unit length at depth 1. A point p + δ is seen F(δ′ − u δ_z)/(z + δ_z) away from it, δ′ being the
-//! part of δ across the line through the middle of the picture. The vector (δ′ − u δ_z, 0) is what is left of δ when it is projected along
-//! the line of sight on the picture, whose length is at most |δ| sin θ / cos φ: θ is the angle between δ and the line of
-//! sight, which stands φ off the axis. So the distance in the picture is at most
+//! **One camera.** Let e be its eye and p a point at depth z before it, at the picture's (x, y)/z =
+//! u, F being the pixels of a unit length at depth 1. A point p + δ appears F(δ′ − u δ_z)/(z + δ_z)
+//! away from it, δ′ being the part of δ across the line through the middle of the picture. The
+//! vector (δ′ − u δ_z, 0) is the projection of δ along the line of sight on the picture, whose
+//! length is at most |δ| sin θ / cos φ: θ is the angle between δ and the line of sight, which is φ
+//! off the axis. So the distance in the picture is at most
 //!
 //! > F |δ| sin θ / (cos φ (z − |δ|)).
 //!
@@ -33,7 +34,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands.
+    /// Its position.
     pub eye: [f64; 3],
     /// A point in the middle of its picture.
     pub target: [f64; 3],
@@ -49,7 +50,7 @@ pub struct Camera {
 
 impl Camera {
     /// # Errors
-    /// It looks nowhere, has no upright, no picture or an impossible angle.
+    /// It has no direction of sight, no upright, no picture or an impossible angle.
     pub fn check(&self) -> Result<(), CriterionError> {
         Lens::new(self).map(|_| ())
     }

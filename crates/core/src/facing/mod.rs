@@ -1,4 +1,4 @@
-//! Which way whole pieces of the limit surface look, for certain.
+//! Proven directions in which whole pieces of the limit surface face.
 //!
 //! Takes a piece and a viewer's position; decides whether all of the piece shows its front, or its
 //! back, or neither is known. A regular piece is decided by a cone of its normals ([`cone`]), else
@@ -43,7 +43,7 @@ pub enum Facing {
 enum Look {
     /// All of it is seen from this side.
     All(Side),
-    /// There are points of both.
+    /// Some points are seen from each side.
     Both,
     Unknown,
 }

@@ -10,14 +10,15 @@
 //! the outward normal n of a side of the frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ +
 //! (c − e)·(n′ − n), at most |e − e′| + |c − e| |n′ − n|. So in addition to a clock that advances
 //! by
-//! |e − e′|, which what is too far away keeps to, there is one that advances by |e − e′| + Λ|n′ − n|, Λ any length, margins shrink no faster than the clock advances, those of sides at a distance beyond Λ
+//! |e − e′|, which distant nodes use, there is one that advances by |e − e′| + Λ|n′ − n|, Λ any
+//! length, margins shrink no faster than the clock advances, those of sides at a distance beyond Λ
 //! no faster than that times distance/Λ.
 
 use super::forest::Extent;
 use crate::criterion::{Camera, CriterionError, Lens};
 use crate::vector::DVec3;
 
-/// Levels at most below a control face: paths take two bits a level.
+/// The most levels below a control face: paths take two bits a level.
 pub const MOST_LEVELS: u32 = 30;
 
 /// The most triangles, without another goal.
@@ -86,7 +87,7 @@ impl Demand {
     }
 
     /// # Errors
-    /// A limit that is none, or a camera that looks nowhere.
+    /// A limit out of range, or a camera without a direction of sight.
     pub fn check(&self) -> Result<(), CriterionError> {
         let (name, value, cameras) = match &self.goal {
             Goal::Tolerance(distance) => ("tolerance", *distance, &[][..]),

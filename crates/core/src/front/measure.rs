@@ -8,8 +8,8 @@
 //!   1997): a node is divided where it is not flat enough at six points of the surface, its corners
 //!   and the middles of its edges, which are the vertices of the next level. The comparison is made
 //!   here by angles between limit normals and the triangle's normal, or as heights over its plane.
-//!   By angles it divides wherever the cone around limit normals of corners does, and sees edges,
-//!   too, whose ends happen to agree.
+//!   By angles it divides wherever the cone around limit normals of corners does, and detects
+//!   edges, too, whose ends happen to agree.
 //! * **Vertex error** (Müller and Jaeschke, "Adaptive subdivision curves and surfaces", 1998): a node is divided where a corner's control
 //!   point on the node's level is too far from its limit. Inside a smooth surface of the Loop family that distance is multiplied by
 //!   5/8 − nβ with each level, n being the valence, along creases by 1/4.
@@ -21,8 +21,8 @@ use crate::vector::{DVec3, unit_or_zero};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Measure {
-    /// How far a node's triangle and the surface over it are from each other at most, place by place, in the control mesh's units; proven
-    /// for schemes of the Loop family.
+    /// The greatest distance between a node's triangle and the surface over it, by place, in the
+    /// control mesh's units; proven for schemes of the Loop family.
     #[default]
     Distance,
     /// The greatest angle between the node's triangle and the limit surface at its corners and the middles of its edges, in radians.

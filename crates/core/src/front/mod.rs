@@ -11,12 +11,13 @@
 //! buffers, whose changes an update reports ([`Front::positions`], [`Front::triangles`],
 //! [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
 //!
-//! A front may go by other criteria of the literature instead of distances ([`Measure`]), to be compared with them.
+//! A front may measure by other criteria of the literature instead of distances ([`Measure`]), to
+//! compare them.
 //!
 //! Data flows from `pieces` (the surface over a node, its *value*: its distance from the node's
 //! triangle, whatever the neighbours are, or another `measure`) to `forest` (nodes, neighbours,
-//! vertices), which `least` brings from one least set of divided nodes to the next, where the proof
-//! is; `demand` says which nodes want to be divided and for how long that is certain while cameras
+//! vertices), which `least` brings from one least set of divided nodes to the next, with the proof;
+//! `demand` decides which nodes want to be divided and for how long that is certain while cameras
 //! move, `agenda` keeps nodes by the time of their next test, `asking` tests new ones; `buffers`
 //! has the triangles, `snapshot` the mesh with its origins.
 //!
@@ -71,7 +72,7 @@ use crate::mesh::{Mesh, MeshError, check_size};
 use crate::progress::{Cancelled, Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// Why there is no front.
+/// An error of a front.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrontError {
@@ -124,7 +125,7 @@ const RING_PART: f64 = 1.0 / 1024.0;
 const LAST_HOUR: f64 = 1e4;
 
 impl<'a> Front<'a> {
-    /// The control mesh's own triangles, with their corners on the limit surface.
+    /// A front of the control mesh's own triangles, with their corners on the limit surface.
     ///
     /// # Errors
     /// The scheme has no limit at the shape of some ring, or the mesh's diagonal is not within 1e-70 to 1e70.
@@ -136,7 +137,7 @@ impl<'a> Front<'a> {
     /// unit. Cameras need distances.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn measured_by(
         control: &'a Mesh,
         scheme: &'a dyn Scheme,
@@ -145,10 +146,10 @@ impl<'a> Front<'a> {
         Self::measured_by_observed(control, scheme, measure, &mut unobserved)
     }
 
-    /// [`Self::measured_by`], telling an observer how it goes on.
+    /// [`Self::measured_by`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::new`], and [`FrontError::Cancelled`].
+    /// Those of [`Self::new`], and [`FrontError::Cancelled`].
     pub fn measured_by_observed(
         control: &'a Mesh,
         scheme: &'a dyn Scheme,
@@ -198,8 +199,9 @@ impl<'a> Front<'a> {
     /// Brings the front to another demand. The front depends on the last demand alone. Only the
     /// difference is computed, and the changes are reported.
     ///
-    /// Everything is looked at once where a demand is of another kind than the one before: cameras after a tolerance, other
-    /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
+    /// All nodes are tested once where a demand is of another kind than the one before: cameras
+    /// after a tolerance, other pictures or another limit in pixels, other levels, and a number of
+    /// triangles that cameras' limit does not fit.
     ///
     /// # Errors
     /// The demand is out of range, or has cameras where the front does not measure distances, or a
@@ -212,7 +214,7 @@ impl<'a> Front<'a> {
     /// [`Self::changes`] reports its changes, and the next demand continues from there.
     ///
     /// # Errors
-    /// As for [`Self::update`], and [`FrontError::Cancelled`].
+    /// Those of [`Self::update`], and [`FrontError::Cancelled`].
     pub fn update_observed(
         &mut self,
         demand: &Demand,
@@ -499,13 +501,13 @@ impl<'a> Front<'a> {
         };
     }
 
-    /// The vertices' positions, on the limit surface: those of the control mesh, then others in places that stay theirs as long as they
-    /// are needed. Some may be of no triangle.
+    /// The vertices' positions, on the limit surface: those of the control mesh, then others in
+    /// slots that are theirs as long as they are needed. Some may be in no triangle.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.forest.vertices.positions
     }
 
-    /// The triangles' corners, in no order.
+    /// The triangles' corners; the triangles have no order.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.buffers.triangles
     }
@@ -536,8 +538,9 @@ impl<'a> Front<'a> {
         Ok(Snapshot::of(&self.forest)?)
     }
 
-    /// How far mesh and limit surface are from each other at most, both ways and place by place, in the control mesh's units: proven for
-    /// schemes of the Loop family, an estimate from samples for others. Infinite where a front does not go by distances: nothing is known then.
+    /// The greatest distance between mesh and limit surface, both ways and by place, in the control
+    /// mesh's units: proven for schemes of the Loop family, an estimate from samples for others.
+    /// Infinite where a front does not measure distances.
     pub fn bound(&self) -> f64 {
         match self.forest.measure() {
             Measure::Distance => self.worst(),
@@ -563,7 +566,7 @@ impl<'a> Front<'a> {
         self.forest.worst(|extent| f64::from(extent.level)) as u32
     }
 
-    /// The distance, or number of pixels, that all triangles keep as far as levels allow: the
+    /// The distance, or number of pixels, that all triangles meet as far as levels allow: the
     /// demanded one, or the one that the number of triangles allows.
     pub fn limit(&self) -> f64 {
         self.question.limit

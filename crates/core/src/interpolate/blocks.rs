@@ -1,9 +1,12 @@
-//! The block triangular form of a system: which unknowns depend on one another, and in which order they can be found.
+//! The block triangular form of a system: the unknowns that depend on one another, and an order of
+//! solving.
 //!
-//! A limit position depends on some control points. Points that depend on each other in a circle have to be found together:
-//! the strongly connected components of the matrix's pattern (Tarjan 1972), which come out in an order in which each depends
-//! on earlier ones alone. So corners come first, each by itself, then the lines of creases and boundaries between them, then
-//! the inside of each smooth region; and a line that ends in a dart comes together with the region around that.
+//! A limit position depends on some control points. Points that depend on each other in a circle
+//! have to be found together: the strongly connected components of the matrix's pattern (Tarjan
+//! 1972), which come out in an order in which each depends on earlier ones alone. So corners come
+//! first, each alone, then the lines of creases and boundaries between them, then the inside of
+//! each smooth region; and a line that ends in a dart is solved together with the region around
+//! that.
 
 use super::sparse::Sparse;
 

@@ -1,9 +1,9 @@
-//! Which control points have which limits: the system over the whole mesh, solved block by block.
+//! The system of control points for given limits over the whole mesh, solved block by block.
 //!
-//! Unknown is how far each control point is moved, d; with the limit weights A and the mesh's vertices v,
-//! A·(v + d) = v + y, where y is how far limits may be from the vertices: nothing, if the surface passes through them. As the
-//! weights of a row sum to 1, the right side v − A·v + y is a sum of differences of neighbours and does not lose digits to
-//! coordinates far from the origin.
+//! Unknown is the displacement d of the control points; with the limit weights A and the mesh's
+//! vertices v, A·(v + d) = v + y, where y is the offset of limits from the vertices: zero, if the
+//! surface passes through them. As the weights of a row sum to 1, the right side v − A·v + y is a
+//! sum of differences of neighbours and does not lose digits to coordinates far from the origin.
 //!
 //! Copies of a vertex on sheets that were cut apart are one unknown, that of the first of them.
 
@@ -68,7 +68,7 @@ pub(super) struct Near<'a> {
 
 /// How blocks are solved.
 enum Way<'a> {
-    /// For limits so far from their vertices.
+    /// For limits at these offsets from their vertices.
     At(&'a [DVec3]),
     /// For the fairest.
     Near {

@@ -1,9 +1,10 @@
 //! The fairest control points whose limits are near given points: a convex problem with a certificate.
 //!
-//! The energy is that of a thin plate over the control net, ½ Σ |Bx|²: at a smooth vertex (Bx) is the mean of the neighbours
-//! less the vertex, on a crease or a boundary the mean of the two neighbours along it less the vertex, and corners have none.
-//! Each row counts in the block where its last point is found, so that lines are as fair as they can be by themselves, and
-//! regions with the lines fixed.
+//! The energy is that of a thin plate over the control net, ½ Σ |Bx|²: at a smooth vertex (Bx) is
+//! the mean of the neighbours less the vertex, on a crease or a boundary the mean of the two
+//! neighbours along it less the vertex, and corners have none. Each row counts in the block where
+//! its last point is found, so that lines are as fair as they can be alone, and regions with the
+//! lines fixed.
 //!
 //! Unknown is y, the offsets of limits from their vertices, |yᵢ| ≤ Tᵢ; control points follow from
 //! it by A·x = v + y. So f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which

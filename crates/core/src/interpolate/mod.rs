@@ -1,16 +1,18 @@
 //! Control meshes whose limit surface passes through the vertices of a mesh.
 //!
-//! A limit surface lies inside its control mesh: it shrinks, a scan by some thousandths of its size, a coarse cylinder by
-//! hundredths. Here the vertices of a mesh are taken for points of the surface, and control points are found whose limits they
-//! are: a function from mesh to mesh, with the same faces and tags, after which everything goes on as for any control mesh
-//! (Halstead, Kass and DeRose, *Efficient, Fair Interpolation using Catmull–Clark Surfaces*, 1993; here for any scheme whose
+//! A limit surface lies inside its control mesh: it shrinks, a scan by some thousandths of its
+//! size, a coarse cylinder by hundredths. Here the vertices of a mesh are taken for points of the
+//! surface, and control points are found whose limits they are: a function from mesh to mesh, with
+//! the same faces and tags, which is then used as any control mesh (Halstead, Kass and DeRose,
+//! *Efficient, Fair Interpolation using Catmull–Clark Surfaces*, 1993; here for any scheme whose
 //! limit positions are known).
 //!
 //! # The system
-//! The limit position of a vertex is a weighted sum of control points, row by row a sparse matrix A with A·x = v. Points that
-//! depend on each other in a circle are found together, the others in the order in which they depend on one another
-//! (`blocks.rs`): corners keep their place, each line of a crease or a boundary is a system of its own, and then each region
-//! between them, with the lines fixed.
+//! The limit position of a vertex is a weighted sum of control points, row by row a sparse matrix A
+//! with A·x = v. Points that depend on each other in a circle are found together, the others in the
+//! order in which they depend on one another (`blocks.rs`): corners keep their positions, each line
+//! of a crease or a boundary is a system of its own, and then each region between them, with the
+//! lines fixed.
 //!
 //! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k))
 //! for the vertex, divided by a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is
@@ -25,7 +27,7 @@
 //! Where a dart or a semi-sharp tag gives the neighbours of a vertex weights of their own, and for
 //! schemes outside the Loop family, the system may not be symmetric: conjugate gradients on the
 //! normal equations take its place, and where there is no solution they give the least squares
-//! answer. [`Interpolated::method`] says which it was.
+//! answer. [`Interpolated::method`] is the method used.
 //!
 //! # Lines whose edges are of very different lengths
 //! Along a crease or boundary a vertex adjacent to a much longer edge is relaxed: the curve passes
@@ -37,8 +39,8 @@
 //! A surface that passes through every vertex undulates where vertices are out of line.
 //! [`InterpolateOptions::within`] allows limits at this distance from their vertices, and gives the
 //! fairest surface of those: the control net of least thin-plate energy (`fairness.rs`). It is as
-//! curved as it must be and no more, which takes all of the distance where the surface is curved.
-//! [`Interpolated::fairness`] says how near the energy is to the least that there can be.
+//! curved as it must be and no more, which uses all of the distance where the surface is curved.
+//! [`Interpolated::fairness`] compares the energy with a lower bound.
 //!
 //! ```
 //! use limitmesh::interpolate::{InterpolateOptions, interpolate};
@@ -90,7 +92,7 @@ const POLLED: u32 = 1 << 12;
 /// After this many attempts to keep vertices in planes, the surface passes through all.
 const MOST_ATTEMPTS: usize = 4;
 
-/// Why there are no control points.
+/// An error of interpolation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InterpolateError {
@@ -118,37 +120,38 @@ pub enum InterpolateError {
 }
 
 options! {
-    /// How near the limit surface passes to the vertices.
+    /// The options of interpolation.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct InterpolateOptions {
-        /// The greatest distance of a limit from its vertex, as a length; of all control meshes that keep it the fairest is
-        /// taken. Default: 0, the surface passes through the vertices.
+        /// The greatest distance of a limit from its vertex, as a length; the result is the fairest
+        /// control mesh that keeps it. Default: 0, the surface passes through the vertices.
         pub within: f64 = 0.0,
     }
 }
 
-/// How control points were found.
+/// The method of solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InterpolationMethod {
-    /// There was nothing to find: all limits are the vertices themselves, as with a scheme that interpolates, or vertices of flat faces.
+    /// No system was solved: all limits are the vertices themselves, as with a scheme that
+    /// interpolates, or vertices of flat faces.
     Unchanged,
     /// Conjugate gradients on systems that are symmetric and positive definite.
     ConjugateGradients,
     /// Conjugate gradients on the normal equations, for some part of the mesh at least.
     NormalEquations,
-    /// No control points have these limits: the sum of the squared distances of limits from vertices is the least that there is,
-    /// for some part of the mesh.
+    /// No control points have these limits: the sum of the squared distances of limits from
+    /// vertices is the least, for some part of the mesh.
     LeastSquares,
 }
 
-/// A control mesh and how it came about.
+/// A control mesh and a report.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Interpolated {
-    /// The control mesh, with the faces and tags of the mesh that it is for.
+    /// The control mesh, with the faces and tags of the given mesh.
     pub mesh: Mesh,
-    /// How it was found.
+    /// The method of solution.
     pub method: InterpolationMethod,
     /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
     /// last solution.
@@ -163,18 +166,19 @@ pub struct Interpolated {
     /// turn there; a curve through them would leave the mesh and come back. Others keep their
     /// control point so that the surface [does not fold](crate::part::interpolate_unfolded).
     pub passed_by: Vec<VertexId>,
-    /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
+    /// The greatest distance of a control point from its vertex: the greater, the likelier the
+    /// surface undulates in between.
     pub displacement: f64,
-    /// The vertex whose control point that is.
+    /// The vertex of [`Self::displacement`].
     pub most_displaced: VertexId,
-    /// How fair it is, where limits may leave their vertices.
+    /// Its fairness, where limits may leave their vertices.
     pub fairness: Option<Fairness>,
 }
 
 /// The control mesh whose limit surface passes through the vertices of `mesh`, or as near as the options say.
 ///
-/// Vertices whose limit is their own place keep it: corners, and all with a scheme that interpolates. Copies of a vertex where
-/// sheets were cut apart stay together, bit for bit.
+/// Vertices whose limit is their own position keep it: corners, and all vertices with an
+/// interpolating scheme. Copies of a vertex where sheets were cut apart stay together, bit for bit.
 ///
 /// # Errors
 /// A vertex has no limit, a control point would not be finite, or the requested distance is
@@ -187,7 +191,7 @@ pub fn interpolate(
     interpolate_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`interpolate`], telling an observer how it goes on.
+/// [`interpolate`] with an observer.
 ///
 /// # Errors
 /// Those of [`interpolate`], or the observer asked to stop.

@@ -1,14 +1,14 @@
 //! Lines of creases and boundaries whose edges are of very different lengths.
 //!
 //! A limit curve through points that are spaced unevenly overshoots those at a long edge and comes
-//! back: it knows no lengths. Where a long straight edge of a part meets the short ones of a
-//! rounding, or a vertex stands near the end of an edge, it leaves the part by more than the
-//! rounding is large, and the adjacent flat faces fold. So a vertex of an edge more than
-//! [`MOST_UNEVEN`] times as long as the edges at its ends gets another condition: its limit would
-//! be at the vertex if that edge were that much shorter. With v the vertex, u the one at the other
-//! end and w < 1 the part that is left of the edge, v + w(u − v) replaces u in v's row: the weights
-//! of the row still sum to 1, and v has more of it. The limit then lies beyond v along the long
-//! edge, and the curve passes v by less than it turns there: not at all where it is straight.
+//! back: it ignores lengths. Where a long straight edge of a part meets the short ones of a
+//! rounding, or a vertex is near the end of an edge, it leaves the part by more than the rounding
+//! is large, and the adjacent flat faces fold. So a vertex of an edge more than [`MOST_UNEVEN`]
+//! times as long as the edges at its ends gets another condition: its limit would be at the vertex
+//! if that edge were that much shorter. With v the vertex, u the one at the other end and w < 1 the
+//! part that is left of the edge, v + w(u − v) replaces u in v's row: the weights of the row still
+//! sum to 1, and v has more of it. The limit then lies beyond v along the long edge, and the curve
+//! passes v by less than it turns there: not at all where it is straight.
 
 use std::collections::HashSet;
 

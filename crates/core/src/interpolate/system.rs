@@ -1,10 +1,10 @@
 //! Linear systems A·x = b for points: by conjugate gradients where a scaling of the rows makes A symmetric and positive
 //! definite, else by conjugate gradients on AᵀA·x = Aᵀb.
 //!
-//! **Symmetric.** Where all weights of a row outside the diagonal are the same, γᵢ > 0, and pairs of unknowns occur mutually,
-//! S = diag(1/γ)·A is symmetric: diag(aᵢᵢ/γᵢ) and a pattern of ones. It is solved by the method of Hestenes and Stiefel
-//! (1952), preconditioned by its diagonal, each coordinate by itself. A direction in which it bends the wrong way shows that S
-//! is not positive definite.
+//! **Symmetric.** Where all weights of a row outside the diagonal are equal, γᵢ > 0, and pairs of
+//! unknowns occur mutually, S = diag(1/γ)·A is symmetric: diag(aᵢᵢ/γᵢ) and a pattern of ones. It is
+//! solved by the method of Hestenes and Stiefel (1952), preconditioned by its diagonal, each
+//! coordinate alone. A direction of negative curvature shows that S is not positive definite.
 //!
 //! **General.** CGLS (Björck, *Numerical Methods for Least Squares Problems*, 1996, section 7.4) never breaks down; where A is
 //! singular it ends at the least squares solution that is nearest to where it started.

@@ -62,7 +62,7 @@ impl<'s> Neighbourhood<'s> {
     /// The neighbourhood of a vertex whose edges have some sharpness.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub(super) fn of_sharp(scheme: &'s dyn Scheme, sharp: SharpRing) -> Result<Self, LimitError> {
         let shape = RingShape {
             open: sharp.open,
@@ -203,7 +203,7 @@ impl<'s> Neighbourhood<'s> {
     /// Weights on the points after a refinement, as weights on those before it.
     ///
     /// # Errors
-    /// As for [`Self::row`].
+    /// Those of [`Self::row`].
     pub(super) fn pulled_back(&self, weights: &[f64]) -> Result<Vec<f64>, LimitError> {
         let mut before = vec![0.0; weights.len()];
         let is_family = self.scheme.loop_family().is_some();

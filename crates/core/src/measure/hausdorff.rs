@@ -1,7 +1,7 @@
 //! Symmetric Hausdorff distance by sampling (the paper's equations 14 to 16; Metro's sampling).
 //!
-//! Takes two surfaces; gives, for each direction, the greatest, mean and root-mean-square distance of samples of
-//! one to the other, measured exactly, and where the greatest was found.
+//! Takes two surfaces; gives, for each direction, the greatest, mean and root-mean-square distance
+//! of samples of one to the other, measured exactly, and the point of the greatest.
 
 use core::ops::Range;
 
@@ -16,12 +16,13 @@ use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled, unobserved
 use crate::vector::{DVec3, vector};
 
 options! {
-    /// How densely to sample.
+    /// The density of samples.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SamplingOptions {
-        /// Number of samples on each surface, spread over vertices, sides and insides of triangles. All vertices are
-        /// always taken and count; where they are nearly as many or more, a quarter of this number is still spread
-        /// over the rest of the surface. More than [`Self::MOST_SAMPLES`] count as that many.
+        /// Number of samples on each surface, spread over vertices, sides and insides of triangles.
+        /// All vertices are always taken and count; where they are nearly as many or more, a
+        /// quarter of this number is still spread over the rest of the surface. At most
+        /// [`Self::MOST_SAMPLES`] are used.
         pub samples: usize = 100_000,
     }
 }
@@ -115,7 +116,7 @@ pub fn hausdorff(
     hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`hausdorff`], telling an observer how it goes on.
+/// [`hausdorff`] with an observer.
 ///
 /// # Errors
 /// Those of [`hausdorff`], or the observer asked to stop.
@@ -132,7 +133,7 @@ pub fn hausdorff_observed(
     )?)
 }
 
-/// [`hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`hausdorff`] between surfaces with given hierarchies, for measuring several against one.
 pub fn hausdorff_between(
     surface: &Bvh<'_>,
     reference: &Bvh<'_>,
@@ -141,7 +142,7 @@ pub fn hausdorff_between(
     uncancelled(|observer| hausdorff_between_observed(surface, reference, options, observer))
 }
 
-/// [`hausdorff_between`], telling an observer how it goes on.
+/// [`hausdorff_between`] with an observer.
 ///
 /// # Errors
 /// The observer asked to stop.
@@ -262,7 +263,7 @@ pub fn distances_to(
     distances_to_observed(points, reference, &mut unobserved)
 }
 
-/// [`distances_to`], telling an observer how it goes on.
+/// [`distances_to`] with an observer.
 ///
 /// # Errors
 /// Those of [`distances_to`], or the observer asked to stop.

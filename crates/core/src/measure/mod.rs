@@ -1,6 +1,6 @@
 //! Measurement: distances between surfaces, watertightness, triangle quality.
 //!
-//! Takes [`Triangles`], manifold or not; knows nothing of how they came about.
+//! Takes [`Triangles`], manifold or not.
 
 mod bvh;
 mod certified;
@@ -28,7 +28,7 @@ use crate::mesh::Triangles;
 use crate::parallel;
 use crate::progress::Cancelled;
 
-/// Why something could not be measured.
+/// An error of a measurement.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {

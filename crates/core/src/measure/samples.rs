@@ -1,10 +1,10 @@
-//! Where a surface is sampled: all its vertices, points along the sides of its triangles by length, points in
-//! its triangles by area (Metro's three kinds; Cignoni, Rocchini, Scopigno 1998).
+//! The samples of a surface: all its vertices, points along the sides of its triangles by length,
+//! points in its triangles by area (Metro's three kinds; Cignoni, Rocchini, Scopigno 1998).
 //!
-//! The points are spread evenly and reproducibly rather than at random: sample k of m stands at the fraction
-//! (k + 1/2) / m of the total length or area, and inside its triangle at the k-th point of a low-discrepancy
-//! sequence (Roberts' R2, built on the plastic number). All kinds follow the order of the surface's tree, so that
-//! consecutive samples are near each other.
+//! The points are spread evenly and reproducibly rather than at random: sample k of m is at the
+//! fraction (k + 1/2) / m of the total length or area, and inside its triangle at the k-th point of
+//! a low-discrepancy sequence (Roberts' R2, built on the plastic number). All kinds follow the
+//! order of the surface's tree, so that consecutive samples are near each other.
 
 use core::ops::Range;
 

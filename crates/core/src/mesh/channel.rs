@@ -1,8 +1,9 @@
 //! Channels: the data that a mesh carries in addition to positions, such as texture coordinates,
 //! colours, weights of skins, materials.
 //!
-//! A channel is a table of values and, for each element of its domain, which of them it has. So that two corners at one vertex have
-//! one value is known from their indices, not guessed from numbers; where they differ, the channel has a *seam*.
+//! A channel is a table of values and, for each element of its domain, the index of its value. Two
+//! corners at one vertex have one value if their indices are equal; where they differ, the channel
+//! has a *seam*.
 
 use thiserror::Error;
 
@@ -26,20 +27,20 @@ pub enum Domain {
 pub enum Semantic {
     /// Places on a texture.
     TextureCoordinates,
-    /// Red, green, blue, and how opaque, from 0 to 1.
+    /// Red, green, blue and opacity, from 0 to 1.
     Colour,
-    /// How much a joint of a skin moves a vertex.
+    /// The weight of a skin's joint at a vertex.
     SkinWeight,
-    /// How far a vertex of a morph target is from the base's.
+    /// The displacement of a morph target's vertex from the base's.
     Displacement,
     /// Numbers that name something: materials, groups, regions.
     Label,
-    /// Any other.
+    /// Any other meaning.
     Other,
 }
 
 impl Semantic {
-    /// How values of this kind are usually interpolated.
+    /// The usual interpolation of values of this kind.
     pub fn interpolation(self) -> Interpolation {
         match self {
             Self::TextureCoordinates => Interpolation::Smooth(SeamRule::Boundaries),
@@ -50,7 +51,7 @@ impl Semantic {
     }
 }
 
-/// How values between those of the control mesh come about.
+/// The interpolation of values between those of the control mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Interpolation {
@@ -63,8 +64,8 @@ pub enum Interpolation {
     Nearest,
 }
 
-/// Where smooth channels keep their values along seams: OpenSubdiv's face-varying modes. A kept
-/// value is that of the control mesh.
+/// The places along seams where smooth channels keep their values: OpenSubdiv's face-varying modes.
+/// A kept value is that of the control mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SeamRule {
@@ -72,16 +73,17 @@ pub enum SeamRule {
     None,
     /// At values that one face alone has.
     CornersOnly,
-    /// There, and where more than two values meet at a vertex, or two and a sharp edge.
+    /// As [`Self::CornersOnly`], and where more than two values meet at a vertex, or two and a
+    /// sharp edge.
     CornersPlus1,
-    /// There, and where a seam ends or one of two values is kept.
+    /// As [`Self::CornersPlus1`], and where a seam ends or one of two values is kept.
     CornersPlus2,
     /// Along all seams and boundaries, which stay straight from vertex to vertex.
     #[default]
     Boundaries,
 }
 
-/// How files hold the numbers of a channel.
+/// The storage of a channel's numbers in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Storage {
@@ -106,7 +108,7 @@ pub enum Storage {
     Uint32,
 }
 
-/// Values that a mesh carries.
+/// Values on the elements of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Channel {
@@ -122,16 +124,16 @@ pub struct Channel {
     pub values: Vec<f64>,
     /// By element of the domain, the number of its value.
     pub indices: Vec<u32>,
-    /// How values between those of the control mesh come about.
+    /// The interpolation between the values of the control mesh.
     pub interpolation: Interpolation,
-    /// How its file holds the numbers.
+    /// The storage in its file.
     pub storage: Storage,
     /// The name of each number where the values are [`Semantic::Label`]; empty where they have no
     /// names.
     pub labels: Vec<String>,
 }
 
-/// Why a channel does not fit its mesh.
+/// An error of a channel on its mesh.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ChannelError {
@@ -147,7 +149,7 @@ pub enum ChannelError {
         /// The kind of element.
         elements: &'static str,
     },
-    /// An index leads beyond the values.
+    /// An index is out of the values' range.
     #[error("channel {name} has index {index} at element {element}, but there are {count} values")]
     Index {
         /// The channel.
@@ -189,7 +191,7 @@ pub enum ChannelError {
     },
 }
 
-/// From which faces and corners of a soup those of a mesh are.
+/// The faces and corners of a soup of which those of a mesh are made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Trace {
@@ -202,7 +204,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// By corner of the mesh, the vertex of the soup that it was made of.
+    /// By corner of the mesh, its vertex in the soup.
     pub fn vertices(&self, soup: &PolygonSoup) -> Vec<u32> {
         self.corners
             .iter()
@@ -246,12 +248,12 @@ impl Channel {
         }
     }
 
-    /// How many values the table has.
+    /// The number of values of the table.
     pub fn value_count(&self) -> usize {
         self.values.len().checked_div(self.arity).unwrap_or(0)
     }
 
-    /// The value of an element of the domain; nothing if there is none.
+    /// The value of an element of the domain; empty if there is none.
     pub fn value(&self, element: usize) -> &[f64] {
         let index = self
             .indices
@@ -268,7 +270,7 @@ impl Channel {
         (1..self.indices.len()).all(|element| self.value(element) == self.value(0))
     }
 
-    /// Whether it has other values in other places of one face.
+    /// Whether its values differ within a face.
     pub fn varies_within_faces(&self) -> bool {
         self.domain != Domain::Face && !self.is_constant()
     }
@@ -276,7 +278,7 @@ impl Channel {
     /// Checks that the channel fits a mesh with these numbers of vertices, corners and faces.
     ///
     /// # Errors
-    /// Names the first index or value that does not.
+    /// The first index or value that does not fit.
     pub fn check(&self, vertices: usize, corners: usize, faces: usize) -> Result<(), ChannelError> {
         let (expected, elements) = match self.domain {
             Domain::Vertex => (vertices, "vertices"),
@@ -400,7 +402,8 @@ impl Channel {
         }
     }
 
-    /// The channel of a mesh as one of the mesh whose faces are parts of that one's: linear inside the faces that were divided.
+    /// The channel on a mesh whose faces are parts of the original's: linear inside the faces that
+    /// were divided.
     pub fn on_parts(&self, parts: &FaceParts, mesh: &Mesh) -> Self {
         if parts.is_empty() {
             return self.clone();

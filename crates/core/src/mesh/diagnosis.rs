@@ -2,21 +2,21 @@
 
 use core::fmt;
 
-/// How often something was found, and where first.
+/// The number of findings of a kind, and the first of them.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
-    /// How many there are.
+    /// The number of findings.
     pub count: usize,
     /// The first few, in the input's numbering and in ascending order.
     pub first: Vec<u32>,
 }
 
 impl Finding {
-    /// How many places a finding names.
+    /// The number of elements that a finding names.
     pub const NAMED: usize = 8;
 
-    /// Counts one more at `place`, which must not lie before an earlier one.
+    /// Counts one more at `place`, which must not be below an earlier one.
     pub fn add(&mut self, place: u32) {
         self.count += 1;
         if self.first.len() < Self::NAMED {
@@ -54,12 +54,12 @@ pub struct Diagnosis {
     pub welded_vertices: Finding,
     /// Faces with fewer than three corners, or whose corners fell together.
     pub collapsed_faces: Finding,
-    /// Polygons so far from flat that they cross themselves seen along their normal (no defect): their
-    /// triangles bridge them, but no choice of diagonals is free of folds.
+    /// Polygons that are not flat and cross themselves in the projection along their normal (no
+    /// defect): their triangles bridge them, but no choice of diagonals is free of folds.
     pub twisted_polygons: Finding,
     /// Faces with three different corners on one line.
     pub zero_area_faces: Finding,
-    /// Faces that repeat an earlier one, whichever way round.
+    /// Faces that repeat an earlier one, in either orientation.
     pub repeated_faces: Finding,
     /// Vertices in no face.
     pub isolated_vertices: Finding,
@@ -74,7 +74,8 @@ pub struct Diagnosis {
     pub non_manifold_edges: Finding,
     /// Vertices whose faces form several fans.
     pub bow_tie_vertices: Finding,
-    /// Tags that name no vertex or edge of the mesh, by their place among the input's tags (creases first).
+    /// Tags that name no vertex or edge of the mesh, by their index among the input's tags (creases
+    /// first).
     pub dropped_tags: Finding,
     /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by
     /// their vertices in the mesh. The caller of

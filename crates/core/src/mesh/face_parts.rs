@@ -1,8 +1,8 @@
-//! Faces divided in the middle of some of their edges, and which face each part came from.
+//! Faces divided in the middle of some of their edges, and the faces of which they are parts.
 //!
-//! Takes a mesh and the edges to divide, each with the place of its new vertex; gives the mesh with the parts of the faces
-//! on both sides. Points of the parts are found again on the whole faces by their barycentric coordinates,
-//! `b = Σ bᵢ cᵢ` with cᵢ those of the part's corners.
+//! Takes a mesh and the edges to divide, each with the position of its new vertex; gives the mesh
+//! with the parts of the faces on both sides. Points of the parts are found again on the whole
+//! faces by their barycentric coordinates, `b = Σ bᵢ cᵢ` with cᵢ those of the part's corners.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,8 @@ struct Part {
 /// The barycentric coordinates of a face's own corners.
 const WHOLE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Where the faces of a mesh came from some of whose faces were divided: undivided faces have the numbers of their wholes.
+/// The original face of each face of a mesh some of whose faces were divided. Undivided faces keep
+/// their numbers.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct FaceParts {
     /// By ascending face; faces that are whole are not among them.
@@ -35,7 +36,7 @@ impl FaceParts {
         self.parts.is_empty()
     }
 
-    /// The face of the mesh before that `face` is, or is a part of.
+    /// The original face of `face`, which is itself or the face that was divided.
     pub fn whole(&self, face: u32) -> u32 {
         self.part(face).map_or(face, |part| part.whole)
     }

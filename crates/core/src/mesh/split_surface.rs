@@ -1,7 +1,8 @@
 //! A surface whose vertices on sharp edges are repeated for each side, so that every vertex has one
 //! normal, as graphics cards and most files need.
 //!
-//! Takes a mesh and a normal for each of its corners; gives positions, normals and triangles, and which vertex of the mesh each is.
+//! Takes a mesh and a normal for each of its corners; gives positions, normals and triangles, and
+//! the vertex of the mesh for each.
 
 use std::collections::HashMap;
 
@@ -17,17 +18,17 @@ const ALIKE: f64 = 1e-6;
 pub struct SplitSurface {
     /// The positions of the mesh, then further copies of vertices with several sides.
     pub positions: Vec<[f64; 3]>,
-    /// One for each position.
+    /// The normal of each position.
     pub normals: Vec<[f64; 3]>,
-    /// The mesh's, in its order.
+    /// The triangles of the mesh, in its order.
     pub triangles: Vec<[u32; 3]>,
-    /// By position, the vertex of the mesh: itself, but for copies.
+    /// By position, the vertex of the mesh: itself, except for copies.
     pub sources: Vec<u32>,
 }
 
 impl SplitSurface {
-    /// The mesh with the normals that `normal` gives for the corners that half-edges leave. A vertex stands as often as its corners
-    /// have normals that differ; the first of them keeps its number.
+    /// The mesh with the normals that `normal` gives for the corners that half-edges leave. A
+    /// vertex is repeated for each different normal of its corners; the first keeps its number.
     pub fn new(mesh: &Mesh, normal: impl Fn(HalfEdgeId) -> [f64; 3]) -> Self {
         let count = mesh.vertex_count();
         let mut split = Self {

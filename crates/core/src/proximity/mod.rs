@@ -1,8 +1,8 @@
-//! How points lie to a limit surface: the closest point, certified, and whether a point is inside.
+//! The closest point of a limit surface, certified, and whether a point is inside.
 //!
 //! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is
 //! in the hull of control points ([`pieces`]), so that no point of it is farther from the triangle
-//! of its limit corners than the hull's points are; boxes of hulls stand in a tree. A search
+//! of its limit corners than the hull's points are; boxes of hulls are in a tree. A search
 //! ([`nearest`]) skips a box by its distance, and where the squared distance bends little over a
 //! piece ([`convexity`]), its value and derivatives at one place bound it. The winding number
 //! decides whether a point is inside ([`winding`]).
@@ -38,11 +38,11 @@ const NEAR: f64 = 1e-9;
 /// The least part of the surface's size that a tolerance can be: smaller ones are within rounding.
 const LEAST_TOLERANCE: f64 = 1e-13;
 
-/// Why there is nothing to be near to.
+/// An error of proximity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProximityError {
-    /// A bound is known for schemes of Loop's family alone.
+    /// Bounds exist only for schemes of Loop's family.
     #[error("closest points are found on surfaces of the Loop family, not of the scheme '{name}'")]
     Scheme {
         /// The scheme's name.
@@ -51,7 +51,7 @@ pub enum ProximityError {
     /// A mesh without faces has no surface.
     #[error("the control mesh has no faces")]
     Empty,
-    /// Some stencil failed.
+    /// A limit stencil failed.
     #[error(transparent)]
     Limit(#[from] crate::limit::LimitError),
     /// An open surface has no inside.
@@ -64,7 +64,7 @@ pub enum ProximityError {
         /// Where it ends.
         to: u32,
     },
-    /// A point that is none.
+    /// A point is not finite.
     #[error("point {index} is not finite: ({}, {}, {})", .point[0], .point[1], .point[2])]
     NotFinite {
         /// Which of those that were given.
@@ -83,7 +83,7 @@ pub enum ProximityError {
         /// Its coordinates.
         point: [f64; 3],
     },
-    /// A tolerance that is none.
+    /// A tolerance is out of range.
     #[error("the tolerance must be a length above 0, but is {tolerance}")]
     Tolerance {
         /// The given value.
@@ -98,9 +98,9 @@ pub enum ProximityError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest {
-    /// Where it is, in the control mesh's units.
+    /// Its position, in the control mesh's units.
     pub point: [f64; 3],
-    /// The control face that it is on.
+    /// Its control face.
     pub face: FaceId,
     /// The weights of that face's corners.
     pub barycentric: [f64; 3],
@@ -110,18 +110,18 @@ pub struct Closest {
     pub lower: f64,
 }
 
-/// Where a point is, as seen from a closed surface.
+/// The position of a point relative to a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Membership {
     /// The surface winds around it.
     Inside,
-    /// It does not.
+    /// The surface does not wind around it.
     Outside,
-    /// It is within some 1e-9 of the surface's size of the surface, or no number.
+    /// It is within about 1e-9 of the surface's size of the surface, or NaN.
     Near,
 }
 
-/// A limit surface that is prepared for questions about points.
+/// A limit surface, prepared for queries of points.
 ///
 /// ```
 /// use limitmesh::{LimitSurface, Membership, Mesh, Proximity, scheme::Loop};
@@ -159,7 +159,7 @@ impl<'a> Proximity<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
     /// Those of [`Self::new`], or the observer asked to stop.
@@ -224,11 +224,12 @@ impl<'a> Proximity<'a> {
         self.surface
     }
 
-    /// The closest points of the surface to given ones, in their order, on all threads; each distance is within the tolerance (a length in
-    /// the control mesh's unit) of the least. Below some 1e-13 of the surface's size, tolerances are that.
+    /// The closest points of the surface to given ones, in their order, on all threads; each
+    /// distance is within the tolerance (a length in the control mesh's unit) of the least. The
+    /// least tolerance is about 1e-13 of the surface's size.
     ///
-    /// A point with many equally close ones, such as the middle of a sphere, takes long: the whole surface is looked at, in pieces that
-    /// are off by less than the tolerance.
+    /// A point with many equally close ones, such as the middle of a sphere, takes long: the search
+    /// visits the whole surface, in pieces with an error below the tolerance.
     ///
     /// # Errors
     /// A point or the tolerance is not finite, or the tolerance is not above 0.
@@ -240,7 +241,7 @@ impl<'a> Proximity<'a> {
         self.closest_observed(points, tolerance, &mut unobserved)
     }
 
-    /// [`Self::closest`], telling an observer how it goes on.
+    /// [`Self::closest`] with an observer.
     ///
     /// # Errors
     /// Those of [`Self::closest`], or the observer asked to stop.
@@ -279,7 +280,8 @@ impl<'a> Proximity<'a> {
         }
     }
 
-    /// How often a closed surface winds around a point, counter-clockwise as seen from outside; `None` where the point is too near to say.
+    /// The winding number of a closed surface around a point, counter-clockwise as seen from
+    /// outside; `None` where the point is too near to decide.
     ///
     /// # Errors
     /// The surface is open, or the point is not finite.
@@ -289,10 +291,10 @@ impl<'a> Proximity<'a> {
         Ok(chains.winding_number(self, self.frame.inside(vector(point))))
     }
 
-    /// Where a point is: inside if the surface winds around it, whichever way its normals point.
+    /// Whether a point is inside: the surface winds around it, whichever way its normals point.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`].
+    /// Those of [`Self::winding_number`].
     pub fn membership(&self, point: [f64; 3]) -> Result<Membership, ProximityError> {
         Ok(match self.winding_number(point)? {
             None => Membership::Near,
@@ -304,7 +306,7 @@ impl<'a> Proximity<'a> {
     /// [`Self::membership`] of many points, in their order, on all threads.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`].
+    /// Those of [`Self::winding_number`].
     pub fn memberships(&self, points: &[[f64; 3]]) -> Result<Vec<Membership>, ProximityError> {
         uncancelled(
             |observer| match self.memberships_observed(points, observer) {
@@ -314,7 +316,7 @@ impl<'a> Proximity<'a> {
         )
     }
 
-    /// [`Self::memberships`], telling an observer how it goes on.
+    /// [`Self::memberships`] with an observer.
     ///
     /// # Errors
     /// Those of [`Self::winding_number`], or the observer asked to stop.

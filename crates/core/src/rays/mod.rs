@@ -1,8 +1,9 @@
-//! Where rays meet a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision Surfaces", 1998).
+//! The hits of rays on a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision
+//! Surfaces", 1998).
 //!
 //! Their envelopes of the control mesh become hulls of pieces: a ray that misses the hull of a
 //! piece's control points misses the piece. A regular piece whose projection along the ray is
-//! injective ([`planar`]) is met once at most, and Newton's method finds where; any other is
+//! injective ([`planar`]) is met once at most, and Newton's method finds the hit; any other is
 //! divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing
 //! else is skipped, so no hit is missed. Boxes of pieces are in a tree.
 
@@ -32,9 +33,9 @@ const TOLERANCE: f64 = 1e-10;
 /// A half line: all `origin + t · direction` with t from 0 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins, in the control mesh's units.
+    /// The origin, in the control mesh's units.
     pub origin: [f64; 3],
-    /// Where it goes, of any length but 0.
+    /// The direction, of any length but 0.
     pub direction: [f64; 3],
 }
 
@@ -62,7 +63,7 @@ impl Default for RayOptions {
 }
 
 impl RayOptions {
-    /// The range of t that counts.
+    /// Sets the range of t that counts.
     pub fn between(self, from: f64, to: f64) -> Self {
         Self { from, to, ..self }
     }
@@ -76,15 +77,15 @@ impl RayOptions {
     }
 }
 
-/// How a ray meets a surface.
+/// The kind of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Crossing {
     /// Through the front, where a face's corners run counter-clockwise.
     Entering,
     /// Through the back.
     Leaving,
-    /// It touches the surface, or comes within a few tolerances of it, or crosses it and back within so little; or it meets a vertex at
-    /// which the surface has no tangent plane.
+    /// It touches the surface, or comes within a few tolerances of it, or crosses it and back
+    /// within this distance; or it meets a vertex at which the surface has no tangent plane.
     Grazing,
 }
 
@@ -92,25 +93,25 @@ pub enum Crossing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
-    /// How far along the ray, in lengths of its direction.
+    /// The distance along the ray, in lengths of its direction.
     pub t: f64,
     /// The control face, one of those that share the point.
     pub face: FaceId,
-    /// Where on it, as weights of its corners.
+    /// The place on the face, as weights of its corners.
     pub barycentric: [f64; 3],
     /// The point of the surface, in the control mesh's units.
     pub position: [f64; 3],
     /// The surface's unit normal there, on the side of the face; zero where there is none.
     pub normal: [f64; 3],
-    /// How it is met.
+    /// The kind of the hit.
     pub crossing: Crossing,
 }
 
-/// Why rays cannot be followed.
+/// An error of rays.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {
-    /// Hulls are known for schemes of Loop's family alone.
+    /// Hulls exist only for schemes of Loop's family.
     #[error("rays are followed to surfaces of the Loop family, not of the scheme '{name}'")]
     Scheme {
         /// The scheme's name.
@@ -158,7 +159,7 @@ impl<'a> RayCaster<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
     /// Those of [`Self::new`], or the observer asked to stop.
@@ -200,8 +201,8 @@ impl<'a> RayCaster<'a> {
     }
 
     /// All points where a ray meets the surface, in their order along it. None is missed; a hit on
-    /// an edge or a vertex is reported once. Rays without a direction, or that are not finite, meet
-    /// nothing.
+    /// an edge or a vertex is reported once. Rays without a direction, or that are not finite, have
+    /// no hits.
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Vec<Hit> {
         let Some((search, tolerance)) = self.searched(ray, options, false) else {
             return Vec::new();
@@ -227,7 +228,7 @@ impl<'a> RayCaster<'a> {
         uncancelled(|observer| self.first_of_all_observed(rays, options, observer))
     }
 
-    /// [`Self::first_of_all`], telling how it goes on.
+    /// [`Self::first_of_all`] with an observer.
     ///
     /// # Errors
     /// It was cancelled.
@@ -246,7 +247,7 @@ impl<'a> RayCaster<'a> {
         uncancelled(|observer| self.intersections_of_all_observed(rays, options, observer))
     }
 
-    /// [`Self::intersections_of_all`], telling how it goes on.
+    /// [`Self::intersections_of_all`] with an observer.
     ///
     /// # Errors
     /// It was cancelled.
@@ -313,11 +314,11 @@ impl<'a> RayCaster<'a> {
 }
 
 impl LimitSurface<'_> {
-    /// All points where a ray meets the surface, as [`RayCaster::intersections`] gives them: for a few rays, since all is prepared for
-    /// each anew.
+    /// All points where a ray meets the surface, as by [`RayCaster::intersections`]: for a few
+    /// rays, since each call prepares the search anew.
     ///
     /// # Errors
-    /// As for [`RayCaster::new`].
+    /// Those of [`RayCaster::new`].
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Result<Vec<Hit>, RayError> {
         Ok(RayCaster::new(self)?.intersections(ray, options))
     }

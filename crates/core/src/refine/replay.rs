@@ -25,7 +25,7 @@ use build::{Control, build};
 use table::{LANES, Table, average};
 use wanted::Wants;
 
-/// Why there is no replay.
+/// An error of a replay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
@@ -57,7 +57,7 @@ pub enum ReplayError {
         /// The control face, or one like it.
         face: u32,
     },
-    /// A frame is none of the control mesh's.
+    /// A frame does not fit the control mesh.
     #[error("frame {frame}: {why}")]
     Frame {
         /// Its number, from 0.
@@ -65,7 +65,7 @@ pub enum ReplayError {
         /// The cause.
         why: MeshError,
     },
-    /// A frame's surface takes too many triangles.
+    /// A frame's surface needs too many triangles.
     #[error("frame {frame} would take more than {most} triangles")]
     TooMany {
         /// Its number, from 0.
@@ -129,9 +129,9 @@ pub struct Replay {
 pub struct Frame {
     /// Points of the limit surface, by the refined mesh's vertices.
     pub positions: Vec<[f64; 3]>,
-    /// Unit limit normals as in [`Exact::normals`].
+    /// Unit limit normals; see [`Exact::normals`].
     pub normals: Vec<[f64; 3]>,
-    /// Normals by side as in [`Exact::sides`].
+    /// Normals by side; see [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,
     /// Memory that is used again.
     slots: [Vec<[f64; 3]>; 2],
@@ -140,17 +140,19 @@ pub struct Frame {
 
 impl Replay {
     /// Prepares a replay of `refined`, a refinement of `control`: with
-    /// [origins](super::ExactOptions::origins), and without [flat regions](super::ExactOptions::flat_regions), which bend when the
-    /// control mesh does. The positions of `control` mean nothing. Vertices that were moved off the surface, to
-    /// [balance](super::ExactOptions::balance) its distance, stand on it in every frame.
+    /// [origins](super::ExactOptions::origins), and without
+    /// [flat regions](super::ExactOptions::flat_regions), which bend when the control mesh does.
+    /// The positions of `control` are ignored. Vertices that were moved off the surface, to
+    /// [balance](super::ExactOptions::balance) its distance, are on it in every frame.
     ///
     /// # Errors
-    /// A scheme outside the Loop family, a refinement whose vertices have no place in the control mesh, or a vertex without a limit.
+    /// A scheme outside the Loop family, a refinement whose vertices have no origins in the control
+    /// mesh, or a vertex without a limit.
     pub fn new(control: &Mesh, scheme: &dyn Scheme, refined: &Exact) -> Result<Self, ReplayError> {
         Self::new_observed(control, scheme, refined, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
     /// Those of [`Self::new`], or the observer asked to stop.
@@ -203,8 +205,9 @@ impl Replay {
         })
     }
 
-    /// The positions and normals of the refined mesh, given those of the control vertices. The results are the same bytes for any
-    /// number of threads, and whatever `frame` held.
+    /// The positions and normals of the refined mesh, given those of the control vertices. The
+    /// bytes of the results depend neither on the number of threads nor on the previous contents of
+    /// `frame`.
     ///
     /// # Errors
     /// Not as many positions as control vertices, or a coordinate that is not finite.
@@ -229,7 +232,7 @@ impl Replay {
     /// [`Self::frame`] without normals, which are left as they are.
     ///
     /// # Errors
-    /// As for [`Self::frame`].
+    /// Those of [`Self::frame`].
     pub fn positions(&self, control: &[[f64; 3]], frame: &mut Frame) -> Result<(), ReplayError> {
         self.fill(control, frame, false)
     }
@@ -276,7 +279,7 @@ impl Replay {
         Ok(())
     }
 
-    /// Bytes of all that is kept between frames.
+    /// Bytes of the data kept between frames.
     pub fn table_bytes(&self) -> usize {
         let of_groups = |groups: &Groups| {
             groups

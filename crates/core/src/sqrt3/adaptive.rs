@@ -1,4 +1,5 @@
-//! Adaptive √3-subdivision: the worst triangle first, until all are good enough or there are as many as there may be.
+//! Adaptive √3-subdivision: the worst triangle first, until all are good enough or the cap is
+//! reached.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -32,7 +33,7 @@ pub struct Sqrt3 {
     /// The greatest distance of samples of the limit surface from the triangles that approximate
     /// it: **estimated**, not proven. `None` if only angles were goals.
     pub estimated_distance: Option<f64>,
-    /// How many times over the worst triangle fails the goals on quality; 0 without any.
+    /// The greatest ratio of a triangle's error to the goals on quality; 0 without any.
     pub worst: f64,
     /// Why the refinement ended.
     pub stop: ExactStop,
@@ -66,7 +67,7 @@ pub fn adaptive(control: &Mesh, options: &Sqrt3Options) -> Result<Sqrt3, RefineE
     adaptive_observed(control, options, &mut unobserved)
 }
 
-/// [`adaptive`], telling an observer how it goes on.
+/// [`adaptive`] with an observer.
 ///
 /// # Errors
 /// Those of [`adaptive`], or the observer asked to stop.

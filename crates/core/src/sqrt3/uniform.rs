@@ -24,7 +24,7 @@ pub fn uniform(mesh: &Mesh, options: &UniformOptions) -> Result<Refinement, Refi
     uniform_observed(mesh, options, &mut unobserved)
 }
 
-/// [`uniform`], telling an observer how it goes on.
+/// [`uniform`] with an observer.
 ///
 /// # Errors
 /// Those of [`uniform`], or the observer asked to stop.

@@ -125,7 +125,7 @@ impl<'a> Bvh<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
     /// No triangles, an index out of range, a coordinate that is not finite, or the observer asked to stop.

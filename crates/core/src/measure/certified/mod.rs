@@ -1,9 +1,9 @@
 //! The Hausdorff distance between two triangle meshes, bounded from both sides.
 //!
-//! Takes any two sets of triangles; gives for each direction an interval that the true greatest distance certainly
-//! lies in, and the place where its lower end is attained. Branch and bound: [`search`] keeps the farthest point
-//! found and splits triangles until none of their pieces can be farther away by more than the gap; [`piece`] and
-//! [`cover`] bound the distance of a piece from above.
+//! Takes any two sets of triangles; gives for each direction a proven interval of the greatest
+//! distance, and the place where its lower end is attained. Branch and bound: [`search`] keeps the
+//! farthest point found and splits triangles until none of their pieces can be farther away by more
+//! than the gap; [`piece`] and [`cover`] bound the distance of a piece from above.
 //!
 //! *Rounding.* Lower ends are distances of points by the hierarchy, less the errors of the search
 //! and the points; upper ends never rest on a search, only on points that lie on the other surface,
@@ -38,12 +38,13 @@ use search::Search;
 pub(crate) use target::Target;
 
 options! {
-    /// How narrow the interval is to be.
+    /// The requested width of the interval, and the most work.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CertifiedOptions {
-        /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
-        /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
-        /// allows (about 1e-10 of the surfaces' size) as that.
+        /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the
+        /// default: a millionth of the diagonal of the reference's bounding box. Negative numbers
+        /// and NaN count as 0, and values below the rounding error (about 1e-10 of the surfaces'
+        /// size) as that.
         pub gap: Option<f64> = None,
         /// An interval is narrow enough if no wider than this share of the lower bound; 0.01 by
         /// default. Negative numbers and NaN count as 0.
@@ -166,7 +167,7 @@ pub fn certified_hausdorff(
     certified_hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`certified_hausdorff`], telling an observer how it goes on.
+/// [`certified_hausdorff`] with an observer.
 ///
 /// # Errors
 /// Those of [`certified_hausdorff`], or the observer asked to stop.
@@ -181,7 +182,8 @@ pub fn certified_hausdorff_observed(
     certified_hausdorff_between_observed(&surface, &reference, options, observer)
 }
 
-/// [`certified_hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`certified_hausdorff`] between surfaces with given hierarchies, for measuring several against
+/// one.
 ///
 /// # Errors
 /// A surface with more than 2^32 / 3 triangles or with a coordinate beyond 1e300.
@@ -193,7 +195,7 @@ pub fn certified_hausdorff_between(
     certified_hausdorff_between_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`certified_hausdorff_between`], telling an observer how it goes on.
+/// [`certified_hausdorff_between`] with an observer.
 ///
 /// # Errors
 /// Those of [`certified_hausdorff_between`], or the observer asked to stop.

@@ -2,7 +2,7 @@
 //!
 //! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero
 //! area, connect and orient the faces, turn components that are inside out, cut where the surface
-//! is not a manifold, carry the tags over. Each step counts what it found in the [`Diagnosis`]. All
+//! is not a manifold, carry the tags over. Each step counts its findings in the [`Diagnosis`]. All
 //! of them take time proportional to the input, or n log n, but for polygons of tens of thousands
 //! of corners, which may take n^1.5.
 
@@ -27,7 +27,7 @@ use retag::VertexMaps;
 use triangulate::{Faces, Flatness};
 pub use weld::weld_within;
 
-/// Which vertices are merged before connecting the faces.
+/// The vertices that are merged before connecting the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Weld {
@@ -37,21 +37,22 @@ pub enum Weld {
     #[default]
     Exact,
     /// Vertices within this distance of each other, in the mesh's units. A chain of vertices, each
-    /// within the distance of the next, becomes one vertex however long the chain; it stands where
-    /// the first of them in the input's order stood.
+    /// within the distance of the next, becomes one vertex however long the chain; it has the
+    /// position of the first of them in the input's order.
     Within(f64),
 }
 
 options! {
-    /// How a mesh is built from a soup.
+    /// The options of building a mesh from a soup.
     #[derive(Clone, Copy, Debug)]
     pub struct BuildOptions {
-        /// Which vertices are merged.
+        /// The vertices that are merged.
         pub weld: Weld = Weld::Exact,
-        /// Refuse instead of repairing.
+        /// Whether to refuse instead of repairing.
         pub strict: bool = false,
-        /// Leave all faces the way round that they are, where that says which side is seen: neighbours that disagree are cut apart instead of
-        /// turned, and closed components whose normals point inwards are left so.
+        /// Whether to keep the orientation of all faces, for surfaces whose visible side depends on
+        /// it: neighbours that disagree are cut apart instead of turned, and closed components
+        /// whose normals point inwards stay so.
         pub keep_windings: bool = false,
     }
 }
