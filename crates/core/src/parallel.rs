@@ -234,7 +234,7 @@ pub(crate) fn asking<I: IntoIterator>(
 /// [`sort_polled`] of a block, which leaves the items as they may be where they are of no use any more.
 pub(crate) fn sort_asking<T: Send + Sync + Ord>(items: &mut [T], is_stopped: &IsStopped<'_>) {
     let poll = &mut |_| if is_stopped() { Err(Cancelled) } else { Ok(()) };
-    // Who stops knows that.
+    // The caller that stops handles that.
     let _ = sort_polled(items, poll, T::cmp);
 }
 
@@ -406,7 +406,7 @@ struct Blocks<I, R> {
 struct BlocksState<I, R> {
     /// Blocks that no thread has begun.
     left: core::iter::Enumerate<I>,
-    /// Results by number of block, in the order in which they came about.
+    /// Results by number of block, in the order of completion.
     results: Vec<(usize, R)>,
     /// Working threads, without the calling one.
     working: usize,

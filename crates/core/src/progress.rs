@@ -102,7 +102,7 @@ impl fmt::Display for Stage {
 /// A callback that receives progress and decides whether to go on.
 pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + 'a;
 
-/// The observer of those who do not watch.
+/// The observer that does nothing.
 pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
@@ -119,7 +119,7 @@ pub(crate) struct Watch<'a> {
 }
 
 impl<'a> Watch<'a> {
-    /// Begins with `stage`, of which nothing is done.
+    /// Begins with `stage`, with no unit done.
     pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
         Self {
             observer,

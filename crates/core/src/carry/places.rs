@@ -43,7 +43,7 @@ impl<'a> Places<'a> {
             result,
             parents: result.parents(),
         };
-        // Without a way out of the loops several are looked at together.
+        // Without an early exit, several loops run together.
         let last_parent = places.parents.iter().copied().max();
         let last_origin = result.origins().iter().map(|origin| origin.face).max();
         if last_parent

@@ -10,7 +10,7 @@ use crate::mesh::{Channel, CornerTag, CreaseTag, Mesh, MeshError, SeamRule, Shar
 
 /// The mesh of a channel, and the number of each of its vertices' values.
 pub(super) struct ValueMesh {
-    /// Without values: all vertices stand at zero.
+    /// Without values: all vertices are at zero.
     pub(super) mesh: Mesh,
     /// By vertex, the channel's value.
     pub(super) values: Vec<u32>,

@@ -13,7 +13,7 @@ use crate::refine::Origin;
 /// In place of a value's number: at this vertex there may be several.
 const SEVERAL: u32 = u32::MAX;
 
-/// The values of a channel: where they are to be found, and who has them.
+/// The values of a channel: their sources and their vertices.
 pub(super) struct Sites<'a> {
     /// A value's number by corner.
     pub(super) indices: Vec<u32>,

@@ -236,7 +236,7 @@ impl Bent {
 }
 
 impl BentFour {
-    /// Parts of which nothing is known.
+    /// Parts without bounds.
     pub(crate) const UNKNOWN: Self = Self {
         bends: [[[0.0; FOUR]; 3]; 3],
         rest: [f32::INFINITY; FOUR],

@@ -56,9 +56,10 @@
 //! (`lasting_twin` in [`crate::patch`]). As its corners may be R from those of T, T counts as one
 //! whose corners were moved ([`Deviation::off`]).
 //!
-//! Elsewhere Ŝ is the point of T nearest to S, and for curves the nearest of the edge: then R is the own bound, nothing
-//! drifts, and there is no slope. That holds for any piece, and helps where slopes are too great. The own bound is then
-//! that of a sphere round a corner of T that holds the control points.
+//! Elsewhere Ŝ is the point of T nearest to S, and for curves the nearest of the edge: then R is
+//! the own bound, there is no tangential displacement, and no slope. That holds for any piece, and
+//! helps where slopes are too great. The own bound is then that of a sphere round a corner of T
+//! that holds the control points.
 //!
 //! So the greatest of the least of both bounds over all triangles bounds the distance of mesh and surface, both
 //! ways. θ and the neighbours' angles are those of the mesh as it is emitted.

@@ -1,4 +1,5 @@
-//! All parts of a regular piece that a number of divisions into four gives, tested at once, row by row.
+//! All parts of a regular piece that a number of divisions into four gives, tested together, row by
+//! row.
 //!
 //! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the
 //! quadratic part by each part's own plane, the rest by one bound for all parts, which shrinks with
@@ -46,7 +47,7 @@ pub(crate) enum Mark {
     Passes,
     /// Not within the target for sure.
     Fails,
-    /// To be looked at by itself.
+    /// To be tested alone.
     Open,
 }
 
@@ -62,7 +63,8 @@ pub(crate) struct RowTarget {
     pub(crate) tilt: f64,
     /// The least tangent of the angles of the adjacent triangles.
     pub(crate) slope: f64,
-    /// Drifts over an edge may have so much of the least of 1 and the tangents of a part's own angles there ([`TriangleFrame::slope_at`]).
+    /// The share of the least of 1 and the tangents of a part's own angles that tangential
+    /// displacements over an edge may have ([`TriangleFrame::slope_at`]).
     ///
     /// [`TriangleFrame::slope_at`]: super::triangle_frame::TriangleFrame::slope_at
     pub(crate) drift_share: f64,
@@ -275,7 +277,7 @@ impl<'a> RowBlock<'a> {
         (levels(least), levels(most))
     }
 
-    /// How high over the quadratic part the surface may stand over a part.
+    /// A bound of the height of the surface over the quadratic part.
     fn rest(&self, step: f64) -> f64 {
         let cube = step * step * step;
         self.height[0] * cube + self.height[1] * cube * step
@@ -438,7 +440,7 @@ impl Between {
         self.upward.fill(vv, [u, v], (step, count + 1), factor);
     }
 
-    /// The parts between two rows that stand upright, or those on their heads.
+    /// The parts between two rows: the upright ones, or the inverted ones.
     fn parts<'r>(
         &'r self,
         lower: &'r CornerRow,

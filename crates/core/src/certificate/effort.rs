@@ -55,7 +55,7 @@ impl Effort {
         }
     }
 
-    /// The triangle's own frame, if points can be looked at from there.
+    /// The triangle's own frame, if it can represent points.
     pub(super) fn seen_from(&self, frame: &TriangleFrame) -> Option<TrilinearFrame> {
         let has_neighbours = !self.rim_alone && self.open == [false; 3];
         has_neighbours.then(|| TrilinearFrame::of(frame)).flatten()

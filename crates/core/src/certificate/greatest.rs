@@ -1,8 +1,9 @@
 //! The greatest bounds of points over a triangle that has a plane and neighbours all round, by
 //! their heights and trilinear coordinates.
 //!
-//! Most points of the surface stand inside the lines of all edges: only where the greatest coordinates do not are they looked at one after the
-//! other. Points of curves over edges are taken four at a time.
+//! Most points of the surface are inside the lines of all edges: only where the greatest
+//! coordinates are not, points are tested one after the other. Points of curves over edges are
+//! taken four at a time.
 
 use core::array::from_fn;
 
@@ -60,7 +61,7 @@ pub(super) fn of_net(
     for edge in 0..3 {
         let [start, second, middle, fourth, end] = EDGES[edge];
         greatest.most([second, middle, fourth].map(|at| points[at]));
-        // The triangle's own corners are on the surface, but for rounding.
+        // The triangle's own corners are on the surface, except for rounding.
         if !matches!(corners[edge], Corner::Own) {
             greatest.most([points[start]]);
         }
@@ -152,7 +153,7 @@ impl<'a> Greatest<'a> {
         }
     }
 
-    /// Heights of points, and where those of the surface stand to the edges.
+    /// Heights of points, and the positions of the surface's points relative to the edges.
     #[inline(always)]
     fn most<const N: usize>(&mut self, points: [Trilinear; N]) {
         self.most = points
@@ -160,14 +161,14 @@ impl<'a> Greatest<'a> {
             .fold(self.most, |most, point| most.fast_max(with_size(point)));
     }
 
-    /// Whether one of these may stand outside an edge.
+    /// Whether one of these may be outside an edge.
     #[inline]
     fn is_beside(&self) -> bool {
         let (_, outside) = Trilinear(self.most).split();
         outside.iter().any(|&outside| outside > self.frame.on_edge)
     }
 
-    /// A point of the surface that may stand outside an edge.
+    /// Adds a point of the surface that may be outside an edge.
     #[inline]
     fn beside(&mut self, point: Trilinear) {
         let on_edge = self.frame.on_edge;

@@ -12,7 +12,7 @@ use super::{exceeds, greater};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::{Blend, DVec3, hypotenuse};
 
-/// A point that a bound looks at, in space or from its triangle.
+/// A point of a bound, in space or relative to its triangle.
 pub(super) trait HullPoint: Blend {
     /// The triangle, prepared for such points.
     type Frame;
@@ -29,7 +29,7 @@ pub(super) trait HullPoint: Blend {
     /// Height over the triangle's plane.
     fn height(self, frame: &Self::Frame) -> f64;
 
-    /// Where the point stands to an edge.
+    /// The position of the point relative to an edge.
     fn beside(self, frame: &Self::Frame, edge: usize) -> EdgePosition;
 
     /// Squared distance to the triangle.

@@ -39,7 +39,7 @@ pub(crate) use quartic_cell::{BesideEdges, Cell, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 
-/// Whether a value is not known to be within a limit: also where either is not a number.
+/// Whether a value is not known to be within a limit: also where either is NaN.
 #[inline]
 #[expect(
     clippy::neg_cmp_op_on_partial_ord,
@@ -49,7 +49,7 @@ pub(crate) fn exceeds(value: f64, limit: f64) -> bool {
     !(value <= limit)
 }
 
-/// The greater of two, infinite where either is not a number.
+/// The greater of two, infinite where either is NaN.
 #[inline]
 fn greater(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {

@@ -36,7 +36,7 @@ impl NetPart {
         Self::of(net, part, ALL)
     }
 
-    /// The net, whose corners may stand in another order than the part's.
+    /// The net, whose corners may be in another order than the part's.
     pub(crate) fn net(&self) -> &BezierTriangle {
         &self.net
     }

@@ -1,7 +1,8 @@
-//! Points of a piece of any limit surface, and how far a triangle is from them: an estimate where nothing is certain.
+//! Points of a piece of any limit surface, and a triangle's distance from them: an estimate where
+//! there is no proof.
 //!
-//! The piece is refined a few times, and the limits of its vertices are taken. They stand on a lattice of barycentric
-//! coordinates, so that those over each part of the piece are known exactly.
+//! The piece is refined a few times, and the limits of its vertices are taken. They are on a
+//! lattice of barycentric coordinates, so that those over each part of the piece are known exactly.
 
 use super::deviation::Deviation;
 use super::hull_points::DeviationBound;

@@ -22,11 +22,11 @@ const HOPELESS: f64 = 1.5;
 /// A part of a refinement by its number, the sub-part, and its edges relative to the triangle.
 type PartOf = (usize, SubTriangle, Borders);
 
-/// A refined piece, whose parts a bound looks at as they are at hand.
+/// A refined piece, whose parts a bound uses as they exist.
 pub(super) trait Parts<P: HullPoint> {
     fn is_regular(&self, part: usize) -> bool;
 
-    /// Looks at a part.
+    /// Bounds a part.
     fn look(&self, search: &mut Search<'_, P>, part: PartOf, depth: usize);
 }
 
@@ -82,7 +82,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// A piece as it is seen.
+    /// A piece relative to the triangle.
     pub(super) fn seen(&self, piece: &ExtraordinaryPatch) -> ExtraordinaryPatch<P> {
         piece.map(|point| P::of(self.bound.frame, point))
     }
@@ -96,7 +96,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         );
     }
 
-    /// A part of a piece that nothing is derived from yet.
+    /// A part of a piece without derived data.
     pub(super) fn part(
         &mut self,
         patch: &Patch,
@@ -127,7 +127,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// A part of a refinement, as it is at hand.
+    /// A part of a refinement, as it exists.
     pub(super) fn refined(&mut self, refined: &impl Parts<P>, part: PartOf, depth: usize) {
         if self.counts(part.2) {
             refined.look(self, part, depth);

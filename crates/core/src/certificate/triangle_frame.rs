@@ -35,7 +35,7 @@ pub(crate) struct TriangleFrame {
     least_slope: f64,
 }
 
-/// Where a point stands to an edge, within the triangle's plane.
+/// The position of a point relative to an edge, within the triangle's plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EdgePosition {
     /// How far outside the edge's line; 0 inside.
@@ -91,7 +91,7 @@ impl TriangleFrame {
             DVec3::ZERO
         };
         if sine < SLIVER && normal != DVec3::ZERO {
-            // Rounding must not tilt a sliver along its length.
+            // Rounding must not turn the normal of a sliver along its length.
             let longest = (1..3).fold(0, |longest, edge| {
                 if lengths[edge] > lengths[longest] {
                     edge
@@ -163,7 +163,7 @@ impl TriangleFrame {
         self.normal.dot(point - self.corners[0])
     }
 
-    /// Where a point stands to the edge from corner `edge`.
+    /// The position of a point relative to the edge from corner `edge`.
     #[inline]
     pub(crate) fn beside(&self, edge: usize, point: DVec3) -> EdgePosition {
         let offset = point - self.corners[edge];
@@ -204,7 +204,7 @@ impl TriangleFrame {
         closest_to_origin(a, b, c).squared
     }
 
-    /// Tangent of the least angle; 0 or not a number for a triangle without area.
+    /// Tangent of the least angle; 0 or NaN for a triangle without area.
     #[inline]
     pub(crate) fn least_slope(&self) -> f64 {
         self.least_slope

@@ -97,8 +97,8 @@ impl LimitNormal {
         if levels < 64.0 { levels as usize } else { 64 }
     }
 
-    /// The least angle that any triangle in a region may have: infinite where all look away. Never less for a region
-    /// within another.
+    /// The least angle that any triangle in a region may have: infinite where all face away. Never
+    /// less for a region within another.
     ///
     /// With a view it is equation (11)'s, but not below α itself: a viewer never needs more
     /// triangles than no viewer, and refinement ends at silhouettes. Only a dilatation above 1

@@ -74,7 +74,8 @@ impl Criteria {
         self.cone.map_or(usize::MAX, |cone| cone.deepest())
     }
 
-    /// How many there are that something may look away from without being seen: the cameras, then the viewer of angles.
+    /// The number of viewers from which a surface may face away: the cameras, then the viewer of
+    /// angles.
     pub(crate) fn viewers(&self) -> usize {
         let view = self.cone.and_then(|cone| cone.view);
         self.pixels.as_ref().map_or(0, Pixels::viewers) + usize::from(view.is_some())

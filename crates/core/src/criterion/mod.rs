@@ -1,10 +1,10 @@
 //! Criteria: the error of a triangle relative to the allowed one. At 1 it is just good enough, at 2
 //! it is twice as large.
 //!
-//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table
-//! of its scheme and answer with the ratio of each face; stepwise refinement divides the faces
-//! above 1. Exact refinement computes the ratio of a triangle and the piece of the surface that it
-//! approximates (`Criteria`), and divides the worst first. A criterion changes nothing.
+//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) compute the ratio of each face from
+//! a mesh and the limit table of its scheme; stepwise refinement divides the faces above 1. Exact
+//! refinement computes the ratio of a triangle and the piece of the surface that it approximates
+//! (`Criteria`), and divides the worst first. A criterion changes nothing.
 
 mod cone;
 mod criteria;

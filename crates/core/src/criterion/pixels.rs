@@ -64,7 +64,7 @@ const LEAST_SINE: f64 = 0.25;
 /// length.
 const REST: f64 = 0.125;
 
-/// Sines of angles up to this are 0 but for rounding.
+/// Sines of angles up to this are 0 within rounding.
 const PARALLEL: f64 = 1e-9;
 
 /// Cameras stand no farther away: squares of distances are finite.
@@ -79,7 +79,7 @@ pub(crate) struct Allowed {
     pub(crate) height: f64,
 }
 
-/// Who sees nothing but the back of a triangle and of its piece of a closed surface.
+/// The viewers that see only the back of a triangle and of its piece of a closed surface.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Backs {
     /// By camera; nothing where none does.
@@ -129,7 +129,7 @@ impl Pixels {
         })
     }
 
-    /// How many cameras there are that something may look away from.
+    /// The number of cameras from which a surface may face away.
     pub(crate) fn viewers(&self) -> usize {
         if self.is_closed { self.lenses.len() } else { 0 }
     }
@@ -165,8 +165,9 @@ impl Pixels {
         backs
     }
 
-    /// The greatest distance between a point that is seen in a ball and another one, in any direction, that is certainly
-    /// within the limit in all pictures: infinite where no camera sees more of the ball than its back, 0 where an eye stands in it.
+    /// The greatest distance between a point that is seen in a ball and another one, in any
+    /// direction, that is certainly within the limit in all pictures: infinite where no camera sees
+    /// more of the ball than its back, 0 where an eye is in it.
     ///
     /// Never less for a ball within the ball.
     pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64, backs: &Backs) -> f64 {
@@ -354,7 +355,7 @@ impl Lens {
         }
         let distance = sight.length();
         let room = distance - radius;
-        // Also where either is not a number.
+        // Also where either is NaN.
         if !(room > 0.0 && distance.is_finite()) {
             let pixels = self.pixels * self.greatest_stretch;
             return Some(Glance {

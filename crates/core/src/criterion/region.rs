@@ -13,7 +13,7 @@ pub(crate) struct Region {
     pub(crate) centre: DVec3,
     /// Radius of the ball.
     pub(crate) radius: f64,
-    /// Middle of the cone, of unit length and pointing outside; zero where nothing is known of the normals.
+    /// Middle of the cone, of unit length and pointing outside; zero where the normals are unknown.
     pub(crate) axis: DVec3,
     /// Sine of the greatest angle between a normal and the axis.
     pub(crate) sine: f64,

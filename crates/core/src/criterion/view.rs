@@ -74,7 +74,7 @@ impl View {
             return AngleLimit::Always;
         }
         let (cosine, sine) = (sight.dot(region.axis), sight.cross(region.axis).length());
-        // β is at most that of the axis and the spread: all look away.
+        // β is at most that of the axis and the spread: all face away.
         if cosine * cosine_of(spread) - sine * spread > 0.0 {
             return AngleLimit::Never;
         }

@@ -166,7 +166,7 @@ pub(crate) fn back_but_for(
     }
     let refined = patch.refined(rules);
     let mut left = 0.0f64;
-    // Where the middle part is not known, nothing is.
+    // Where the middle part is undecided, the whole is.
     for part in [3, 0, 1, 2] {
         let own = back_but_for(
             &refined.part(part),
@@ -201,7 +201,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
     }
     let refined = patch.refined(rules);
     let mut all: Option<Look> = None;
-    // Where the middle part is not known, nothing is.
+    // Where the middle part is undecided, the whole is.
     for part in [3, 0, 1, 2] {
         let own = look(&refined.part(part), rules, viewpoint, levels - 1);
         let together = all.map_or(own, |all| all.and(own));
@@ -213,7 +213,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
     all.unwrap_or(Look::Unknown)
 }
 
-/// A cone of the normals of a piece, and points whose hull holds it, added to those that there are.
+/// A cone of the normals of a piece, and points whose hull holds it, added to the given ones.
 pub(crate) fn cone_of_patch(
     patch: &Patch,
     rules: &Rules<'_>,

@@ -1,8 +1,9 @@
 //! Which way a regular piece looks, by the signs of coefficients.
 //!
-//! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28 coefficients, and all of the piece shows its
-//! front to one who looks along d if they are above 0. `(E − S)·N`, which says on which side of the tangent planes an eye E is, has a net
-//! of degree 10, of 66 coefficients that follow from those of S and of N.
+//! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28
+//! coefficients, and all of the piece shows its front in the direction of sight d if they are above
+//! 0. `(E − S)·N`, whose sign is the side of the tangent planes on which an eye E is, has a net of
+//! degree 10, of 66 coefficients that follow from those of S and of N.
 
 use super::{Look, Side};
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -71,7 +72,7 @@ impl NormalNet {
         })
     }
 
-    /// How it looks to one who looks along a unit direction.
+    /// The side seen along a unit direction of sight.
     pub(super) fn along(&self, sight: DVec3) -> Look {
         Look::by_signs(
             &self.normals.map(|normal| -sight.dot(normal)),
@@ -80,7 +81,7 @@ impl NormalNet {
         )
     }
 
-    /// How it looks to an eye.
+    /// The side seen from an eye.
     pub(super) fn from(&self, eye: DVec3) -> Look {
         let eye = self.scale * eye;
         let mut sides = [0.0; DECIC];

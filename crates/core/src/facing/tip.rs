@@ -1,8 +1,9 @@
 //! Normals at an irregular vertex inside the surface.
 //!
-//! The part at the vertex consists of three regular pieces a level, at all levels. At level j their points are p + λʲ(t₁χ₁ + t₂χ₂) + r_j,
-//! χ being the characteristic map's three regular pieces. A difference of neighbouring net points is then λʲ(t₁∂χ₁ + t₂∂χ₂) but for λʲρ,
-//! ρ as [`crate::patch::settling`] bounds it, so that the normals' net is
+//! The part at the vertex consists of three regular pieces a level, at all levels. At level j their
+//! points are p + λʲ(t₁χ₁ + t₂χ₂) + r_j, χ being the characteristic map's three regular pieces. A
+//! difference of neighbouring net points is then λʲ(t₁∂χ₁ + t₂∂χ₂) up to λʲρ, with ρ bounded by
+//! [`crate::patch::settling`], so that the normals' net is
 //!
 //! > `λ²ʲ (J_t · t₁ × t₂ + e_t)`, `|e_t| ≤ 2ρτ + ρ²`,
 //!
@@ -16,7 +17,7 @@ use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::patch::settling::settled;
 use crate::vector::{DVec3, unit_or_zero};
 
-/// Sines of cones from which on it is worth while to look at a part's parts.
+/// Sines of cones above which a part's own parts are tested.
 pub(super) const NARROW: f64 = 0.25;
 
 /// Points are off by no more than this part of their greatest coordinate.

@@ -1,5 +1,5 @@
-//! Which nodes are to be looked at again when a demand changes: entries in buckets by a key, those of nodes that are gone dropped on
-//! the way.
+//! The nodes to test again when a demand changes: entries in buckets by a key; entries of removed
+//! nodes are dropped on the way.
 
 /// A node that is due at a key.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +62,7 @@ impl Agenda {
         matches!(self.scale, Scale::Turning { .. })
     }
 
-    /// Entries, those of nodes that are gone included.
+    /// Entries, those of removed nodes included.
     pub(super) fn len(&self) -> usize {
         self.entries
     }
@@ -143,7 +143,7 @@ impl Agenda {
             .for_each(|entry| self.put(entry.key, entry.node, entry.stamp));
     }
 
-    /// Drops the entries of nodes that are gone.
+    /// Drops the entries of removed nodes.
     pub(super) fn sweep(&mut self, is_current: impl Fn(u32, u32) -> bool) {
         self.entries = 0;
         for list in &mut self.buckets {

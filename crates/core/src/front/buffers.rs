@@ -4,7 +4,7 @@ use super::forest::{Forest, NONE};
 use crate::closure::{Diagonal, closure};
 use crate::vector::DVec3;
 
-/// Marks a slot whose triangle is gone.
+/// Marks a slot whose triangle was removed.
 const NOBODY: u32 = u32::MAX;
 
 /// The changes of an update in a front's buffers: slots that are not named are unchanged.
@@ -13,7 +13,8 @@ const NOBODY: u32 = u32::MAX;
 pub struct Changes {
     /// Vertices whose positions are new, by their numbers in [`positions`](super::Front::positions); ascending.
     pub vertices: Vec<u32>,
-    /// Triangles that are new or have moved, by their numbers in [`triangles`](super::Front::triangles); ascending. Those beyond the end are gone.
+    /// Triangles that are new or have moved, by their numbers in
+    /// [`triangles`](super::Front::triangles); ascending. Those beyond the end were removed.
     pub triangles: Vec<u32>,
     /// Nodes that were divided.
     pub divided: usize,

@@ -217,7 +217,7 @@ impl Eye {
 pub(super) struct Answer {
     /// Whether it wants to be divided.
     pub(super) wants: bool,
-    /// How far a clock may advance before that changes; 0 where nothing is known.
+    /// The advance of a clock for which the answer is certain; 0 if unknown.
     pub(super) margin: f64,
     /// Whether that clock counts turns, too.
     pub(super) turns: bool,

@@ -104,9 +104,9 @@ pub(super) struct Forest<'a> {
     edges: Edges<'a>,
     has_copies: bool,
     hanging: HashMap<(u32, u8), u32>,
-    /// Nodes that are gone, or whose triangles may be others.
+    /// Nodes that were removed, or whose triangles may have changed.
     pub(super) touched: Vec<u32>,
-    /// Triangles' slots of nodes that are gone.
+    /// Slots of the triangles of removed nodes.
     pub(super) released: Vec<u32>,
     /// Triangles that are emitted, by Euler's formula.
     pub(super) triangles: usize,

@@ -2,7 +2,7 @@
 //! limit.
 //!
 //! Two criteria of the literature can be chosen instead of the proven distance, for comparison.
-//! Both look at samples, so they prove nothing:
+//! Both use samples, so they prove nothing:
 //!
 //! * **Planarity** (Zorin, Schröder and Sweldens, "Interactive multiresolution mesh editing",
 //!   1997): a node is divided where it is not flat enough at six points of the surface, its corners
@@ -33,7 +33,7 @@ pub enum Measure {
     VertexError,
 }
 
-/// A node's piece of the surface with the points that a criterion looks at.
+/// A node's piece of the surface with the samples of a criterion.
 #[derive(Debug)]
 pub(super) struct Sampled {
     patch: Patch,

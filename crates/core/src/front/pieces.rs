@@ -1,6 +1,7 @@
 //! The limit surface over nodes: points in the middles of edges, and how far it is from a node's triangle.
 //!
-//! Where a front goes by another [`Measure`], all nodes have their own pieces, with the points that it looks at ([`Sampled`]).
+//! Where a front has another [`Measure`], all nodes have their own pieces, with its samples
+//! ([`Sampled`]).
 //!
 //! A node over part of a regular piece keeps the piece's number and its place there; any other its
 //! own piece. Values belong to nodes alone: of parts of regular pieces by second derivatives
@@ -30,7 +31,7 @@ pub(super) enum Ground {
     Regular(u32, Spot),
     /// A piece of its own.
     General(u32),
-    /// A piece of its own, of a front that does not go by distances.
+    /// A piece of its own, of a front that does not measure distances.
     Sampled(u32),
 }
 
@@ -77,7 +78,7 @@ impl<T> Shelf<T> {
     }
 }
 
-/// The pieces of a limit surface over the nodes that there are.
+/// The pieces of a limit surface over the existing nodes.
 pub(super) struct Pieces<'a> {
     surface: LimitSurface<'a>,
     measure: Measure,

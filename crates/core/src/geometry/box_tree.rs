@@ -3,7 +3,7 @@
 //!
 //! Items are ordered by median cuts across the longest side of the box of their middles; those with
 //! equal coordinates are ordered by their numbers, so that the tree depends on the boxes alone. A
-//! node's items stand together in that order.
+//! node's items are consecutive in that order.
 
 use smallvec::SmallVec;
 
@@ -67,10 +67,10 @@ pub(crate) trait Search {
     /// where the search skips it.
     fn bound(&self, bounds: &Bounds) -> f64;
 
-    /// From which bound on nothing is looked at any more.
+    /// The bound from which the search skips nodes.
     fn limit(&self) -> f64;
 
-    /// Looks at an item.
+    /// Visits an item.
     fn visit(&mut self, item: u32);
 
     /// Called with the bound of each node that is skipped.

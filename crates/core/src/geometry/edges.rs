@@ -1,7 +1,7 @@
 //! Which triangles meet at each edge.
 //!
-//! Takes triangles by their indices, of any kind: non-manifold, turned either way, naming a vertex twice. Linear in their
-//! number but for sorting the sides at each vertex, of which there are few.
+//! Takes triangles by their indices, of any kind: non-manifold, of either orientation, naming a
+//! vertex twice. Linear in their number, except for sorting the few sides at each vertex.
 
 use crate::parallel::Poll;
 use crate::progress::Cancelled;

@@ -90,7 +90,7 @@ struct Search<'m> {
 
 impl Search<'_> {
     fn visit_from(&mut self, root: u32) {
-        // Unknowns on the way, and how many of their columns have been looked at.
+        // Unknowns on the way, and the number of their columns visited.
         let mut way = vec![(root, 0usize)];
         self.enter(root);
         while let Some(top) = way.last_mut() {

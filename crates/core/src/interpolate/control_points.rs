@@ -87,7 +87,7 @@ pub(super) struct ControlPoints<'m> {
     /// Where some vertices keep their place, the rows of all.
     rows: Option<Sparse>,
     matrix: Sparse,
-    /// First copies that keep their place, wherever their limit is.
+    /// First copies of the kept vertices, whatever their limits.
     kept: HashSet<u32>,
     /// The relaxed vertices, and first copies whose rows are for an adjacent edge that is shorter
     /// than theirs.
@@ -205,7 +205,8 @@ impl<'m> ControlPoints<'m> {
         self.stays(self.first_copy[v] as usize)
     }
 
-    /// Whether a limit position is the vertex itself, wherever others are. Further copies have no row.
+    /// Whether a limit position is the vertex itself, whatever the others. Further copies have no
+    /// row.
     fn stays(&self, v: usize) -> bool {
         self.first_copy[v] != v as u32 || self.matrix.row(v).eq([(v as u32, 1.0)])
     }

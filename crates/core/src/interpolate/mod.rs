@@ -86,7 +86,7 @@ const THROUGH: f64 = 1e-10;
 /// diagonal.
 const NEAR: f64 = 1e-12;
 
-/// Vertices that are looked at between two calls of the observer: some milliseconds.
+/// Vertices between two calls of the observer: some milliseconds.
 const POLLED: u32 = 1 << 12;
 
 /// After this many attempts to keep vertices in planes, the surface passes through all.
@@ -204,7 +204,8 @@ pub fn interpolate_observed(
     interpolate_but(mesh, scheme, options, &[], observer)
 }
 
-/// [`interpolate_observed`], but for vertices that are `kept` for control points as they are; the surface passes by them.
+/// [`interpolate_observed`], except for `kept` vertices, which stay control points; the surface
+/// passes near them.
 pub(crate) fn interpolate_but(
     mesh: &Mesh,
     scheme: &dyn Scheme,

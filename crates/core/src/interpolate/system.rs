@@ -34,7 +34,7 @@ pub(super) enum Solver {
     Normal,
 }
 
-/// A solution and how it came about.
+/// A solution and a report.
 pub(super) struct Solution {
     pub(super) x: Vec<DVec3>,
     pub(super) steps: usize,
@@ -52,7 +52,7 @@ pub(super) struct System {
 struct Symmetric {
     scale: Vec<f64>,
     diagonal: Vec<f64>,
-    /// The pattern outside the diagonal, by rows; its weights are not looked at.
+    /// The pattern outside the diagonal, by rows; its weights are not used.
     pattern: Sparse,
 }
 

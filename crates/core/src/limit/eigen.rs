@@ -235,7 +235,7 @@ pub(super) fn left_vector(
     own.iter()
         .zip(start.iter())
         .for_each(|(&row, &weight)| vector[row] = weight);
-    // Components stand after those that they depend on: whatever this one reaches stands before it.
+    // Components come after those that they depend on: this one reaches only earlier ones.
     for rows in components[..component].iter().rev() {
         let columns = DMatrix::from_fn(matrix.nrows(), rows.len(), |i, j| matrix[(i, rows[j])]);
         let right = -columns.tr_mul(&vector);

@@ -8,7 +8,7 @@ use crate::parallel::Cancelled;
 use crate::patch::root_patch;
 use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
 
-/// Faces that are looked at together.
+/// Faces that are processed together.
 const BLOCK: usize = 64;
 
 impl LimitSurface<'_> {

@@ -109,7 +109,8 @@ impl LimitSurface<'_> {
         if !self.rules.is_certified() {
             return None;
         }
-        // Seen from its middle, and about as large as 1, a surface keeps its digits wherever it is and however large.
+        // Seen from its middle, and about as large as 1, a surface keeps its digits at any position
+        // and size.
         let [low, high] = self
             .mesh
             .as_triangles()

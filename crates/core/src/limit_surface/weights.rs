@@ -114,7 +114,7 @@ impl LimitSurface<'_> {
     }
 }
 
-/// In the order of the vertices; one that stands at several places of the rim counts once.
+/// In the order of the vertices; one that occurs several times on the rim counts once.
 fn joined(weights: &mut Vec<(VertexId, f64)>) {
     weights.sort_by_key(|&(vertex, _)| vertex);
     weights.dedup_by(|next, own| {

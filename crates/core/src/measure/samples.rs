@@ -192,7 +192,7 @@ fn vertices_in_order(surface: &Bvh<'_>) -> Vec<u32> {
     vertices
 }
 
-/// The point `into` along the sides of a triangle laid end to end, as long as they are when scaled.
+/// The point at the length `into` along the scaled sides of a triangle laid end to end.
 fn along_sides([a, b, c]: [DVec3; 3], scaled: [DVec3; 3], into: f64) -> DVec3 {
     let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| scaled[from].distance(scaled[to]));
     let between = |from: DVec3, to: DVec3, into: f64, length: f64| {

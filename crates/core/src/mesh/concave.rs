@@ -283,7 +283,8 @@ impl Fan {
 /// Edges nearer to one line than this sine of their angle (5°) do not define a plane.
 const LEAST_SINE: f64 = 0.087;
 
-/// An edge that leaves the plane by more than this sine (15°) stays as it is: moving it so far would show more than a line.
+/// An edge that leaves the plane by more than this sine (15°) is not changed: so large a movement
+/// would be more visible than a line.
 const FARTHEST_SINE: f64 = 0.26;
 
 /// Whether the faces of half-edges are in one plane, those without area left aside.

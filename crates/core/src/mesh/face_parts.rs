@@ -213,7 +213,7 @@ fn inside(on_sides: &[Option<u32>; 3]) -> [f64; 3] {
     core::array::from_fn(|i| 0.25 + (is_cut[i] + is_cut[(i + 2) % 3]) / (8.0 * cuts))
 }
 
-/// A crease tag on both halves of an edge that was divided; as it is on others.
+/// A crease tag on both halves of an edge that was divided; unchanged on others.
 fn halves(tag: &CreaseTag, middles: &BTreeMap<[u32; 2], u32>) -> [Option<CreaseTag>; 2] {
     let [a, b] = tag.vertices;
     match middles.get(&sorted([a, b])) {

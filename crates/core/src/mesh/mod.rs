@@ -460,7 +460,7 @@ pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
 /// that do not scale their input.
 const SAFE_DIAGONALS: core::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
-/// Refuses a mesh that is too large or too small to be computed with as it is.
+/// Refuses a mesh that is too large or too small to be computed with at its size.
 pub(crate) fn check_size(mesh: &Mesh) -> Result<(), MeshError> {
     let value = mesh.diagonal();
     if SAFE_DIAGONALS.contains(&value) {

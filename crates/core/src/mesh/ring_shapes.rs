@@ -7,7 +7,7 @@ use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
 use crate::ring::RingShape;
 
-/// Vertices that are looked at together.
+/// Vertices that are processed together.
 const PIECE: usize = 1 << 13;
 
 /// The distinct shapes of a mesh's rings, ascending, and for each vertex the place of its shape among them.

@@ -46,7 +46,7 @@ impl Topology {
         Ok(topology)
     }
 
-    /// The parts as they are; the caller vouches for the invariants.
+    /// Takes the parts unchecked; the caller guarantees the invariants.
     pub(crate) fn from_parts(
         triangles: Vec<[u32; 3]>,
         twins: Vec<u32>,
@@ -205,7 +205,7 @@ impl Topology {
                 None
             }
         };
-        // Round both ends at once, so that the lower valence decides the time.
+        // Round both ends together, so that the lower valence decides the time.
         let mut around_both = self.outgoing_ring(a).zip(self.outgoing_ring(b));
         around_both.find_map(|(from_a, from_b)| along(from_a, b).or_else(|| along(from_b, a)))
     }
@@ -468,7 +468,7 @@ pub(crate) fn outgoing_half_edges_polled(
     Ok(outgoing)
 }
 
-/// Half-edges that are looked at between two calls of an observer.
+/// Half-edges between two calls of an observer.
 const POLLED: usize = 1 << 18;
 
 /// The triangle's faces as ids, for callers that walk them.

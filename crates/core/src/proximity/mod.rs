@@ -23,7 +23,8 @@ use nearest::Query;
 use pieces::FacePieces;
 use winding::Chains;
 
-/// Control faces up to which their pieces are kept, some ten kilobytes a face; those of larger meshes are made when they are looked at.
+/// Control faces up to which their pieces are kept, some ten kilobytes a face; those of larger
+/// meshes are made when visited.
 const MOST_KEPT: usize = 40_000;
 
 /// Control faces whose pieces are made together.
@@ -72,7 +73,7 @@ pub enum ProximityError {
         /// Its coordinates.
         point: [f64; 3],
     },
-    /// A point whose distance is no number any more.
+    /// A point whose squared distance overflows.
     #[error(
         "point {index} at ({}, {}, {}) is too far from the surface for its distance, by the surface's size, to be squared",
         .point[0], .point[1], .point[2]

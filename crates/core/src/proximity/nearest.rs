@@ -171,7 +171,7 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// From which bound on nothing is looked at.
+    /// The bound from which the search skips pieces.
     fn limit(&self) -> f64 {
         self.best.distance - self.tolerance
     }
@@ -232,7 +232,7 @@ impl<'q> Query<'q> {
         of_box.max(closest_to_origin(a, b, c).squared.sqrt() - piece.height)
     }
 
-    /// Looks at a piece, and has its parts wait if that does not decide.
+    /// Tests a piece, and lets its parts wait if that does not decide.
     fn look_at(&mut self, piece: &Piece, face: u32, number: &mut u32) {
         match &piece.form {
             Form::Regular(regular) => {
@@ -290,8 +290,9 @@ impl<'q> Query<'q> {
         is_nearer
     }
 
-    /// Newton's method on a regular piece, from a place; gives a bound for all of the piece that need not be looked at any more. A point that
-    /// is the nearest so far is followed to where it is nearest, which moves it by far more than its distance shows.
+    /// Newton's method on a regular piece, from a place; gives a bound for the whole piece. The
+    /// nearest point so far is iterated until it converges, which moves it by far more than its
+    /// distance changes.
     fn descend(
         &mut self,
         piece: &RegularPiece,

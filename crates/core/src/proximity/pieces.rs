@@ -12,7 +12,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{self, Patch, Quartic, Rules, Spot, child_corners};
 use crate::vector::DVec3;
 
-/// Refinements of a face towards irregular corners before its pieces are kept as they are.
+/// Refinements of a face towards irregular corners before its pieces are kept.
 const KEPT_LEVELS: u32 = 3;
 
 /// Regular pieces are quartered once if they leave their triangle by more than this part of their longest edge.

@@ -13,7 +13,8 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Points, Refined, Spot};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Pieces that are looked at for a ray before those that are left count as grazed: a ray that runs within a surface that is nowhere flat.
+/// The most pieces visited for a ray. The others then count as grazed: a ray may run within a
+/// surface that is nowhere flat.
 const MOST_PIECES: usize = 100_000;
 
 /// An undecided part is no larger than this many times the tolerance.
@@ -117,7 +118,7 @@ pub(super) struct RaySearch<'a> {
     is_first_enough: bool,
     tolerance: f64,
     pub(super) found: Vec<Found>,
-    /// Pieces that were looked at.
+    /// Pieces that were visited.
     pub(super) looked_at: usize,
 }
 

@@ -1,4 +1,5 @@
-//! Sides of sharp edges after a collapse: which corner of the fine mesh a corner of the coarse one goes by.
+//! Sides of sharp edges after a collapse: the corner of the fine mesh for each corner of the coarse
+//! one.
 //!
 //! Takes a fine mesh, edges of it that were kept, and its collapsed mesh; gives, for corners at
 //! vertices on sharp edges, a corner of the fine mesh at the same vertex between the same two

@@ -30,7 +30,8 @@ pub struct Level {
 pub struct Geomorph {
     /// By vertex, its place on the coarser mesh.
     pub positions: Vec<[f64; 3]>,
-    /// By vertex, the coarser mesh's normal there as it is shaded: linear between the normals of its corners, not of unit length.
+    /// By vertex, the coarser mesh's normal there for shading: linear between the normals of its
+    /// corners, not of unit length.
     pub normals: Vec<[f64; 3]>,
     /// The normals of triangles' corners at sharp edges, as in [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,

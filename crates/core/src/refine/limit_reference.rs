@@ -78,7 +78,7 @@ mod tests {
         // A mesh of five levels is compared with seven, one of nearly as many triangles, too.
         assert_eq!(reference_levels(200, 200 * 1024), Some(7));
         assert_eq!(reference_levels(200, 190 * 1024), Some(7));
-        // Large ones as they are with two, as long as there is room.
+        // Large ones with two levels, as long as there is room.
         assert_eq!(reference_levels(530_450, 530_450), Some(2));
         assert_eq!(reference_levels(530_450, 533_106), Some(2));
         assert_eq!(reference_levels(530_450, 4 * 530_450), None);

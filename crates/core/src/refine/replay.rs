@@ -229,7 +229,7 @@ impl Replay {
         Ok(())
     }
 
-    /// [`Self::frame`] without normals, which are left as they are.
+    /// [`Self::frame`] without normals, which are unchanged.
     ///
     /// # Errors
     /// Those of [`Self::frame`].

@@ -71,7 +71,8 @@ pub(super) fn simplified(
         optimize: false,
         ..options.clone()
     };
-    // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
+    // Where no more edges can go, refinement alone keeps the number of triangles; where there is no
+    // proof, it proves.
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;

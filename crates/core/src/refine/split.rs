@@ -19,8 +19,9 @@ pub(super) struct SplitEdges {
     faces: Vec<u8>,
 }
 
-/// The elements of a split mesh, numbered: old vertices keep their numbers, new ones follow in the order of
-/// their edges' first half-edges; the triangles of a face stand together, in the order of the faces.
+/// The elements of a split mesh, numbered: old vertices keep their numbers, new ones follow in the
+/// order of their edges' first half-edges; the triangles of a face are consecutive, in the order of
+/// the faces.
 pub(super) struct SplitTopology {
     /// The half-edge on which each new vertex stands (the lower of two twins).
     pub(super) edges: Vec<HalfEdgeId>,

@@ -404,7 +404,7 @@ impl<'a> LastLevels<'a> {
         let mut faces = mesh.face_count();
         for step in end.levels - together + 1..=end.levels {
             let (faces_before, faces_after) = (faces, 4 * faces);
-            // The time of levels that are done together stands at the last.
+            // The time of levels that are done together is that of the last.
             let duration = if step == end.levels {
                 start.elapsed()
             } else {

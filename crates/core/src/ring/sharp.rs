@@ -2,9 +2,9 @@
 //! edges, and its state after refinements.
 //!
 //! The rules are OpenSubdiv's: the rule of a vertex follows from the number of its sharp edges,
-//! those of a boundary included. Sharpness falls by one with each refinement and is gone at 0;
-//! where it falls from 1 or less, the points of that refinement lie between those of the sharp and
-//! of the smooth rules.
+//! those of a boundary included. Sharpness falls by one with each refinement and ends at 0; where
+//! it falls from 1 or less, the points of that refinement lie between those of the sharp and of the
+//! smooth rules.
 //!
 //! At a vertex with two sharp edges or more, each part of the ring between two of them refines as a boundary's open
 //! ring would: the rules on sharp edges use points on sharp edges only, and all others points of their own side.

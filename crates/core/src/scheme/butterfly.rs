@@ -70,7 +70,7 @@ impl Scheme for ModifiedButterfly {
 /// One end of an edge, with the weights that a rule puts on it and on its ring.
 struct End<'m> {
     shape: RingShape,
-    /// Where the other end stands in the ring.
+    /// The slot of the other end in the ring.
     slot: usize,
     centre: &'m mut f64,
     ring: &'m mut [f64],
@@ -246,7 +246,7 @@ fn boundary_rule<'m>(origin: &mut End<'m>, target: &mut End<'m>) {
     for ((end, corner), weight) in [origin, target].into_iter().zip(corners).zip(weights) {
         *end.centre += weight;
         if !corner {
-            // The other boundary neighbour stands at the other end of the ring.
+            // The other boundary neighbour is at the other end of the ring.
             let other = if end.slot == 0 { end.ring.len() - 1 } else { 0 };
             end.ring[other] += beyond;
         }

@@ -78,8 +78,9 @@ pub trait Scheme: Send + Sync {
     /// Position of the new vertex on an edge.
     fn edge_mask(&self, shape: EdgeShape) -> EdgeMask;
 
-    /// The member of the Loop family that this scheme is, if it is one. Distances are proven for these only, and a scheme
-    /// that says so has that member's masks everywhere, whatever it answers itself.
+    /// The member of the Loop family that is this scheme, if any. Distances are proven for these
+    /// only. A scheme that returns a member has that member's masks everywhere, regardless of its
+    /// own methods.
     fn loop_family(&self) -> Option<LoopFamily> {
         None
     }

@@ -37,7 +37,7 @@ const MOST_EDGES: usize = 64;
 /// over the threshold.
 const UNEVEN: f64 = 1.03;
 
-/// Changes looked at between two calls of the observer: some milliseconds.
+/// Changes between two calls of the observer: some milliseconds.
 const OBSERVED: usize = 256;
 
 /// The mesh on its way from fine to coarse.
@@ -61,7 +61,7 @@ pub(super) struct Collapser<'t, 's, 'a> {
     history: Option<History>,
     /// Vertices that stay because their going was not proven to be within the goal.
     refused: Vec<bool>,
-    /// Changes looked at since the observer was last called.
+    /// Changes since the observer was last called.
     unobserved: usize,
     /// The part of the tolerance that collapses may cost by now.
     share: f64,
@@ -137,7 +137,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         if back.is_empty() {
             return Ok(());
         }
-        // Most of it may go after all, now that nothing is put off.
+        // Most of it may be collapsed after all, now that no proof is put off.
         (self.sure, self.history) = (0.0, None);
         for vertex in back {
             self.costs[vertex as usize] = 0.0;
@@ -259,7 +259,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     }
 
     /// Collapses a vertex if that costs no more than `threshold`, and gives the cost; infinite if
-    /// it is gone, or cannot go within the tolerance.
+    /// it was removed, or cannot be within the tolerance.
     fn consider(&mut self, vertex: u32, threshold: f64, goals: Goals) -> f64 {
         self.refused[vertex as usize] = false;
         if self.reference.kind(vertex) == Kind::Fixed

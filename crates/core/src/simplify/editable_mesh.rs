@@ -59,7 +59,7 @@ impl EditableMesh {
         self.faces_left
     }
 
-    /// Corners of `face`; [`NONE`] in all of them once the face is gone.
+    /// Corners of `face`; [`NONE`] in all of them once the face was removed.
     #[inline]
     pub(super) fn corners(&self, face: u32) -> [u32; 3] {
         let first = 3 * face as usize;
@@ -165,7 +165,7 @@ impl EditableMesh {
         if twin != NONE && self.is_boundary(from) {
             return false;
         }
-        // A triangle by itself, and a tetrahedron, whose last two faces would be one.
+        // A triangle alone, and a tetrahedron, whose last two faces would be one.
         let is_ear = |h: u32| self.twin(next(h)) == NONE && self.twin(previous(h)) == NONE;
         if is_ear(h) || (twin != NONE && is_ear(twin)) {
             return false;
@@ -192,7 +192,7 @@ impl EditableMesh {
         let twin = self.twin(h);
         self.rename_fan(from, into);
         self.outgoing[from as usize] = NONE;
-        // The outgoing half-edges are known once both faces are gone.
+        // The outgoing half-edges are known once both faces were removed.
         let mut seats = [(NONE, NONE); 4];
         [seats[0], seats[1]] = self.close(h, into);
         if twin != NONE {

@@ -33,7 +33,7 @@ pub(super) struct Corner {
     known: (usize, f64),
     /// The vertex of the mesh that it is, or [`NONE`].
     vertex: u32,
-    /// Whether all triangles have been looked at.
+    /// Whether all triangles have been measured.
     complete: bool,
 }
 
@@ -275,7 +275,7 @@ impl Candidates {
         (middle.near != 0).then_some(middle)
     }
 
-    /// Looks at all triangles.
+    /// Measures all triangles.
     fn complete(&self, corner: &mut Corner) {
         for (place, triangle) in self.triangles.iter().enumerate() {
             if corner.near >> place & 1 == 0 && distance(corner.at, triangle.positions) <= self.goal
@@ -318,15 +318,15 @@ fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The distance of a point from a point of a triangle, the nearest but for rounding.
+/// The distance of a point from a point of a triangle, the nearest within rounding.
 #[inline]
 fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let [u, v, w] = closest_to_origin(a - p, b - p, c - p).weights;
     (a * u + b * v + c * w).distance(p)
 }
 
-/// Points of two segments that are nearest to each other, but for rounding, and where the first lies on its segment, from 0
-/// to 1 (Ericson, Real-Time Collision Detection, section 5.1.9).
+/// Points of two segments that are nearest to each other, within rounding, and where the first lies
+/// on its segment, from 0 to 1 (Ericson, Real-Time Collision Detection, section 5.1.9).
 fn nearest_points([p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> (f64, DVec3, DVec3) {
     let (along, edge, from) = (q - p, b - a, p - a);
     let (pp, ee, pe) = (

@@ -156,7 +156,7 @@ impl History {
 
     fn restore(&mut self, change: u32, surface: &mut EditableMesh, samples: &mut FineSamples) {
         let (faces, across, below) = self.records(change);
-        // A face across may stand there more than once: the first record is the oldest.
+        // A face across may be recorded more than once: the first record is the oldest.
         for across in self.across[across].iter().rev() {
             surface.put(across.h, across.slot);
             self.last[across.h as usize / 3] = across.before;

@@ -260,7 +260,8 @@ pub fn simplify_observed(
         if outcome.is_err() {
             return Err(SimplifyError::Cancelled(Box::new(simplified)));
         }
-        // Where the fine mesh is so rough that far from the limit estimates are wrong, nothing is put off.
+        // Where the fine mesh is so rough that estimates are wrong far from the limit, no proof is
+        // put off.
         if simplified.bound.is_some() || !options.certify || sure == 0.0 {
             return Ok(simplified);
         }

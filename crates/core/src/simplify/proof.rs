@@ -7,8 +7,8 @@
 //! changed again.
 //!
 //! * *From the mesh to the fine one*: each new triangle, by the sheet of fine faces over it ([`Worker::within`]).
-//! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests* on the faces that serve
-//!   its pieces; while these stay as they are, so does its proof.
+//! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests*
+//!   on the faces that serve its pieces; its proof holds while these do not change.
 
 use super::editable_mesh::EditableMesh;
 use super::fine_face::{Candidates, Corner, is_within};
@@ -26,7 +26,7 @@ const SHEET: usize = 4096;
 /// The observer is called at faces whose numbers are multiples of this.
 const OBSERVED: u32 = 256;
 
-/// Faces around a vertex that are looked at beyond those of a change.
+/// The most faces around a vertex that are tried beyond those of a change.
 const MOST_AROUND: usize = 16;
 
 /// Faces that go, and the triangles that take their place.
@@ -278,7 +278,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         let new = change.region.faces();
         for &fine in &self.affected {
             self.backward[fine as usize] = f64::INFINITY;
-            // Any face near it will do: who looks for the fine faces that matter finds it there, most of the time.
+            // Any face near it is enough: the search for affected fine faces mostly finds it there.
             let corners = self.fine.topology().triangles()[fine as usize];
             let holder = corners.iter().find_map(|&v| {
                 let place = self.places[v as usize] as usize;
@@ -356,7 +356,8 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         Ok(None)
     }
 
-    /// The faces that care for the corners of a fine face; those that its last proof looked at where its corners are all there.
+    /// The faces assigned to the corners of a fine face; those of its last proof where its corners
+    /// all exist.
     fn below(&self, fine: u32, samples: &FineSamples) -> Vec<u32> {
         let corners = self.fine.topology().triangles()[fine as usize];
         let holders: Vec<u32> = corners

@@ -51,7 +51,7 @@ impl Plane {
         above.then(|| from.dot(self.normal).abs())
     }
 
-    /// The distance of `point` from a point of the triangle, the nearest but for rounding.
+    /// The distance of `point` from a point of the triangle, the nearest within rounding.
     pub(super) fn distance(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners;
         let from = point - a;

@@ -192,8 +192,8 @@ impl VertexStar {
             .fold(0.0, f64::max)
     }
 
-    /// Looks at the triangles of the star once the centre has gone to the neighbour at `slot`: whether all of them stand
-    /// well.
+    /// Tests the triangles of the star after a collapse of the centre to the neighbour at `slot`:
+    /// whether all of them are well oriented.
     pub(super) fn collapse_into(&mut self, slot: usize, reference: &Reference<'_>) -> bool {
         let worst = self.look_at_faces(reference);
         let (apex, at) = (self.ring[slot], self.ring_positions[slot]);

@@ -53,7 +53,7 @@ impl Goals {
         self.by_distance || self.tolerance.is_some()
     }
 
-    /// Looks at a triangle.
+    /// Measures a triangle.
     pub(super) fn look(&self, forest: &mut Forest<'_>, triangle: Triangle) -> Found {
         let vertices = forest.corners(triangle);
         let corners = vertices.map(|v| forest.limit(v));

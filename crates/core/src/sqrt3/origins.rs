@@ -9,7 +9,7 @@ use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Mesh;
 use crate::refine::Origin;
 
-/// How a vertex of a step came about.
+/// The origin of a vertex of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Made {
     /// The centre of a face.

@@ -229,7 +229,7 @@ impl<'m> Numbering<'m> {
                 next += 1;
                 continue;
             }
-            // The other side of a crease has the same points, the other way round.
+            // The other side of a crease has these points in reverse order.
             let across = topology.twin(HalfEdgeId(3 * face as u32 + u32::from(cut[face])));
             match across
                 .map(|twin| apexes[twin.face().index()])
@@ -260,7 +260,7 @@ impl<'m> Numbering<'m> {
         })
     }
 
-    /// How each new vertex comes about.
+    /// The origin of each new vertex.
     fn made(&self) -> Vec<Made> {
         let mut next = self.topology.vertex_count() as u32;
         let mut made = Vec::with_capacity(self.vertex_count - next as usize);

@@ -91,7 +91,8 @@ fn limits(
 ) -> Result<Limits, RefineError> {
     watch.stage(Stage::Limits, Some(level.mesh.vertex_count()))?;
     let table = LimitTable::new(&DoubleStep);
-    // The rings of two steps are those of an even level; where nothing is sharp, all levels have such rings.
+    // The rings of two steps are those of an even level; without sharp edges, all levels have such
+    // rings.
     let has_curves =
         level.mesh.topology().boundary_edge_count() > 0 || !level.mesh.tags().creases.is_empty();
     let even = if level.is_odd() && has_curves {

@@ -27,11 +27,12 @@ pub(crate) struct MovedFour {
 /// The bounds of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundFour {
-    /// No less than the distance between each triangle and its part of the surface; infinite where nothing is known.
+    /// An upper bound of the distance between each triangle and its part of the surface; infinite
+    /// if unknown.
     pub(crate) bound: [f64; FOUR],
-    /// How high the surface stands over it on either side, about.
+    /// The approximate height of the surface over it on either side.
     pub(crate) height: [f64; FOUR],
-    /// Some point of it stands at least as high as this.
+    /// A height that some point of it reaches.
     pub(crate) least: [f64; FOUR],
 }
 
@@ -60,7 +61,8 @@ struct EdgeDeviations {
     is_plain: f64x4,
 }
 
-/// The greatest squared chord of the angles to the neighbours, the greatest slopes of drifts, and whether all have planes.
+/// The greatest squared chord of the angles to the neighbours, the greatest slopes of tangential
+/// displacements, and whether all have planes.
 struct Around {
     squared: f64x4,
     slopes: [f64x4; 3],

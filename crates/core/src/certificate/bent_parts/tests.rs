@@ -1,4 +1,5 @@
-//! Four triangles at once against each by itself by other code, and against dense samples of the surface.
+//! Four triangles together against each alone by other code, and against dense samples of the
+//! surface.
 
 use super::*;
 use crate::certificate::{Cell, TriangleFrame, around};

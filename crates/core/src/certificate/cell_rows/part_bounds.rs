@@ -1,5 +1,5 @@
-//! Bounds of many parts of a regular piece at once, in single precision: twice as many parts to a register, and all that it takes away is
-//! added again.
+//! Bounds of many parts of a regular piece at once, in single precision: a register holds twice as
+//! many parts, and the rounding errors are added to the bounds.
 //!
 //! **Rounding.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the
 //! square L and whose edges span the parallelogram A ≤ √(3/4) L, and w a bound of the sums of the

@@ -1,4 +1,4 @@
-//! Rows against dense samples of each part by itself.
+//! Rows against dense samples of each part alone.
 
 use super::*;
 use crate::certificate::TriangleFrame;
@@ -98,7 +98,7 @@ fn samples_lie_within(range_share: f64) {
                             let chord = tilt + target.tilt;
                             let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
                             assert!(value <= distance, "round {round}: {value} of {distance}");
-                            // Of ranges no more than the quadratic part is looked at.
+                            // Of ranges only the quadratic part is used.
                             let rest = 2.0 * block.rest(step.abs());
                             assert!(
                                 range <= 1.001 * distance + rest,

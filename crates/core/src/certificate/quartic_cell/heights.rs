@@ -71,8 +71,8 @@ impl Heights {
         (low, high, self.rest())
     }
 
-    /// The greatest height on either side where the surface's corners stand at the given ones over the plane, and by how much that
-    /// may be off at most.
+    /// The greatest height on either side if the surface's corners have the given heights over the
+    /// plane, and its greatest error.
     pub(crate) fn lifted_range(&self, lifts: [f64; 3]) -> (f64, f64) {
         let (low, high) = quadratic_range(self.bends(), lifts);
         (high.larger(-low), self.rest())
@@ -172,7 +172,7 @@ impl Heights {
         (low, high)
     }
 
-    /// [`Self::refined`] where the surface's corners stand at these heights over the plane.
+    /// [`Self::refined`] if the surface's corners have these heights over the plane.
     pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32, enough: f64) -> f64 {
         let mut coefficients = self.bernstein();
         let (along, across) = (0.25 * (second - first), 0.25 * (third - first));

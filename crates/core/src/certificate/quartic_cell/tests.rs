@@ -240,7 +240,7 @@ fn triangles_off_the_surface_are_bounded() {
     );
 }
 
-/// The range over a plane off the corners: nothing is farther off it than it says, and some point is as near to it.
+/// The range over a plane off the corners: no point is beyond it, and some point is near to it.
 #[test]
 fn ranges_over_planes_off_the_corners_hold() {
     let mut random = Random::new(11);

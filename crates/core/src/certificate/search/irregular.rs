@@ -1,5 +1,5 @@
-//! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the
-//! hull of their control points, or by their twins at semi-sharp tags (see
+//! Pieces at irregular vertices without refinement: by an affine image of the characteristic map,
+//! by the hull of their control points, or by their twins at semi-sharp tags (see
 //! [`super::super::bounds`]).
 
 use super::super::hull_points::HullPoint;
@@ -78,8 +78,8 @@ impl<P: HullPoint> Search<'_, P> {
         false
     }
 
-    /// Takes a piece at an irregular vertex that is none of [`Self::extraordinary`] as it is if that is enough, or if nothing will be; says
-    /// whether it did.
+    /// Bounds a piece at an irregular vertex, other than those of [`Self::extraordinary`], without
+    /// refinement if that is enough or if refinement cannot help; returns whether it did.
     pub(in super::super) fn is_settled(
         &mut self,
         patch: &Patch,
@@ -99,7 +99,8 @@ impl<P: HullPoint> Search<'_, P> {
         self.is_enough(held, depth)
     }
 
-    /// A piece at an irregular vertex inside the surface, all of whose ring is there: as it is if that is enough, else refined.
+    /// A piece at an irregular vertex inside the surface, with a complete ring: without refinement
+    /// if that is enough, else refined.
     pub(super) fn extraordinary(
         &mut self,
         piece: &ExtraordinaryPatch<P>,
@@ -117,7 +118,8 @@ impl<P: HullPoint> Search<'_, P> {
         }
     }
 
-    /// Takes such a piece as it is if that is enough, or if nothing will be; says whether it did.
+    /// Bounds such a piece without refinement if that is enough or if refinement cannot help;
+    /// returns whether it did.
     fn is_settled_at(
         &mut self,
         piece: &ExtraordinaryPatch<P>,

@@ -76,7 +76,7 @@ pub(super) struct Cover {
     sheet: Vec<Patch>,
     ends: Vec<[DVec3; 2]>,
     seen: Seen,
-    /// Triangles looked at so far.
+    /// Triangles visited so far.
     pub(super) visited: u64,
 }
 

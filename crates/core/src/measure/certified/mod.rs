@@ -237,7 +237,8 @@ pub(crate) fn certified_known(
     })
 }
 
-/// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
+/// Work of a search with something known, for each triangle of both surfaces: it usually ends after
+/// some five.
 const KNOWN_WORK: u64 = 20;
 
 fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {

@@ -1,4 +1,4 @@
-//! Bounds of single triangles' distances to a mesh, for those who know where on it to begin.
+//! Bounds of single triangles' distances to a mesh, with a given starting point on it.
 
 use super::piece::{Piece, Sample, Worker};
 use super::scale::Scale;

@@ -1,8 +1,8 @@
 //! One scale for both surfaces, and how far rounding may lead astray.
 //!
-//! Coordinates are multiplied by a power of two so that the greatest is near 1: squares and products then neither
-//! overflow nor vanish, and rounding can be stated in units of that size. Scaling is exact but for numbers that become
-//! subnormal, for which [`Scale::new`] allows.
+//! Coordinates are multiplied by a power of two so that the greatest is near 1: squares and
+//! products then neither overflow nor vanish, and rounding can be stated in units of that size.
+//! Scaling is exact except for numbers that become subnormal, for which [`Scale::new`] allows.
 
 use crate::measure::frame::{exponent_above, power_of_two};
 use crate::vector::DVec3;

@@ -33,7 +33,7 @@ const LARGE: usize = 100_000;
 /// Samples measured, and triangles bounded, in one go.
 const RUN: usize = 1024;
 
-/// Pieces split before the lower bound is looked at again, and those of them in one go.
+/// Pieces split before the lower bound is updated, and those of one block.
 const BATCH: usize = 4096;
 const PIECES: usize = 32;
 

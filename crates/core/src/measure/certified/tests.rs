@@ -466,7 +466,7 @@ fn strips(parts: u32, profiles: &[[[f64; 2]; 2]]) -> Shape {
     shape
 }
 
-/// Turned by some angles, so that nothing is along an axis.
+/// Turned by some angles, so that no edge is along an axis.
 fn turned(shape: &Shape) -> Shape {
     let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7);
     shape.mapped(|p| (turn * vector(p)).to_array())

@@ -131,7 +131,8 @@ fn parallel_squares() {
 
 #[test]
 fn a_larger_square_is_farther_one_way() {
-    // From the large square [-1, 2]² to the unit square: the corners are √2 away; the other way round all is 0.
+    // From the large square [-1, 2]² to the unit square: the corners are √2 away; in the other
+    // direction all is 0.
     let (small, large) = (square(4), square(4).moved([-1.0, -1.0, 0.0], 3.0));
     let distance = measure(&large, &small, 200_000);
     assert!((distance.forward.max - 2f64.sqrt()).abs() < 1e-15);

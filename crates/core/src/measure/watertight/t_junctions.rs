@@ -1,8 +1,9 @@
 //! How many vertices lie inside of boundary edges.
 //!
-//! Vertices at one place are looked up once and edges between the same two places are kept once, so that soups of
-//! unconnected triangles, where many meet in a point, take no longer than others. Each edge goes through a tree of the places
-//! and meets those near to it, so that it does not matter how many edges run side by side, or lead to the same vertex.
+//! Vertices at one place are looked up once and edges between the same two places are kept once, so
+//! that soups of unconnected triangles, where many meet in a point, take no longer than others.
+//! Each edge goes through a tree of the places and meets those near to it, so that many parallel
+//! edges, or many edges at one vertex, take no more time.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};

@@ -74,8 +74,8 @@ fn two_parts_and_an_unused_vertex() {
     assert_eq!(counts(&examine(&positions, &triangles)), (0, 0, 0, 0, 2, 4));
 }
 
-/// A square whose left half is one triangle pair and whose right half is cut in two along the shared side, so that
-/// vertex 6 stands in the middle of the left half's edge.
+/// A square whose left half is one triangle pair and whose right half is cut in two along the
+/// shared side, so that vertex 6 is in the middle of the left half's edge.
 fn cut_square(middle: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let positions = vec![
         [0.0, 0.0, 0.0],
@@ -232,7 +232,8 @@ fn scattered(i: usize) -> [f64; 3] {
     [0.618_033_988_7, 0.754_877_666_2, 0.569_840_290_9].map(|step| (0.3 + step * i as f64).fract())
 }
 
-/// Vertices on edges that lead to two vertices from everywhere, and on edges of a line that hold one another, found one by one.
+/// Vertices on many edges to two common vertices, and on overlapping edges of a line, found one by
+/// one.
 #[test]
 fn t_junctions_are_those_that_looking_at_all_finds() {
     for count in [5usize, 40, 300] {

@@ -147,7 +147,7 @@ impl Cutting {
         }
     }
 
-    /// Vertices whose fans do not hang together through cut edges.
+    /// Vertices whose fans are not connected through cut edges.
     fn bow_ties(&self, cuts: &Groups) -> Vec<u32> {
         let mut sets = DisjointSets::new(self.vertex_count + self.copied.len());
         for edge in cuts.iter() {

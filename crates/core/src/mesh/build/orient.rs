@@ -9,7 +9,7 @@ use crate::geometry::{NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Diagnosis, Groups};
 
-/// Who lies across each half-edge, and who was cut apart.
+/// The face across each half-edge, and the edges that were cut apart.
 pub(super) struct Neighbours {
     /// The half-edge of the one other face at the edge, or [`NONE`].
     pub(super) twins: Vec<u32>,

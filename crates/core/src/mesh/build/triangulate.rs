@@ -441,7 +441,7 @@ pub(super) fn is_flat(positions: &[[f64; 3]], triangle: [u32; 3]) -> bool {
     are_on_one_line(triangle.map(|v| positions[v as usize]))
 }
 
-/// Which triangles have no area wherever their vertices are moved.
+/// The triangles without area under any movement of their vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Flatness<'a> {
     pub(super) positions: &'a [[f64; 3]],

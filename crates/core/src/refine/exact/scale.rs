@@ -8,7 +8,7 @@ use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact};
 
-/// Sizes with binary exponents up to this are left as they are: their eighth powers are finite.
+/// Sizes with binary exponents up to this are unchanged: their eighth powers are finite.
 const MIDDLING: i32 = 100;
 
 /// A mesh and goals of a middling size and the factor that brings them there; `None` where they are middling already.

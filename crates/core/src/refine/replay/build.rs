@@ -82,7 +82,7 @@ struct MemberPiece {
     places: Vec<([u16; 2], u32)>,
 }
 
-/// The table, but for vertices' slots, and the slots of all points.
+/// The table without vertices' slots, and the slots of all points.
 pub(super) fn build(
     control: &Control<'_>,
     wants: &Wants,

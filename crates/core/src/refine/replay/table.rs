@@ -111,7 +111,7 @@ fn input(inputs: &Inputs, point: u32) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Groups of weights that points take, but for the first.
+/// Groups of the weights of points, except for the first.
 pub(super) fn groups(points: usize) -> usize {
     points.saturating_sub(1).div_ceil(LANES)
 }

@@ -1,5 +1,5 @@
-//! Where the vertices of a refined mesh and its normals on sides of sharp edges stand on the limit surface: at control vertices, or
-//! at places over control faces.
+//! The places on the limit surface of a refined mesh's vertices and of its normals on sides of
+//! sharp edges: at control vertices, or at places over control faces.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::refine::Traced;
 use crate::refine::exact_result::{Exact, Origin};
 
-/// Something that stands on the surface.
+/// A point on the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum EvalPoint {
     /// At a control vertex, on the side of that number.

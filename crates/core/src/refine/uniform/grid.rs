@@ -12,7 +12,8 @@ use crate::progress::{Stage, Watch, unobserved};
 use crate::refine::RefineError;
 use crate::refine::split::{SplitEdges, SplitTopology};
 
-/// A triangle after some levels. Its vertices are numbered as the steps number them when it stands alone.
+/// A triangle after some levels. Its vertices are numbered as the steps number them when it is
+/// alone.
 pub(super) struct Grid {
     pub(super) levels: usize,
     /// Segments along each side.

@@ -1,4 +1,5 @@
-//! Several levels at once, with all vertices on the limit surface: the mesh that the steps give, by arithmetic.
+//! Several levels together, with all vertices on the limit surface: the mesh of the steps, by
+//! arithmetic.
 //!
 //! Takes a mesh without semi-sharp tags and a number of levels; gives the refined mesh with its
 //! vertices at their limits and, if requested, their limit normals and the triangles' connections.

@@ -250,9 +250,10 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// The control points of a face by differences to the first, but for the first itself: the irregular corner, its
-    /// ring from the next corner on, and those that complete the other corners' rings (see [`ExtraordinaryPatch`]). With
-    /// the corner's number and valence; `None` where there is more than that or something sharp.
+    /// The control points of a face by differences to the first, except for the first itself: the
+    /// irregular corner, its ring from the next corner on, and those that complete the other
+    /// corners' rings (see [`ExtraordinaryPatch`]). With the corner's number and valence; `None`
+    /// where there is more than that or something sharp.
     fn gather(&self, face: usize, controls: &mut Vec<DVec3>) -> Option<(usize, usize)> {
         let topology = self.mesh.topology();
         let valences = topology.triangles()[face].map(|v| self.valences[v as usize]);
@@ -351,7 +352,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// A regular part of a face, and where it stands in the grid.
+/// A regular part of a face, and its position in the grid.
 struct Part {
     net: BezierTriangle,
     segments: usize,

@@ -167,7 +167,7 @@ impl Sharper {
         corners_of(&self.mesh, &self.is_flat)
             .flatten()
             .for_each(|v| is_corner[v as usize] = true);
-        // Boundaries are sharp as they are.
+        // Boundaries are sharp already.
         let is_new = |&h: &HalfEdgeId| {
             let is_first = topology.twin(h).is_some_and(|twin| h < twin);
             let ends = topology.ends(h);

@@ -19,7 +19,7 @@ const SAME: f64 = 1e-3;
 /// The least assumed part of the full effect of a shift where some vertices may not follow.
 const LEAST_EFFECT: f64 = 0.25;
 
-/// Faces that are looked at between two calls of the observer.
+/// Faces between two calls of the observer.
 const PIECE: usize = 1 << 12;
 
 /// How far the vertices of each part of a mesh are shifted along normals.
@@ -190,7 +190,7 @@ fn sizes(
     poll: &mut Poll<'_>,
 ) -> Result<Vec<Size>, Cancelled> {
     let mut sizes = vec![Size::default(); parts];
-    // Seen from there, volumes keep their digits wherever the mesh is.
+    // Seen from there, volumes keep their digits at any position of the mesh.
     let middle = mesh
         .as_triangles()
         .bounding_box()

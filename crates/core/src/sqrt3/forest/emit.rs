@@ -46,7 +46,7 @@ impl Forest<'_> {
         parent == NONE || is_split(parent) && self.across(parent).is_none_or(is_split)
     }
 
-    /// The mesh as it is now.
+    /// The present mesh.
     ///
     /// # Errors
     /// More elements than can be numbered, or coordinates that overflow.

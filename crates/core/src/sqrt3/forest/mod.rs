@@ -79,7 +79,7 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Vertex {
     kind: Kind,
-    /// The level at which it came about, and its position there.
+    /// The level of its creation, and its position there.
     level: u8,
     at: DVec3,
     /// The node that it is the centre of, or the half-edge that it lies on.
@@ -131,7 +131,7 @@ impl Node {
         (self.is_odd() && self.sharp != 0).then(|| self.sharp.trailing_zeros() as usize)
     }
 
-    /// The apex as it is seen from across an edge.
+    /// The apex seen from across an edge.
     fn apex(&self, edge: usize) -> u32 {
         self.apexes[usize::from(self.cut_edge().is_some_and(|cut| (cut + 1) % 3 == edge % 3))]
     }
@@ -266,7 +266,7 @@ impl Forest<'_> {
         child
     }
 
-    /// Connects a node with its neighbours, as far as they are there.
+    /// Connects a node with its neighbours, as far as they exist.
     fn link(&mut self, node: usize) {
         for edge in 0..3 {
             let across = match self.neighbour(node, edge) {

@@ -1,5 +1,6 @@
-//! Positions of the forest's vertices at any level, their limits and normals: in closed form where there is one, else from the
-//! neighbourhood at the level at which a vertex came about, which is grown for.
+//! Positions of the forest's vertices at any level, their limits and normals: in closed form where
+//! there is one, else from the neighbourhood at the level of a vertex's creation, which is grown
+//! for this.
 //!
 //! Inside, `v` and the mean of its ring form a system of their own, so that m steps on it is at `v∞ + (2/3 − α)^m (v − v∞)`
 //! (Kobbelt); on curves two steps shrink the distance from the limit to 1/9.
@@ -200,8 +201,8 @@ impl Forest<'_> {
         }
     }
 
-    /// The points around the centre of a node without sharp edges, at the level at which it came about: corners and, between them,
-    /// apexes across.
+    /// The points around the centre of a node without sharp edges, at the level of its creation:
+    /// corners and, between them, apexes across.
     fn first_ring(&mut self, t: usize) -> [DVec3; 6] {
         let (corners, level) = (self.nodes[t].corners, self.nodes[t].level + 1);
         let mut ring = [DVec3::ZERO; 6];
@@ -221,7 +222,7 @@ impl Forest<'_> {
         Some(self.node(across).apex(edge_of(across)))
     }
 
-    /// The points around the centre of a node with sharp edges, one step after it came about.
+    /// The points around the centre of a node with sharp edges, one step after its creation.
     fn second_ring(&mut self, t: usize) -> [DVec3; 6] {
         let mut ring = [DVec3::ZERO; 6];
         self.grow(t);

@@ -1,4 +1,5 @@
-//! Single precision against the same quantities of each part by itself in double precision, by other code.
+//! Single precision against the same quantities of each part alone in double precision, by other
+//! code.
 
 use super::*;
 use crate::certificate::TriangleFrame;

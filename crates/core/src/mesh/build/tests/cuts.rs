@@ -38,7 +38,7 @@ fn three_pages_on_one_edge() {
 /// The inner vertices of the line along which the fin stands move with the cut; its ends stay.
 #[test]
 fn a_fin_on_a_sheet() {
-    // A sheet of 7 by 3 vertices; the fin stands on the middle row from column 1 to column 5.
+    // A sheet of 7 by 3 vertices; the fin is on the middle row from column 1 to column 5.
     let (columns, rows) = (7u32, 3u32);
     let mut p: Vec<[f64; 3]> = Vec::new();
     for y in 0..rows {
