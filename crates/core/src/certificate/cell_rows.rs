@@ -5,7 +5,7 @@
 //! quadratic part by each part's own plane, the rest by one bound for all parts, which shrinks with
 //! the cube of their size; normal deviations against the limit normals at the corners; tangential
 //! displacements and slopes by the second derivatives in the middles of the edges. A part passes,
-//! or fails for sure, or has to be tested by itself. Places and normals are computed in double
+//! or fails for sure, or has to be tested alone. Places and normals are computed in double
 //! precision, everything else in single ([`part_bounds`]).
 
 mod few_parts;

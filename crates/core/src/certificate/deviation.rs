@@ -120,10 +120,11 @@ impl Deviation {
     /// The bounds with and without neighbours, and which part of the former is along normals.
     ///
     /// The distance along normals is the part that stems from heights over the planes of the
-    /// triangle and its neighbours and from drifts over edges between them: the point that covers a
-    /// point is within [`super::bounds`]' |h| + σg along the normals of both planes and the chord
-    /// between them; and where it is a strip that covers, at most the tangent of half their angle
-    /// outside, all within that angle of the triangle's own normal or counted as little.
+    /// triangle and its neighbours and from tangential displacements over edges between them: the
+    /// point that covers a point is within [`super::bounds`]' |h| + σg along the normals of both
+    /// planes and the chord between them; and where it is a strip that covers, at most the tangent
+    /// of half their angle outside, all within that angle of the triangle's own normal or counted
+    /// as little.
     pub(crate) fn apart(&self, chord: f64, slopes: [f64; 3]) -> Apart {
         let bound = self
             .among_neighbours(chord, slopes)

@@ -182,11 +182,11 @@ impl TriangleFrame {
     #[inline]
     pub(crate) fn squared_to_edge(&self, edge: usize, point: DVec3) -> f64 {
         let offset = point - self.corners[edge];
-        let foot = offset
+        let along = offset
             .dot(self.along[edge])
             .max(0.0)
             .min(self.lengths[edge]);
-        (offset - foot * self.along[edge]).length_squared()
+        (offset - along * self.along[edge]).length_squared()
     }
 
     /// Squared distance of a point to the triangle.

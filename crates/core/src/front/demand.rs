@@ -1,10 +1,12 @@
 //! The demand on a front and its test for a node: whether it is too far from the surface, and for
 //! how long the outcome is certain while cameras move.
 //!
-//! **Cameras.** As the criterion for pixels proves, a distance V from a point that is seen at depth z, φ off the axis, is at most F V / (cos φ (z − V))
-//! pixels, F being those of a unit length at depth 1. With d the distance from the eye to a ball that holds the node, z ≥ d cos φ, and
-//! cos φ ≥ 1/G at the picture's corners, that is within a limit of p pixels if d ≥ V G (F G + p)/p. So a node is divided where its ball is
-//! nearer to the eye than that and not outside a side of the frame: which does not depend on how the camera is turned, but for the frame.
+//! **Cameras.** As the criterion for pixels proves, a distance V from a point that is seen at depth
+//! z, φ off the axis, is at most F V / (cos φ (z − V)) pixels, F being those of a unit length at
+//! depth 1. With d the distance from the eye to a ball that holds the node, z ≥ d cos φ, and cos φ
+//! ≥ 1/G at the picture's corners, that is within a limit of p pixels if d ≥ V G (F G + p)/p. So a
+//! node is divided where its ball is nearer to the eye than that and not outside a side of the
+//! frame: which does not depend on the camera's rotation, except for the frame.
 //!
 //! **For how long.** An eye that moves by m changes d by m at most. Where it moves from e to e′ and
 //! the outward normal n of a side of the frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ +
@@ -285,7 +287,7 @@ impl Question {
 
     /// Whether a node is to be divided for the sake of a camera.
     pub(super) fn answer(&self, extent: &Extent, length: f64) -> Answer {
-        let nobody = Answer {
+        let unwanted = Answer {
             wants: false,
             margin: f64::INFINITY,
             turns: false,
@@ -293,7 +295,7 @@ impl Question {
         let eyes = self.eyes.iter().flatten();
         let answer = eyes
             .map(|eye| eye.answer(extent, self.limit, length))
-            .fold(nobody, Answer::and);
+            .fold(unwanted, Answer::and);
         Answer {
             margin: if answer.margin > 0.0 {
                 answer.margin

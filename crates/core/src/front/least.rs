@@ -12,13 +12,13 @@
 //! **From one demand to the next.** A node that no longer wants may have been the reason of others,
 //! and two nodes may be each other's reason though neither is wanted. So a node that loses a reason
 //! is first *overdeleted*, with all nodes of which it may be a reason: its children in S, and the
-//! parents beyond its edges that do not want by themselves. Then nodes with a reason that is not
-//! overdeleted are *rederived*, and the nodes of which they are a reason, until nothing changes:
-//! each node in S has a chain of reasons from control faces that want, so it is rederived in the
-//! end. The others are merged, from the finest level up ([`loosen`]). (Gupta, Mumick, Subrahmanian,
-//! "Maintaining views incrementally", 1993, call this deletion and rederivation.) Then nodes that
-//! newly want join as they would in a fresh forest ([`extend`]). The work is proportional to the
-//! nodes that change and their neighbours.
+//! parents beyond its edges that do not want on their own account. Then nodes with a reason that is
+//! not overdeleted are *rederived*, and the nodes of which they are a reason, until nothing
+//! changes: each node in S has a chain of reasons from control faces that want, so it is rederived
+//! in the end. The others are merged, from the finest level up ([`loosen`]). (Gupta, Mumick,
+//! Subrahmanian, "Maintaining views incrementally", 1993, call this deletion and rederivation.)
+//! Then nodes that newly want join as they would in a fresh forest ([`extend`]). The work is
+//! proportional to the nodes that change and their neighbours.
 //!
 //! To be divided, a node needs those of its level beyond its edges; where one is missing, the node above it is divided first. That is rule 2
 //! for the parents of both.

@@ -12,7 +12,7 @@ mod triangle;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
 pub(crate) use surface_frame::SurfaceFrame;
-pub(crate) use triangle::{Foot, closest_to_origin, nearer, solid_angle};
+pub(crate) use triangle::{Projection, closest_to_origin, nearer, solid_angle};
 
 /// The index that means "no element".
 pub(crate) const NONE: u32 = u32::MAX;

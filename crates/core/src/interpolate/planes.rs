@@ -2,8 +2,8 @@
 //!
 //! The surface over such a region is that part of the plane, wherever the control points inside
 //! are. So a vertex inside need not be the limit of its own: the surface passes through it anyway.
-//! Where its edges are of very different lengths, as programs that cut solids leave them, it keeps
-//! its place as a control point. With its limit at the vertex, the control point would lie far
+//! Where its edges are of very different lengths, as programs that cut solids leave them, its
+//! control point stays at the vertex. With its limit at the vertex, the control point would lie far
 //! away, perhaps beyond the region's rim, and the region would fold.
 
 use std::collections::{HashMap, HashSet};

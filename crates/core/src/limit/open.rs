@@ -1,9 +1,10 @@
 //! Limit stencils of open rings: boundary vertices and corners on a boundary.
 //!
-//! The boundary curve refines by itself (the scheme's contract), so that the difference matrix D is block
-//! triangular: boundary rows have boundary columns only. Its strongly connected components split it further, and
-//! each eigenvalue belongs to one component. A left eigenvector is supported on its component and on those that
-//! this one depends on: with D = [[B, 0], [C, A]] (boundary first), `y·A = λy` and `x·(B − λ) = −y·C`.
+//! The boundary curve refines alone (the scheme's contract), so that the difference matrix D is
+//! block triangular: boundary rows have boundary columns only. Its strongly connected components
+//! split it further, and each eigenvalue belongs to one component. A left eigenvector is supported
+//! on its component and on those that this one depends on: with D = [[B, 0], [C, A]] (boundary
+//! first), `y·A = λy` and `x·(B − λ) = −y·C`.
 //!
 //! * **Smooth boundary vertex**: the first tangent runs along the boundary and is the dominant left eigenvector
 //!   of B; the second crosses it and is the dominant one of A, continued to the boundary. For Loop's rules with

@@ -1,10 +1,10 @@
 //! First and second derivatives of the limit surface, and its curvature.
 //!
-//! Pieces are refined towards a place until its part is a polynomial, as [`super`] does, whose
-//! derivatives are those of the control face's barycentric coordinates but for a factor of 2 a
-//! level, −2 in middle parts, which are inverted. Near an irregular vertex the differences are far
-//! smaller than the coordinates themselves: so at each level the piece is moved to the origin, and
-//! the weights that are small are kept, not those near 1.
+//! Pieces are refined towards a place until its part is a polynomial, as in [`super`], whose
+//! derivatives are those of the control face's barycentric coordinates times a factor of 2 a level,
+//! −2 in middle parts, which are inverted. Near an irregular vertex the differences are far smaller
+//! than the coordinates themselves: so at each level the piece is moved to the origin, and the
+//! weights that are small are kept, not those near 1.
 //!
 //! Curvature follows from the first and second fundamental forms (do Carmo, Differential Geometry of Curves and Surfaces, 3-3).
 

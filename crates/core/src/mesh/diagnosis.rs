@@ -151,7 +151,7 @@ const WORDINGS: [Wording; 14] = [
             "polygon that crosses itself",
             "polygons that cross themselves",
         ],
-        "cut into triangles as well as may be",
+        "cut into triangles as well as possible",
         "face",
     ),
     wording(
@@ -229,8 +229,8 @@ const WORDINGS: [Wording; 14] = [
         "dropped_tags",
         true,
         [
-            "crease or corner tag of nothing in the mesh",
-            "crease or corner tags of nothing in the mesh",
+            "crease or corner tag without an edge or vertex in the mesh",
+            "crease or corner tags without an edge or vertex in the mesh",
         ],
         "left out",
         "tag",

@@ -5,7 +5,7 @@
 //! vertices on sharp edges, a corner of the fine mesh at the same vertex between the same two
 //! edges. Vertices go along lines of sharp edges only from their insides, so an edge of the coarse
 //! mesh on such a line leads to the first vertex of the fine line that still exists; from edge to
-//! edge the corners around a vertex stand in the same order in both.
+//! edge the corners around a vertex have the same order in both.
 
 use crate::index::VertexId;
 use crate::mesh::{Mesh, NONE, Topology};

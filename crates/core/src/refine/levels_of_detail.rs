@@ -18,10 +18,12 @@
 //! |M_t(u) − S(u)| = |(1 − t) (M₀(u) − S(u)) + t (M₁(u) − S(u))| ≤ (1 − t) P₀ + t P₁,    Pᵢ = max |Mᵢ(u) − S(u)|,
 //! ```
 //!
-//! over all u of all triangles. As u runs over the whole control mesh, M_t over the whole mesh and S over the whole limit surface, that is a
-//! bound for both directed distances. Distances from set to set are no such thing: they are not convex in t. Both P₀ and P₁ are
-//! bounded over the pieces of S (`certificate/interpolation.rs`), on the triangles of M: nothing is lost to closing triangles but
-//! where one ends at an irregular vertex, where the bound of the leaf and the height of its split edges add up.
+//! over all u of all triangles. As u runs over the whole control mesh, M_t over the whole mesh and
+//! S over the whole limit surface, that is a bound for both directed distances. Distances from set
+//! to set are no such thing: they are not convex in t. Both P₀ and P₁ are bounded over the pieces
+//! of S (`certificate/interpolation.rs`), on the triangles of M: nothing is lost to closing
+//! triangles except where one ends at an irregular vertex, where the bound of the leaf and the
+//! height of its split edges add up.
 //!
 //! With geomorphs tolerances are for P: a level's P₁ is within its own tolerance and its P₀ within the coarser's, so that the mesh
 //! is within the coarser level's tolerance at every moment.

@@ -242,8 +242,8 @@ impl Candidates {
                     let Some([from, to]) = self.edge_between(a, b) else {
                         continue;
                     };
-                    let (s, at, foot) = nearest_points([p.at, q.at], [from, to]);
-                    let distance = at.distance(foot);
+                    let (s, at, nearest) = nearest_points([p.at, q.at], [from, to]);
+                    let distance = at.distance(nearest);
                     if !is_within(distance, self.goal) || (all && (s <= 0.0 || s >= 1.0)) {
                         continue;
                     }

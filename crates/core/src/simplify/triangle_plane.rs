@@ -57,8 +57,8 @@ impl Plane {
         let from = point - a;
         let (v, w) = (from.dot(self.along[0]), from.dot(self.along[1]));
         if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-            let foot = a * (1.0 - v - w) + b * v + c * w;
-            return point.distance(foot);
+            let projection = a * (1.0 - v - w) + b * v + c * w;
+            return point.distance(projection);
         }
         self.squared_to_sides(point).sqrt()
     }

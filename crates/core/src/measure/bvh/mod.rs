@@ -1,9 +1,10 @@
 //! A bounding-volume hierarchy over triangles, for closest points.
 //!
-//! Takes the triangles of a surface, manifold or not; gives the closest point to any point, exact in double
-//! precision: single-precision boxes, rounded outwards, only decide which triangles are looked at. The
-//! answer is the triangle at the least computed distance, the one with the least index among equals, whatever
-//! the order of the search, the guess that it started from, or the number of threads that built the hierarchy.
+//! Takes the triangles of a surface, manifold or not; gives the closest point to any point, exact
+//! in double precision: single-precision boxes, rounded outwards, only decide which triangles are
+//! tested. The answer is the triangle at the least computed distance, the one with the least index
+//! among equals, whatever the order of the search, the guess that it started from, or the number of
+//! threads that built the hierarchy.
 //!
 //! The tree is four children wide and implicit: [`build`] orders the triangles so that every 4^k consecutive
 //! ones form a node, so that no child pointers are stored.
@@ -15,7 +16,7 @@ use glam::Vec4;
 
 use super::MeasureError;
 use super::frame::{Frame, Located, distance};
-use crate::geometry::{Foot, closest_to_origin};
+use crate::geometry::{Projection, closest_to_origin};
 use crate::mesh::Triangles;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::{DVec3, diagonal, vector};
@@ -206,9 +207,10 @@ impl<'a> Bvh<'a> {
         let from = vector(point);
         let at = self.frame.locate(from);
         let nearest = self.search(&at, guess);
-        let foot = self.foot(nearest.face, &at);
+        let projection = self.projection(nearest.face, &at);
         let [a, b, c] = self.surface.corners(nearest.face as usize).map(vector);
-        let on_surface = a * foot.weights[0] + b * foot.weights[1] + c * foot.weights[2];
+        let on_surface =
+            a * projection.weights[0] + b * projection.weights[1] + c * projection.weights[2];
         let distance = if at.pulled_in {
             distance(from, on_surface)
         } else {
@@ -255,12 +257,12 @@ impl<'a> Bvh<'a> {
 
     /// The point of triangle `face` closest to a point.
     #[inline]
-    fn foot(&self, face: u32, at: &Located) -> Foot {
-        self.foot_on(self.surface.triangles[face as usize], at)
+    fn projection(&self, face: u32, at: &Located) -> Projection {
+        self.projection_on(self.surface.triangles[face as usize], at)
     }
 
     #[inline]
-    fn foot_on(&self, [a, b, c]: [u32; 3], at: &Located) -> Foot {
+    fn projection_on(&self, [a, b, c]: [u32; 3], at: &Located) -> Projection {
         let corner = |vertex: u32| self.frame.scale_point(self.position(vertex)) - at.scaled;
         closest_to_origin(corner(a), corner(b), corner(c))
     }
@@ -280,7 +282,7 @@ impl<'a> Bvh<'a> {
     fn search(&self, at: &Located, guess: Option<u32>) -> Nearest {
         let mut nearest = Nearest::NONE;
         if let Some(face) = guess.filter(|&face| (face as usize) < self.surface.triangles.len()) {
-            nearest.offer(self.foot(face, at).squared, face);
+            nearest.offer(self.projection(face, at).squared, face);
         }
         let mut bound = nearest.bound();
         let mut stack = [0; STACK];
@@ -334,7 +336,7 @@ impl<'a> Bvh<'a> {
     fn offer_slot(&self, slot: usize, at: &Located, nearest: &mut Nearest, bound: &mut f32) {
         let slot = &self.slots[slot];
         if slot.face != nearest.face
-            && nearest.offer(self.foot_on(slot.corners, at).squared, slot.face)
+            && nearest.offer(self.projection_on(slot.corners, at).squared, slot.face)
         {
             *bound = nearest.bound();
         }

@@ -37,8 +37,8 @@ fn distance_to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
         return sides;
     };
     let height = (p - a).dot(normal);
-    let foot = p - normal * height;
-    let area = |a: DVec3, b: DVec3| (a - foot).cross(b - foot).dot(normal);
+    let projection = p - normal * height;
+    let area = |a: DVec3, b: DVec3| (a - projection).cross(b - projection).dot(normal);
     // Above the inside the height is the least; the normal of a needle far from the origin may be off by much.
     if area(a, b) > 0.0 && area(b, c) > 0.0 && area(c, a) > 0.0 {
         height.abs().min(sides)

@@ -139,12 +139,12 @@ fn point_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
         .distance(p)
     };
     let normal = (b - a).cross(c - a);
-    let foot = p - normal * ((p - a).dot(normal) / normal.length_squared());
+    let projection = p - normal * ((p - a).dot(normal) / normal.length_squared());
     let inside = [(a, b), (b, c), (c, a)]
         .iter()
-        .all(|&(a, b)| (b - a).cross(foot - a).dot(normal) >= 0.0);
+        .all(|&(a, b)| (b - a).cross(projection - a).dot(normal) >= 0.0);
     if inside {
-        foot.distance(p)
+        projection.distance(p)
     } else {
         side(a, b).min(side(b, c)).min(side(c, a))
     }

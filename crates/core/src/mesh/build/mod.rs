@@ -3,8 +3,8 @@
 //! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero
 //! area, connect and orient the faces, turn components that are inside out, cut where the surface
 //! is not a manifold, carry the tags over. Each step counts its findings in the [`Diagnosis`]. All
-//! of them take time proportional to the input, or n log n, but for polygons of tens of thousands
-//! of corners, which may take n^1.5.
+//! of them take time proportional to the input, or n log n, except for polygons of tens of
+//! thousands of corners, which may take n^1.5.
 
 mod cut;
 mod inside_out;

@@ -1,11 +1,12 @@
 //! Polygons into triangles.
 //!
-//! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
-//! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
-//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay; hundreds
-//! of corners get the constrained Delaunay triangulation at once, which takes n log n. Corners in the middle of a straight side are kept, because the neighbouring face
-//! may have them too. A polygon that crosses itself seen along its normal is twisted in space, or worse: it gets
-//! the triangulation of least area.
+//! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A
+//! quad is cut along a diagonal that lies inside it, the shorter one if both do. More corners are
+//! cut by ears in the polygon's best-fit plane (through Newell's normal), with the diagonals then
+//! flipped until they are Delaunay; hundreds of corners get the constrained Delaunay triangulation,
+//! which takes n log n. Corners in the middle of a straight side are kept, because the neighbouring
+//! face may have them too. A polygon whose projection along its normal crosses itself is twisted in
+//! space, or worse: it gets the triangulation of least area.
 
 use earcut::{Earcut, Refiner};
 

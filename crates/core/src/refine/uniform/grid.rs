@@ -1,10 +1,11 @@
 //! One triangle refined a few times: the common numbering of all faces of a mesh refined by equal
 //! levels.
 //!
-//! The tables are those of the steps themselves, taken on a mesh of one triangle, so that a mesh whose faces are filled in
-//! by them is the one that the steps give: the triangles of a face stand together and new vertices follow level by level,
-//! in the order of their first half-edges. Of two faces at an edge the one with the lower number owns its vertices; which
-//! sides of a face are its own decides how its vertices are counted, and there are eight cases of that.
+//! The tables are those of the steps themselves, taken on a mesh of one triangle, so that a mesh
+//! whose faces are filled in by them is the one that the steps give: the triangles of a face are
+//! consecutive and new vertices follow level by level, in the order of their first half-edges. Of
+//! two faces at an edge the one with the lower number owns its vertices; which sides of a face are
+//! its own decides how its vertices are counted, and there are eight cases of that.
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Junctions, Mesh, NONE, Tags, Topology};
