@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use crate::control::Recipe;
 use crate::errors::Failure;
 use crate::options::{CameraIn, ControlOptions, Extent, camera, front_levels};
-use crate::pool::Pool;
+use crate::pool::{self, Pool};
 use crate::run::{ends, run};
 use crate::soup::MeshIn;
 use crate::tell;
@@ -115,8 +115,10 @@ fn taken(place: &Place) -> Option<Worker> {
     place.try_lock().ok()?.take()
 }
 
-/// Ends the threads of fronts that wait for a job.
-pub(crate) fn end_idle() {
+/// Ends the threads that are kept and those of fronts that wait for a job, and returns when they are gone.
+#[pyfunction]
+pub(crate) fn end_threads() {
+    pool::end_kept();
     let Ok(mut places) = PLACES.try_lock() else {
         return;
     };

@@ -39,6 +39,8 @@ mod _limitmesh {
     #[pymodule_export]
     use super::front::Front;
     #[pymodule_export]
+    use super::front::end_threads;
+    #[pymodule_export]
     use super::levels::{levels_of_detail, switching_distance};
     #[pymodule_export]
     use super::limit::limit;
@@ -48,8 +50,6 @@ mod _limitmesh {
     use super::origins::Origins;
     #[pymodule_export]
     use super::picture::picture;
-    #[pymodule_export]
-    use super::pool::end_threads;
     #[pymodule_export]
     use super::program::{program, refine_file};
     #[pymodule_export]

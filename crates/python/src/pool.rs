@@ -1,7 +1,7 @@
 //! Threads for jobs, kept from one call to the next: to start them takes longer than a small job.
 //!
 //! A forked process has the thread that forked and no other, so idle threads must not be waited for there. Python ends them before it
-//! forks ([`end_threads`]). Who forks behind Python's back is known by the process's number: the copy of the pool is then left as it is.
+//! forks ([`crate::front::end_threads`]). Who forks behind Python's back is known by the process's number: the copy of the pool is then left as it is.
 
 use std::io;
 use std::sync::Mutex;
@@ -10,8 +10,6 @@ use std::thread::{Builder, JoinHandle};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-
-use crate::front;
 
 /// The pool that was used last, while nobody uses it.
 static KEPT: Mutex<Option<Pool>> = Mutex::new(None);
@@ -95,6 +93,13 @@ impl Pool {
     }
 }
 
+/// Ends the threads that are kept, and returns when they are gone.
+pub(crate) fn end_kept() {
+    if let Some(pool) = taken() {
+        pool.end();
+    }
+}
+
 /// The kept pool, which is no longer kept.
 fn taken() -> Option<Pool> {
     // Not waited for: in a forked process nobody may be left to unlock it.
@@ -104,13 +109,4 @@ fn taken() -> Option<Pool> {
     }
     std::mem::forget(pool);
     None
-}
-
-/// Ends the threads that are kept, those of fronts with them, and returns when they are gone.
-#[pyfunction]
-pub(crate) fn end_threads() {
-    if let Some(pool) = taken() {
-        pool.end();
-    }
-    front::end_idle();
 }

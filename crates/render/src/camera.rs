@@ -6,7 +6,7 @@ use glam::DVec3;
 use limitmesh::{Ray, Triangles};
 
 use crate::RenderError;
-use crate::picture::check_size;
+use crate::check::check_size;
 
 /// A direction of sight and what is up in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

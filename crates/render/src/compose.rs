@@ -119,7 +119,7 @@ pub fn grid(panels: &[Panel], style: &GridStyle) -> Result<Image, RenderError> {
     let gap = u64::from(style.gap);
     let width = widths.iter().sum::<u64>() + gap * (columns as u64 + 1);
     let height = heights.iter().map(|h| h + caption + gap).sum::<u64>() + gap;
-    crate::picture::check_size(width, height)?;
+    crate::check::check_size(width, height)?;
     let mut image = Image::new(width as u32, height as u32, style.background)?;
     let mut y = gap;
     for (row, panels) in panels.chunks(columns).enumerate() {

@@ -11,9 +11,9 @@ use limitmesh::progress::{Observer, Progress};
 use limitmesh::{Crossing, Hit, Ray, RayCaster, RayOptions};
 
 use crate::camera::Camera;
+use crate::check::check_size;
 use crate::colour::{self, Linear};
 use crate::image::Image;
-use crate::picture::check_size;
 use crate::project::STEPS;
 use crate::raster::sample_places;
 use crate::shade::shade;

@@ -1,7 +1,7 @@
 //! Images: 8-bit sRGB pixels with opacity, and how they are put into PNG files.
 
 use crate::RenderError;
-use crate::picture::check_size;
+use crate::check::check_size;
 
 /// A picture of `width` × `height` pixels: red, green, blue (sRGB) and opacity of each, row by row from the upper
 /// left. Colours are not premultiplied by the opacity.

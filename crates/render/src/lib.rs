@@ -21,9 +21,11 @@
 //! ```
 
 mod camera;
+mod check;
 mod colour;
 mod colour_map;
 mod compose;
+mod covering;
 mod dice;
 mod error;
 mod exact;
@@ -34,6 +36,7 @@ mod picture;
 pub mod plot;
 mod project;
 mod raster;
+mod scale;
 mod shade;
 mod style;
 pub mod svg;
@@ -44,15 +47,18 @@ mod ticks;
 mod wire;
 
 pub use camera::{Camera, ViewDirection};
+pub use check::MAX_SIDE;
 pub use colour_map::ColourMap;
 pub use compose::{GridStyle, Panel, grid};
+pub use covering::{Covering, Material};
 pub use dice::dice;
 pub use error::RenderError;
 pub use exact::{render_exact, render_exact_observed};
-pub use heat_map::{ColourBar, Scale, render_scalar};
+pub use heat_map::{ColourBar, render_scalar};
 pub use image::Image;
-pub use picture::{MAX_SIDE, render};
+pub use picture::render;
+pub use scale::Scale;
 pub use style::{Lighting, Shading, Style};
 pub use text::{Align, TextStyle, text_width};
 pub use texture::Texture;
-pub use textured::{Covering, Material, render_textured};
+pub use textured::render_textured;

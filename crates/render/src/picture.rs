@@ -1,23 +1,21 @@
-//! A picture of a surface: checks the input, projects, rasterises tile by tile and mixes each pixel's colour.
+//! A picture of a surface: projects, rasterises tile by tile and mixes each pixel's colour.
 
 use glam::DVec3;
 use limitmesh::Triangles;
 
 use crate::camera::Camera;
+use crate::check::{check_count, check_finite, check_size, check_surface};
 use crate::colour::{self, Linear};
 use crate::colour_map::look_up;
-use crate::heat_map::Scale;
+use crate::covering::Covering;
 use crate::image::Image;
 use crate::project::{Projected, STEPS, project};
 use crate::raster::{Bins, NOTHING, Rectangle, Tile, sample_places};
+use crate::scale::Scale;
 use crate::shade::shade;
 use crate::style::{Shading, Style};
-use crate::textured::Covering;
 use crate::wire::{self, Ink, Lines};
 use crate::{RenderError, parallel};
-
-/// The longest side a picture may have, in pixels: one of 16384 × 16384 takes a gigabyte.
-pub const MAX_SIDE: u32 = 16_384;
 
 /// Draws a surface.
 ///
@@ -69,68 +67,6 @@ pub(crate) enum Paint<'a> {
         outside: Linear,
         inside: Linear,
     },
-}
-
-pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
-    let fits = |side: u64| (1..=u64::from(MAX_SIDE)).contains(&side);
-    if fits(width) && fits(height) {
-        Ok(())
-    } else {
-        Err(RenderError::Size {
-            width,
-            height,
-            limit: MAX_SIDE,
-        })
-    }
-}
-
-pub(crate) fn check_count(
-    what: &'static str,
-    met: usize,
-    surface: Triangles<'_>,
-) -> Result<(), RenderError> {
-    let expected = surface.positions.len();
-    if met == expected {
-        Ok(())
-    } else {
-        Err(RenderError::Count {
-            what,
-            met,
-            expected,
-        })
-    }
-}
-
-fn check_finite(what: &'static str, values: &[[f64; 3]]) -> Result<(), RenderError> {
-    for (index, value) in values.iter().enumerate() {
-        if let Some(&value) = value.iter().find(|x| !x.is_finite()) {
-            return Err(RenderError::NotFinite { what, index, value });
-        }
-    }
-    Ok(())
-}
-
-fn check_surface(surface: Triangles<'_>) -> Result<(), RenderError> {
-    if surface.triangles.is_empty() {
-        return Err(RenderError::Empty);
-    }
-    // Clipping may cut a triangle into seven; all pieces, and their corners, must have an index.
-    let limit = (u32::MAX / 16) as usize;
-    let count = surface.triangles.len().max(surface.positions.len());
-    if count > limit {
-        return Err(RenderError::TooMany { count, limit });
-    }
-    let count = surface.positions.len();
-    for (triangle, corners) in surface.triangles.iter().enumerate() {
-        if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= count) {
-            return Err(RenderError::VertexOutOfRange {
-                triangle,
-                vertex,
-                count,
-            });
-        }
-    }
-    check_finite("position", surface.positions)
 }
 
 pub(crate) fn draw(

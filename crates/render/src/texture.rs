@@ -3,9 +3,10 @@
 //! Kept with all their halvings (Williams 1983), so that what is far away is read from a picture whose pixels are about as large as
 //! those that are drawn. Along the longer side of a slanted pixel several readings are averaged. Everything is mixed in linear light.
 
+use crate::RenderError;
+use crate::check::MAX_SIDE;
 use crate::colour::{self, Linear};
 use crate::image::Image;
-use crate::{MAX_SIDE, RenderError};
 
 /// A picture to be laid on surfaces; it repeats beyond its sides. Opacity is not used.
 #[derive(Clone, Debug, PartialEq)]

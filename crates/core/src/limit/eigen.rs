@@ -203,9 +203,14 @@ pub(super) fn components(matrix: &DMatrix<f64>) -> Vec<Vec<usize>> {
                 low[parent] = low[parent].min(low[row]);
             }
             if low[row] == order[row] {
-                let start = stack.iter().rposition(|&r| r == row).unwrap_or(0);
-                let mut component = stack.split_off(start);
-                component.iter().for_each(|&r| on_stack[r] = false);
+                let mut component = Vec::new();
+                while let Some(r) = stack.pop() {
+                    on_stack[r] = false;
+                    component.push(r);
+                    if r == row {
+                        break;
+                    }
+                }
                 component.sort_unstable();
                 found.push(component);
             }

@@ -208,7 +208,7 @@ impl LimitTable<'_> {
         // The weights of a closed ring count from its first edge.
         let turned = match &stencil {
             Stencil::Plain(plain) if !plain.shape.open => {
-                let slot = slot_of(mesh, corner) as f64;
+                let slot = mesh.topology().slot(corner) as f64;
                 tangents.turned(core::f64::consts::TAU * slot / f64::from(plain.shape.valence))
             }
             _ => tangents,
@@ -342,7 +342,7 @@ impl Stencil {
 
     /// The side that the face of `corner` is on, at the vertex that it leaves.
     pub(super) fn side_of(&self, mesh: &Mesh, corner: HalfEdgeId) -> Option<Side<'_>> {
-        let (slot, topology) = (slot_of(mesh, corner), mesh.topology());
+        let (slot, topology) = (mesh.topology().slot(corner), mesh.topology());
         let faces = topology.outgoing_ring(topology.origin(corner)).count();
         self.sides()
             .find(|side| (slot + faces - side.first) % faces < side.faces)
@@ -501,15 +501,6 @@ fn one_ring_position(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> [f64; 3]
         sum + weight * point(mesh, neighbour)
     })
     .to_array()
-}
-
-/// Which of the edges at its vertex a half-edge is.
-fn slot_of(mesh: &Mesh, corner: HalfEdgeId) -> usize {
-    let topology = mesh.topology();
-    topology
-        .outgoing_ring(topology.origin(corner))
-        .position(|h| h == corner)
-        .unwrap_or(0)
 }
 
 fn one_ring_normal(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> Option<DVec3> {

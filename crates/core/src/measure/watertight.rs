@@ -64,7 +64,7 @@ pub fn watertightness_observed(
     let greatest = vertices.last().map_or(0, |&v| v as usize + 1);
     // Indices far beyond the number of corners must not make lists as long as the greatest of them.
     let (triangles, names) = if greatest / 8 > 3 * surface.triangles.len() {
-        let place = |v: &u32| vertices.binary_search(v).unwrap_or_default() as u32;
+        let place = |v: &u32| vertices.partition_point(|other| other < v) as u32;
         (
             surface
                 .triangles

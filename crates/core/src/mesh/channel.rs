@@ -266,7 +266,7 @@ impl Channel {
     }
 
     /// Whether all elements have one value.
-    pub fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         (1..self.indices.len()).all(|element| self.value(element) == self.value(0))
     }
 

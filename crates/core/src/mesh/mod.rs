@@ -443,16 +443,14 @@ impl Mesh {
 /// Refuses NaN and infinity.
 pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
     let bad_axis = |p: &[f64; 3]| (0..3).find(|&axis| !p[axis].is_finite());
-    match crate::parallel::first(positions.len(), |v| bad_axis(&positions[v]).is_some()) {
+    let first = crate::parallel::first(positions.len(), |v| bad_axis(&positions[v]).is_some());
+    match first.and_then(|vertex| Some((vertex, bad_axis(&positions[vertex])?))) {
         None => Ok(()),
-        Some(vertex) => {
-            let axis = bad_axis(&positions[vertex]).unwrap_or(0);
-            Err(MeshError::NotFinite {
-                vertex,
-                axis,
-                value: positions[vertex][axis],
-            })
-        }
+        Some((vertex, axis)) => Err(MeshError::NotFinite {
+            vertex,
+            axis,
+            value: positions[vertex][axis],
+        }),
     }
 }
 

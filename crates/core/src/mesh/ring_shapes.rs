@@ -37,7 +37,7 @@ impl RingShapes {
             sorted_once(shapes)
         });
         let distinct = sorted_once(distinct?.concat());
-        let place = |v: usize| distinct.binary_search(&shapes[v]).unwrap_or(0) as u32;
+        let place = |v: usize| distinct.partition_point(|shape| *shape < shapes[v]) as u32;
         let by_vertex = parallel::map_polled(shapes.len(), poll, place)?;
         Ok(Self {
             distinct,

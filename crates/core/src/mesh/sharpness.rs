@@ -170,7 +170,7 @@ impl<'m> Sharpness<'m> {
     }
 
     /// The vertices for which [`Self::is_tagged`] holds, ascending.
-    pub fn tagged_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
+    pub(crate) fn tagged_vertices(&self) -> impl Iterator<Item = VertexId> + '_ {
         let vertices = (0..self.topology.vertex_count() as u32).map(VertexId);
         let none = self.is_empty();
         vertices

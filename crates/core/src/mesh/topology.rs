@@ -105,6 +105,13 @@ impl Topology {
         &self.triangles
     }
 
+    /// The position of a half-edge among those at its origin, in the order of [`Self::outgoing_ring`].
+    pub(crate) fn slot(&self, h: HalfEdgeId) -> usize {
+        self.outgoing_ring(self.origin(h))
+            .take_while(|&other| other != h)
+            .count()
+    }
+
     /// The half-edge along this edge in the neighbouring face; `None` on a boundary.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {

@@ -6,7 +6,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::look::Bend;
+use super::bends::Bend;
 use crate::geometry::DisjointSets;
 use crate::mesh::Mesh;
 

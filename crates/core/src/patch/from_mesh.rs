@@ -106,8 +106,8 @@ fn sector(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> VertexSector
     let neighbours: Neighbours = sector.neighbours(topology).map(at).collect();
     let slot = sector
         .outgoing(topology)
-        .position(|other| other == h)
-        .unwrap_or(0);
+        .take_while(|&other| other != h)
+        .count();
     VertexSector {
         at: at(topology.origin(h)),
         neighbours,

@@ -8,12 +8,12 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock, PoisonError, RwLock, Weak};
 
 use super::child_corners;
-use super::rules::Rules;
 use super::submesh::{quartered, submesh_of};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::limit::{LimitError, LimitTable, summed};
 use crate::masks::Masks;
 use crate::mesh::{Junctions, Mesh, Sharpness};
+use crate::scheme::Scheme;
 use crate::vector::DVec3;
 
 /// The rings of faces around a face that decide the surface over it: the points within distance 2 of a part depend on points within distance
@@ -106,14 +106,14 @@ impl MeshForm {
     }
 
     /// The limits of all vertices so many levels below, the corners left out.
-    pub(super) fn samples(&self, levels: usize, rules: &Rules<'_>) -> Result<&Samples, LimitError> {
+    pub(super) fn samples(&self, levels: usize, forms: &Forms<'_>) -> Result<&Samples, LimitError> {
         let known = &self.samples[levels - 1];
         let found = match known.get() {
             Some(found) => found,
             None => {
                 let found = self
-                    .step(rules)
-                    .samples(self.mesh.vertex_count(), levels, rules);
+                    .step(forms)
+                    .samples(self.mesh.vertex_count(), levels, forms);
                 known.get_or_init(|| found)
             }
         };
@@ -121,12 +121,12 @@ impl MeshForm {
     }
 
     /// What a step makes of it.
-    pub(super) fn step(&self, rules: &Rules<'_>) -> &Step {
+    pub(super) fn step(&self, forms: &Forms<'_>) -> &Step {
         match self.step.get() {
             Some(step) => step,
             None => {
                 // Not while others wait: a thread that waits may hold what this needs.
-                let step = Step::of(&self.mesh, rules);
+                let step = Step::of(&self.mesh, forms);
                 self.step.get_or_init(|| step)
             }
         }
@@ -134,13 +134,13 @@ impl MeshForm {
 }
 
 impl Step {
-    fn of(form: &Mesh, rules: &Rules<'_>) -> Self {
+    fn of(form: &Mesh, forms: &Forms<'_>) -> Self {
         let (topology, edges, tags) = quartered(form);
         let positions = vec![[0.0; 3]; topology.vertex_count()];
         let whole = Mesh::from_parts(topology, positions, tags, Junctions::default());
         let firsts = [0, 1, 2, 3].map(first_of_part);
         let (mesh, sources) = submesh_of(&whole, &Sharpness::of(&whole), &firsts, RINGS);
-        let masks = Masks::on_demand(form, rules.scheme());
+        let masks = Masks::on_demand(form, forms.table.scheme());
         let row = |source: &VertexId| match source.index().checked_sub(form.vertex_count()) {
             None => masks.vertex_weights(*source),
             Some(edge) => masks.edge_weights(edges[edge]),
@@ -156,12 +156,12 @@ impl Step {
         let rows = sources.iter().map(row).collect();
         let middles = [0, 1, 2].map(|edge| {
             let corner = middle_corner(edge);
-            let position = rules
-                .table()
+            let position = forms
+                .table
                 .position_row(&mesh, mesh.topology().origin(corner))?;
             Ok(Middle {
                 position,
-                tangents: rules.table().tangent_rows(&mesh, corner)?,
+                tangents: forms.table.tangent_rows(&mesh, corner)?,
             })
         });
         let parts = [0, 1, 2, 3].map(|part| {
@@ -171,7 +171,7 @@ impl Step {
                 HalfEdgeId::of(FaceId(part), 0),
             );
             Part {
-                form: Arc::downgrade(&rules.forms().part(own)),
+                form: Arc::downgrade(&forms.part(own)),
                 points,
             }
         });
@@ -193,22 +193,20 @@ impl Step {
         &self,
         part: usize,
         after: &[DVec3],
-        rules: &Rules<'_>,
+        forms: &Forms<'_>,
     ) -> (Arc<MeshForm>, Vec<DVec3>) {
         let points = self.parts[part]
             .points
             .iter()
             .map(|v| after[v.index()])
             .collect();
-        (self.form_of_part(part, rules), points)
+        (self.form_of_part(part, forms), points)
     }
 
-    fn form_of_part(&self, part: usize, rules: &Rules<'_>) -> Arc<MeshForm> {
+    fn form_of_part(&self, part: usize, forms: &Forms<'_>) -> Arc<MeshForm> {
         self.parts[part].form.upgrade().unwrap_or_else(|| {
             let first = HalfEdgeId::of(FaceId(part as u32), 0);
-            rules
-                .forms()
-                .part(surroundings(&self.mesh, &Sharpness::of(&self.mesh), first).0)
+            forms.part(surroundings(&self.mesh, &Sharpness::of(&self.mesh), first).0)
         })
     }
 
@@ -217,7 +215,7 @@ impl Step {
         &self,
         before: usize,
         levels: usize,
-        rules: &Rules<'_>,
+        forms: &Forms<'_>,
     ) -> Result<Samples, LimitError> {
         let unit = 1 << levels;
         let corners: [Place; 3] = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
@@ -231,7 +229,7 @@ impl Step {
         let parts = if levels > 1 { 0..4 } else { 0..0 };
         for part in parts {
             let corners = child_corners(corners, middles, part);
-            for (place, weights) in self.form_of_part(part, rules).samples(levels - 1, rules)? {
+            for (place, weights) in self.form_of_part(part, forms).samples(levels - 1, forms)? {
                 let place = [0, 1, 2]
                     .map(|i| (0..3).map(|c| 2 * place[c] * corners[c][i]).sum::<i32>() / unit);
                 if samples.iter().all(|&(known, _)| known != place) {
@@ -316,11 +314,24 @@ fn sum(row: &Row, points: &[DVec3]) -> DVec3 {
     })
 }
 
-/// The forms of one scheme.
-#[derive(Default)]
-pub(super) struct Forms(RwLock<HashMap<FormKey, Arc<MeshForm>>>);
+/// The forms of one scheme, and its limit stencils.
+pub(super) struct Forms<'s> {
+    table: LimitTable<'s>,
+    kept: RwLock<HashMap<FormKey, Arc<MeshForm>>>,
+}
 
-impl Forms {
+impl<'s> Forms<'s> {
+    pub(super) fn of(scheme: &'s dyn Scheme) -> Self {
+        Self {
+            table: LimitTable::new(scheme),
+            kept: RwLock::default(),
+        }
+    }
+
+    pub(super) fn table(&self) -> &LimitTable<'s> {
+        &self.table
+    }
+
     /// That of a control face.
     pub(super) fn root(&self, mesh: Mesh) -> Arc<MeshForm> {
         self.known(mesh, MOST_ROOTS)
@@ -335,7 +346,7 @@ impl Forms {
     fn known(&self, mesh: Mesh, most: usize) -> Arc<MeshForm> {
         let key = FormKey::of(&mesh);
         if let Some(known) = self
-            .0
+            .kept
             .read()
             .unwrap_or_else(PoisonError::into_inner)
             .get(&key)
@@ -343,7 +354,7 @@ impl Forms {
             return Arc::clone(known);
         }
         let form = Arc::new(MeshForm::new(mesh));
-        let mut kept = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.kept.write().unwrap_or_else(PoisonError::into_inner);
         if kept.len() < most {
             return Arc::clone(kept.entry(key).or_insert(form));
         }
@@ -386,10 +397,10 @@ mod tests {
     use super::*;
     use crate::mesh::{CornerTag, CreaseTag, Tags};
     use crate::models;
-    use crate::patch::Patch;
     use crate::patch::mesh_patch::MeshPatch;
+    use crate::patch::{Patch, Rules};
     use crate::refine::{UniformOptions, limit_reference, uniform};
-    use crate::scheme::{Loop, ModifiedButterfly, Scheme};
+    use crate::scheme::{Loop, ModifiedButterfly};
     use crate::vector::vector;
 
     const LEVELS: usize = 3;
@@ -491,7 +502,7 @@ mod tests {
                 &rules,
             );
         }
-        let forms = rules.forms().0.read().unwrap().len();
+        let forms = rules.forms().kept.read().unwrap().len();
         assert!(
             forms < mesh.face_count() / 4,
             "{forms} of {}",

@@ -68,7 +68,7 @@ impl MeshPatch {
                 .map(|(&w, &point)| w * point)
                 .sum()
         };
-        match self.form.samples(SAMPLED_LEVELS, rules) {
+        match self.form.samples(SAMPLED_LEVELS, rules.forms()) {
             Ok(samples) => samples
                 .iter()
                 .map(|(place, weights)| (*place, limit(weights)))
@@ -82,7 +82,7 @@ impl MeshPatch {
 
     /// The piece refined once.
     pub(crate) fn refined<'a>(&self, rules: &'a Rules<'a>) -> RefinedMeshPatch<'a> {
-        let points = self.form.step(rules).points(&self.points);
+        let points = self.form.step(rules.forms()).points(&self.points);
         RefinedMeshPatch {
             form: Arc::clone(&self.form),
             points,
@@ -103,17 +103,17 @@ pub(crate) struct RefinedMeshPatch<'a> {
 impl RefinedMeshPatch<'_> {
     /// A part; numbered as [`super::box_spline::Refined::part`] does.
     pub(crate) fn part(&self, part: usize) -> Patch {
-        let (form, points) = self
-            .form
-            .step(self.rules)
-            .part(part, &self.points, self.rules);
+        let (form, points) =
+            self.form
+                .step(self.rules.forms())
+                .part(part, &self.points, self.rules.forms());
         Patch::Mesh(MeshPatch { form, points })
     }
 
     /// The limit of the new vertex on the edge from corner `edge`, on the face's side; the origin and no normal after a failure, which the
     /// rules keep.
     pub(crate) fn middle<L: Limit>(&self, edge: usize) -> L {
-        let step = self.form.step(self.rules);
+        let step = self.form.step(self.rules.forms());
         let position = step
             .middle(edge, &self.points)
             .map_err(|why| self.rules.fail(why));

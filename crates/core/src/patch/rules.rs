@@ -24,8 +24,7 @@ pub(crate) struct Rules<'s> {
 
 /// What takes long to find, and depends on nothing but the scheme.
 struct Found<'s> {
-    table: LimitTable<'s>,
-    forms: Forms,
+    forms: Forms<'s>,
     characteristics: [OnceLock<Characteristic>; KEPT],
     settling: [OnceLock<Option<f64>>; KEPT],
 }
@@ -48,8 +47,7 @@ impl<'s> Rules<'s> {
             family,
             betas: core::array::from_fn(kept),
             found: Arc::new(Found {
-                table: LimitTable::new(scheme),
-                forms: Forms::default(),
+                forms: Forms::of(scheme),
                 characteristics: [const { OnceLock::new() }; KEPT],
                 settling: [const { OnceLock::new() }; KEPT],
             }),
@@ -81,11 +79,11 @@ impl<'s> Rules<'s> {
 
     /// The scheme's limit stencils.
     pub(crate) fn table(&self) -> &LimitTable<'s> {
-        &self.found.table
+        self.found.forms.table()
     }
 
     /// The forms of pieces, for schemes outside the Loop family.
-    pub(super) fn forms(&self) -> &Forms {
+    pub(super) fn forms(&self) -> &Forms<'s> {
         &self.found.forms
     }
 

@@ -46,10 +46,7 @@ impl SemiSharpVertex {
             at: at(vertex),
             neighbours: topology.ring(vertex).map(at).collect(),
             sharp: sharpness.ring(vertex),
-            slot: topology
-                .outgoing_ring(vertex)
-                .position(|other| other == h)
-                .unwrap_or(0),
+            slot: topology.slot(h),
             whole: None,
         }
     }

@@ -119,10 +119,7 @@ impl Corner {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let ring = sharpness.ring(vertex);
-        let slot = topology
-            .outgoing_ring(vertex)
-            .position(|other| other == h)
-            .unwrap_or(0);
+        let slot = topology.slot(h);
         let mut role = vec![
             FADES,
             u32::from(ring.open),
@@ -175,8 +172,8 @@ impl Corner {
         let neighbours: Vec<VertexId> = sector.neighbours(topology).collect();
         let slot = sector
             .outgoing(topology)
-            .position(|other| other == h)
-            .unwrap_or(0) as u32;
+            .take_while(|&other| other != h)
+            .count() as u32;
         let centre = match Centre::of(sector.shape) {
             Centre::Smooth { sharp } => [0, sharp.map_or(0, |slot| 1 + slot as u32)],
             Centre::Crease => [1, 0],

@@ -209,6 +209,11 @@ impl ExactOptions {
         self
     }
 
+    /// Whether there is a goal that the shape is to meet everywhere.
+    pub(super) fn has_quality_goal(&self) -> bool {
+        self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some()
+    }
+
     /// Whether nothing but distances decides how large triangles are.
     pub(super) fn asks_for_distances_alone(&self) -> bool {
         self.angle.is_none() && self.pixels.is_none() && self.attributes.is_empty()
@@ -277,7 +282,6 @@ impl ExactOptions {
             let expected = "goals that are a tolerance or a number of triangles, and no balance";
             return bad("optimisation", 1.0, expected);
         }
-        let quality = self.tolerance.is_some() || self.angle.is_some() || self.pixels.is_some();
         self.attributes
             .iter()
             .try_for_each(|goal| goal.check(control.face_count()))?;
@@ -291,7 +295,7 @@ impl ExactOptions {
                 expected,
             );
         }
-        if !quality && self.triangles.is_none() {
+        if !self.has_quality_goal() && self.triangles.is_none() {
             return bad(
                 "number of goals",
                 0.0,

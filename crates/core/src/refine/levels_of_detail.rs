@@ -196,11 +196,13 @@ fn all(
     let surface = LimitSurface::without_normals(control, scheme)?;
     let mut levels: Vec<Level> = Vec::with_capacity(options.tolerances.len());
     for &tolerance in &options.tolerances {
-        let asked = (&options.exact(tolerance), tolerance);
         let level = nested(
-            (&surface, scheme),
-            asked,
-            (levels.last(), options.geomorphs),
+            &surface,
+            scheme,
+            &options.exact(tolerance),
+            tolerance,
+            levels.last(),
+            options.geomorphs,
             observer,
         )?;
         let is_met = level.exact.stop == super::ExactStop::Met;

@@ -180,7 +180,7 @@ impl<'a> Bvh<'a> {
     /// The closest point, found faster where `guess` is a triangle near it, for example the answer
     /// for a neighbouring point. The answer does not depend on the guess, and a guess out of range
     /// is ignored.
-    pub fn closest_from(&self, point: [f64; 3], guess: u32) -> ClosestPoint {
+    pub(crate) fn closest_from(&self, point: [f64; 3], guess: u32) -> ClosestPoint {
         self.closest_with_guess(point, Some(guess))
     }
 

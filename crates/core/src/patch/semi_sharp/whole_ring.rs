@@ -115,10 +115,7 @@ impl WholeRing {
 
     /// The vertex as a corner of the face of `h`, which leaves it, with the neighbours near that face.
     pub(crate) fn near(self: &Arc<Self>, h: HalfEdgeId) -> SemiSharpVertex {
-        let place = self
-            .slots
-            .binary_search_by_key(&h, |&(h, _)| h)
-            .unwrap_or(0);
+        let place = self.slots.partition_point(|&(other, _)| other < h);
         let (own, count) = (self.slots[place].1 as usize, self.neighbours.len());
         let (first, kept) = if self.sharp.open {
             let first = own.saturating_sub(1 + BEYOND);

@@ -16,6 +16,7 @@
 //! **Views** make angles depend on triangles (equation 11). One that looks away is not divided, and no part of the outline is missed, if all of
 //! its piece does.
 
+use super::back_faces::BackFaces;
 use super::control::Control;
 use super::emitted::{Emitted, Over};
 use super::surface::Ground;
@@ -31,14 +32,6 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Control faces times viewers for which that is kept: where there are more, leaves are looked at one by one.
 const MOST_KEPT: usize = 1 << 23;
-
-/// The control faces whose pieces look away as a whole, by viewer: so do all parts of them.
-#[derive(Clone, Debug, Default)]
-pub(super) struct BackFaces {
-    viewers: usize,
-    /// By control face and viewer, how far from its corners that is not certain; NaN where it does not look away.
-    rests: Vec<f64>,
-}
 
 impl BackFaces {
     /// Where vertices move, only what is certain all over: nobody knows how far a control face's corners do.
@@ -83,15 +76,7 @@ impl BackFaces {
             }
             rests
         })?;
-        Ok(Self {
-            viewers,
-            rests: blocks.concat(),
-        })
-    }
-
-    fn rest(&self, face: u32, viewer: usize) -> Option<f64> {
-        let rest = self.rests.get(face as usize * self.viewers + viewer)?;
-        (!rest.is_nan()).then_some(*rest)
+        Ok(Self::new(viewers, blocks.concat()))
     }
 }
 

@@ -204,7 +204,7 @@ struct Looking<'a> {
 impl Beholder for Looking<'_> {
     fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
         let number = (emitted.number - self.first) as usize;
-        let key = Key::of(emitted, self.emission);
+        let key = Key::of(emitted);
         self.found.keys[number] = key;
         !self.known.take_over(key, number, &mut self.found)
     }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::demands::Demands;
 use super::judge::Goal;
-use super::{Engine, budget, with_engine};
+use super::{Engine, Task, budget};
 use crate::mesh::Mesh;
 use crate::progress::Observer;
 use crate::refine::RefineError;
@@ -39,48 +39,40 @@ const MOST_TRIES: usize = 8;
 const NEAR: f64 = 0.98;
 
 /// Refines with some nodes divided in any case.
-pub(super) fn once(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
-    observer: &mut Observer<'_>,
-) -> Result<Exact, RefineError> {
-    let settings = (options, demands);
+pub(super) fn once(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, RefineError> {
+    let options = task.options;
     if !options.balance {
-        return within_caps(mesh, scheme, settings, observer);
+        return within_caps(task, observer);
     }
     let plain_options = options.clone().balance(false);
-    let plain_settings = (&plain_options, demands);
+    let plain_task = Task {
+        options: &plain_options,
+        ..task
+    };
     if options.angle.is_some() && options.triangles.is_none() {
         // Angles that vertices off the surface meet late, if at all, must not take more than those on it.
-        let plain = within_caps(mesh, scheme, plain_settings, observer)?;
+        let plain = within_caps(plain_task, observer)?;
         if matches!(plain.stop, ExactStop::Met | ExactStop::Cones) {
             let most = plain.mesh.face_count().min(options.budget().0);
-            let found = balanced_within(mesh, scheme, (settings, most), observer)?;
+            let found = balanced_within(task, most, observer)?;
             return Ok(match found {
                 Some(found) => better(plain, found),
                 None => plain,
             });
         }
-        return Ok(better(
-            plain,
-            within_caps(mesh, scheme, settings, observer)?,
-        ));
+        return Ok(better(plain, within_caps(task, observer)?));
     }
-    let found = within_caps(mesh, scheme, settings, observer)?;
+    let found = within_caps(task, observer)?;
     let count = found.mesh.face_count();
-    if !may_do_with_fewer(mesh, scheme, plain_settings, count, observer)? {
+    if !may_do_with_fewer(plain_task, count, observer)? {
         return Ok(found);
     }
     // Of many triangles only those of meshes that are merged afterwards come so far.
-    let is_told = found.stop == ExactStop::Met && is_soon_told(mesh, &plain_options, count);
-    if is_told && needs_more(mesh, scheme, plain_settings, count, observer)? {
+    let is_told = found.stop == ExactStop::Met && is_soon_told(plain_task, count);
+    if is_told && needs_more(plain_task, count, observer)? {
         return Ok(found);
     }
-    Ok(better(
-        within_caps(mesh, scheme, plain_settings, observer)?,
-        found,
-    ))
+    Ok(better(within_caps(plain_task, observer)?, found))
 }
 
 /// The one of two meshes that meets the goals with fewer triangles, or comes nearer.
@@ -98,12 +90,12 @@ fn better(plain: Exact, balanced: Exact) -> Exact {
 
 /// Refines with balanced vertices until the goals are met; `None` where that takes more than so many triangles.
 fn balanced_within(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    ((options, demands), most): ((&ExactOptions, &Demands), usize),
+    task: Task<'_>,
+    most: usize,
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
-    with_engine(mesh, scheme, (options, demands), observer, |engine| {
+    task.with_engine(observer, |engine| {
+        let options = task.options;
         let goal = Goal::Balanced(engine.floor(options.tolerance));
         let found = engine.refined(goal, most)?;
         found
@@ -117,74 +109,67 @@ fn balanced_within(
 pub(in crate::refine) fn within(
     mesh: &Mesh,
     scheme: &dyn Scheme,
-    (options, most): (&ExactOptions, usize),
+    options: &ExactOptions,
+    most: usize,
     observer: &mut Observer<'_>,
 ) -> Result<Option<Exact>, RefineError> {
-    with_engine(
+    let task = Task {
         mesh,
         scheme,
-        (options, &Demands::default()),
-        observer,
-        |engine| {
-            let goal = Goal::Within(engine.floor(options.tolerance));
-            let found = engine.refined(goal, most)?;
-            let found = found
-                .map(|found| found.finish(engine, ExactStop::Met, options))
-                .transpose()?;
-            Ok(found.filter(|_| !engine.control.flat.has_gaps()))
-        },
-    )
+        options,
+        demands: &Demands::default(),
+    };
+    task.with_engine(observer, |engine| {
+        let goal = Goal::Within(engine.floor(options.tolerance));
+        let found = engine.refined(goal, most)?;
+        let found = found
+            .map(|found| found.finish(engine, ExactStop::Met, options))
+            .transpose()?;
+        Ok(found.filter(|_| !engine.control.flat.has_gaps()))
+    })
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
 /// where hardly any face is divided, and where normals decide, which moved vertices bring no nearer. Of few triangles it takes little time to tell.
 pub(super) fn may_do_with_fewer(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    plain: (&ExactOptions, &Demands),
+    plain: Task<'_>,
     count: usize,
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
-    if is_soon_told(mesh, plain.0, count) {
+    if is_soon_told(plain, count) {
         return Ok(true);
     }
-    with_engine(mesh, scheme, plain, observer, |engine| {
-        Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= mesh.face_count())
+    plain.with_engine(observer, |engine| {
+        Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= plain.mesh.face_count())
     })
 }
 
 /// Whether it takes little to tell, or normals decide.
-fn is_soon_told(mesh: &Mesh, plain: &ExactOptions, count: usize) -> bool {
-    plain.angle.is_some() || count < FEW_BALANCED.max(2 * mesh.face_count())
+fn is_soon_told(plain: Task<'_>, count: usize) -> bool {
+    plain.options.angle.is_some() || count < FEW_BALANCED.max(2 * plain.mesh.face_count())
 }
 
 /// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are
 /// merged afterwards nobody can.
 fn needs_more(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
+    task: Task<'_>,
     count: usize,
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
-    with_engine(mesh, scheme, (options, demands), observer, |engine| {
-        let floor = engine.floor(options.tolerance);
+    task.with_engine(observer, |engine| {
+        let floor = engine.floor(task.options.tolerance);
         let is_told = floor > 0.0 && engine.control.flat.merged_faces() == 0;
         Ok(is_told && engine.refined(Goal::Within(floor), count)?.is_none())
     })
 }
 
-/// The same, of which caps and budgets are kept.
-fn within_caps(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
-    observer: &mut Observer<'_>,
-) -> Result<Exact, RefineError> {
+/// Refines within caps and budgets.
+fn within_caps(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, RefineError> {
+    let (mesh, options) = (task.mesh, task.options);
     let most = options.budget().0.max(mesh.face_count());
     let mut room = most;
     for _ in 0..MOST_NARROWER {
-        let found = within_room(mesh, scheme, (options, demands), room, observer)?;
+        let found = within_room(task, room, observer)?;
         let count = found.mesh.face_count();
         if !options.flat_regions || count <= most {
             return Ok(found);
@@ -195,53 +180,50 @@ fn within_caps(
         room = most.saturating_sub(over).max(mesh.face_count() + least);
     }
     let options = options.clone().flat_regions(false);
-    within_room(mesh, scheme, (&options, demands), most, observer)
+    let task = Task {
+        options: &options,
+        ..task
+    };
+    within_room(task, most, observer)
 }
 
-/// The same with so many triangles, or more where flat regions keep some that nobody counted.
+/// Refines with so many triangles at most, or more where flat regions keep some that nobody counted.
 fn within_room(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
+    task: Task<'_>,
     most: usize,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
+    let options = task.options;
     let (_, cap) = options.budget();
-    without_gaps(
-        mesh,
-        scheme,
-        ((options, demands), most),
-        observer,
-        |engine| {
-            let floor = engine.floor(options.tolerance);
-            if options.balance
-                && floor > 0.0
-                && let Some(found) = engine.refined(Goal::Balanced(floor), most)?
-            {
-                return found.finish(engine, ExactStop::Met, options);
+    without_gaps(task, most, observer, |engine| {
+        let floor = engine.floor(options.tolerance);
+        if options.balance
+            && floor > 0.0
+            && let Some(found) = engine.refined(Goal::Balanced(floor), most)?
+        {
+            return found.finish(engine, ExactStop::Met, options);
+        }
+        let plain = &Engine {
+            is_balanced: false,
+            ..*engine
+        };
+        let (found, stop) = budget::search(plain, floor, most, cap)?;
+        let mut found = found.finish(plain, stop, options)?;
+        // Evenly curved models are best divided evenly, as long as about as much of that is proven.
+        if floor == 0.0
+            && let Some(even) = budget::even(plain, most)?
+        {
+            let even = even.finish(plain, stop, options)?;
+            let is_proven = even.error.upper <= PROVEN_ALIKE * found.error.upper;
+            if is_proven && even.error.lower < found.error.lower {
+                found = even;
             }
-            let plain = &Engine {
-                is_balanced: false,
-                ..engine.clone()
-            };
-            let (found, stop) = budget::search(plain, floor, most, cap)?;
-            let mut found = found.finish(plain, stop, options)?;
-            // Evenly curved models are best divided evenly, as long as about as much of that is proven.
-            if floor == 0.0
-                && let Some(even) = budget::even(plain, most)?
-            {
-                let even = even.finish(plain, stop, options)?;
-                let is_proven = even.error.upper <= PROVEN_ALIKE * found.error.upper;
-                if is_proven && even.error.lower < found.error.lower {
-                    found = even;
-                }
-            }
-            if !options.balance {
-                return Ok(found);
-            }
-            engine.least_balanced(found, floor, (most, cap), options)
-        },
-    )
+        }
+        if !options.balance {
+            return Ok(found);
+        }
+        engine.least_balanced(found, floor, (most, cap), options)
+    })
 }
 
 impl Engine<'_> {
@@ -286,31 +268,27 @@ impl Engine<'_> {
 /// What an engine finds where all flat regions that are judged by their rims could be triangulated from these: where they could not it is run again,
 /// with rims that are divided further, or with regions that are judged by their triangles. There may be so many triangles.
 pub(super) fn without_gaps<T>(
-    mesh: &Mesh,
-    scheme: &dyn Scheme,
-    ((options, demands), most): ((&ExactOptions, &Demands), usize),
+    task: Task<'_>,
+    most: usize,
     observer: &mut Observer<'_>,
     run: impl Fn(&Engine<'_>) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
-    let (mut demands, mut attempt) = (Cow::Borrowed(demands), 0);
+    let (mut demands, mut attempt) = (Cow::Borrowed(task.demands), 0);
+    let room = most.saturating_sub(task.mesh.face_count());
     loop {
-        let (found, gaps) = with_engine(mesh, scheme, (options, &demands), observer, |engine| {
+        let task = Task {
+            demands: &demands,
+            ..task
+        };
+        let (found, gaps) = task.with_engine(observer, |engine| {
             let found = run(engine)?;
-            Ok((
-                found,
-                engine
-                    .control
-                    .flat
-                    .gaps((engine.control, &engine.edges), attempt, engine.watch)?,
-            ))
+            let control = engine.control;
+            Ok((found, control.flat.gaps(control, attempt, engine.watch)?))
         })?;
         if gaps.are_none() {
             return Ok(found);
         }
-        gaps.close(
-            demands.to_mut(),
-            (attempt, most.saturating_sub(mesh.face_count())),
-        );
+        gaps.close(demands.to_mut(), attempt, room);
         attempt += 1;
     }
 }

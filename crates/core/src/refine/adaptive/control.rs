@@ -1,8 +1,8 @@
 //! The control mesh as all passes see it: limits at its vertices, the surface over its faces, what is sharp or flat, and what is asked.
 
-use super::backs::BackFaces;
+use super::back_faces::BackFaces;
 use super::demands::Demands;
-use super::flat::FlatRegions;
+use super::flat::regions::FlatRegions;
 use super::quadtree::Edges;
 use super::surface::SurfacePiece;
 use crate::criterion::Criteria;
@@ -17,6 +17,7 @@ use crate::vector::{DVec3, vector};
 /// What is known of the control mesh, and what is asked.
 pub(super) struct Control<'a> {
     pub(super) mesh: &'a Mesh,
+    pub(super) edges: Edges<'a>,
     pub(super) sharpness: &'a Sharpness<'a>,
     pub(super) large: LargeRings,
     /// What is sharp in the limit.
@@ -78,15 +79,11 @@ impl Control<'_> {
     }
 
     /// The faces beyond the edges of a face that are not sharp.
-    pub(super) fn beside<'c>(
-        &'c self,
-        edges: &'c Edges<'_>,
-        face: u32,
-    ) -> impl Iterator<Item = u32> + 'c {
+    pub(super) fn beside(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
         let open = self.open(face);
         let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
         inner
-            .filter_map(move |edge| edges.twin(3 * face + edge))
+            .filter_map(move |edge| self.edges.twin(3 * face + edge))
             .map(|h| h / 3)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::chains::Chains;
 use super::control::Control;
-use super::quadtree::{Edges, Place, Trees, is_split};
+use super::quadtree::{Place, Trees, is_split};
 use super::rim::Rim;
 use super::surface::{Surface, SurfacePiece};
 use super::walk::{Knot, Node, Visitor, Walk};
@@ -24,7 +24,6 @@ pub(super) struct Cover {
 #[derive(Clone, Copy)]
 pub(super) struct Covering<'a> {
     pub(super) control: &'a Control<'a>,
-    pub(super) edges: &'a Edges<'a>,
     pub(super) trees: &'a Trees,
     pub(super) chains: &'a Chains,
     /// Whether all diagonals start at the unsplit edge's start.
@@ -41,13 +40,12 @@ impl Covering<'_> {
     ) -> Cover {
         let Self {
             control,
-            edges,
             trees,
             chains,
             has_fixed_diagonals,
         } = *self;
         let word = trees.root(face);
-        if !is_split(word) && chains.are_none(edges, face) {
+        if !is_split(word) && chains.are_none(&control.edges, face) {
             return Cover {
                 triangles: 1,
                 ..Cover::default()
@@ -55,7 +53,7 @@ impl Covering<'_> {
         }
         let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
         walk.knots.clear();
-        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
         let mut count = Count {
             triangles: 0,
             rim: Rim::default(),

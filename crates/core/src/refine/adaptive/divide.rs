@@ -9,8 +9,9 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 
 use super::Engine;
 use super::control::Control;
-use super::judge::{Allowance, Extent, Fate, Goal, Judge, Seen, Verdict};
-use super::quadtree::{Edges, LEAF, MOST_LEVELS, PROVEN, Piece, Place, Trees};
+use super::judge::{Goal, Judge, Verdict};
+use super::quadtree::{LEAF, MOST_LEVELS, PROVEN, Piece, Place, Trees};
+use super::seen::{Allowance, Extent, Fate, Seen};
 use super::surface::Ground;
 use crate::certificate::{CellRows, Marks, Pieces};
 use crate::parallel::IsStopped;
@@ -62,11 +63,10 @@ pub(super) fn divide(
     };
     let expected = Expected::of_all(engine, goal)?;
     let (control, max_levels) = (engine.control, engine.max_levels.min(MOST_LEVELS));
-    let (edges, expected) = (&engine.edges, &expected[..]);
+    let expected = &expected[..];
     let found = engine.watch.long_shares(faces, |block, is_stopped| {
         let mut divider = Divider {
             control,
-            edges,
             goal,
             expected,
             judge: goal.judge(control, 0),
@@ -115,7 +115,6 @@ impl Count {
 /// Divides faces one by one.
 struct Divider<'a> {
     control: &'a Control<'a>,
-    edges: &'a Edges<'a>,
     goal: &'a Goal,
     /// By control face.
     expected: &'a [Expected],

@@ -6,16 +6,17 @@
 //! since stay in the arrays, and are numbered anew ([`kept`]).
 
 mod arrays;
+mod emission;
+mod emitter;
+mod job;
 mod jobs;
 mod kept;
 mod leaf_writer;
 
 use limitmesh_pages::defaults;
 
-use super::chains::{Chains, first_of};
-use super::control::Control;
-use super::cover::Cover;
-use super::quadtree::{Edges, FULL, Trees};
+use super::chains::first_of;
+use super::quadtree::FULL;
 use crate::mesh::{Junctions, MAX_FACES, MeshError, NONE};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
@@ -23,6 +24,9 @@ use crate::refine::RefineError;
 use crate::refine::exact_result::Origin;
 use crate::vector::{DVec3, unit_or_zero, vector};
 use arrays::{Arrays, Lengths, Shifts};
+pub(super) use emission::Emission;
+use emission::{Borders, Numbers};
+pub(super) use emitter::Emitter;
 use jobs::{jobs, on_edge, write};
 use kept::Kept;
 
@@ -34,156 +38,6 @@ const POLLED: u32 = 1 << 12;
 const SPARE: usize = 32;
 const SPARE_BALANCED: usize = 4;
 
-/// The emitted mesh.
-pub(super) struct Emission {
-    pub(super) positions: Vec<[f64; 3]>,
-    pub(super) normals: Vec<[f64; 3]>,
-    /// Empty where nobody asks for them.
-    pub(super) origins: Vec<Origin>,
-    pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) twins: Vec<u32>,
-    pub(super) parents: Vec<u32>,
-    /// By control face, its first triangle; one more than there are faces.
-    pub(super) starts: Vec<u32>,
-    /// How far each vertex was moved along its normal; empty where none was.
-    pub(super) offsets: Vec<f64>,
-    /// The half-edges along each control half-edge, from its start.
-    pub(super) borders: Borders,
-    /// By control half-edge along a sharp edge, the normals on its side of the vertices inside it.
-    pub(super) sharp: Vec<(u32, Vec<[f64; 3]>)>,
-    /// Copies of vertices and edges of cut sheets.
-    pub(super) junctions: Junctions,
-    /// Where the vertices lay before they were moved; empty where none was.
-    bases: Vec<[f64; 3]>,
-    /// How the vertices of control faces that were kept were moved before.
-    before: Moves,
-    numbers: Numbers,
-    /// By control face, whether it was written anew, not kept.
-    is_new: Vec<bool>,
-}
-
-/// How far vertices were moved, and where they lie since; empty where none was.
-#[derive(Default)]
-struct Moves {
-    offsets: Vec<f64>,
-    positions: Vec<[f64; 3]>,
-}
-
-/// The numbers of vertices.
-struct Numbers {
-    /// By half-edge, the first of its own; one more than there are half-edges.
-    on_edges: Vec<u32>,
-    /// By control face, the first inside it; one more than there are faces.
-    inside: Vec<u32>,
-}
-
-impl Emission {
-    /// The numbers of a control face's triangles.
-    pub(super) fn triangles_of(&self, face: u32) -> core::ops::Range<usize> {
-        self.starts[face as usize] as usize..self.starts[face as usize + 1] as usize
-    }
-
-    /// The vertices inside a control face.
-    pub(super) fn vertices_inside(&self, face: u32) -> core::ops::Range<usize> {
-        self.numbers.inside[face as usize] as usize..self.numbers.inside[face as usize + 1] as usize
-    }
-
-    /// Whether a control face was written anew, not kept.
-    pub(super) fn is_new(&self, face: u32) -> bool {
-        self.is_new[face as usize]
-    }
-
-    /// The vertices of a control face; some more than once.
-    pub(super) fn vertices_of(&self, face: u32) -> impl Iterator<Item = u32> {
-        let half_edges = (3 * face..3 * face + 3).flat_map(|h| self.borders.along(h));
-        let starts = half_edges.map(|&h| self.triangles[h as usize / 3][h as usize % 3]);
-        self.vertices_inside(face)
-            .map(|vertex| vertex as u32)
-            .chain(starts)
-    }
-
-    /// How far the vertices of control faces that were kept were moved before; of others that is not known. `None` where all are
-    /// new, or none was moved.
-    pub(super) fn offsets_before(&mut self) -> Option<Vec<f64>> {
-        let offsets = core::mem::take(&mut self.before.offsets);
-        (!offsets.is_empty()).then_some(offsets)
-    }
-
-    /// Moves the vertices along their normals. Only those of some control faces are moved otherwise than before.
-    pub(super) fn shift(
-        &mut self,
-        offsets: Vec<f64>,
-        faces: &[u32],
-        watch: &SharedWatch<'_>,
-    ) -> Result<(), Cancelled> {
-        self.offsets = offsets;
-        let mut moved = core::mem::take(&mut self.before.positions);
-        let at =
-            |vertex: u32| (vector(self.positions[vertex as usize]) + self.step(vertex)).to_array();
-        if moved.is_empty() {
-            moved = limitmesh_pages::with_capacity(self.positions.len());
-            watch.each(0..self.positions.len() as u32, |vertex| {
-                moved.push(at(vertex))
-            })?;
-        } else {
-            watch.each(faces, |&face| {
-                self.vertices_of(face)
-                    .for_each(|vertex| moved[vertex as usize] = at(vertex));
-            })?;
-            let copies = self.junctions.vertices.iter().flatten();
-            copies.for_each(|&vertex| moved[vertex as usize] = at(vertex));
-        }
-        self.bases = core::mem::replace(&mut self.positions, moved);
-        Ok(())
-    }
-
-    /// How far the corners of a triangle were moved.
-    pub(super) fn offsets_of(&self, triangle: usize) -> [f64; 3] {
-        self.triangles[triangle]
-            .map(|vertex| self.offsets.get(vertex as usize).copied().unwrap_or(0.0))
-    }
-
-    /// How far a vertex was moved, and in which direction.
-    pub(super) fn step(&self, vertex: u32) -> DVec3 {
-        let offset = self.offsets.get(vertex as usize).copied().unwrap_or(0.0);
-        offset * vector(self.normals[vertex as usize])
-    }
-}
-
-/// The emitted half-edges along the edges of control faces.
-pub(super) struct Borders {
-    starts: Vec<u32>,
-    half_edges: Vec<u32>,
-}
-
-impl Borders {
-    /// Along a control half-edge, from its start.
-    pub(super) fn along(&self, h: u32) -> &[u32] {
-        &self.half_edges[self.starts[h as usize] as usize..self.starts[h as usize + 1] as usize]
-    }
-}
-
-const NOWHERE: Origin = Origin {
-    face: NONE,
-    barycentric: [0.0; 3],
-};
-
-/// What is emitted, and how.
-#[derive(Clone, Copy)]
-pub(super) struct Emitter<'a> {
-    pub(super) control: &'a Control<'a>,
-    pub(super) edges: &'a Edges<'a>,
-    pub(super) trees: &'a Trees,
-    pub(super) chains: &'a Chains,
-    /// By control face.
-    pub(super) covers: &'a [Cover],
-    /// By control face, whether it may be another than when it was emitted before.
-    pub(super) is_changed: &'a [bool],
-    pub(super) has_origins: bool,
-    /// Whether vertices will be moved.
-    pub(super) is_balanced: bool,
-}
-
 impl Emitter<'_> {
     /// Emits the leaves into the arrays of what was emitted before, if anything was.
     pub(super) fn emit(
@@ -193,7 +47,6 @@ impl Emitter<'_> {
     ) -> Result<Emission, RefineError> {
         let Self {
             control,
-            edges,
             chains,
             covers,
             ..
@@ -217,7 +70,7 @@ impl Emitter<'_> {
         let is_new: Vec<bool> = (0..).zip(self.is_changed).map(is_new).collect();
         let mut starts = defaults::<u32>(3 * faces + 1);
         watch.each(0..3 * faces, |h| {
-            starts[h + 1] = starts[h] + chains.along(edges, h as u32) as u32 + 1
+            starts[h + 1] = starts[h] + chains.along(&control.edges, h as u32) as u32 + 1
         })?;
         let mut next = 0;
         let first_triangles = covers.iter().map(|cover| {
@@ -280,8 +133,7 @@ impl Emitter<'_> {
         let jobs = jobs(self, &mut emission, watch)?;
         let kept = before.as_ref().map(|before| Kept {
             before,
-            mesh: control.mesh,
-            edges,
+            control,
             chains,
         });
         parallel::each_long_polled(jobs, &mut |_| watch.poll(), |job, is_stopped| {
@@ -348,7 +200,7 @@ impl Emitter<'_> {
     fn join(&self, emission: &mut Emission, watch: &SharedWatch<'_>) -> Result<(), Cancelled> {
         let Emission { borders, twins, .. } = emission;
         watch.each(0..borders.starts.len() as u32 - 1, |h| {
-            match self.edges.twin(h) {
+            match self.control.edges.twin(h) {
                 Some(twin) if h < twin => {
                     for (&a, &b) in borders
                         .along(h)
@@ -374,10 +226,7 @@ impl Emitter<'_> {
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let Self {
-            control,
-            edges,
-            chains,
-            ..
+            control, chains, ..
         } = *self;
         if control.lasting.is_empty() {
             return Ok(());
@@ -389,8 +238,10 @@ impl Emitter<'_> {
             }
             for edge in (0..3).filter(|&edge| open[edge]) {
                 let h = 3 * face + edge as u32;
-                let Some(twin) = edges.twin(h) else { continue };
-                let (number, places) = chains.own(first_of(edges, h));
+                let Some(twin) = control.edges.twin(h) else {
+                    continue;
+                };
+                let (number, places) = chains.own(first_of(&control.edges, h));
                 let mut normals = vec![[0.0; 3]; places.len()];
                 if h < twin {
                     normals.copy_from_slice(
@@ -413,7 +264,7 @@ impl Emitter<'_> {
             }
         }
         watch.each(&emission.sharp, |(h, normals)| {
-            let owner = first_of(edges, *h);
+            let owner = first_of(&control.edges, *h);
             if owner != *h {
                 let number = chains.own(owner).0;
                 for (vertex, normal) in (number..).zip(normals.iter().rev()) {
@@ -424,26 +275,4 @@ impl Emitter<'_> {
             }
         })
     }
-}
-
-impl Numbers {
-    fn of(control: &Control<'_>, chains: &Chains, covers: &[Cover]) -> Self {
-        let first = (control.mesh.vertex_count() + chains.count()) as u32;
-        let inside = covers.iter().scan(first, |next, cover| {
-            *next += cover.vertices;
-            Some(*next)
-        });
-        let inside = core::iter::once(first).chain(inside);
-        let on_edges = (0..3 * covers.len() as u32)
-            .map(|h| chains.own(h).0)
-            .chain([first]);
-        Self {
-            on_edges: on_edges.collect(),
-            inside: inside.collect(),
-        }
-    }
-}
-
-fn fraction(at: u32) -> f64 {
-    f64::from(at) / f64::from(FULL)
 }

@@ -6,8 +6,8 @@ use super::chains::Chains;
 use super::control::Control;
 use super::cover::Cover;
 use super::emit::Emission;
-use super::leaf::leaf_triangles;
-use super::quadtree::{Edges, Place, Trees, is_proven, is_split};
+use super::leaf::LeafTriangle;
+use super::quadtree::{Place, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
 use super::surface::{GeneralPiece, Ground, Surface};
 use super::walk::{Knot, Node, Visitor, Walk};
@@ -25,6 +25,8 @@ pub(super) struct Emitted {
     pub(super) number: u32,
     /// Its vertices, in the order of the part's corners, which may begin elsewhere.
     pub(super) vertices: [u32; 3],
+    /// Which of the emitted triangle's corners is the first of those.
+    pub(super) turn: usize,
     /// The leaf that it covers, or a part of which.
     pub(super) place: Place,
     /// That part.
@@ -76,7 +78,6 @@ pub(super) trait Beholder {
 #[derive(Clone, Copy)]
 pub(super) struct Sources<'a> {
     pub(super) control: &'a Control<'a>,
-    pub(super) edges: &'a Edges<'a>,
     pub(super) trees: &'a Trees,
     pub(super) chains: &'a Chains,
     pub(super) covers: &'a [Cover],
@@ -87,26 +88,25 @@ impl Sources<'_> {
     /// Whether a control face is one triangle that is marked as proven.
     pub(super) fn is_whole(&self, face: u32) -> bool {
         let word = self.trees.root(face);
-        !is_split(word) && is_proven(word) && self.chains.are_none(self.edges, face)
+        !is_split(word) && is_proven(word) && self.chains.are_none(&self.control.edges, face)
     }
 
     /// Shows the triangles of a control face, in the order in which they stand.
     pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
         let Self {
             control,
-            edges,
             trees,
             chains,
             covers,
             emission,
         } = *self;
         let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
-        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
         let mut leaves = Leaves {
             rules: control.rules,
             triangles: &emission.triangles,
             next: emission.triangles_of(face).start as u32,
-            open: control.flat.counting(edges, face, control.open(face)),
+            open: control.flat.counting(control, face, control.open(face)),
             diagonals: &covers[face as usize].diagonals,
             rim: Rim::default(),
             is_stopped,
@@ -223,22 +223,20 @@ impl<B: Beholder> Leaves<'_, B> {
                 .zip(triangle)
                 .for_each(|(&label, &vertex)| vertices[label as usize] = vertex);
         }
-        let emitted = |part, labels: [usize; 3], borders: [Option<usize>; 3]| {
-            let has = |triangle: &[u8; 3]| {
-                labels
-                    .iter()
-                    .all(|&label| triangle.contains(&(label as u8)))
-            };
-            Emitted {
-                number: first + pattern.iter().position(has).unwrap_or(0) as u32,
-                vertices: labels.map(|label| vertices[label]),
+        let triangles = (first..).zip(pattern).map(|(number, &labels)| {
+            let triangle = LeafTriangle::of(labels);
+            let emitted = Emitted {
+                number,
+                vertices: triangle.corners.map(|label| vertices[label]),
+                turn: triangle.turn(labels),
                 place,
-                part,
-                open: borders.map(|border| border.is_some_and(|edge| open[edge])),
-            }
-        };
-        let middles = [0, 1, 2].map(|edge| split[edge].map(|_| 3 + edge));
-        let triangles = leaf_triangles([0, 1, 2], middles, from_end);
+                part: triangle.part,
+                open: triangle
+                    .borders
+                    .map(|border| border.is_some_and(|edge| open[edge])),
+            };
+            (emitted, triangle.corners)
+        });
         match node.surface {
             Surface::Unknown => {}
             Surface::Regular(piece, spot) => {
@@ -252,12 +250,11 @@ impl<B: Beholder> Leaves<'_, B> {
                     spot.along(1, 0.5),
                     spot.along(2, 0.5),
                 ];
-                for triangle in triangles {
-                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                for (emitted, corners) in triangles {
                     if !self.beholder.wants_triangle(&emitted) {
                         continue;
                     }
-                    let cell = Cell(triangle.corners.map(|label| domain[label]));
+                    let cell = Cell(corners.map(|label| domain[label]));
                     self.beholder.triangle(
                         &emitted,
                         Over::Regular(piece.ground(), cell, spot),
@@ -268,14 +265,13 @@ impl<B: Beholder> Leaves<'_, B> {
             Surface::General(piece, rules) => {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
-                for triangle in triangles {
-                    let emitted = emitted(triangle.part, triangle.corners, triangle.borders);
+                for (emitted, corners) in triangles {
                     if !self.beholder.wants_triangle(&emitted) {
                         continue;
                     }
                     let [d, e, f] = *piece.middles(rules);
                     let points = [a, b, c, d, e, f];
-                    let limits = triangle.corners.map(|label| points[label]);
+                    let limits = corners.map(|label| points[label]);
                     let over = Over::General(&mut pieces, limits, piece);
                     self.beholder.triangle(&emitted, over, self.rules);
                 }
@@ -296,6 +292,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let emitted = Emitted {
             number,
             vertices,
+            turn: 0,
             place,
             part: SubTriangle::Whole,
             open,
@@ -332,6 +329,7 @@ impl<B: Beholder> Leaves<'_, B> {
         let emitted = Emitted {
             number,
             vertices: [b, c, a],
+            turn: 1,
             place,
             part: SubTriangle::Whole,
             open: [false; 3],

@@ -25,25 +25,24 @@ mod flattened;
 mod gaps;
 mod joined;
 mod merge;
+pub(super) mod regions;
 mod replace;
 mod strips;
 mod unfolded;
 
+use regions::{FlatRegions, Plane};
 pub(super) use replace::Assembled;
 pub(super) use strips::Net;
-use unfolded::is_unfolded;
+use unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 
 use super::chains::Chains;
 use super::control::Control;
-use super::demands::Demands;
-use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::NONE;
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_options::ExactOptions;
 use crate::vector::{DVec3, vector};
-use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 /// How far control points may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
@@ -52,9 +51,6 @@ const IN_PLANE: f64 = 2e-7;
 
 /// The same as a part of the tolerance.
 const OF_TOLERANCE: f64 = 1e-3;
-
-/// Heights over a plane are known to this part of the greatest coordinate.
-const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
@@ -66,57 +62,13 @@ const WEIGHT: usize = 16;
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
 
-/// The same where each takes some tenths of a millisecond, and how many may take that.
+/// Faces that one call takes together where each takes some tenths of a millisecond.
 const UNFOLDED: usize = 16;
-const MOST_UNFOLDED: usize = 4096;
-
-/// A plane through a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
-    point: DVec3,
-    normal: DVec3,
-}
-
-impl Plane {
-    fn height(&self, point: DVec3) -> f64 {
-        (point - self.point).dot(self.normal)
-    }
-}
-
-/// The flat regions of a control mesh.
-#[derive(Default)]
-pub(super) struct FlatRegions {
-    /// By control face, its region; [`NONE`] where it is not flat. Empty without regions.
-    of_face: Vec<u32>,
-    /// By region, its faces, ascending, and its plane.
-    regions: Vec<(Vec<u32>, Plane)>,
-    /// The control faces over which there may be strips.
-    straight: Vec<u32>,
-    /// How far the surface, and so what stands for it, is off the planes at most.
-    off_planes: f64,
-    /// Whether regions are what their rims enclose, also where the surface folds.
-    unfolds: bool,
-    /// By region, whether its triangles are judged by the rim alone.
-    by_rim: Vec<bool>,
-    /// By region, whether what its limit curves enclose is its surface, or stands for it where that folds; none unless that is asked for.
-    is_enclosed: Vec<bool>,
-    /// By region, the first of those with which it is judged together.
-    joined: Vec<u32>,
-    /// How far beyond its rim the surface over such a region may reach for all that was proven.
-    beyond_rims: f64,
-    /// Such regions of which nothing was found that could be triangulated, with the chords of their rims by control face.
-    gaps: Mutex<BTreeMap<u32, BTreeMap<u32, u32>>>,
-    /// By control face, whether it is part of a region or there may be strips over it; empty where there are neither.
-    is_merged: Vec<bool>,
-    /// So many leaves of such a face count as one while faces are divided.
-    weight: usize,
-}
 
 impl FlatRegions {
     /// Finds the regions.
     pub(super) fn of(
         control: &Control<'_>,
-        edges: &Edges<'_>,
         options: &ExactOptions,
         watch: &SharedWatch<'_>,
     ) -> Result<Self, Cancelled> {
@@ -134,8 +86,7 @@ impl FlatRegions {
             watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
         let found = watch.pieces(mesh.face_count(), BLOCK, |block| {
             let flat = block.map(|face| face as u32);
-            let flat =
-                flat.filter(|&face| may_be_flat((control, edges), &normals, face, options.unfold));
+            let flat = flat.filter(|&face| may_be_flat(control, &normals, face, options.unfold));
             // The largest faces know their planes best.
             let area = |face: u32| mesh.face_normal_vector(face as usize).length_squared();
             flat.map(|face| (area(face), face))
@@ -163,7 +114,7 @@ impl FlatRegions {
             let height = |face: u32| {
                 let is_up = options.unfold || normals[face as usize].dot(plane.normal) > 0.0;
                 is_up
-                    .then(|| height_over((control, edges), face, &plane, most))
+                    .then(|| height_over(control, face, &plane, most))
                     .flatten()
             };
             let Some(mut off_plane) = height(seed) else {
@@ -178,7 +129,8 @@ impl FlatRegions {
                 }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
-                    let Some(beside) = edges.twin(3 * face + edge).map(|twin| twin / 3) else {
+                    let Some(beside) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
+                    else {
                         continue;
                     };
                     if !is_left[beside as usize] || control.kept.part(face, beside) {
@@ -216,7 +168,7 @@ impl FlatRegions {
             WEIGHT
         };
         let straight = match options.strips && !options.balance {
-            true => strips::straight_faces((control, edges), &normals, (&of_face, most), watch)?,
+            true => strips::straight_faces(control, &normals, (&of_face, most), watch)?,
             false => Vec::new(),
         };
         if regions.is_empty() && straight.is_empty() {
@@ -245,7 +197,7 @@ impl FlatRegions {
             weight,
         };
         found.is_enclosed = match unfolds {
-            true => found.enclosed((control, edges), IN_PLANE * size, watch)?,
+            true => found.enclosed(control, IN_PLANE * size, watch)?,
             false => vec![false; found.regions.len()],
         };
         if options.balance {
@@ -254,8 +206,8 @@ impl FlatRegions {
                 return Ok(Self::default());
             }
         }
-        found.by_rim = found.by_rim((control, edges), (options, most), watch)?;
-        found.join((control, edges), (most, size), watch)?;
+        found.by_rim = found.by_rim(control, (options, most), watch)?;
+        found.join(control, (most, size), watch)?;
         Ok(found)
     }
 
@@ -285,13 +237,12 @@ impl FlatRegions {
     /// boundaries around them, if what their rims enclose is the surface, or is taken for it.
     fn by_rim(
         &mut self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (options, most): (&ExactOptions, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let mut by_rim = vec![false; self.regions.len()];
-        let is_asked = options.angle.is_none() && options.pixels.is_none();
-        if !is_asked || !control.rules.is_certified() {
+        if !options.asks_for_distances_alone() || !control.rules.is_certified() {
             return Ok(by_rim);
         }
         watch.each((0..).zip(&mut by_rim), |(region, by_rim)| {
@@ -299,7 +250,7 @@ impl FlatRegions {
             *by_rim = may_be
                 && match self.unfolds {
                     true => self.is_enclosed[region as usize],
-                    false => !self.has_smooth_rim((control, edges), region),
+                    false => !self.has_smooth_rim(control, region),
                 };
         })?;
         let is_by_rim = |face: u32| {
@@ -317,7 +268,7 @@ impl FlatRegions {
             return Ok(by_rim);
         }
         let folded = watch.pieces(faces.len(), UNFOLDED, |block| {
-            let region = |face: u32| self.region(face).unwrap_or(NONE) as usize;
+            let region = |face: u32| self.of_face[face as usize] as usize;
             let is_folded =
                 |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);
             let folded = faces[block].iter().copied().filter(is_folded);
@@ -332,98 +283,23 @@ impl FlatRegions {
         Ok(by_rim)
     }
 
-    /// Whether a face is part of a region that is judged by its rim alone.
-    pub(super) fn is_its_rim(&self, face: u32) -> bool {
-        self.region(face)
-            .is_some_and(|region| self.by_rim[region as usize])
-    }
-
-    /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or what the rim encloses
-    /// stands for it wherever that can be triangulated.
-    pub(super) fn is_within_rim(&self, face: u32) -> bool {
-        self.is_its_rim(face)
-            || self
-                .region(face)
-                .is_some_and(|region| self.is_enclosed[region as usize])
-    }
-
-    /// The first control faces of regions for whose surface what their rims enclose is taken, ascending.
-    pub(super) fn within_rims(&self, demands: &Demands) -> Vec<u32> {
-        let is_taken = |&region: &u32| {
-            self.is_enclosed[region as usize] && !demands.judges_by_triangles(region)
-        };
-        let taken = (0..self.regions.len() as u32).filter(is_taken);
-        let mut first: Vec<u32> = taken
-            .map(|region| self.regions[region as usize].0[0])
-            .collect();
-        first.sort_unstable();
-        first
-    }
-
-    /// How far what is handed out may be from what was judged, at most: triangles of a region, and vertices of a straight line, are as
-    /// far off as those in whose place they come, on either side.
-    pub(super) fn allowance(&self) -> f64 {
-        3.0 * self.off_planes + self.beyond_rims
-    }
-
-    /// How far the surface, and what stands for it, is off the planes at most.
-    pub(super) fn off_planes(&self) -> f64 {
-        self.off_planes
-    }
-
-    /// Whether there are neither regions nor places for strips.
-    pub(super) fn are_none(&self) -> bool {
-        self.regions.is_empty() && self.straight.is_empty()
-    }
-
-    /// Whether there may be strips, so that only what is emitted tells how many triangles stay.
-    pub(super) fn has_strips(&self) -> bool {
-        !self.straight.is_empty()
-    }
-
-    /// Control faces that are part of regions, or over which there may be strips.
-    pub(super) fn merged_faces(&self) -> usize {
-        self.is_merged
-            .iter()
-            .filter(|&&is_merged| is_merged)
-            .count()
-    }
-
-    /// How many leaves of a face count as one triangle while faces are divided: of those of flat faces, and of strips, most are not going
-    /// to stay.
-    pub(super) fn weight(&self, face: u32) -> usize {
-        if self.is_merged.get(face as usize).copied().unwrap_or(false) {
-            self.weight
-        } else {
-            1
-        }
-    }
-
-    /// The region of a face.
-    pub(super) fn region(&self, face: u32) -> Option<u32> {
-        self.of_face
-            .get(face as usize)
-            .copied()
-            .filter(|&region| region != NONE)
-    }
-
     /// Triangles of a plan: `own` gives those of a face that is not flat.
     pub(super) fn count(
         &self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         chains: &Chains,
         own: impl Fn(u32) -> usize,
     ) -> usize {
         let faces = 0..control.mesh.face_count() as u32;
         faces
-            .map(|face| self.count_over((control, edges), chains, face, own(face)))
+            .map(|face| self.count_over(control, chains, face, own(face)))
             .sum()
     }
 
     /// Those that one face comes to, of which `own` are its own if it is not flat.
     pub(super) fn count_over(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         chains: &Chains,
         face: u32,
         own: usize,
@@ -431,35 +307,31 @@ impl FlatRegions {
         if self.region(face).is_none() {
             return own;
         }
-        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(mesh, h));
-        1 + rim.map(|h| chains.along(mesh.1, h)).sum::<usize>()
+        let rim = (3 * face..3 * face + 3).filter(|&h| self.is_rim(control, h));
+        1 + rim.map(|h| chains.along(&control.edges, h)).sum::<usize>()
     }
 
     /// The half-edges around a region.
-    fn rim<'a>(
-        &'a self,
-        mesh: (&'a Control<'_>, &'a Edges<'_>),
-        region: u32,
-    ) -> impl Iterator<Item = u32> + 'a {
+    fn rim<'a>(&'a self, control: &'a Control<'_>, region: u32) -> impl Iterator<Item = u32> + 'a {
         let faces = self.regions[region as usize].0.iter();
         faces
             .flat_map(|&face| 3 * face..3 * face + 3)
-            .filter(move |&h| self.is_rim(mesh, h))
+            .filter(move |&h| self.is_rim(control, h))
     }
 
     /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
-    fn has_smooth_rim(&self, mesh: (&Control<'_>, &Edges<'_>), region: u32) -> bool {
-        self.rim(mesh, region)
-            .any(|h| mesh.0.lasting.edge(HalfEdgeId(h)) <= 0.0)
+    fn has_smooth_rim(&self, control: &Control<'_>, region: u32) -> bool {
+        self.rim(control, region)
+            .any(|h| control.lasting.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.
-    fn is_rim(&self, (control, edges): (&Control<'_>, &Edges<'_>), h: u32) -> bool {
+    fn is_rim(&self, control: &Control<'_>, h: u32) -> bool {
         let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
         let ends_at = |twin: u32| {
             self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3)
         };
-        is_sharp || edges.twin(h).is_none_or(ends_at)
+        is_sharp || control.edges.twin(h).is_none_or(ends_at)
     }
 }
 
@@ -467,7 +339,7 @@ impl FlatRegions {
 /// Faces that are turned over in one plane with others are flat where what the rim encloses is asked for: control points that were moved
 /// along the rim turn slivers over.
 fn may_be_flat(
-    (control, edges): (&Control<'_>, &Edges<'_>),
+    control: &Control<'_>,
     normals: &[DVec3],
     face: u32,
     may_be_turned_over: bool,
@@ -476,7 +348,7 @@ fn may_be_flat(
     let open = control.open(face);
     let beside = (0..3u32)
         .filter(|&edge| !open[edge as usize])
-        .filter_map(|edge| edges.twin(3 * face + edge));
+        .filter_map(|edge| control.edges.twin(3 * face + edge));
     let mut beside = beside.map(|twin| normals[twin as usize / 3]);
     let is_alike = |other: DVec3| {
         let other = if may_be_turned_over && other.dot(normal) < 0.0 {
@@ -487,27 +359,4 @@ fn may_be_flat(
         other.distance_squared(normal) <= ALIKE * ALIKE
     };
     normal != DVec3::ZERO && beside.all(is_alike)
-}
-
-/// How far the surface over a face is off a plane at most; `None` where that is more than `most`.
-fn height_over(
-    (control, edges): (&Control<'_>, &Edges<'_>),
-    face: u32,
-    plane: &Plane,
-    most: f64,
-) -> Option<f64> {
-    // Nearly all faces are told apart by the vertices around them, which are among the control points.
-    let open = control.open(face);
-    let is_off = |h: u32| {
-        let twin = edges.twin(h).filter(|_| !open[h as usize % 3]);
-        twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
-    };
-    if (3 * face..3 * face + 3).any(is_off) {
-        return None;
-    }
-    let mut height = 0.0f64;
-    control
-        .patch(face)
-        .for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
-    (height <= most).then_some(height)
 }

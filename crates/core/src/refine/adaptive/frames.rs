@@ -10,7 +10,7 @@ use super::measure::{Look, measure};
 use super::measured::Measured;
 use super::result::open_cones;
 use super::state::State;
-use super::{Engine, with_engine};
+use super::{Engine, Task};
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Stage};
 use crate::refine::exact_options::ExactOptions;
@@ -46,12 +46,15 @@ pub(in crate::refine) fn frames(
     });
     let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
     let demands = Demands::default();
-    let settings = (options, &demands);
-    let state = with_engine(&meshes[0], scheme, settings, observer, |engine| {
-        first(engine, options)
-    })?;
-    let mut state = united(&meshes, scheme, (settings, state), observer)?;
-    let refined = with_engine(&meshes[0], scheme, settings, observer, |engine| {
+    let task = |mesh| Task {
+        mesh,
+        scheme,
+        options,
+        demands: &demands,
+    };
+    let state = task(&meshes[0]).with_engine(observer, |engine| first(engine, options))?;
+    let mut state = united(task(control), &meshes, state, observer)?;
+    let refined = task(&meshes[0]).with_engine(observer, |engine| {
         let emission = engine.emit_all(&state)?;
         engine.check(&emission)?;
         engine.assemble(emission, state.levels(engine.watch)?)
@@ -60,7 +63,7 @@ pub(in crate::refine) fn frames(
     let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
-        all.push(with_engine(mesh, scheme, settings, observer, |engine| {
+        all.push(task(mesh).with_engine(observer, |engine| {
             proven(engine, &mut state, (&refined, &frame), options)
         })?);
     }
@@ -103,15 +106,14 @@ fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<State, RefineErr
     Ok(found.state)
 }
 
-/// The state with all that the frames need.
+/// The state with all that the frames need; the task's mesh is none of them.
 fn united(
+    task: Task<'_>,
     meshes: &[Mesh],
-    scheme: &dyn Scheme,
-    (settings, mut state): ((&ExactOptions, &Demands), State),
+    mut state: State,
     observer: &mut Observer<'_>,
 ) -> Result<State, RefineError> {
-    let (options, _) = settings;
-    let (most, _) = options.budget();
+    let (most, _) = task.options.budget();
     // Frames in a row for which nothing had to be divided.
     let mut settled = 0;
     for frame in (0..meshes.len()).cycle().take(MOST_ROUNDS * meshes.len()) {
@@ -119,10 +121,11 @@ fn united(
             break;
         }
         let triangles = state.triangles;
-        state = with_engine(&meshes[frame], scheme, settings, observer, |engine| {
+        let mesh = &meshes[frame];
+        state = Task { mesh, ..task }.with_engine(observer, |engine| {
             state.forget();
             state.has_fixed_diagonals = true;
-            state.goal = Goal::Within(engine.floor(options.tolerance));
+            state.goal = Goal::Within(engine.floor(task.options.tolerance));
             let found = engine.verified(state, most)?;
             Ok(found.ok_or(ReplayError::TooMany { frame, most })?.state)
         })?;

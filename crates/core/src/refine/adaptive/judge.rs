@@ -7,32 +7,23 @@
 //! [`Allowance`]: how far the triangles in it and adjacent to it may be tilted, and how acute they may be. Where a whole leaf is within the limit
 //! on that condition, its bound holds as soon as all these triangles keep the allowance.
 
-use super::backs::{BackFaces, Behind, Leaf};
+use super::back_faces::BackFaces;
+use super::backs::{Behind, Leaf};
 use super::control::Control;
+use super::seen::{ANY_SLOPES, Allowance, DIVISIONS, DRIFT_SHARE, Extent, Fate, HALVINGS, Seen};
 use super::surface::Ground;
 use super::trial::Trial;
 use crate::certificate::{
     BesideEdges, Cell, Deviation, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle,
-    TriangleFrame, at_a_glance, exceeds,
+    at_a_glance, exceeds,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, Patch, Rules, Spot};
 use crate::vector::{DVec3, Extremes};
 
-/// Halvings of a net before a triangle is given up: the bound is within some per cent of the truth then.
-pub(super) const HALVINGS: usize = 2;
-
-/// Divisions into four of the heights over a plane, to the same end.
-pub(super) const DIVISIONS: u32 = 2;
-
 /// What rounding leaves of a height that is just good enough.
 pub(super) const ROUNDED: f64 = 1.0 - 1e-9;
-
-/// Drifts over an edge are counted on up to this part of what a triangle's own angles there allow, or 1: those of the triangle beyond
-/// it may be more acute, closing triangles above all. No more than √2 − 1, so that half of what an angle α leaves of π allows it, too: its
-/// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
-const DRIFT_SHARE: f64 = 0.41;
 
 /// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
 pub(super) const UNBALANCED: f64 = 1.9;
@@ -42,32 +33,6 @@ pub(super) const HOPELESS: f64 = 2.0;
 
 /// The range of heights that a few points of a piece that need not be regular tell is about this part of what there is.
 const SEEN: f64 = 0.8;
-
-/// Unit vectors are off by no more than this.
-const ROUNDING: f64 = 1e-12;
-
-/// The chord of all tilts that are possible.
-const ANY_TILT: f64 = 2.0;
-
-/// Slopes that nothing exceeds whose drift is known: as if neighbours were as wide as can be.
-const ANY_SLOPES: [f64; 3] = [9.0; 3];
-
-/// What leaves count on of the triangles in their control face and adjacent to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Allowance {
-    /// They are tilted by chords of at most this.
-    pub(super) tilt: f64,
-    /// Tangents of their angles are at least this.
-    pub(super) slope: f64,
-}
-
-impl Allowance {
-    /// Nothing is expected.
-    pub(super) const NOTHING: Self = Self {
-        tilt: 2.0 * ANY_TILT,
-        slope: 0.0,
-    };
-}
 
 /// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
 /// where nothing else counts ([`super::control::Control::criteria`]), else how many times over the criteria fail.
@@ -131,17 +96,6 @@ pub(super) struct Judge<'a> {
     pub(super) allowance: Allowance,
 }
 
-/// What becomes of a node.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fate {
-    /// It stays whole, and is within the limit if the allowance is kept.
-    Proven,
-    /// It is likely to be within the limit.
-    Likely,
-    /// It is divided.
-    Fails,
-}
-
 /// The fate of a node, and what its triangle has where it is proven.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdict {
@@ -165,35 +119,6 @@ impl Verdict {
 
     fn is_proven(&self) -> bool {
         self.fate == Fate::Proven
-    }
-}
-
-/// What triangles have at most.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extent {
-    /// The greatest tilt.
-    pub(super) tilt: f64,
-    /// The least tangent of an angle.
-    pub(super) slope: f64,
-    /// The greatest slope of a drift that bounds count on.
-    pub(super) drift_slope: f64,
-    /// The greatest bound of a distance.
-    pub(super) bound: f64,
-}
-
-impl Extent {
-    pub(super) const NONE: Self = Self {
-        tilt: 0.0,
-        slope: f64::INFINITY,
-        drift_slope: 0.0,
-        bound: 0.0,
-    };
-
-    pub(super) fn add(&mut self, other: &Self) {
-        self.tilt = self.tilt.larger(other.tilt);
-        self.slope = self.slope.smaller(other.slope);
-        self.drift_slope = self.drift_slope.larger(other.drift_slope);
-        self.bound = self.bound.larger(other.bound);
     }
 }
 
@@ -481,58 +406,5 @@ impl Judge<'_> {
     /// Whether whole rows of nodes can be tested at once.
     pub(super) fn has_rows(&self) -> bool {
         self.criteria.is_none()
-    }
-}
-
-/// A triangle as its neighbours see it.
-pub(super) struct Seen {
-    pub(super) frame: TriangleFrame,
-    pub(super) tilt: f64,
-}
-
-impl Seen {
-    pub(super) fn of(corners: &[LimitPoint; 3]) -> Self {
-        let frame = TriangleFrame::new(corners.map(|corner| corner.position));
-        // Of the two corners that neighbours share one must have a normal.
-        let known = corners.iter().filter(|corner| corner.normal != DVec3::ZERO);
-        let (mut squared, mut count) = (0.0f64, 0);
-        for corner in known {
-            squared = squared.max(corner.normal.distance_squared(frame.normal()));
-            count += 1;
-        }
-        let tilt = if count < 2 || frame.is_flat() {
-            ANY_TILT
-        } else {
-            squared.sqrt() + ROUNDING
-        };
-        Self { frame, tilt }
-    }
-
-    /// How high the highest of some points stands over the triangle.
-    pub(super) fn highest(&self, points: &[LimitPoint]) -> f64 {
-        points
-            .iter()
-            .map(|point| self.frame.height(point.position).abs())
-            .fold(0.0, f64::max)
-    }
-
-    /// What its neighbours may count on.
-    pub(super) fn extent(&self) -> Extent {
-        let slope = if self.frame.is_flat() {
-            0.0
-        } else {
-            self.frame.least_slope()
-        };
-        Extent {
-            tilt: self.tilt,
-            slope,
-            ..Extent::NONE
-        }
-    }
-
-    /// By edge, the slopes that the triangle's own angles allow.
-    #[inline]
-    fn own_slopes(&self) -> [f64; 3] {
-        [0, 1, 2].map(|edge| DRIFT_SHARE * self.frame.slope_at(edge).min(1.0))
     }
 }

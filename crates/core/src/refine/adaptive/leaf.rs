@@ -1,138 +1,104 @@
-//! The triangles of a leaf by which of its edges are split (the paper's Figure 5), and the parts of its patch that
-//! they stand for.
+//! The triangles of a leaf some of whose edges are split (the paper's Figure 5, [`crate::closure`]) as parts of its patch.
 
 use crate::certificate::SubTriangle;
 
-/// A triangle of a leaf. Corners of the part and of the triangle stand in the same order, which may be another than that
-/// of the emitted triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LeafTriangle<P> {
-    /// The part of the leaf's patch that it stands for.
+/// A triangle of a leaf. Labels are those of [`crate::closure`]: 0 to 2 for the leaf's corners, 3 + c for the vertex on the edge from corner c.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeafTriangle {
+    /// The part of the leaf's patch that it approximates.
     pub(super) part: SubTriangle,
-    pub(super) corners: [P; 3],
+    /// The labels of its corners, in the order of the part's, which may begin elsewhere than the triangle.
+    pub(super) corners: [usize; 3],
     /// For each edge, from the corner of its number, the leaf's edge that it is part of.
     pub(super) borders: [Option<usize>; 3],
 }
 
-/// The triangles of a leaf, given its corners and the vertices on its split edges. Of two split edges, the
-/// quadrilateral is cut by the diagonal from the start of the unsplit edge or from its end.
-pub(super) fn leaf_triangles<P: Copy>(
-    corners: [P; 3],
-    middles: [Option<P>; 3],
-    diagonal_from_end: bool,
-) -> impl Iterator<Item = LeafTriangle<P>> {
-    let whole = LeafTriangle {
-        part: SubTriangle::Whole,
-        corners,
-        borders: [Some(0), Some(1), Some(2)],
-    };
-    let trisected =
-        |edge, after, before| trisected(corners, edge, [after, before], diagonal_from_end);
-    let list = match middles {
-        [None, None, None] => [Some(whole), None, None, None],
-        [Some(middle), None, None] => bisected(corners, 0, middle),
-        [None, Some(middle), None] => bisected(corners, 1, middle),
-        [None, None, Some(middle)] => bisected(corners, 2, middle),
-        [None, Some(after), Some(before)] => trisected(0, after, before),
-        [Some(before), None, Some(after)] => trisected(1, after, before),
-        [Some(after), Some(before), None] => trisected(2, after, before),
-        [Some(first), Some(second), Some(third)] => quartered(corners, [first, second, third]),
-    };
-    list.into_iter().flatten()
-}
-
-type Triangles<P> = [Option<LeafTriangle<P>>; 4];
-
-/// One side of the cut from `middle`, on `edge`, to the corner opposite.
-fn half<P: Copy>(
-    mut corners: [P; 3],
-    edge: usize,
-    second: bool,
-    middle: P,
-) -> Option<LeafTriangle<P>> {
-    corners[(edge + usize::from(!second)) % 3] = middle;
-    let mut borders = [Some(0), Some(1), Some(2)];
-    borders[(edge + 1 + usize::from(second)) % 3] = None;
-    Some(LeafTriangle {
-        part: SubTriangle::Half { edge, second },
-        corners,
-        borders,
-    })
-}
-
-/// One of the four parts of a refinement.
-fn child<P: Copy>(corners: [P; 3], part: usize, on_next: P, on_last: P) -> Option<LeafTriangle<P>> {
-    let (mut own, mut borders) = (corners, [Some(0), Some(1), Some(2)]);
-    own[(part + 1) % 3] = on_next;
-    own[(part + 2) % 3] = on_last;
-    borders[(part + 1) % 3] = None;
-    Some(LeafTriangle {
-        part: SubTriangle::Child(part),
-        corners: own,
-        borders,
-    })
-}
-
-fn bisected<P: Copy>(corners: [P; 3], edge: usize, middle: P) -> Triangles<P> {
-    [
-        half(corners, edge, false, middle),
-        half(corners, edge, true, middle),
-        None,
-        None,
-    ]
-}
-
-/// All edges but `edge` are split: the next one at `after`, the one before at `before`.
-fn trisected<P: Copy>(
-    corners: [P; 3],
-    edge: usize,
-    [after, before]: [P; 2],
-    diagonal_from_end: bool,
-) -> Triangles<P> {
-    let (end, tip) = ((edge + 1) % 3, (edge + 2) % 3);
-    let quarter = |from: usize, on_border: Option<usize>| {
-        // Leaving the edge's end, the quarter starts on the next edge; at its start it ends on the edge before.
-        let mut borders = [None; 3];
-        borders[if from == end { 0 } else { 2 }] = on_border;
-        let part = SubTriangle::Quarter {
-            edge,
-            at_end: from == end,
+impl LeafTriangle {
+    /// The triangle of a pattern with these labels.
+    pub(super) fn of(labels: [u8; 3]) -> Self {
+        let has = |label: usize| labels.contains(&(label as u8));
+        let corner = (0..3).find(|&corner| has(corner));
+        let part = match (corner, labels.iter().filter(|&&label| label > 2).count()) {
+            (Some(_), 0) => SubTriangle::Whole,
+            (Some(_), 1) => {
+                // The middle of an edge, one end of that, and the corner opposite.
+                let edge = usize::from(!has(3)) + usize::from(has(5));
+                let second = !has(edge);
+                SubTriangle::Half { edge, second }
+            }
+            (Some(corner), _) => match [has(3 + corner), has(3 + (corner + 2) % 3)] {
+                [true, true] => SubTriangle::Child(corner),
+                [at_end, _] => {
+                    let edge = if at_end { (corner + 2) % 3 } else { corner };
+                    SubTriangle::Quarter { edge, at_end }
+                }
+            },
+            (None, _) => SubTriangle::Child(3),
         };
-        Some(LeafTriangle {
+        let corners = part.corners([0, 1, 2], [3, 4, 5]);
+        let borders = [0, 1, 2].map(|i| edge_with(corners[i], corners[(i + 1) % 3]));
+        Self {
             part,
-            corners: [corners[from], after, before],
+            corners,
             borders,
-        })
-    };
-    let cut_off = child(corners, tip, before, after);
-    if diagonal_from_end {
-        [
-            cut_off,
-            half(corners, tip, true, before),
-            quarter(end, Some(end)),
-            None,
-        ]
-    } else {
-        [
-            cut_off,
-            half(corners, end, false, after),
-            quarter(edge, Some(tip)),
-            None,
-        ]
+        }
+    }
+
+    /// Which of the triangle's labels is that of its first corner here.
+    pub(super) fn turn(&self, labels: [u8; 3]) -> usize {
+        let is_other = |label: &&u8| usize::from(**label) != self.corners[0];
+        labels.iter().take_while(is_other).count()
     }
 }
 
-fn quartered<P: Copy>(corners: [P; 3], middles: [P; 3]) -> Triangles<P> {
-    let [a, b, c] = middles;
-    let inner = LeafTriangle {
-        part: SubTriangle::Child(3),
-        corners: [b, c, a],
-        borders: [None; 3],
-    };
-    [
-        child(corners, 0, a, c),
-        child(corners, 1, b, a),
-        child(corners, 2, c, b),
-        Some(inner),
-    ]
+/// The leaf's edge on which two labels lie.
+fn edge_with(a: usize, b: usize) -> Option<usize> {
+    let lies_on =
+        |label: usize, edge: usize| label == edge || label == (edge + 1) % 3 || label == 3 + edge;
+    (0..3).find(|&edge| lies_on(a, edge) && lies_on(b, edge))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::closure::{Diagonal, closure};
+
+    #[test]
+    fn corners_are_those_of_the_parts() {
+        for split in 0..8 {
+            for diagonal in [Diagonal::FromStart, Diagonal::FromEnd] {
+                for &labels in closure(split, diagonal).triangles() {
+                    let own = LeafTriangle::of(labels);
+                    let case = format!("{split} {diagonal:?}: {labels:?} {own:?}");
+                    let turned = |turn: usize| {
+                        (0..3).all(|i| own.corners[i] == labels[(i + turn) % 3].into())
+                    };
+                    assert!((0..3).any(turned), "{case}");
+                    assert_eq!(
+                        own.corners,
+                        own.part.corners([0, 1, 2], [3, 4, 5]),
+                        "{case}"
+                    );
+                    // Twice the barycentric coordinates of the labels.
+                    let places = [
+                        [2, 0, 0],
+                        [0, 2, 0],
+                        [0, 0, 2],
+                        [1, 1, 0],
+                        [0, 1, 1],
+                        [1, 0, 1],
+                    ];
+                    for i in 0..3 {
+                        let [a, b] = [i, (i + 1) % 3].map(|i| places[own.corners[i]]);
+                        let opposite = (0..3).find(|&axis| a[axis] == 0 && b[axis] == 0);
+                        assert_eq!(
+                            own.borders[i],
+                            opposite.map(|axis| (axis + 1) % 3),
+                            "{case}"
+                        );
+                    }
+                }
+            }
+        }
+    }
 }

@@ -11,15 +11,17 @@ use std::collections::HashSet;
 
 use smallvec::SmallVec;
 
-use super::backs::{BackFaces, Behind, looks_away};
+use super::back_faces::BackFaces;
+use super::backs::{Behind, looks_away};
 use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
 use super::emitted::{Beholder, Emitted, Over, Sources};
-use super::judge::{DIVISIONS, Goal, ROUNDED, Seen};
+use super::judge::{Goal, ROUNDED};
 use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
 use super::quadtree::Place;
+use super::seen::{DIVISIONS, Seen};
 use super::surface::GeneralPiece;
 use crate::certificate::{
     BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
@@ -480,13 +482,7 @@ impl Among {
             true => neighbours(emission, sharp, emitted.number),
             false => [None; 3],
         };
-        // The emitted triangle may begin at another corner.
-        let emitted_at = emission.triangles[emitted.number as usize];
-        let first = emitted_at
-            .iter()
-            .position(|&vertex| vertex == emitted.vertices[0])
-            .unwrap_or(0);
-        let slopes = [0, 1, 2].map(|edge| slopes[(first + edge) % 3]);
+        let slopes = [0, 1, 2].map(|edge| slopes[(emitted.turn + edge) % 3]);
         let steps = emitted.vertices.map(|vertex| emission.step(vertex));
         let (mut moved, mut aside) = (0.0f64, 0.0f64);
         let lifts = steps.map(|step| {

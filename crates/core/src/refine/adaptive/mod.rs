@@ -11,6 +11,7 @@
 //! 4. [`probe`]: the certified interval;
 //! 5. [`flat`]: regions whose surface lies in a plane, triangulated from their rims.
 
+mod back_faces;
 mod backs;
 mod balance;
 mod budget;
@@ -41,6 +42,7 @@ mod quadtree;
 mod result;
 mod rim;
 mod rounds;
+mod seen;
 mod sides;
 mod state;
 mod surface;
@@ -63,11 +65,11 @@ use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
 use crate::progress::{Observer, SharedWatch, Stage};
 use crate::scheme::Scheme;
-use backs::BackFaces;
+use back_faces::BackFaces;
 use caps::{may_do_with_fewer, once, without_gaps};
 use control::Control;
 use demands::{Demands, Functions, surfaces_of};
-use flat::FlatRegions;
+use flat::regions::FlatRegions;
 use judge::Goal;
 use quadtree::{Edges, Place};
 
@@ -86,8 +88,14 @@ pub(super) fn adaptive(
 ) -> Result<Exact, RefineError> {
     let surfaces = surfaces_of(&options.attributes, scheme)?;
     let functions = Functions::of(&options.attributes, &surfaces);
+    let task = Task {
+        mesh,
+        scheme,
+        options,
+        demands: &Demands::default(),
+    };
     if functions.is_empty() {
-        return once(mesh, scheme, (options, &Demands::default()), observer);
+        return once(task, observer);
     }
     let (most, cap) = options.budget();
     let room = most.saturating_sub(mesh.face_count()) / ADDED;
@@ -99,7 +107,13 @@ pub(super) fn adaptive(
         None => fitting(&functions, watched, observer)?,
     };
     loop {
-        let mut found = once(mesh, scheme, (options, &demands), observer)?;
+        let mut found = once(
+            Task {
+                demands: &demands,
+                ..task
+            },
+            observer,
+        )?;
         let held = functions.held(mesh, &found, &SharedWatch::new(observer, Stage::Bounding))?;
         let is_met = functions.are_met(&held.bounds);
         found.attribute_bounds = held.bounds;
@@ -161,41 +175,50 @@ pub(super) fn count(
         false => None,
     };
     let most = options.budget().0;
-    let found = without_gaps(
+    let task = Task {
         mesh,
         scheme,
-        ((options, &demands), most),
-        observer,
-        |engine| {
-            let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
-            let limit = if engine.control.criteria.is_some() {
-                times
-            } else {
-                limit
-            };
-            let goal = if engine.is_balanced {
-                Goal::Balanced(limit)
-            } else {
-                Goal::Within(limit)
-            };
-            let most = if engine.is_balanced {
-                fewest.unwrap_or(usize::MAX)
-            } else {
-                usize::MAX
-            };
-            let Some(found) = engine.refined(goal, most)? else {
-                return Ok(fewest.unwrap_or(0));
-            };
-            if engine.control.flat.are_none() {
-                return Ok(found.state.triangles);
-            }
-            // Which regions cannot be triangulated from their rims nobody knows before.
-            let levels = found.state.levels(engine.watch)?;
-            Ok(engine.assemble(found.emission, levels)?.mesh.face_count())
-        },
-    )?;
+        options,
+        demands: &demands,
+    };
+    let found = without_gaps(task, most, observer, |engine| {
+        let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
+        let limit = if engine.control.criteria.is_some() {
+            times
+        } else {
+            limit
+        };
+        let goal = if engine.is_balanced {
+            Goal::Balanced(limit)
+        } else {
+            Goal::Within(limit)
+        };
+        let most = if engine.is_balanced {
+            fewest.unwrap_or(usize::MAX)
+        } else {
+            usize::MAX
+        };
+        let Some(found) = engine.refined(goal, most)? else {
+            return Ok(fewest.unwrap_or(0));
+        };
+        if engine.control.flat.are_none() {
+            return Ok(found.state.triangles);
+        }
+        // Which regions cannot be triangulated from their rims nobody knows before.
+        let levels = found.state.levels(engine.watch)?;
+        Ok(engine.assemble(found.emission, levels)?.mesh.face_count())
+    })?;
     let may_be_fewer = fewest.is_none() && options.balance;
-    if may_be_fewer && may_do_with_fewer(mesh, scheme, (&plain, &demands), found, observer)? {
+    if may_be_fewer
+        && may_do_with_fewer(
+            Task {
+                options: &plain,
+                ..task
+            },
+            found,
+            observer,
+        )?
+    {
         return Ok(found.min(count(mesh, scheme, &plain, times, observer)?));
     }
     Ok(found)
@@ -210,95 +233,129 @@ pub(super) fn count_over_first(
     faces: usize,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    with_engine(
+    let task = Task {
         mesh,
         scheme,
-        (options, &Demands::default()),
-        observer,
-        |engine| {
-            let mut is_divided = vec![false; mesh.face_count()];
-            for h in 0..3 * faces as u32 {
-                is_divided[h as usize / 3] = true;
-                engine
-                    .edges
-                    .twin(h)
-                    .into_iter()
-                    .for_each(|twin| is_divided[twin as usize / 3] = true);
-            }
-            let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
-            let Some(found) = engine.refined(goal, usize::MAX)? else {
-                return Ok(0);
-            };
-            let state = &found.state;
-            let over = |face: u32| {
-                let own = state.covers[face as usize].triangles as usize;
-                engine.control.flat.count_over(
-                    (engine.control, &engine.edges),
-                    &state.chains,
-                    face,
-                    own,
-                )
-            };
-            Ok((0..faces as u32).map(over).sum())
-        },
-    )
+        options,
+        demands: &Demands::default(),
+    };
+    task.with_engine(observer, |engine| {
+        let mut is_divided = vec![false; mesh.face_count()];
+        for h in 0..3 * faces as u32 {
+            is_divided[h as usize / 3] = true;
+            engine
+                .control
+                .edges
+                .twin(h)
+                .into_iter()
+                .for_each(|twin| is_divided[twin as usize / 3] = true);
+        }
+        let goal = Goal::Partly(f64::INFINITY, engine.floor(Some(distance)), is_divided);
+        let Some(found) = engine.refined(goal, usize::MAX)? else {
+            return Ok(0);
+        };
+        let state = &found.state;
+        let over = |face: u32| {
+            let own = state.covers[face as usize].triangles as usize;
+            engine
+                .control
+                .flat
+                .count_over(engine.control, &state.chains, face, own)
+        };
+        Ok((0..faces as u32).map(over).sum())
+    })
 }
 
+/// What is refined, and what is asked.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    mesh: &'a Mesh,
+    scheme: &'a dyn Scheme,
+    options: &'a ExactOptions,
+    /// What is divided in any case.
+    demands: &'a Demands,
+}
+
+impl Task<'_> {
+    /// Runs an engine for the task.
+    fn with_engine<T>(
+        &self,
+        observer: &mut Observer<'_>,
+        run: impl FnOnce(&Engine<'_>) -> Result<T, RefineError>,
+    ) -> Result<T, RefineError> {
+        let Self {
+            mesh,
+            scheme,
+            options,
+            demands,
+        } = *self;
+        let watch = SharedWatch::new(observer, Stage::Limits);
+        watch.triangles(mesh.face_count());
+        let rules = Rules::of(scheme);
+        let table = LimitTable::new(scheme);
+        let vertices = Some(mesh.vertex_count());
+        watch.stage(Stage::Limits, vertices)?;
+        let stencils = Stencils::of(&table, mesh, &mut |_| watch.poll())??;
+        let mut positions = table.positions_by(&stencils, mesh, &mut |done| watch.done(done))?;
+        watch.stage(Stage::Limits, vertices)?;
+        let sided = table.sided_normals_by(&stencils, mesh, &mut |done| watch.done(done))?;
+        drop(stencils);
+        join_copies(&mut positions, &mesh.junctions().vertices);
+        let sharpness = Sharpness::of(mesh);
+        let lasting = sharpness.lasting();
+        let kept = KeptFaces::of(mesh, &options.kept_edges)?;
+        let mut control = Control {
+            mesh,
+            edges: Edges::of(mesh),
+            sharpness: &sharpness,
+            large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
+            lasting: &lasting,
+            positions,
+            sided,
+            rules: &rules,
+            flat: FlatRegions::default(),
+            criteria: None,
+            back_faces: BackFaces::default(),
+            kept: &kept,
+            demands,
+        };
+        if options.flat_regions
+            && (!options.balance || options.unfold)
+            && options.attributes.is_empty()
+        {
+            control.flat = FlatRegions::of(&control, options, &watch)?;
+        }
+        let rounding =
+            probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
+        control.criteria = criteria(mesh, options, rounding)?;
+        control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
+        let engine = Engine {
+            control: &control,
+            max_levels: options.max_levels as u32,
+            watch: &watch,
+            is_balanced: options.balance,
+            has_origins: options.origins,
+            rounding,
+        };
+        watch.stage(Stage::Refining, None)?;
+        run(&engine)
+    }
+}
+
+/// Runs an engine for Loop's scheme and options alone.
+#[cfg(test)]
 fn with_engine<T>(
     mesh: &Mesh,
-    scheme: &dyn Scheme,
-    (options, demands): (&ExactOptions, &Demands),
-    observer: &mut Observer<'_>,
+    options: &ExactOptions,
     run: impl FnOnce(&Engine<'_>) -> Result<T, RefineError>,
 ) -> Result<T, RefineError> {
-    let watch = SharedWatch::new(observer, Stage::Limits);
-    watch.triangles(mesh.face_count());
-    let rules = Rules::of(scheme);
-    let table = LimitTable::new(scheme);
-    let vertices = Some(mesh.vertex_count());
-    watch.stage(Stage::Limits, vertices)?;
-    let stencils = Stencils::of(&table, mesh, &mut |_| watch.poll())??;
-    let mut positions = table.positions_by(&stencils, mesh, &mut |done| watch.done(done))?;
-    watch.stage(Stage::Limits, vertices)?;
-    let sided = table.sided_normals_by(&stencils, mesh, &mut |done| watch.done(done))?;
-    drop(stencils);
-    join_copies(&mut positions, &mesh.junctions().vertices);
-    let sharpness = Sharpness::of(mesh);
-    let lasting = sharpness.lasting();
-    let edges = Edges::of(mesh);
-    let kept = KeptFaces::of(mesh, &options.kept_edges)?;
-    let mut control = Control {
+    let task = Task {
         mesh,
-        sharpness: &sharpness,
-        large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
-        lasting: &lasting,
-        positions,
-        sided,
-        rules: &rules,
-        flat: FlatRegions::default(),
-        criteria: None,
-        back_faces: BackFaces::default(),
-        kept: &kept,
-        demands,
+        scheme: &crate::scheme::Loop,
+        options,
+        demands: &Demands::default(),
     };
-    if options.flat_regions && (!options.balance || options.unfold) && options.attributes.is_empty()
-    {
-        control.flat = FlatRegions::of(&control, &edges, options, &watch)?;
-    }
-    let rounding = probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
-    control.criteria = criteria(mesh, options, rounding)?;
-    control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
-    let engine = Engine {
-        control: &control,
-        edges,
-        max_levels: options.max_levels as u32,
-        watch: &watch,
-        is_balanced: options.balance,
-        has_origins: options.origins,
-        rounding,
-    };
-    watch.stage(Stage::Refining, None)?;
-    run(&engine)
+    task.with_engine(&mut crate::progress::unobserved, run)
 }
 
 /// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
@@ -326,10 +383,9 @@ fn criteria(
 }
 
 /// What stays the same all the way.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 struct Engine<'a> {
     control: &'a Control<'a>,
-    edges: Edges<'a>,
     max_levels: u32,
     watch: &'a SharedWatch<'a>,
     /// Vertices are moved off the surface.

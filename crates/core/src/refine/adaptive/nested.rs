@@ -7,7 +7,7 @@ use super::coarser::on_coarser;
 use super::demands::{Demands, Functions};
 use super::leaves::{Covering, Descent, Leaves};
 use super::quadtree::Place;
-use super::{ADDED, once, probe};
+use super::{ADDED, Task, once, probe};
 use crate::certificate::{Sheet, exceeds};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
@@ -28,9 +28,12 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// The level within `options`' tolerance in which `coarser` is nested; with geomorphs the tolerances hold place by place, the coarser
 /// level's from the start. `surface` is the limit surface of the mesh that the level is one of.
 pub(in crate::refine) fn nested(
-    (surface, scheme): (&LimitSurface<'_>, &dyn Scheme),
-    (options, tolerance): (&ExactOptions, f64),
-    (coarser, with_geomorph): (Option<&Level>, bool),
+    surface: &LimitSurface<'_>,
+    scheme: &dyn Scheme,
+    options: &ExactOptions,
+    tolerance: f64,
+    coarser: Option<&Level>,
+    with_geomorph: bool,
     observer: &mut Observer<'_>,
 ) -> Result<Level, RefineError> {
     let mesh = surface.control();
@@ -54,7 +57,13 @@ pub(in crate::refine) fn nested(
         )?;
     }
     loop {
-        let mut exact = once(mesh, scheme, (options, &demands), observer)?;
+        let task = Task {
+            mesh,
+            scheme,
+            options,
+            demands: &demands,
+        };
+        let mut exact = once(task, observer)?;
         let watch = SharedWatch::new(observer, Stage::Bounding);
         watch.triangles(exact.mesh.face_count());
         let rounding = probe::rounding(mesh, options.max_levels, &watch)?;

@@ -120,8 +120,7 @@ impl Trees {
             None => {
                 1 + (0..4)
                     .map(|child| self.depth(self.child(word, child)))
-                    .max()
-                    .unwrap_or(0)
+                    .fold(0, u32::max)
             }
         }
     }

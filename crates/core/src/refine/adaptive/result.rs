@@ -129,13 +129,10 @@ impl Engine<'_> {
             junctions,
         };
         let corners = control.mesh.vertex_count();
-        let (whole, unfolded) = control.flat.merge(
-            (control, &self.edges),
-            whole,
-            (&starts, &sharp),
-            corners,
-            watch,
-        )?;
+        let (whole, unfolded) =
+            control
+                .flat
+                .merge(control, whole, (&starts, &sharp), corners, watch)?;
         let Assembled {
             positions,
             normals,

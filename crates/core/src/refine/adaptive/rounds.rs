@@ -10,10 +10,11 @@ use super::cover::{Cover, Covering};
 use super::dirty::{Dirty, marked};
 use super::emit::{Emission, Emitter};
 use super::flat::Net;
-use super::judge::{Allowance, Goal};
+use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::neighbours::sharp_edges;
-use super::quadtree::{self, Edges, Place};
+use super::quadtree::{self, Place};
+use super::seen::Allowance;
 use super::state::State;
 use super::{Engine, sides};
 use crate::index::VertexId;
@@ -99,13 +100,9 @@ impl Engine<'_> {
 
     /// Balances the trees and covers what is dirty.
     fn cover(&self, state: &mut State, dirty: &mut Dirty) -> Result<(), RefineError> {
-        let Self {
-            control,
-            ref edges,
-            watch,
-            ..
-        } = *self;
+        let Self { control, watch, .. } = *self;
         self.balance(state, dirty)?;
+        let edges = &control.edges;
         let chains = match dirty.is_all {
             true => Chains::of(control.mesh, edges, &state.trees, watch)?,
             false => state
@@ -115,7 +112,6 @@ impl Engine<'_> {
         let (faces, trees) = (dirty.faces(), &state.trees);
         let covering = Covering {
             control,
-            edges,
             trees,
             chains: &chains,
             has_fixed_diagonals: state.has_fixed_diagonals,
@@ -145,13 +141,13 @@ impl Engine<'_> {
             .for_each(|place| state.is_changed[place.face as usize] = true);
         state.chains = chains;
         let own = |face: u32| state.covers[face as usize].triangles as usize;
-        state.triangles = control.flat.count((control, edges), &state.chains, own);
+        state.triangles = control.flat.count(control, &state.chains, own);
         Ok(())
     }
 
     /// Splits what must be for adjacent leaves to be at most one level apart; adds that to what is dirty.
     fn balance(&self, state: &mut State, dirty: &mut Dirty) -> Result<(), RefineError> {
-        let (edges, trees) = (&self.edges, &mut state.trees);
+        let (edges, trees) = (&self.control.edges, &mut state.trees);
         let mut all = Pending::default();
         if dirty.is_all {
             let faces = state.covers.len();
@@ -179,7 +175,6 @@ impl Engine<'_> {
         self.watch.stage(Stage::Assembling, None)?;
         let emitter = Emitter {
             control: self.control,
-            edges: &self.edges,
             trees: &state.trees,
             chains: &state.chains,
             covers: &state.covers,
@@ -190,7 +185,7 @@ impl Engine<'_> {
         let mut emission = emitter.emit(before, self.watch)?;
         let junctions = sides::junctions(
             (self.control, self.watch),
-            &self.edges,
+            &self.control.edges,
             &state.chains,
             &emission,
         )?;
@@ -237,12 +232,7 @@ impl Engine<'_> {
         emission: &mut Emission,
         is_changed: &[bool],
     ) -> Result<Vec<Failing>, RefineError> {
-        let Self {
-            control,
-            ref edges,
-            watch,
-            ..
-        } = *self;
+        let Self { control, watch, .. } = *self;
         // Heights that are good enough, where it is known.
         let allowed = if control.criteria.is_none() {
             state.goal.allowed(0)
@@ -266,7 +256,7 @@ impl Engine<'_> {
         let known = self.is_balanced.then_some(&bulges);
         // Of triangles of which nothing but distances is asked it is known what was found of them.
         let changes = Changes::since((known, is_alone), is_changed, emission, watch)?;
-        let faces = changes.faces(emission, edges, watch)?;
+        let faces = changes.faces(emission, &control.edges, watch)?;
         let trusted = if self.trusts() {
             &state.is_trusted[..]
         } else {
@@ -309,11 +299,10 @@ impl Engine<'_> {
     /// Measures the proven leaves of control faces that assume more of the triangles around them than these keep.
     fn distrust(&self, state: &mut State, emission: &Emission) -> Result<(), Cancelled> {
         let faces = state.covers.len();
-        let (control, edges, shared) = (self.control, &self.edges, &*state);
+        let (control, shared) = (self.control, &*state);
         let found = self.watch.pieces(faces, parallel::share(faces), |block| {
-            let is_lost = |&face: &u32| {
-                shared.is_trusted[face as usize] && !is_kept(control, edges, shared, face)
-            };
+            let is_lost =
+                |&face: &u32| shared.is_trusted[face as usize] && !is_kept(control, shared, face);
             block
                 .map(|face| face as u32)
                 .filter(is_lost)
@@ -402,7 +391,7 @@ impl Engine<'_> {
     fn split(&self, state: &mut State, place: Place, dirty: &mut Dirty) -> Result<(), RefineError> {
         let fits = state
             .trees
-            .split(place, |place| dirty.add(&self.edges, place));
+            .split(place, |place| dirty.add(&self.control.edges, place));
         fits.then_some(())
             .ok_or_else(|| state.trees.too_many(4).into())
     }
@@ -456,13 +445,13 @@ impl Engine<'_> {
 }
 
 /// Whether the triangles of a control face and those adjacent to it keep what its proven leaves assume.
-fn is_kept(control: &Control<'_>, edges: &Edges<'_>, state: &State, face: u32) -> bool {
+fn is_kept(control: &Control<'_>, state: &State, face: u32) -> bool {
     let assumed = &state.proven[face as usize];
     // What assumes nothing needs nothing.
     if assumed.allowance == Allowance::NOTHING {
         return true;
     }
-    let own = [face].into_iter().chain(control.beside(edges, face));
+    let own = [face].into_iter().chain(control.beside(face));
     own.into_iter().all(|face| {
         let (proven, measured) = (
             &state.proven[face as usize].extent,

@@ -9,9 +9,10 @@ use super::cover::Cover;
 use super::divide::{Division, Proven, divide};
 use super::emit::Emission;
 use super::emitted::Sources;
-use super::judge::{Allowance, Extent, Goal};
+use super::judge::Goal;
 use super::measured::Measured;
 use super::quadtree::{Piece, Place, Trees};
+use super::seen::{Allowance, Extent};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -156,7 +157,6 @@ impl Engine<'_> {
         } = state;
         Sources {
             control: self.control,
-            edges: &self.edges,
             trees,
             chains,
             covers,

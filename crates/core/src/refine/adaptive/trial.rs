@@ -4,14 +4,11 @@
 //! again ([`super::measure`]).
 
 use super::backs::{Behind, looks_away};
-use super::judge::{DIVISIONS, Fate, HALVINGS, Seen};
+use super::seen::{ANY_SLOPES, DIVISIONS, Fate, HALVINGS, Seen};
 use super::surface::Ground;
 use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
 use crate::criterion::{Apart, Backs, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
-
-/// Slopes of drifts that neighbours are expected to have room for.
-const ANY_SLOPES: [f64; 3] = [9.0; 3];
 
 /// A triangle under test.
 pub(super) struct Trial<'a> {

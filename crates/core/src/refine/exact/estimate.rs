@@ -80,9 +80,7 @@ pub fn exact_estimate_observed(
             is_counted,
         }
     };
-    let quality =
-        options.tolerance.is_some() || options.angle.is_some() || options.pixels.is_some();
-    if !quality {
+    if !options.has_quality_goal() {
         return Ok(of(options.budget().0, false));
     }
     let (faces, coarsest) = (control.face_count(), coarsest(control, options));
@@ -126,8 +124,7 @@ pub fn exact_estimate_observed(
 
 /// Whether each face takes triangles by how far they are from its surface and by nothing else.
 fn is_distance_alone(options: &ExactOptions) -> bool {
-    let criteria = options.angle.is_some() || options.pixels.is_some() || options.balance;
-    !criteria && options.attributes.is_empty() && options.kept_edges.is_empty()
+    options.asks_for_distances_alone() && !options.balance && options.kept_edges.is_empty()
 }
 
 /// The power of two that makes goals coarse enough to take few triangles.

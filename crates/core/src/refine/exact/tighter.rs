@@ -101,7 +101,7 @@ pub(super) fn tighter(
             tightens: false,
             ..goals
         };
-        let found = within(control, scheme, (&goals, most), observer)?;
+        let found = within(control, scheme, &goals, most, observer)?;
         Ok(found.filter(|found| found.within_rims == within_rims && found.error.upper.is_finite()))
     };
     let coarse = if is_bounded {

@@ -62,13 +62,12 @@ fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
     if sides.len() < 2 {
         return 0;
     }
-    let around = topology.outgoing_ring(vertex);
-    let faces = around.clone().count();
-    let slot = around.clone().position(|other| other == h).unwrap_or(0);
+    let faces = topology.outgoing_ring(vertex).count();
+    let slot = topology.slot(h);
     let own = sides
         .iter()
-        .position(|side| (slot + faces - side.first) % faces < side.faces);
-    own.unwrap_or(0) as u32
+        .take_while(|side| (slot + faces - side.first) % faces >= side.faces);
+    own.count() as u32
 }
 
 impl Wants {

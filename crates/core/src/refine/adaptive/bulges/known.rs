@@ -4,7 +4,6 @@
 use super::super::measured::FoundLast;
 use super::{Bulge, ENDS};
 use crate::certificate::{FOUR, SubTriangle};
-use crate::refine::adaptive::emit::Emission;
 use crate::refine::adaptive::emitted::Emitted;
 
 /// Numbers that parts of leaves and the corners at which triangles begin need.
@@ -19,7 +18,7 @@ pub(super) struct Key {
 }
 
 impl Key {
-    pub(super) fn of(emitted: &Emitted, emission: &Emission) -> Self {
+    pub(super) fn of(emitted: &Emitted) -> Self {
         let leaf = 1 << (2 * emitted.place.level) | emitted.place.path;
         let part = match emitted.part {
             SubTriangle::Whole => 0,
@@ -27,14 +26,9 @@ impl Key {
             SubTriangle::Half { edge, second } => 5 + 2 * edge as u8 + u8::from(second),
             SubTriangle::Quarter { edge, at_end } => 11 + 2 * edge as u8 + u8::from(at_end),
         };
-        let corners = emission.triangles[emitted.number as usize];
-        let turn = corners
-            .iter()
-            .position(|&vertex| vertex == emitted.vertices[0])
-            .unwrap_or(0) as u8;
         Self {
             leaf,
-            part: part + PARTS * turn,
+            part: part + PARTS * emitted.turn as u8,
         }
     }
 

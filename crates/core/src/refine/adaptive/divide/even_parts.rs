@@ -1,7 +1,7 @@
 //! Even parts of regular pieces: all nodes of a level are tested at once, and single ones only where that leaves something open.
 
-use super::super::judge::{Extent, Fate};
 use super::super::quadtree::{LEAF, PROVEN, Place};
+use super::super::seen::{Extent, Fate};
 use super::super::surface::Ground;
 use super::{Divider, Part};
 use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent};

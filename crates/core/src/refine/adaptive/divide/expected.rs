@@ -3,7 +3,8 @@
 
 use super::super::Engine;
 use super::super::control::Control;
-use super::super::judge::{Allowance, Goal, Seen};
+use super::super::judge::Goal;
+use super::super::seen::{Allowance, Seen};
 use super::Divider;
 use crate::certificate::least_slope;
 use crate::patch::LimitPoint;
@@ -65,7 +66,7 @@ impl Divider<'_> {
             seen.tilt * shrunk(seen.highest(points), self.judge.limit),
             seen.frame.least_slope(),
         );
-        for adjacent in self.control.beside(self.edges, face) {
+        for adjacent in self.control.beside(face) {
             let other = self.expected[adjacent as usize];
             (tilt, slope) = (tilt.larger(other.tilt), slope.min(other.slope));
         }

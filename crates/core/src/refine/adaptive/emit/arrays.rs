@@ -3,8 +3,8 @@
 
 use core::ops::Range;
 
+use super::emission::{Emission, Moves, NOWHERE};
 use super::kept::COPIED;
-use super::{Emission, Moves, NOWHERE};
 use crate::parallel::{self, IsStopped};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;

@@ -4,9 +4,11 @@ use super::super::quadtree::{Place, is_split};
 use super::super::rim::Rim;
 use super::super::surface::Surface;
 use super::super::walk::Walk;
+use super::emission::{Emission, fraction};
+use super::emitter::Emitter;
+use super::job::{Job, Vertices, split_off};
 use super::kept::Kept;
-use super::leaf_writer::{Vertices, Writer, split_off};
-use super::{Emission, Emitter, fraction};
+use super::leaf_writer::Writer;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
 use crate::patch::{LimitPoint, Spot};
@@ -16,30 +18,12 @@ use crate::refine::exact_result::Origin;
 /// Triangles that one call writes, about.
 const JOB: u32 = 8192;
 
-/// Consecutive control faces, and the parts of the arrays that are theirs.
-pub(super) struct Job<'a> {
-    is_new: bool,
-    pub(super) faces: core::ops::Range<u32>,
-    on_edges: Vertices<'a>,
-    pub(super) inside: Vertices<'a>,
-    pub(super) first_triangle: u32,
-    pub(super) triangles: &'a mut [[u32; 3]],
-    pub(super) twins: &'a mut [u32],
-    pub(super) parents: &'a mut [u32],
-    pub(super) borders: &'a mut [u32],
-}
-
 pub(super) fn jobs<'a>(
     emitter: &Emitter<'_>,
     emission: &'a mut Emission,
     watch: &SharedWatch<'_>,
 ) -> Result<Vec<Job<'a>>, Cancelled> {
-    let Emitter {
-        chains,
-        edges,
-        covers,
-        ..
-    } = *emitter;
+    let Emitter { chains, covers, .. } = *emitter;
     let count = emitter.control.mesh.vertex_count();
     let Emission {
         positions,
@@ -76,7 +60,7 @@ pub(super) fn jobs<'a>(
         vertices += cover.vertices as usize;
         for h in 3 * face..3 * face + 3 {
             own += chains.own(h).1.len();
-            segments += chains.along(edges, h) + 1;
+            segments += chains.along(&emitter.control.edges, h) + 1;
         }
         let own_is_new = is_new[face as usize];
         let is_last = face + 1 == faces || own_is_new != is_new[face as usize + 1];
@@ -109,7 +93,6 @@ pub(super) fn write(
 ) {
     let Emitter {
         control,
-        edges,
         trees,
         chains,
         covers,
@@ -136,7 +119,7 @@ pub(super) fn write(
     };
     for face in job.faces {
         let word = trees.root(face);
-        if !is_split(word) && chains.are_none(edges, face) {
+        if !is_split(word) && chains.are_none(&control.edges, face) {
             let first = writer.push(control.mesh.triangles()[face as usize]);
             job.parents[(first / 3 - job.first_triangle) as usize] = face;
             let own = split_off(&mut job.borders, 3);
@@ -144,7 +127,7 @@ pub(super) fn write(
             continue;
         }
         walk.knots.clear();
-        let sides = chains.sides(control.mesh, edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
         (writer.face, writer.diagonals) = (face, &covers[face as usize].diagonals);
         let before = writer.next_triangle - job.first_triangle;
         let at = (Place::root(face), Spot::WHOLE);

@@ -1,12 +1,11 @@
 //! Control faces as they were emitted before: everything lies where it belongs by now ([`super::arrays`]), and is numbered anew.
 
 use super::super::chains::{Chains, first_of};
+use super::super::control::Control;
 use super::super::cover::Cover;
-use super::super::quadtree::Edges;
-use super::Emission;
-use super::jobs::Job;
-use super::leaf_writer::split_off;
-use crate::mesh::{Mesh, NONE};
+use super::emission::Emission;
+use super::job::{Job, split_off};
+use crate::mesh::NONE;
 use crate::parallel::IsStopped;
 
 /// Vertices and triangles that are moved between two questions whether that is still of use.
@@ -15,8 +14,7 @@ pub(super) const COPIED: usize = 1 << 16;
 /// What was emitted before.
 pub(super) struct Kept<'a> {
     pub(super) before: &'a Emission,
-    pub(super) mesh: &'a Mesh,
-    pub(super) edges: &'a Edges<'a>,
+    pub(super) control: &'a Control<'a>,
     pub(super) chains: &'a Chains,
 }
 
@@ -63,7 +61,7 @@ impl Kept<'_> {
 
     /// The vertices on the edge of a half-edge.
     fn on_edge(&self, h: u32) -> Run {
-        let owner = first_of(self.edges, h);
+        let owner = first_of(&self.control.edges, h);
         let (now, places) = self.chains.own(owner);
         Run {
             before: self.before.numbers.on_edges[owner as usize],
@@ -74,7 +72,7 @@ impl Kept<'_> {
 
     /// Numbers the triangles of a face anew, the number of its first one being given, and what belongs to them; gives how many there are.
     fn triangles(&self, face: u32, runs: &[Run; 4], first: u32, job: &mut Job<'_>) -> u32 {
-        let corners = self.mesh.vertex_count() as u32;
+        let corners = self.control.mesh.vertex_count() as u32;
         let before = self.before.triangles_of(face);
         let at = (first - job.first_triangle) as usize;
         let own = at..at + before.len();

@@ -7,11 +7,10 @@ use std::collections::HashMap;
 
 use super::super::chains::first_of;
 use super::super::control::Control;
-use super::super::quadtree::Edges;
 use super::super::surface::Surface;
-use super::FlatRegions;
 use super::flattened::Flattened;
 use super::merge::SAME_AREA;
+use super::regions::FlatRegions;
 use crate::node::along_edge;
 use crate::parallel::{IsStopped, asking};
 use crate::progress::{Cancelled, SharedWatch};
@@ -29,13 +28,13 @@ impl FlatRegions {
     /// nothing twice. What is off a straight line by less than `rounding` is none.
     pub(super) fn enclosed(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         rounding: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let found = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
             let is_enclosed = |region| {
-                self.encloses(mesh, (region as u32, rounding), is_stopped)
+                self.encloses(control, (region as u32, rounding), is_stopped)
                     .is_some()
             };
             block.map(is_enclosed).collect::<Vec<_>>()
@@ -53,16 +52,16 @@ impl FlatRegions {
 
     fn encloses(
         &self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (region, rounding): (u32, f64),
         is_stopped: &IsStopped<'_>,
     ) -> Option<()> {
         let (faces, plane) = &self.regions[region as usize];
         // Where the surface goes on smoothly it may be the folded triangles that are near to what lies beyond.
-        if self.has_smooth_rim((control, edges), region) {
+        if self.has_smooth_rim(control, region) {
             return None;
         }
-        let rim: Vec<u32> = asking(self.rim((control, edges), region), is_stopped).collect();
+        let rim: Vec<u32> = asking(self.rim(control, region), is_stopped).collect();
         let levels = Self::divisions(rim.len());
         let (mut numbers, mut positions) = (HashMap::with_capacity(faces.len()), Vec::new());
         let corners = faces
@@ -81,8 +80,8 @@ impl FlatRegions {
             }
             let (face, edge) = (h / 3, h as usize % 3);
             // Both sides of a slit have the same points.
-            let is_known = curves.contains_key(&first_of(edges, h));
-            let curve: &mut Vec<u32> = curves.entry(first_of(edges, h)).or_default();
+            let is_known = curves.contains_key(&first_of(&control.edges, h));
+            let curve: &mut Vec<u32> = curves.entry(first_of(&control.edges, h)).or_default();
             if is_known {
                 curve.reverse();
             } else {

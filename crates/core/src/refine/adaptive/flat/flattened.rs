@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::Plane;
+use super::regions::Plane;
 use crate::geometry::planar;
 use crate::parallel::{IsStopped, asking};
 use crate::vector::{DVec3, vector};

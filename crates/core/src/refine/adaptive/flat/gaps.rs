@@ -7,13 +7,13 @@
 use std::collections::BTreeMap;
 use std::sync::PoisonError;
 
-use super::FlatRegions;
+use super::regions::FlatRegions;
 use super::strips::{Net, Region, Regions};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::demands::Demands;
 use crate::refine::adaptive::divide::child_open;
-use crate::refine::adaptive::quadtree::{Edges, Place};
+use crate::refine::adaptive::quadtree::Place;
 
 /// How often rims are divided once more.
 const MOST_DIVISIONS: usize = 3;
@@ -36,7 +36,7 @@ impl Gaps {
 
     /// Asks for what may close the gaps; `attempt` counts from zero, and there may be so many triangles more. After finitely many
     /// of them there are no gaps.
-    pub(in super::super) fn close(self, demands: &mut Demands, (attempt, room): (usize, usize)) {
+    pub(in super::super) fn close(self, demands: &mut Demands, attempt: usize, room: usize) {
         if attempt >= MOST_ATTEMPTS {
             return demands.judge_all_by_triangles();
         }
@@ -72,7 +72,7 @@ impl FlatRegions {
     /// These regions, at this attempt.
     pub(in super::super) fn gaps(
         &self,
-        (control, edges): (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         attempt: usize,
         watch: &SharedWatch<'_>,
     ) -> Result<Gaps, Cancelled> {
@@ -87,7 +87,7 @@ impl FlatRegions {
             // In the end as far as it is known to be of use.
             let is_last = attempt + 1 == MOST_DIVISIONS && self.unfolds && !chords.is_empty();
             let least = if is_last {
-                Self::divisions(self.rim((control, edges), region).count())
+                Self::divisions(self.rim(control, region).count())
             } else {
                 0
             };

@@ -6,11 +6,10 @@
 //! other, so it winds round nothing. That takes regions round whose points rims wind forwards alone, or one could undo what the other does: those
 //! that are proven not to fold, also where what rims enclose is asked for.
 
-use super::unfolded::is_unfolded;
-use super::{FlatRegions, HEIGHT_ROUNDING, MOST_UNFOLDED, Plane, height_over};
+use super::regions::{FlatRegions, Plane};
+use super::unfolded::{HEIGHT_ROUNDING, MOST_UNFOLDED, height_over, is_unfolded};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
-use crate::refine::adaptive::quadtree::Edges;
 use std::collections::HashSet;
 
 impl FlatRegions {
@@ -18,7 +17,7 @@ impl FlatRegions {
     /// How far that takes them off the planes is counted. `size` is the greatest coordinate.
     pub(super) fn join(
         &mut self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (most, size): (f64, f64),
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
@@ -35,13 +34,13 @@ impl FlatRegions {
             // Whether the first one folds is asked once there is another one in its plane.
             let (mut is_proven, mut rejected) = (None, HashSet::new());
             while let Some(region) = waiting.pop() {
-                for other in self.beyond(mesh.1, region, watch)? {
+                for other in self.beyond(control, region, watch)? {
                     if is_done[other as usize] || rejected.contains(&other) {
                         continue;
                     }
-                    let off = self.height_over(mesh, (other, &plane), most);
+                    let off = self.height_over(control, (other, &plane), most);
                     let mut is_sound = |region: u32| {
-                        self.is_sound(mesh.0, (region, &plane), most, &mut left, watch)
+                        self.is_sound(control, (region, &plane), most, &mut left, watch)
                     };
                     let may_join = off.is_some() && {
                         let is_first_sound = match is_proven {
@@ -68,13 +67,13 @@ impl FlatRegions {
     /// The regions beyond the edges of one, each as often as there are such edges.
     fn beyond(
         &self,
-        edges: &Edges<'_>,
+        control: &Control<'_>,
         region: u32,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<u32>, Cancelled> {
         let mut beyond = Vec::new();
         watch.each(&self.regions[region as usize].0, |&face| {
-            let twins = (3 * face..3 * face + 3).filter_map(|h| edges.twin(h));
+            let twins = (3 * face..3 * face + 3).filter_map(|h| control.edges.twin(h));
             let others = twins
                 .filter_map(|twin| self.region(twin / 3))
                 .filter(|&other| other != region);
@@ -86,7 +85,7 @@ impl FlatRegions {
     /// How far the surface over a region is off a plane at most, if that is no more than `most` and it looks the same way.
     fn height_over(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (region, plane): (u32, &Plane),
         most: f64,
     ) -> Option<f64> {
@@ -96,7 +95,7 @@ impl FlatRegions {
         }
         let mut heights = faces
             .iter()
-            .map(|&face| height_over(mesh, face, plane, most));
+            .map(|&face| height_over(control, face, plane, most));
         heights.try_fold(0.0, |greatest: f64, height| Some(greatest.max(height?)))
     }
 
@@ -130,7 +129,7 @@ impl FlatRegions {
     /// part of the same plane beyond.
     pub(in super::super) fn counting(
         &self,
-        edges: &Edges<'_>,
+        control: &Control<'_>,
         face: u32,
         open: [bool; 3],
     ) -> [bool; 3] {
@@ -142,7 +141,8 @@ impl FlatRegions {
         };
         let Some(own) = joined(face) else { return open };
         [0, 1, 2].map(|edge| {
-            let beyond = edges
+            let beyond = control
+                .edges
                 .twin(3 * face + edge as u32)
                 .and_then(|twin| joined(twin / 3));
             open[edge] && beyond != Some(own)
@@ -152,15 +152,12 @@ impl FlatRegions {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::demands::Demands;
     use super::super::super::judge::Goal;
     use super::super::super::measure::{Look, measure};
     use super::super::super::with_engine;
     use crate::index::VertexId;
     use crate::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Mesh, Tags};
-    use crate::progress::unobserved;
     use crate::refine::ExactOptions;
-    use crate::scheme::Loop;
 
     const SIDE: u32 = 8;
 
@@ -211,55 +208,49 @@ mod tests {
         for bend in [0.0, 1e-3] {
             let mesh = divided_square(bend);
             let options = ExactOptions::default().tolerance(0.3);
-            with_engine(
-                &mesh,
-                &Loop,
-                (&options, &Demands::default()),
-                &mut unobserved,
-                |engine| {
-                    let flat = &engine.control.flat;
-                    assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
-                    assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
-                    let found = engine.refined(Goal::Within(0.3), usize::MAX)?.unwrap();
-                    let sources = engine.sources(&found.state, &found.emission);
-                    let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
-                    let nothing = Goal::Within(f64::INFINITY);
-                    let look = Look {
-                        goal: &nothing,
-                        length: 1e-12,
-                        changes: None,
-                        bulges: None,
-                        trusted: &[],
-                    };
-                    let planned = |face: u32| found.state.proven[face as usize].extent.bound;
-                    let measured = measure(&sources, engine.watch, &faces, &look)?;
-                    let topology = mesh.topology();
-                    let is_beside = |face: &u32| {
-                        let corners = topology.triangles()[*face as usize].map(VertexId);
-                        corners
-                            .iter()
-                            .filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2)
-                            .count()
-                            == 2
-                    };
-                    let worst = |face: u32| measured[face as usize].worst.0;
-                    let rims = faces
+            with_engine(&mesh, &options, |engine| {
+                let flat = &engine.control.flat;
+                assert_eq!(flat.regions.len(), if bend == 0.0 { 2 } else { 1 });
+                assert!(flat.by_rim.iter().all(|&by_rim| by_rim));
+                let found = engine.refined(Goal::Within(0.3), usize::MAX)?.unwrap();
+                let sources = engine.sources(&found.state, &found.emission);
+                let faces: Vec<u32> = (0..mesh.face_count() as u32).collect();
+                let nothing = Goal::Within(f64::INFINITY);
+                let look = Look {
+                    goal: &nothing,
+                    length: 1e-12,
+                    changes: None,
+                    bulges: None,
+                    trusted: &[],
+                };
+                let planned = |face: u32| found.state.proven[face as usize].extent.bound;
+                let measured = measure(&sources, engine.watch, &faces, &look)?;
+                let topology = mesh.topology();
+                let is_beside = |face: &u32| {
+                    let corners = topology.triangles()[*face as usize].map(VertexId);
+                    corners
                         .iter()
-                        .copied()
-                        .filter(|&face| flat.region(face).is_some())
-                        .filter(is_beside);
-                    let (mut counted, mut assumed) = (0.0f64, 0.0f64);
-                    for face in rims {
-                        (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));
-                    }
-                    assert!(assumed > 0.02, "{assumed}");
-                    match bend == 0.0 {
-                        true => assert!(counted < 1e-9, "{counted}"),
-                        false => assert!(counted > 0.02, "{counted}"),
-                    }
-                    Ok(())
-                },
-            )
+                        .filter(|corner| corner.0 % (SIDE + 1) == SIDE / 2)
+                        .count()
+                        == 2
+                };
+                let worst = |face: u32| measured[face as usize].worst.0;
+                let rims = faces
+                    .iter()
+                    .copied()
+                    .filter(|&face| flat.region(face).is_some())
+                    .filter(is_beside);
+                let (mut counted, mut assumed) = (0.0f64, 0.0f64);
+                for face in rims {
+                    (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));
+                }
+                assert!(assumed > 0.02, "{assumed}");
+                match bend == 0.0 {
+                    true => assert!(counted < 1e-9, "{counted}"),
+                    false => assert!(counted > 0.02, "{counted}"),
+                }
+                Ok(())
+            })
             .unwrap();
         }
     }

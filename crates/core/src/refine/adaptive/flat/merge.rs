@@ -4,10 +4,9 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::super::control::Control;
-use super::super::quadtree::Edges;
-use super::FlatRegions;
 use super::flattened::Flattened;
 use super::gaps::chords;
+use super::regions::FlatRegions;
 use super::replace::{Assembled, Covering, Merged, edges};
 use super::strips::{Net, Region, Regions};
 use crate::parallel::{IsStopped, asking, sort_asking};
@@ -49,7 +48,7 @@ impl FlatRegions {
     /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay.
     pub(in super::super) fn merge(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         whole: Assembled,
         (starts, sharp): (&[u32], &HashSet<u32>),
         corners: usize,
@@ -58,9 +57,9 @@ impl FlatRegions {
         if self.regions.is_empty() && self.straight.is_empty() {
             return Ok((whole, 0));
         }
-        let net = whole.net((starts, sharp), mesh.0.kept, corners);
+        let net = whole.net((starts, sharp), control.kept, corners);
         let mut regions = self.regions(&net, watch)?;
-        let coverings = self.coverings(mesh, &net, &mut regions, watch)?;
+        let coverings = self.coverings(control, &net, &mut regions, watch)?;
         if coverings.iter().all(Option::is_none) {
             return Ok((whole, 0));
         }
@@ -83,14 +82,14 @@ impl FlatRegions {
     /// The triangles of each region, where others come in their place.
     fn coverings(
         &self,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         net: &Net<'_>,
         regions: &mut Regions,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
             let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
-                let fate = |region| self.fate(region, mesh, (net, regions), is_stopped);
+                let fate = |region| self.fate(region, control, (net, regions), is_stopped);
                 block.map(fate).collect::<Vec<_>>()
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
@@ -127,7 +126,7 @@ impl FlatRegions {
                 let Some(flat) = region.flat.filter(|_| coverings[at].is_none()) else {
                     continue;
                 };
-                if fails[at] && !mesh.0.demands.judges_by_triangles(flat) {
+                if fails[at] && !control.demands.judges_by_triangles(flat) {
                     self.note_gap(flat, chords(region, net, regions, watch)?);
                 } else if self.is_by_rim(region) && !stays[at] {
                     // Finer rims have edges in common with others just the same.
@@ -149,7 +148,7 @@ impl FlatRegions {
     fn fate(
         &self,
         region: usize,
-        mesh: (&Control<'_>, &Edges<'_>),
+        control: &Control<'_>,
         (net, regions): (&Net<'_>, &Regions),
         is_stopped: &IsStopped<'_>,
     ) -> Fate {
@@ -168,7 +167,7 @@ impl FlatRegions {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
         let has_turned = outline.has_turned
-            || is_enclosed && by_rim && own.is_turned_at_corners(mesh.0, net, is_stopped);
+            || is_enclosed && by_rim && own.is_turned_at_corners(control, net, is_stopped);
         // Where the surface is proven not to be turned over, coarse triangles alone are.
         let was_folded = has_turned && (is_enclosed || !by_rim);
         if !is_divided && !has_turned || was_folded && !is_enclosed {

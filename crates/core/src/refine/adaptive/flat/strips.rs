@@ -11,7 +11,7 @@
 
 use limitmesh_pages::filled;
 
-use super::{FlatRegions, Plane};
+use super::regions::{FlatRegions, Plane};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::NONE;
 use crate::parallel::{IsStopped, asking};
@@ -20,7 +20,6 @@ use crate::patch::normal_net::{CUBIC, tangents};
 use crate::patch::{Patch, VertexSector};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
-use crate::refine::adaptive::quadtree::Edges;
 use crate::refine::kept_faces::KeptFaces;
 use crate::vector::{DVec3, unit_normal, unit_or_zero, vector};
 use std::collections::{HashMap, HashSet};
@@ -170,7 +169,7 @@ impl Regions {
 
 /// The control faces over which the surface is straight in a direction that is the same all over, but for those of flat regions, ascending.
 pub(super) fn straight_faces(
-    (control, edges): (&Control<'_>, &Edges<'_>),
+    control: &Control<'_>,
     normals: &[DVec3],
     (flat, most): (&[u32], f64),
     watch: &SharedWatch<'_>,
@@ -189,7 +188,8 @@ pub(super) fn straight_faces(
         !is_flat(face)
             && plane.normal != DVec3::ZERO
             && (3 * face..3 * face + 3).any(|h| {
-                let twin = edges
+                let twin = control
+                    .edges
                     .twin(h)
                     .filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
                 twin.is_some_and(|twin| {
@@ -202,9 +202,7 @@ pub(super) fn straight_faces(
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
         let faces = block.map(|face| face as u32);
         faces
-            .filter(|&face| {
-                is_beside_its_like(face) && may_have_direction((control, edges), face, most)
-            })
+            .filter(|&face| is_beside_its_like(face) && may_have_direction(control, face, most))
             .filter(|&face| has_direction(control, face, most))
             .collect::<Vec<u32>>()
     })?;
@@ -212,7 +210,7 @@ pub(super) fn straight_faces(
 }
 
 /// Whether the surface over a face may be straight in a direction, as far as the vertices beside it tell ([`BENT`]).
-fn may_have_direction((control, edges): (&Control<'_>, &Edges<'_>), face: u32, most: f64) -> bool {
+fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     let Control {
         mesh, sharpness, ..
     } = *control;
@@ -223,7 +221,8 @@ fn may_have_direction((control, edges): (&Control<'_>, &Edges<'_>), face: u32, m
         return true;
     }
     let beside = [0, 1, 2].map(|edge| {
-        edges
+        control
+            .edges
             .twin(3 * face + edge)
             .map(|twin| control.opposite(twin))
     });

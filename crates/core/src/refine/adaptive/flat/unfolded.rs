@@ -6,11 +6,17 @@
 //! a distance: all points of that are as near to the vertex, which the region has in any case.
 
 use super::super::control::Control;
-use super::Plane;
+use super::regions::Plane;
 use crate::patch::Patch;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{cross_products, tangents};
 use crate::vector::DVec3;
+
+/// Faces that may take some tenths of a millisecond each.
+pub(super) const MOST_UNFOLDED: usize = 4096;
+
+/// Heights over a plane are known to this part of the greatest coordinate.
+pub(super) const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Halvings of a regular piece whose coefficients are not all above zero.
 const HALVINGS: usize = 4;
@@ -76,4 +82,27 @@ fn is_net_unfolded(net: &BezierTriangle, plane: &Plane, halvings: usize) -> bool
     net.halves(longest)
         .iter()
         .all(|half| is_net_unfolded(half, plane, halvings - 1))
+}
+
+/// How far the surface over a face is off a plane at most; `None` where that is more than `most`.
+pub(super) fn height_over(
+    control: &Control<'_>,
+    face: u32,
+    plane: &Plane,
+    most: f64,
+) -> Option<f64> {
+    // Nearly all faces are told apart by the vertices around them, which are among the control points.
+    let open = control.open(face);
+    let is_off = |h: u32| {
+        let twin = control.edges.twin(h).filter(|_| !open[h as usize % 3]);
+        twin.is_some_and(|twin| plane.height(control.opposite(twin)).abs() > most)
+    };
+    if (3 * face..3 * face + 3).any(is_off) {
+        return None;
+    }
+    let mut height = 0.0f64;
+    control
+        .patch(face)
+        .for_each_hull_point(|point| height = height.max(plane.height(point).abs()));
+    (height <= most).then_some(height)
 }

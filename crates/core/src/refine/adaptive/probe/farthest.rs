@@ -202,14 +202,11 @@ impl Beholder for Finder {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::demands::Demands;
     use super::super::super::judge::Goal;
     use super::super::super::with_engine;
     use super::*;
     use crate::models::stirred;
-    use crate::progress::unobserved;
     use crate::refine::ExactOptions;
-    use crate::scheme::Loop;
 
     /// All triangles with their leaves.
     struct Listing(Vec<(u32, Place)>);
@@ -234,49 +231,43 @@ mod tests {
             let mesh = stirred(name, seed);
             let tolerance = 3e-4 * mesh.diagonal();
             let options = ExactOptions::default().tolerance(tolerance);
-            with_engine(
-                &mesh,
-                &Loop,
-                (&options, &Demands::default()),
-                &mut unobserved,
-                |engine| {
-                    let found = engine
-                        .refined(Goal::Within(tolerance), usize::MAX)?
-                        .unwrap();
-                    let emission = &found.emission;
-                    let sources = engine.sources(&found.state, emission);
-                    for face in (0..mesh.face_count() as u32).step_by(3) {
-                        let mut all = Listing(Vec::new());
-                        sources.show(face, &|| false, &mut all);
-                        for &(number, leaf) in all.0.iter().step_by(7) {
-                            let expected = all.0.iter().filter(|&&(_, place)| place == leaf);
-                            let mut expected: Vec<[u32; 3]> = expected
-                                .map(|&(number, _)| emission.triangles[number as usize])
-                                .collect();
-                            for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
-                                let place = Place::root(face);
-                                let mut found = Finder {
-                                    wanted,
-                                    is_found: false,
-                                    place,
-                                    triangles: Vec::new(),
-                                };
-                                sources.show(face, &|| false, &mut found);
-                                assert!(found.is_found && found.place == leaf, "{name}, {leaf:?}");
-                                // They may begin at other corners.
-                                let mut triangles = found.triangles;
-                                let sorted = |triangle: &mut [u32; 3]| triangle.sort_unstable();
-                                expected.iter_mut().chain(&mut triangles).for_each(sorted);
-                                expected.sort_unstable();
-                                triangles.sort_unstable();
-                                assert_eq!(triangles, expected, "{name}, {leaf:?}");
-                                found_in_parts += usize::from(triangles.len() > 1);
-                            }
+            with_engine(&mesh, &options, |engine| {
+                let found = engine
+                    .refined(Goal::Within(tolerance), usize::MAX)?
+                    .unwrap();
+                let emission = &found.emission;
+                let sources = engine.sources(&found.state, emission);
+                for face in (0..mesh.face_count() as u32).step_by(3) {
+                    let mut all = Listing(Vec::new());
+                    sources.show(face, &|| false, &mut all);
+                    for &(number, leaf) in all.0.iter().step_by(7) {
+                        let expected = all.0.iter().filter(|&&(_, place)| place == leaf);
+                        let mut expected: Vec<[u32; 3]> = expected
+                            .map(|&(number, _)| emission.triangles[number as usize])
+                            .collect();
+                        for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
+                            let place = Place::root(face);
+                            let mut found = Finder {
+                                wanted,
+                                is_found: false,
+                                place,
+                                triangles: Vec::new(),
+                            };
+                            sources.show(face, &|| false, &mut found);
+                            assert!(found.is_found && found.place == leaf, "{name}, {leaf:?}");
+                            // They may begin at other corners.
+                            let mut triangles = found.triangles;
+                            let sorted = |triangle: &mut [u32; 3]| triangle.sort_unstable();
+                            expected.iter_mut().chain(&mut triangles).for_each(sorted);
+                            expected.sort_unstable();
+                            triangles.sort_unstable();
+                            assert_eq!(triangles, expected, "{name}, {leaf:?}");
+                            found_in_parts += usize::from(triangles.len() > 1);
                         }
                     }
-                    Ok(())
-                },
-            )
+                }
+                Ok(())
+            })
             .unwrap();
         }
         assert!(found_in_parts > 100, "{found_in_parts}");

@@ -104,7 +104,7 @@ fn bounds(sources: &Sources<'_>, face: u32) -> Bounds {
         .into_iter()
         .map(|vertex| vector(positions[vertex as usize]))
         .fold(NO_BOUNDS, grown);
-    let runs = (3 * face..3 * face + 3).map(|h| sources.chains.vertices(sources.edges, h));
+    let runs = (3 * face..3 * face + 3).map(|h| sources.chains.vertices(&sources.control.edges, h));
     let runs = runs.chain([sources.emission.vertices_inside(face)]);
     runs.fold(bounds, |bounds, run| {
         positions[run]

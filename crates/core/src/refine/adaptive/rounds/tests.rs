@@ -1,13 +1,10 @@
 //! What was not looked at again, and what was proven by assumption, holds when all triangles are measured in the end.
 
-use super::super::demands::Demands;
 use super::super::measured::Measured;
 use super::super::with_engine;
 use super::*;
 use crate::models::{book, stirred};
-use crate::progress::unobserved;
 use crate::refine::ExactOptions;
-use crate::scheme::Loop;
 
 /// A leaf by its path below its control face.
 fn leaf(path: &[usize]) -> Place {
@@ -80,33 +77,27 @@ fn rounds_end_with_what_is_found_anew() {
         let limit = 1e-3 * mesh.diagonal();
         let plain = ExactOptions::default().tolerance(limit);
         for options in [plain.clone(), plain.clone().balance(true), plain.angle(0.2)] {
-            with_engine(
-                &mesh,
-                &Loop,
-                (&options, &Demands::default()),
-                &mut unobserved,
-                |engine| {
-                    let value = engine.floor(options.tolerance);
-                    let goal = if engine.is_balanced {
-                        Goal::Balanced(value)
-                    } else {
-                        Goal::Within(value)
-                    };
-                    let found = engine.refined(goal, usize::MAX)?.unwrap();
-                    let faces: Vec<u32> = (0..found.state.faces()).collect();
-                    let look = Look {
-                        goal: &found.state.goal,
-                        length: if engine.trusts() { 0.0 } else { f64::INFINITY },
-                        changes: None,
-                        bulges: None,
-                        trusted: &[],
-                    };
-                    let sources = engine.sources(&found.state, &found.emission);
-                    let anew = measure(&sources, engine.watch, &faces, &look)?;
-                    assert_holds(&found.state, &anew, engine.trusts(), name);
-                    Ok(())
-                },
-            )
+            with_engine(&mesh, &options, |engine| {
+                let value = engine.floor(options.tolerance);
+                let goal = if engine.is_balanced {
+                    Goal::Balanced(value)
+                } else {
+                    Goal::Within(value)
+                };
+                let found = engine.refined(goal, usize::MAX)?.unwrap();
+                let faces: Vec<u32> = (0..found.state.faces()).collect();
+                let look = Look {
+                    goal: &found.state.goal,
+                    length: if engine.trusts() { 0.0 } else { f64::INFINITY },
+                    changes: None,
+                    bulges: None,
+                    trusted: &[],
+                };
+                let sources = engine.sources(&found.state, &found.emission);
+                let anew = measure(&sources, engine.watch, &faces, &look)?;
+                assert_holds(&found.state, &anew, engine.trusts(), name);
+                Ok(())
+            })
             .unwrap();
         }
     }
