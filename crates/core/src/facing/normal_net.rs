@@ -1,9 +1,9 @@
 //! Which way a regular piece looks, by the signs of coefficients.
 //!
 //! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28
-//! coefficients, and all of the piece shows its front in the direction of sight d if they are above
-//! 0. `(E − S)·N`, whose sign is the side of the tangent planes on which an eye E is, has a net of
-//! degree 10, of 66 coefficients that follow from those of S and of N.
+//! coefficients, and all of the piece shows its front in the direction of sight d if they are
+//! above 0. `(E − S)·N`, whose sign is the side of the tangent planes on which an eye E is, has
+//! a net of degree 10, of 66 coefficients that follow from those of S and of N.
 
 use super::{Look, Side};
 use crate::patch::bezier_triangle::BezierTriangle;

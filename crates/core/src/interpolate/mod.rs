@@ -14,15 +14,16 @@
 //! of a crease or a boundary is a system of its own, and then each region between them, with the
 //! lines fixed.
 //!
-//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k))
-//! for the vertex, divided by a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is
-//! symmetric, and it is positive definite at all valences: the sum over the triangles of (x_p + x_q
-//! + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least −k/2;
-//! and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence
-//! 2). So there is a solution for every mesh, and with the diagonal as preconditioner the condition
-//! number is at most that of (1 + k/a)/(1 − k/2a): 4 for six edges, 10 for three, 14 for two. That
-//! takes some thirty steps of conjugate gradients at any size. Lines have 4 on the diagonal and two
-//! neighbours. No length enters: slivers do not matter.
+//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a =
+//! 3/(8β(k)) for the vertex, divided by a + k (Loop 1987). So diag(a + k)·A = diag(a) +
+//! (adjacency) is symmetric, and it is positive definite at all valences: the sum over the
+//! triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the
+//! adjacency is at least −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and
+//! Warren's (0.61 at most, at valence 2). So there is a solution for every mesh, and with the
+//! diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4
+//! for six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients
+//! at any size. Lines have 4 on the diagonal and two neighbours. No length enters: slivers do
+//! not matter.
 //!
 //! Where a dart or a semi-sharp tag gives the neighbours of a vertex weights of their own, and for
 //! schemes outside the Loop family, the system may not be symmetric: conjugate gradients on the
