@@ -33,7 +33,7 @@ const TOGETHER: usize = 3;
 /// [`UniformOptions::origins`](crate::refine::UniformOptions::origins)), and no flat regions that
 /// were triangulated from their rims
 /// ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)), unless all channels
-/// are of faces, whose [`borders`] were kept, or [the same everywhere](Channel::is_constant). If it
+/// are of faces, whose [`borders`] were kept, or constant. If it
 /// is optimised, [`borders`] must have been kept; its triangles cover parts of several control
 /// faces, so values are exact at its corners, and linear channels bend at control edges inside of
 /// triangles where these do not.
