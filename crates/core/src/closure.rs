@@ -1,10 +1,10 @@
-//! Figure 5 of the paper: how a triangle is covered when 0, 1, 2 or 3 of its edges are split.
+//! Figure 5 of the paper: the cover of a triangle when 0, 1, 2 or 3 of its edges are split.
 //!
 //! Corners are numbered 0, 1, 2 and the new vertex on the edge from corner `c` to the next one is `3 + c`. Each
 //! pattern also says which of its half-edges are twins inside the triangle and which lie along its border, so
 //! that a refined topology follows without any search.
 
-/// Which diagonal cuts the quadrilateral that two split edges leave (the paper leaves it open).
+/// The diagonal of the quadrilateral that two split edges leave (the paper does not define it).
 ///
 /// With the unsplit edge running from corner `u` to the next one, the quadrilateral is `u`, `u+1`, the new
 /// vertex after `u+1`, the new vertex before `u`.
@@ -43,8 +43,8 @@ impl Pattern {
         (twin != BORDER).then_some(twin as usize)
     }
 
-    /// The half-edges along the face's half-edge `corner`: the first and the second half, or twice the same
-    /// where it is not split.
+    /// The half-edges along the face's half-edge `corner`: the first and the second half, or the
+    /// one edge twice where it is not split.
     #[inline]
     pub fn border(&self, corner: usize) -> [usize; 2] {
         self.border[corner].map(usize::from)

@@ -38,14 +38,15 @@
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`mod@interpolate`] | control meshes whose limit surface passes through the vertices of a mesh |
-//! | [`part`] | which meshes look like parts, whose sharp edges are meant, and how their surface keeps its size |
+//! | [`part`] | which meshes look like parts, whose sharp edges are intended, and how their surface
+//! keeps its size |
 //! | [`criterion`] | which faces are to be divided |
 //! | [`mod@closure`] | Figure 5's patterns: triangles whose edges are split, covered without cracks |
 //! | [`front`] | triangles that are refined and coarsened from one demand to the next |
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
 //! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`sqrt3`] | √3-subdivision: uniform and adaptive, with exact limits |
-//! | [`progress`] | what long functions tell while they work, and how they are cancelled |
+//! | [`progress`] | what long functions report while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
 
 pub mod carry;

@@ -1,9 +1,10 @@
 //! The limit surface as an object: points, normals, derivatives, curvature and weights of control points at any place of its control
 //! faces, area and volume.
 //!
-//! A piece is refined towards the place until its part there is a polynomial (Stam, "Evaluation of Loop Subdivision Surfaces",
-//! 1998: around an irregular vertex the regular parts shrink by half with each level), which is evaluated; at corners the scheme's
-//! limit stencils are. Places that share a piece share its refinement.
+//! A piece is refined towards the place until its part there is a polynomial (Stam, "Evaluation of
+//! Loop Subdivision Surfaces", 1998: around an irregular vertex the regular parts shrink by half
+//! with each level), which is evaluated; corners use the scheme's limit stencils. Places that share
+//! a piece share its refinement.
 
 mod barycentric;
 mod derivatives;
@@ -42,9 +43,9 @@ const BLOCK: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SurfacePoint {
-    /// Where it is, in the control mesh's units.
+    /// The position, in the control mesh's units.
     pub position: [f64; 3],
-    /// The unit normal, on the side of the face that was asked; zero where there is none.
+    /// The unit normal, on the side of the given face; zero where there is none.
     pub normal: [f64; 3],
 }
 
@@ -69,7 +70,7 @@ pub struct LimitSurface<'a> {
     large: LargeRings,
     rules: Rules<'a>,
     positions: Vec<[f64; 3]>,
-    /// `None` where nobody asks for normals: they are zero then.
+    /// `None` if no normals are requested: they are zero then.
     normals: Option<SidedNormals>,
 }
 
@@ -87,12 +88,12 @@ impl<'a> LimitSurface<'a> {
     /// [`Self::new`] for positions alone; normals are zero.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn without_normals(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Result<Self, LimitError> {
         Self::by_rules(mesh, Rules::of(scheme))
     }
 
-    /// [`Self::without_normals`] by rules that may share what is found with those of other surfaces.
+    /// [`Self::without_normals`] by rules that may share stencils with those of other surfaces.
     fn by_rules(mesh: &'a Mesh, rules: Rules<'a>) -> Result<Self, LimitError> {
         let positions = rules.table().positions(mesh)?;
         let sharpness = Sharpness::of(mesh);
@@ -107,14 +108,15 @@ impl<'a> LimitSurface<'a> {
         })
     }
 
-    /// The point over a place of a control face, given by barycentric coordinates; the second and third count, cut off so that none
-    /// is below 0 and their sum not above 1: [`barycentric`] gives them for weights that were written with few digits. A face that there is
-    /// not has its points at zero.
+    /// The point over a place of a control face, given by barycentric coordinates; the second and
+    /// third are used, clamped so that none is below 0 and their sum not above 1; [`barycentric`]
+    /// computes them from weights written with few digits. The points of a face that does not exist
+    /// are zero.
     pub fn at(&self, face: FaceId, barycentric: [f64; 3]) -> SurfacePoint {
         self.over(face, &[barycentric]).pop().unwrap_or(NOWHERE)
     }
 
-    /// The points over several places of a face, as [`Self::at`] gives them.
+    /// The points over several places of a face, each as by [`Self::at`].
     pub fn over(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<SurfacePoint> {
         let mut points = vec![NOWHERE; places.len()];
         if face.index() < self.mesh.face_count() {
@@ -133,7 +135,8 @@ impl<'a> LimitSurface<'a> {
         points
     }
 
-    /// The points over places of many faces, in order, on all threads. Places of one face that stand together share its work.
+    /// The points over places of many faces, in order, on all threads. Consecutive places of one
+    /// face share its work.
     pub fn at_all(&self, places: &[(FaceId, [f64; 3])]) -> Vec<SurfacePoint> {
         let of_faces: Vec<&[(FaceId, [f64; 3])]> = places.chunk_by(|a, b| a.0 == b.0).collect();
         let blocks = parallel::pieces_of(of_faces.len(), BLOCK, |block| {
@@ -148,8 +151,8 @@ impl<'a> LimitSurface<'a> {
         blocks.concat()
     }
 
-    /// The first coordinates of points over places of faces, face by face, in blocks; `places` calls what it is given with each place
-    /// of a face.
+    /// The first coordinates of points over places of faces, face by face, in blocks; `places`
+    /// calls its argument with each place of a face.
     pub(crate) fn coordinates<const AXES: usize>(
         &self,
         places: impl Fn(usize, &mut dyn FnMut([f64; 3])) + Sync + Send,
@@ -241,7 +244,7 @@ impl<'a> LimitSurface<'a> {
         self.mesh.triangles()[face.index()].map(|v| vector(self.positions[v as usize]))
     }
 
-    /// Why what was computed means nothing, if a stencil failed on the way.
+    /// The reason why results are invalid, if a stencil failed on the way.
     pub fn failure(&self) -> Option<&LimitError> {
         self.rules.failure()
     }

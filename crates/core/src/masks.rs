@@ -1,4 +1,5 @@
-//! A scheme's masks applied to a mesh: where its vertices move and where new ones come to stand.
+//! A scheme's masks applied to a mesh: the new positions of its vertices and the positions of new
+//! ones.
 //!
 //! Takes a mesh and a scheme; gives points. Refinement and the limits of two-ring schemes build on it.
 
@@ -211,7 +212,8 @@ impl<'a> Masks<'a> {
             })
     }
 
-    /// Where the new vertex on the edge of `h` comes to stand: the same bits from both of its half-edges.
+    /// The position of the new vertex on the edge of `h`, with the same bits from both of its
+    /// half-edges.
     pub(crate) fn edge_point(&self, h: HalfEdgeId) -> DVec3 {
         let topology = self.mesh.topology();
         let h = topology.twin(h).map_or(h, |twin| h.min(twin));

@@ -35,7 +35,7 @@ pub(crate) fn stirred(name: &str, seed: u64) -> Mesh {
     )
 }
 
-/// The same of any mesh.
+/// Stirs any mesh.
 #[allow(clippy::unwrap_used)]
 pub(crate) fn stir(mesh: Mesh, seed: u64) -> Mesh {
     let mut random = Random::new(seed);

@@ -1,4 +1,5 @@
-//! Nodes of quadtrees over the control faces: where they are, and what lies beyond their edges. Knows no trees.
+//! Nodes of quadtrees over the control faces: their addresses, and the nodes beyond their edges.
+//! Knows no trees.
 //!
 //! Children 0 to 2 of a node keep the corner of their number at its place; corner `i` of child 3, the middle one, is the new
 //! vertex opposite corner `i`. So child `i` lies along the first half of edge `i` and the second half of edge `i + 2` of its
@@ -41,8 +42,8 @@ impl Place {
         }
     }
 
-    /// The node `depth` levels below in column i and row j, as rows run along edge 0 from the first corner: the one that stands
-    /// upright there, or the one to its right that stands on its head.
+    /// The node `depth` levels below in column i and row j, as rows run along edge 0 from the first
+    /// corner: the upright one, or the inverted one to its right.
     pub(crate) fn leaf(
         self,
         depth: u32,
@@ -104,8 +105,8 @@ impl Place {
     }
 }
 
-/// Whether what lies beyond an edge of a child is a child of the same node: every edge of the middle one, and that of any other which
-/// faces the middle.
+/// Whether the node beyond an edge of a child is a child of the same parent: every edge of the
+/// middle one, and that of any other which faces the middle.
 #[inline]
 fn is_beside_sibling(child: usize, edge: usize) -> bool {
     child == 3 || edge == (child + 1) % 3
@@ -117,7 +118,7 @@ pub(crate) fn along_edge(edge: usize, second: bool) -> usize {
     if second { (edge + 1) % 3 } else { edge }
 }
 
-/// What lies beyond an edge of a node.
+/// The region beyond an edge of a node.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Beyond {
     /// The node of the same level in the same control face; its edge has the same number.
@@ -151,7 +152,7 @@ impl Along {
     }
 }
 
-/// What lies beyond an edge of a node, on the node's own level.
+/// The region beyond an edge of a node, on the node's own level.
 pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
     let (mut path, mut level) = (place.path, place.level);
     let (mut index, mut depth) = (0u32, 0u32);

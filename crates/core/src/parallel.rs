@@ -12,7 +12,8 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 const SHARES: usize = 48;
 const MOST_IN_SHARE: usize = 256;
 
-/// How many of so many elements one call takes together where each may take long: few enough for threads to end together.
+/// The number of elements that one call processes together where each may take long: few enough for
+/// threads to end together.
 pub(crate) fn share(elements: usize) -> usize {
     (elements / SHARES).clamp(1, MOST_IN_SHARE)
 }
@@ -44,7 +45,8 @@ pub(crate) fn map<T: Send, F: Fn(usize) -> T + Sync + Send>(n: usize, f: F) -> V
     (0..n).map(f).collect()
 }
 
-/// So many default values, with room for more: as [`limitmesh_pages::defaults_with_room`], but that all threads touch what must be.
+/// `count` default values, with room for more: like [`limitmesh_pages::defaults_with_room`], but
+/// all threads touch the pages.
 pub(crate) fn defaults_with_room<T: Clone + Default + Send + Sync>(
     length: usize,
     capacity: usize,
@@ -88,7 +90,7 @@ pub(crate) fn for_each_chunk<T: Send, F: Fn(usize, &mut [T]) + Sync + Send>(
         .for_each(|(i, chunk)| f(i, chunk));
 }
 
-/// Bytes that are touched by several threads from so many on.
+/// The number of bytes from which several threads touch them.
 #[cfg(feature = "parallel")]
 const TOUCHED: usize = 1 << 18;
 
@@ -103,7 +105,7 @@ pub(crate) fn pieces<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(n: usize, 
     pieces_of(n, PIECE, f)
 }
 
-/// The same with pieces of `length` elements, for work that takes long at each.
+/// Pieces of `length` elements, for work that takes long at each.
 pub(crate) fn pieces_of<T: Send, F: Fn(Range<usize>) -> T + Sync + Send>(
     n: usize,
     length: usize,
@@ -205,18 +207,19 @@ pub(crate) fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + 
 #[error("cancelled by the observer")]
 pub struct Cancelled;
 
-/// What a loop that can be cancelled calls between its blocks, always on the calling thread, with the number of elements
-/// done by then.
+/// The callback of a loop that can be cancelled, between its blocks and always on the calling
+/// thread, with the number of elements done by then.
 pub(crate) type Poll<'a> = dyn FnMut(usize) -> Result<(), Cancelled> + 'a;
 
-/// What blocks ask now and then that may take longer than some milliseconds: whether what they do is of no use any more, so that
-/// they may leave it as it is. On the calling thread it polls.
+/// The question of blocks that may take longer than some milliseconds: whether their result is no
+/// longer needed, so that they may end early. On the calling thread it polls.
 pub(crate) type IsStopped<'a> = dyn Fn() -> bool + 'a;
 
 /// Items of which each takes much less than a microsecond and that blocks take between two such questions.
 const ASKED: usize = 1 << 12;
 
-/// The same items, with the question now and then whether they are still of use; there are no more of them where they are not.
+/// The items, with a check now and then whether they are still needed; the iterator ends where they
+/// are not.
 pub(crate) fn asking<I: IntoIterator>(
     items: I,
     is_stopped: &IsStopped<'_>,
@@ -231,7 +234,7 @@ pub(crate) fn asking<I: IntoIterator>(
 /// [`sort_polled`] of a block, which leaves the items as they may be where they are of no use any more.
 pub(crate) fn sort_asking<T: Send + Sync + Ord>(items: &mut [T], is_stopped: &IsStopped<'_>) {
     let poll = &mut |_| if is_stopped() { Err(Cancelled) } else { Ok(()) };
-    // Who stops knows that.
+    // The caller that stops handles that.
     let _ = sort_polled(items, poll, T::cmp);
 }
 
@@ -322,7 +325,7 @@ pub(crate) fn map_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     map_chunks_polled(n, SEQUENTIAL_BELOW, poll, f)
 }
 
-/// [`map_polled`], `length` items at a time; so many should take a few milliseconds at most.
+/// [`map_polled`], `length` items at a time; these should take a few milliseconds at most.
 pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + Sync>(
     n: usize,
     length: usize,
@@ -338,9 +341,9 @@ pub(crate) fn map_chunks_polled<T: Send + Clone + Default, F: Fn(usize) -> T + S
     Ok(slots)
 }
 
-/// Runs `work` on every block and gives the results in order. `poll` is called after each block that the calling thread
-/// does, with the number of blocks done, and while it waits for others, and by blocks that ask for it; once it fails it is not called
-/// again and no further block is begun.
+/// Runs `work` on every block and gives the results in order. `poll` is called after each block
+/// that the calling thread does, with the number of blocks done, and while it waits for others, and
+/// by blocks that request it; once it fails it is not called again and no further block is begun.
 fn hand_out<
     B: Send,
     R: Send,
@@ -394,18 +397,18 @@ fn led<B, R>(
 #[cfg(feature = "parallel")]
 struct Blocks<I, R> {
     state: Mutex<BlocksState<I, R>>,
-    /// Told when a thread has ended.
+    /// Notified when a thread has ended.
     ended: Condvar,
     is_cancelled: AtomicBool,
 }
 
 #[cfg(feature = "parallel")]
 struct BlocksState<I, R> {
-    /// Blocks that nobody has begun.
+    /// Blocks that no thread has begun.
     left: core::iter::Enumerate<I>,
-    /// Results by number of block, in the order in which they came about.
+    /// Results by number of block, in the order of completion.
     results: Vec<(usize, R)>,
-    /// Threads at work beside the calling one.
+    /// Working threads, without the calling one.
     working: usize,
 }
 
@@ -510,7 +513,8 @@ impl<I, R> BlocksState<I, R> {
     }
 }
 
-/// Says that a thread has ended, also where its work panicked: nobody then waits for it for ever.
+/// Reports that a thread has ended, also where its work panicked, so that no thread waits for it
+/// for ever.
 #[cfg(feature = "parallel")]
 struct Ended<'b, B: Send, R: Send, I: ExactSizeIterator<Item = B> + Send>(&'b Blocks<I, R>);
 

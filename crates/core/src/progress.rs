@@ -1,11 +1,12 @@
-//! Progress and cancellation, in one dialect for every long function of the library.
+//! Progress and cancellation, alike for every long function of the library.
 //!
-//! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`], called on the calling
-//! thread, also while other threads work, and told what is being done, how much of it is done and how many triangles
-//! there are by then. It is called often: after each block of work, mostly every few milliseconds and at least every
-//! 100, and costs little if it does little. Whoever draws something limits how often that is. When it breaks, the
-//! function ends as soon as the blocks in hand are finished, with an error that says [`Cancelled`]; until then it has
-//! no influence on any result.
+//! A long function `f` has a twin `f_observed` with one more argument, last: an [`Observer`],
+//! called on the calling thread, also while other threads work, that receives the stage, how much
+//! of it is done and the number of triangles. It is called often: after each block of work, mostly
+//! every few milliseconds and at least every 100, and costs little if it does little. An observer
+//! that draws should limit how often it does. When it breaks, the function ends as soon as the
+//! blocks in hand are finished, with an error that says [`Cancelled`]; an observer never influences
+//! a result.
 //!
 //! ```
 //! use core::ops::ControlFlow;
@@ -32,25 +33,26 @@ use core::ops::{ControlFlow, Range};
 pub use crate::parallel::Cancelled;
 use crate::parallel::{self, IsStopped};
 
-/// How far a long function has come.
+/// The progress of a long function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// What is being done.
+    /// The current stage.
     pub stage: Stage,
-    /// Units of this stage that are done; see [`Stage`] for what they are.
+    /// Units of this stage that are done; see [`Stage`] for the units.
     pub done: usize,
-    /// Units that there will be, where that is known.
+    /// The total of units, where it is known.
     pub total: Option<usize>,
-    /// Triangles of the mesh that is being made, or of the surface that is being looked at.
+    /// Triangles of the mesh that is being built, or of the surface that is being processed.
     pub triangles: usize,
 }
 
-/// What a long function is doing.
+/// The stages of long functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Faces are being divided; the units are levels or steps, of exact refinement rounds over what has changed.
+    /// Faces are being divided; the units are levels or steps, in exact refinement rounds over the
+    /// changed faces.
     Refining,
     /// Vertices are being moved to the limit surface; the units are vertices.
     Limits,
@@ -58,21 +60,21 @@ pub enum Stage {
     Interpolating,
     /// A mesh is being put together; the units are its triangles.
     Assembling,
-    /// Edges are being collapsed; the units are triangles gone, and how many there will be is estimated where a tolerance
-    /// decides it.
+    /// Edges are being collapsed; the units are removed triangles; their total is estimated where a
+    /// tolerance decides it.
     Simplifying,
     /// A hierarchy for closest points or rays is being built; the units are triangles.
     Indexing,
     /// Distances are being measured at points; the units are points.
     Sampling,
-    /// A distance is being bounded from above; the units are triangles, and then pieces of them, whose number nobody
-    /// knows before.
+    /// A distance is being bounded from above; the units are triangles, and then pieces of them,
+    /// whose number is not known in advance.
     Bounding,
     /// Edges are being matched and counted; the units are triangles.
     Matching,
     /// Rays are being followed to a surface; the units are rays.
     Casting,
-    /// It is being found which way faces look; the units are faces.
+    /// The directions in which faces face are being found; the units are faces.
     Looking,
     /// Weights of control points are being found; the units are kinds of faces.
     Weighing,
@@ -97,28 +99,27 @@ impl fmt::Display for Stage {
     }
 }
 
-/// What is told of progress, and says whether to go on.
+/// A callback that receives progress and decides whether to go on.
 pub type Observer<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + 'a;
 
-/// The observer of those who do not watch.
+/// The observer that does nothing.
 pub(crate) fn unobserved(_: &Progress) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// What `work` gives if nobody watches: then nothing cancels it.
+/// The result of `work` without an observer: nothing cancels it.
 pub(crate) fn uncancelled<T>(work: impl FnOnce(&mut Observer<'_>) -> Result<T, Cancelled>) -> T {
-    work(&mut unobserved)
-        .unwrap_or_else(|Cancelled| unreachable!("cancelled, but nobody asked for it"))
+    work(&mut unobserved).unwrap_or_else(|Cancelled| unreachable!("cancelled without an observer"))
 }
 
-/// An observer and what it is told: what long functions pass on to the loops that they consist of.
+/// An observer and its last progress, which long functions pass on to their loops.
 pub(crate) struct Watch<'a> {
     observer: &'a mut Observer<'a>,
     progress: Progress,
 }
 
 impl<'a> Watch<'a> {
-    /// Begins with `stage`, of which nothing is done.
+    /// Begins with `stage`, with no unit done.
     pub(crate) fn new(observer: &'a mut Observer<'a>, stage: Stage) -> Self {
         Self {
             observer,
@@ -142,24 +143,24 @@ impl<'a> Watch<'a> {
         self.poll()
     }
 
-    /// How many triangles there are by now; told with the next call.
+    /// Sets the number of triangles, reported with the next call.
     pub(crate) fn triangles(&mut self, triangles: usize) {
         self.progress.triangles = triangles;
     }
 
-    /// So many units of the stage are done.
+    /// Reports the units of the stage that are done.
     pub(crate) fn done(&mut self, done: usize) -> Result<(), Cancelled> {
         self.progress.done = done;
         self.poll()
     }
 
-    /// So many units of the stage are done, and so many there will be, as it looks by now.
+    /// Reports the units of the stage that are done, and their expected total.
     pub(crate) fn done_of(&mut self, done: usize, total: usize) -> Result<(), Cancelled> {
         self.progress.total = Some(total);
         self.done(done)
     }
 
-    /// Calls the observer with what it was told before.
+    /// Calls the observer with its last progress.
     pub(crate) fn poll(&mut self) -> Result<(), Cancelled> {
         match (self.observer)(&self.progress) {
             ControlFlow::Continue(()) => Ok(()),
@@ -167,13 +168,14 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// An observer for functions that take one: what these tell is not passed on, whether to go on is.
+    /// An observer for functions that take one: it does not pass on their progress, but whether to
+    /// go on.
     pub(crate) fn observer(&mut self) -> impl FnMut(&Progress) -> ControlFlow<()> + '_ {
         |_| flow(self.poll())
     }
 }
 
-/// What an observer says to go on, or not.
+/// The outcome of a poll as an observer's answer.
 fn flow(polled: Result<(), Cancelled>) -> ControlFlow<()> {
     match polled {
         Ok(()) => ControlFlow::Continue(()),
@@ -213,7 +215,7 @@ impl<'a> SharedWatch<'a> {
         self.watch.borrow_mut().done(done)
     }
 
-    /// One more round of refinement came to its end, with so many triangles.
+    /// Reports the end of a round of refinement and the number of triangles.
     pub(crate) fn round(&self, triangles: usize) -> Result<(), Cancelled> {
         self.rounds.set(self.rounds.get() + 1);
         self.triangles(triangles);

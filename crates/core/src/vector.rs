@@ -5,7 +5,7 @@ use core::ops::{Add, Div, Mul, Sub, SubAssign};
 
 pub(crate) use glam::DVec3;
 
-/// What can be blended: points, or some of their coordinates.
+/// Values that can be blended: points, or some of their coordinates.
 pub(crate) trait Blend:
     Copy
     + Default
@@ -24,7 +24,7 @@ impl Blend for DVec3 {}
 pub(crate) struct Coordinates<const AXES: usize>(pub(crate) [f64; AXES]);
 
 impl<const AXES: usize> Coordinates<AXES> {
-    /// Those of a point in space, of which there are 3 at most.
+    /// The coordinates of a point in space, of which there are at most 3.
     #[inline]
     pub(crate) fn of(point: DVec3) -> Self {
         Self(from_fn(|axis| point[axis]))
@@ -104,8 +104,8 @@ pub(crate) fn unit_or_zero(v: DVec3) -> DVec3 {
     }
 }
 
-/// `√(a² + b²)`, also where squares vanish or overflow. Unlike what the system's library has for that, it gives the same bytes everywhere, and
-/// takes a few instructions.
+/// `√(a² + b²)`, also where squares vanish or overflow. Unlike the system's library, it gives the
+/// same bytes everywhere, and takes a few instructions.
 #[inline]
 pub(crate) fn hypotenuse(a: f64, b: f64) -> f64 {
     let squared = a * a + b * b;
@@ -129,8 +129,8 @@ fn hypotenuse_of_any(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Comparisons of numbers by one instruction each: what is not a number is not larger, nor smaller, than anything. `f64::max` gives the other
-/// one whichever of two is not a number, which takes five.
+/// Comparisons of numbers by one instruction each: NaN is neither larger nor smaller than anything.
+/// `f64::max` ignores NaN in either argument, which takes five.
 pub(crate) trait Extremes {
     /// `other` if that is larger.
     fn larger(self, other: Self) -> Self;

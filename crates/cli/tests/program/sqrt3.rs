@@ -111,7 +111,8 @@ fn tags_that_fade_are_an_error_with_their_name() {
     )
     .expect(1);
     assert!(
-        run.stderr.contains("the sharpness 2.5, which fades"),
+        run.stderr
+            .contains("the sharpness 2.5, which is semi-sharp"),
         "{}",
         run.stderr
     );

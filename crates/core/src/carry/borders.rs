@@ -1,10 +1,11 @@
-//! Where channels tell the two sides of an edge apart.
+//! The edges on whose two sides channels have different values.
 
 use crate::mesh::{Channel, Domain, Mesh};
 
-/// The edges of a mesh, by their ends, across which the values of a channel of its corners or faces change: seams of textures,
-/// borders of materials. Boundaries are none, and channels that are the same everywhere have none. Faces differ where their values do,
-/// corners where they have different values of the table. Channels that do not fit the mesh count where they do.
+/// The edges of a mesh, by their ends, across which the values of a channel of its corners or faces
+/// change: seams of textures, borders of materials. Boundaries are not among them, and constant
+/// channels have no such edges. Faces differ by value, corners by index. Channels that do not fit
+/// the mesh count as far as they do.
 ///
 /// ```
 /// use limitmesh::Mesh;

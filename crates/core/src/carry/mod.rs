@@ -1,10 +1,12 @@
-//! Channels carried from a control mesh to what was refined from it.
+//! Carries channels from a control mesh to its refinement.
 //!
-//! Takes channels of the control mesh, and a refined mesh whose triangles each come from one control face and whose vertices know where
-//! on the control mesh they came from; gives the channels of the refined mesh. Linear ones are linear over each control face, so exact on
-//! every triangle; smooth ones take their values from the limit surface of a mesh of values with the same faces (`seams`), at the
-//! same places as the vertices: a channel whose values are positions gives the vertices' positions. Where control faces meet, corners
-//! of the refined mesh have one value if the channel has one there, so seams run where they ran, and there alone.
+//! Takes channels of the control mesh, and a refined mesh whose triangles each come from one
+//! control face and whose vertices have origins on the control mesh; gives the channels of the
+//! refined mesh. Linear ones are linear over each control face, so exact on every triangle; smooth
+//! ones take their values from the limit surface of a mesh of values with the same faces (`seams`),
+//! at the same places as the vertices: a channel whose values are positions gives the vertices'
+//! positions. Where control faces meet, corners of the refined mesh have one value if the channel
+//! has one there, so seams run only where they ran before.
 
 mod borders;
 mod places;
@@ -27,10 +29,14 @@ const TOGETHER: usize = 3;
 /// The channels of a refined mesh: of its corners, or of its faces, in the order of the control mesh's.
 ///
 /// `result` must have origins and parents
-/// ([`ExactOptions::origins`](crate::refine::ExactOptions::origins), [`UniformOptions::origins`](crate::refine::UniformOptions::origins)), and no flat regions
-/// that were triangulated from their rims ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)), unless all channels
-/// are of faces, whose [`borders`] were kept, or [the same everywhere](Channel::is_constant). If it is optimised, [`borders`] must have been kept; its triangles reach over several control faces, so values are exact at
-/// its corners, and linear channels bend at control edges inside of triangles where these do not.
+/// ([`ExactOptions::origins`](crate::refine::ExactOptions::origins),
+/// [`UniformOptions::origins`](crate::refine::UniformOptions::origins)), and no flat regions that
+/// were triangulated from their rims
+/// ([`ExactOptions::flat_regions`](crate::refine::ExactOptions::flat_regions)), unless all channels
+/// are of faces, whose [`borders`] were kept, or constant. If it
+/// is optimised, [`borders`] must have been kept; its triangles cover parts of several control
+/// faces, so values are exact at its corners, and linear channels bend at control edges inside of
+/// triangles where these do not.
 ///
 /// ```
 /// use limitmesh::carry::carried;
@@ -52,8 +58,8 @@ const TOGETHER: usize = 3;
 /// ```
 ///
 /// # Errors
-/// A channel does not fit the control mesh, the result does not know where its triangles are from, or the scheme has no limit for a
-/// smooth channel.
+/// A channel does not fit the control mesh, the result has no parents of its triangles, or the
+/// scheme has no limit for a smooth channel.
 pub fn carried(
     channels: &[Channel],
     control: &Mesh,
@@ -125,9 +131,10 @@ fn one(
     }
 }
 
-/// The goal that the triangles' own values of a channel, linear between their corners, be within a tolerance of it everywhere
-/// ([`ExactOptions::attributes`](crate::refine::ExactOptions::attributes)); `None` for channels that are not smooth: linear ones are met by
-/// any triangles, and names have no distance.
+/// The goal that the triangles' values of a channel, linear between their corners, are within a
+/// tolerance of it everywhere
+/// ([`ExactOptions::attributes`](crate::refine::ExactOptions::attributes)); `None` for channels
+/// that are not smooth: linear ones are met by any triangles, and names have no distance.
 ///
 /// # Errors
 /// The channel does not fit the mesh, or has more fans than can be numbered.
@@ -201,7 +208,7 @@ fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
         let [first, second, third] =
             [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
         for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
-            // What is at a corner, or the same at all, is that to the bit.
+            // A value that is equal at all three corners is copied to the bit.
             let is_one = a == b && b == c;
             let sum = at_first * a + at_second * b + at_third * c;
             values.push(if is_one { a } else { sum });

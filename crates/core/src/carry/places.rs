@@ -1,14 +1,15 @@
-//! Where the corners of refined triangles are in their own control faces.
+//! The places of refined triangles' corners in their own control faces.
 //!
-//! A vertex knows one face that it came from; a triangle that has it may be in another beside that one.
+//! A vertex has the origin of one of its faces; a triangle with this vertex may be in an adjacent
+//! face.
 
 use crate::geometry::NONE;
 use crate::index::HalfEdgeId;
 use crate::mesh::{Channel, ChannelError, Mesh};
 use crate::refine::{Origin, Traced};
 
-/// The numbers of the values at the control vertices of the face, edge or vertex that a place is in: what it depends on where
-/// channels are linear, and on which side of seams it is.
+/// The numbers of the values at the control vertices of the face, edge or vertex that a place is
+/// in: the values on which it depends where channels are linear, and its side of seams.
 pub(super) type Key = [u32; 3];
 
 /// A refined mesh's places on its control mesh.
@@ -42,7 +43,7 @@ impl<'a> Places<'a> {
             result,
             parents: result.parents(),
         };
-        // Without a way out of the loops several are looked at together.
+        // Without an early exit, several loops run together.
         let last_parent = places.parents.iter().copied().max();
         let last_origin = result.origins().iter().map(|origin| origin.face).max();
         if last_parent
@@ -105,7 +106,7 @@ impl<'a> Places<'a> {
     /// The place of a corner.
     ///
     /// # Errors
-    /// Its triangle reaches over several control faces, of which nobody knows where.
+    /// Its triangle covers parts of several control faces, so that the origin is ambiguous.
     pub(super) fn known_place(&self, corner: usize) -> Result<Origin, ChannelError> {
         let corner = HalfEdgeId(corner as u32);
         self.result

@@ -10,7 +10,7 @@ use crate::mesh::{Channel, CornerTag, CreaseTag, Mesh, MeshError, SeamRule, Shar
 
 /// The mesh of a channel, and the number of each of its vertices' values.
 pub(super) struct ValueMesh {
-    /// Without values: all vertices stand at zero.
+    /// Without values: all vertices are at zero.
     pub(super) mesh: Mesh,
     /// By vertex, the channel's value.
     pub(super) values: Vec<u32>,
@@ -111,7 +111,8 @@ pub(super) fn value_mesh(
     })
 }
 
-/// Whether a fan's value stays what it is, given all fans of its vertex and whether that is on the control mesh's boundary.
+/// Whether the value of a fan is kept, given all fans of its vertex and whether that is on the
+/// control mesh's boundary.
 fn is_kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> bool {
     let fan = &fans[own];
     if (0..fans.len()).any(|other| other != own && fans[other].value == fan.value) {

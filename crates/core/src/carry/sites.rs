@@ -1,7 +1,7 @@
-//! Where the values of a channel of corners stand on a refined mesh, and which of them each corner has.
+//! The values of a channel of corners on a refined mesh, and their numbers by corner.
 //!
-//! Nearly all vertices have one value, wherever one looks at them from: those are numbered first, in the order of the vertices. Vertices
-//! on seams have several, which follow in the order in which corners have them.
+//! Nearly all vertices have one value on all sides: those are numbered first, in the order of the
+//! vertices. Vertices on seams have several, which follow in the order in which corners have them.
 
 use core::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::refine::Origin;
 /// In place of a value's number: at this vertex there may be several.
 const SEVERAL: u32 = u32::MAX;
 
-/// The values of a channel: where they are to be found, and who has them.
+/// The values of a channel: their sources and their vertices.
 pub(super) struct Sites<'a> {
     /// A value's number by corner.
     pub(super) indices: Vec<u32>,
@@ -45,7 +45,7 @@ impl<'a> Sites<'a> {
             });
         }
         let mut others: Vec<Origin> = Vec::new();
-        // What each depends on, and the one of its vertex before it; by vertex, the last.
+        // The sources of each item, and the previous item of its vertex; by vertex, the last.
         let mut chained: Vec<(Key, u32)> = Vec::new();
         let mut last = vec![NONE; origins.len()];
         let mut indices = Vec::with_capacity(corners.len());

@@ -1,13 +1,15 @@
 //! Parts of regular pieces and triangles over them, four at a time: how far a triangle is from its part, however its corners are moved.
 //!
-//! What [`super::quartic_cell`] knows of a part is the same whatever plane it is seen from: the second derivatives along the edges in their
-//! middles, as vectors, and what third and fourth ones come to at most. So this is derived once ([`Bender`]) and kept
-//! ([`BentFour`]), and each time that corners were moved their triangles are bounded by it, without the surface ([`MovedFour`]).
+//! The data of a part in [`super::quartic_cell`] do not depend on the plane of projection: the
+//! second derivatives along the edges in their middles, as vectors, and bounds of third and fourth
+//! ones. They are derived once ([`Bender`]) and kept ([`BentFour`]), and each time that corners
+//! were moved their triangles are bounded by it, without the surface ([`MovedFour`]).
 //!
-//! Numbers are kept in single precision, in a unit that makes the edges of control faces about 1. That turns a bend W by 2⁻²⁴|W|₁ at most,
-//! and so the height of the quadratic part, distances of curves from their edges, their slopes times the edges' lengths, and first
-//! derivatives by no more than that: it is added to what bounds the rest ([`ROUNDED`]). What is not a number, or too great for single
-//! precision, has no bound.
+//! Numbers are kept in single precision, in a unit that makes the edges of control faces about 1.
+//! That turns a bend W by 2⁻²⁴|W|₁ at most, and so the height of the quadratic part, distances of
+//! curves from their edges, their slopes times the edges' lengths, and first derivatives by no more
+//! than that: it is added to the bound of the rest ([`ROUNDED`]). NaN and values too great for
+//! single precision have no bound.
 
 mod moved;
 
@@ -21,10 +23,10 @@ use wide::f64x4;
 /// Parts that are taken together.
 pub(crate) const FOUR: usize = 4;
 
-/// By this times the sum of the sizes of their coordinates bends may be off: twice what rounding does.
+/// Bends may be off by this times the sum of their absolute coordinates: twice the rounding error.
 const ROUNDED: f64 = 1.0 / (1 << 23) as f64;
 
-/// Rounds up what becomes a single number.
+/// Rounds up values that are stored in single precision.
 const A_LITTLE_MORE: f64 = 1.0 + 1e-6;
 
 /// Bends whose coordinates' sizes sum up to more have no bound.
@@ -41,35 +43,36 @@ pub(crate) struct Bender<'a> {
     jet: &'a QuarticJet,
     /// The second derivatives along the third kind of edges of even parts.
     across: [DVec3; 6],
-    /// What the fourth derivatives along pairs of edges of even parts of size 1 come to at most.
+    /// The bound of the fourth derivatives along pairs of edges of even parts of size 1.
     fourth: f64,
 }
 
-/// What four parts are like.
+/// The bend of four parts.
 pub(crate) struct Bent {
     /// The second derivatives along the edges in their middles.
     bends: [Vectors; 3],
-    /// What third and fourth derivatives do.
+    /// The share of third and fourth derivatives.
     rest: Rest,
 }
 
-/// What third and fourth derivatives of four parts do.
+/// The bounds of the share of third and fourth derivatives of four parts.
 struct Rest {
     /// How far heights over any plane may be off those of the quadratic part.
     height: f64x4,
     /// How far curves may be off their edges, and their slopes towards the ends times the edges' lengths.
     curve: f64x4,
     steep: f64x4,
-    /// What first derivatives along edges may be off.
+    /// The greatest error of first derivatives along edges.
     first: f64x4,
 }
 
-/// What is kept of four parts. Bends are those along the edges in their middles, by edge, axis and part.
+/// The data kept of four parts. Bends are those along the edges in their middles, by edge, axis and
+/// part.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BentFour {
     bends: [[[f32; FOUR]; 3]; 3],
-    /// Beside the bends: bounds of heights, of distances of curves from their edges, of these curves' slopes times the edges' lengths,
-    /// and of first derivatives.
+    /// Further data: bounds of heights, of distances of curves from their edges, of these curves'
+    /// slopes times the edges' lengths, and of first derivatives.
     rest: [f32; FOUR],
     curve: [f32; FOUR],
     steep: [f32; FOUR],
@@ -170,8 +173,9 @@ impl<'a> Bender<'a> {
 }
 
 impl Rest {
-    /// By the length of the greatest third derivative along an edge at the centroid, that of the bubble's coefficient B, and what fourth
-    /// derivatives along pairs of edges come to at most, as [`super::quartic_cell`] has it.
+    /// The bounds by the length of the greatest third derivative along an edge at the centroid,
+    /// that of the bubble's coefficient B, and the bound of fourth derivatives along pairs of
+    /// edges, as in [`super::quartic_cell`].
     ///
     /// Let s and r be edges from one corner, t = r − s, and F that bound. In the middle of s, a sixth of s − 2r from the centroid,
     /// the third derivative is off by ssss/6 − sssr/3; and sssr = ½(ssss + ssrr − sstt), so by no more than ⅔ F.
@@ -197,7 +201,7 @@ impl Bent {
         (low, high, self.rest.height)
     }
 
-    /// What is kept, in a unit that makes so much of lengths.
+    /// The data to keep, in a unit that multiplies lengths by `scale`.
     #[inline]
     pub(crate) fn kept(&self, scale: f64) -> BentFour {
         let bends = self.bends.map(|bend| bend.map(|axis| axis * scale));
@@ -215,7 +219,7 @@ impl Bent {
         let off = ROUNDED * size;
         let above = |bound: f64x4| (bound + off) * A_LITTLE_MORE;
         let single = |numbers: f64x4| numbers.to_array().map(|number| number as f32);
-        // What is not a number is not below it.
+        // NaN is not below it.
         let sum = bends
             .iter()
             .flatten()
@@ -232,7 +236,7 @@ impl Bent {
 }
 
 impl BentFour {
-    /// Parts of which nothing is known.
+    /// Parts without bounds.
     pub(crate) const UNKNOWN: Self = Self {
         bends: [[[0.0; FOUR]; 3]; 3],
         rest: [f32::INFINITY; FOUR],

@@ -1,4 +1,4 @@
-//! Where the edges and corners of a piece of the surface are to the triangle that stands for it and others.
+//! The position of a piece's edges and corners relative to its triangle.
 
 use crate::patch::bezier_triangle::{EDGES, INNER};
 
@@ -8,10 +8,10 @@ pub(super) type Borders = [u8; 3];
 /// The edge lies inside the triangle's piece of surface.
 pub(super) const INSIDE: u8 = 3;
 
-/// The whole piece stands for the triangle.
+/// The piece of the whole triangle.
 pub(super) const ALL: Borders = [0, 1, 2];
 
-/// What a corner of a piece is to the triangle.
+/// The position of a piece's corner relative to the triangle.
 #[derive(Clone, Copy)]
 pub(super) enum Corner {
     /// One of its own, which lies on the surface.
@@ -22,7 +22,7 @@ pub(super) enum Corner {
     Inside,
 }
 
-/// What the corner is that an edge of a piece starts at.
+/// The position of the corner at which an edge of a piece starts.
 #[inline]
 pub(super) fn corner(borders: Borders, edge: usize) -> Corner {
     match (borders[(edge + 2) % 3], borders[edge]) {
@@ -33,7 +33,8 @@ pub(super) fn corner(borders: Borders, edge: usize) -> Corner {
     }
 }
 
-/// The points of a piece's net that stand for the surface rather than for its curve over an edge of the triangle, one bit each.
+/// The points of a piece's net that bound the surface rather than its curve over an edge of the
+/// triangle, one bit each.
 #[inline]
 pub(super) fn inner_points(borders: Borders) -> u16 {
     let inside = (0..3).fold(0, |bits, edge| {

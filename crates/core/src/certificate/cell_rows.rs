@@ -1,10 +1,12 @@
-//! All parts of a regular piece that a number of divisions into four gives, tested at once, row by row.
+//! All parts of a regular piece that a number of divisions into four gives, tested together, row by
+//! row.
 //!
-//! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the quadratic part by each
-//! part's own plane, what is left by one bound for all parts, which shrinks with the cube of their size; tilts against the limit
-//! normals at the corners; drifts and slopes by the second derivatives in the middles of the edges. A part passes, or
-//! fails for sure, or has to be looked at by itself. Places and normals are computed in double precision, all that follows from them in
-//! single ([`part_bounds`]).
+//! The bound is that of [`super::quartic_cell`], written for rows of numbers: the height of the
+//! quadratic part by each part's own plane, the rest by one bound for all parts, which shrinks with
+//! the cube of their size; normal deviations against the limit normals at the corners; tangential
+//! displacements and slopes by the second derivatives in the middles of the edges. A part passes,
+//! or fails for sure, or has to be tested alone. Places and normals are computed in double
+//! precision, everything else in single ([`part_bounds`]).
 
 mod few_parts;
 mod part_bounds;
@@ -34,10 +36,10 @@ const REMAINDER: f64 = 0.5;
 /// Numbers by axis and place.
 type Row = [[f64; WIDTH]; 3];
 
-/// The same in single precision.
+/// A row of points in single precision.
 type NarrowRow = [[f32; WIDTH]; 3];
 
-/// What becomes of a part.
+/// The test outcome of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Mark {
@@ -45,28 +47,30 @@ pub(crate) enum Mark {
     Passes,
     /// Not within the target for sure.
     Fails,
-    /// To be looked at by itself.
+    /// To be tested alone.
     Open,
 }
 
-/// What parts are tested for.
+/// The target of the tests of parts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowTarget {
     /// Greatest bound of the distance.
     pub(crate) distance: f64,
-    /// The range of heights counts by this, beside the greatest height on one side; 0 where it does not.
+    /// The weight of the range of heights, relative to the greatest height on one side; 0 where it
+    /// does not count.
     pub(crate) range_share: f64,
-    /// Tilt of the triangles beside a part at most, as a chord.
+    /// The greatest normal deviation of the adjacent triangles, as a chord.
     pub(crate) tilt: f64,
-    /// Tangents of the angles of the triangles beside a part at least.
+    /// The least tangent of the angles of the adjacent triangles.
     pub(crate) slope: f64,
-    /// Drifts over an edge may have so much of the least of 1 and the tangents of a part's own angles there ([`TriangleFrame::slope_at`]).
+    /// The share of the least of 1 and the tangents of a part's own angles that tangential
+    /// displacements over an edge may have ([`TriangleFrame::slope_at`]).
     ///
     /// [`TriangleFrame::slope_at`]: super::triangle_frame::TriangleFrame::slope_at
     pub(crate) drift_share: f64,
 }
 
-/// What the parts that passed have at most.
+/// The greatest bounds of the parts that passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowExtent {
     pub(crate) tilt: f64,
@@ -120,7 +124,7 @@ impl Marks {
 /// Second derivatives along the edges of a row, in single precision.
 struct Bends {
     along: NarrowRow,
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     size: f32,
 }
 
@@ -132,14 +136,15 @@ struct CornerRow {
     bends: Bends,
 }
 
-/// What is between two rows of corners: edges from row to row, and the second derivatives along these and along those of the third kind.
+/// The differences between two rows of corners: edges from row to row, and the second derivatives
+/// along these and along those of the third kind.
 struct Between {
     edges: NarrowRow,
     upward: Bends,
     across: Bends,
 }
 
-/// Rows of what a level needs, kept from call to call.
+/// Memory for the rows of a level, used again from call to call.
 pub(crate) struct CellRows {
     /// The row at hand and the next, by turns.
     corners: [CornerRow; 2],
@@ -177,7 +182,7 @@ impl Default for CellRows {
     }
 }
 
-/// A node of a regular piece, and what bounds derivatives all over it.
+/// A node of a regular piece, and bounds of the derivatives over it.
 pub(crate) struct RowBlock<'a> {
     piece: &'a Quartic,
     jet: &'a QuarticJet,
@@ -233,8 +238,8 @@ impl<'a> RowBlock<'a> {
         }
     }
 
-    /// The divisions below which parts certainly fail, as far as the second derivatives in a few places tell, and those by which
-    /// they pass.
+    /// The divisions below which parts certainly fail by the second derivatives in a few places,
+    /// and those at which they pass.
     pub(crate) fn levels(
         &self,
         &RowTarget {
@@ -272,13 +277,13 @@ impl<'a> RowBlock<'a> {
         (levels(least), levels(most))
     }
 
-    /// How high over the quadratic part the surface may stand over a part.
+    /// A bound of the height of the surface over the quadratic part.
     fn rest(&self, step: f64) -> f64 {
         let cube = step * step * step;
         self.height[0] * cube + self.height[1] * cube * step
     }
 
-    /// What bounds all parts of a size, times a factor.
+    /// The bound of all parts of a size, times a factor.
     fn remainder(&self, step: f64, scale: f64) -> Remainder {
         let (third, fourth) = self.jet.most(step);
         let bounds = [
@@ -314,7 +319,7 @@ impl<'a> RowBlock<'a> {
 }
 
 impl CellRows {
-    /// Tests the parts that so many divisions give.
+    /// Tests the parts of so many divisions.
     pub(crate) fn test(
         &mut self,
         block: &RowBlock<'_>,
@@ -409,7 +414,8 @@ impl CornerRow {
 }
 
 impl Between {
-    /// What is between row j, with so many edges, and the next, by the corners of both.
+    /// Fills the differences between row j, with `edges` edges, and the next, by the corners of
+    /// both.
     fn fill(
         &mut self,
         block: &RowBlock<'_>,
@@ -434,7 +440,7 @@ impl Between {
         self.upward.fill(vv, [u, v], (step, count + 1), factor);
     }
 
-    /// The parts between two rows that stand upright, or those on their heads.
+    /// The parts between two rows: the upright ones, or the inverted ones.
     fn parts<'r>(
         &'r self,
         lower: &'r CornerRow,

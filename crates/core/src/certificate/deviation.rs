@@ -35,7 +35,8 @@ impl Deviation {
         }
     }
 
-    /// That of a piece which is as far from the triangle, its curves from their edges, and counts on its own.
+    /// The deviation of a piece at this distance from the triangle, its curves from their edges,
+    /// without its neighbours.
     pub(crate) fn alone(own: f64) -> Self {
         Self {
             own,
@@ -46,12 +47,12 @@ impl Deviation {
         }
     }
 
-    /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that along
-    /// its plane.
+    /// The deviation of a triangle whose corners were moved off the surface by up to `moved`, up to
+    /// `aside` of that along its plane.
     ///
-    /// At such a corner the projections on the planes around it lie up to `aside` from it, and up to twice that apart;
-    /// whatever they leave uncovered near it is that far from the surface's corner's foot. Curves may reach by `aside` over
-    /// other edges there.
+    /// At such a corner the projections on the planes around it lie up to `aside` from it, and up
+    /// to twice that apart; points near it that they leave uncovered are that far from the
+    /// projection of the surface's corner. Curves may reach by `aside` over other edges there.
     pub(crate) fn off(self, moved: f64, aside: f64) -> Self {
         if moved == 0.0 {
             return self;
@@ -67,8 +68,8 @@ impl Deviation {
         }
     }
 
-    /// That of a piece each of whose points is within `distance` of one of the piece that this is for, and the other way round: so pieces
-    /// at irregular vertices are bounded ([`super::bounds`]).
+    /// The deviation of a piece each of whose points is within `distance` of this one, and the
+    /// other way round: so pieces at irregular vertices are bounded ([`super::bounds`]).
     pub(crate) fn grown(self, distance: f64) -> Self {
         let Self {
             own,
@@ -118,10 +119,12 @@ impl Deviation {
 
     /// The bounds with and without neighbours, and which part of the former is along normals.
     ///
-    /// That is all that stems from heights over the planes of the triangle and its neighbours and from drifts over
-    /// edges between them: what covers a point stands within [`super::bounds`]' |h| + σg along the normals of both planes and
-    /// the chord between them; and where it is a strip that covers, at the tangent of half their angle beside it at
-    /// most, all of which is within that angle of the triangle's own normal or counts as little.
+    /// The distance along normals is the part that stems from heights over the planes of the
+    /// triangle and its neighbours and from tangential displacements over edges between them: the
+    /// point that covers a point is within [`super::bounds`]' |h| + σg along the normals of both
+    /// planes and the chord between them; and where it is a strip that covers, at most the tangent
+    /// of half their angle outside, all within that angle of the triangle's own normal or counted
+    /// as little.
     pub(crate) fn apart(&self, chord: f64, slopes: [f64; 3]) -> Apart {
         let bound = self
             .among_neighbours(chord, slopes)

@@ -1,5 +1,5 @@
-//! The angles between a triangle and its neighbours, and how far they let drifts reach: what [`super::Deviation::bound`] is
-//! given once the triangles are known.
+//! The angles between a triangle and its neighbours, and the limits of tangential displacements by
+//! them: the arguments of [`super::Deviation::bound`] once the triangles are known.
 
 use crate::vector::DVec3;
 
@@ -10,15 +10,17 @@ pub(crate) const STEEP: f64 = f64::MAX;
 /// neighbours.
 const UNSETTLED: (f64, [f64; 3]) = (4.0, [0.0; 3]);
 
-/// The greatest squared chord of the angles between the planes of a triangle and its neighbours, given by their corners
-/// opposite, and the greatest slopes at which points may drift over them, by edge.
+/// The greatest squared chord of the angles between the planes of a triangle and its neighbours,
+/// given by their corners opposite, and the greatest slopes at which points may move tangentially
+/// over them, by edge.
 pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f64; 3]) {
     let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
     let Some((normal, area)) = plane(edges[0], edges[1]) else {
         return UNSETTLED;
     };
     let lengths = edges.map(DVec3::length);
-    // Half of what the angle at a corner leaves of π, at most π/2: its tangent is the cotangent of half the angle.
+    // Half of the complement to π of a corner's angle, at most π/2: its tangent is the cotangent of
+    // half the angle.
     let free = [0, 1, 2].map(|corner| {
         let before = (corner + 2) % 3;
         (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area

@@ -1,4 +1,5 @@
-//! What a bound is asked for: the distance that is good enough, what is expected of the neighbours, and how often pieces may be halved.
+//! The effort of a bound: the distance that is good enough, the expected neighbours, and the most
+//! halvings of pieces.
 
 use super::hull_points::{DeviationBound, HullPoint};
 use super::triangle_frame::TriangleFrame;
@@ -22,10 +23,10 @@ pub(crate) struct Effort {
     pub(crate) chord: f64,
     /// Expected greatest slopes, by edge.
     pub(crate) slopes: [f64; 3],
-    /// Whether nobody asks how far off a triangle is that surely misses the target.
+    /// Whether the distance of a triangle that certainly misses the target is not needed.
     pub(crate) gives_up: bool,
-    /// Then the least chord of angles that can count, with slopes no greater than those expected: what is beyond the target with
-    /// it is beyond it whatever is still to come.
+    /// Then the least chord of angles that can count, with slopes no greater than those expected: a
+    /// bound beyond the target with it stays beyond it.
     pub(crate) least_chord: Option<f64>,
 }
 
@@ -54,7 +55,7 @@ impl Effort {
         }
     }
 
-    /// The triangle's own frame, if points can be looked at from there.
+    /// The triangle's own frame, if it can represent points.
     pub(super) fn seen_from(&self, frame: &TriangleFrame) -> Option<TrilinearFrame> {
         let has_neighbours = !self.rim_alone && self.open == [false; 3];
         has_neighbours.then(|| TrilinearFrame::of(frame)).flatten()

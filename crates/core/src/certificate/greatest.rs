@@ -1,8 +1,9 @@
-//! The greatest of what points come to over a triangle that has a plane and neighbours all round, by their heights and trilinear
-//! coordinates.
+//! The greatest bounds of points over a triangle that has a plane and neighbours all round, by
+//! their heights and trilinear coordinates.
 //!
-//! Most points of the surface stand inside the lines of all edges: only where the greatest coordinates do not are they looked at one after the
-//! other. Points of curves over edges are taken four at a time.
+//! Most points of the surface are inside the lines of all edges: only where the greatest
+//! coordinates are not, points are tested one after the other. Points of curves over edges are
+//! taken four at a time.
 
 use core::array::from_fn;
 
@@ -17,7 +18,7 @@ use wide::f64x4;
 /// Points of curves that are taken together.
 const TOGETHER: usize = 4;
 
-/// The greatest of what was met. All points are finite.
+/// The greatest values of the points so far. All points are finite.
 struct Greatest<'a> {
     frame: &'a TrilinearFrame,
     /// The greatest size of a height, and the greatest distances outside the lines of the edges.
@@ -30,20 +31,21 @@ struct Greatest<'a> {
     slopes: [f64; 3],
     /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
     swings: [f64; 3],
-    /// A foot stood beyond the ends of its edge.
+    /// A projection is beyond the ends of its edge.
     beyond: bool,
 }
 
 /// All bits of trilinear coordinates, and those of a height but its sign.
 const UNSIGNED_HEIGHT: [u64; 4] = [u64::MAX >> 1, u64::MAX, u64::MAX, u64::MAX];
 
-/// The same with heights as sizes.
+/// The point with the absolute height.
 #[inline(always)]
 fn with_size(Trilinear(point): Trilinear) -> f64x4 {
     point & f64x4::new(UNSIGNED_HEIGHT.map(f64::from_bits))
 }
 
-/// What a net comes to, `None` if its points have to be looked at one by one, and a height that the piece itself attains.
+/// The bound of a net, `None` if its points have to be tested one by one, and a height that the
+/// piece itself attains.
 pub(super) fn of_net(
     frame: &TrilinearFrame,
     net: &BezierTriangle<Trilinear>,
@@ -59,7 +61,7 @@ pub(super) fn of_net(
     for edge in 0..3 {
         let [start, second, middle, fourth, end] = EDGES[edge];
         greatest.most([second, middle, fourth].map(|at| points[at]));
-        // The triangle's own corners are on the surface, but for rounding.
+        // The triangle's own corners are on the surface, except for rounding.
         if !matches!(corners[edge], Corner::Own) {
             greatest.most([points[start]]);
         }
@@ -87,7 +89,8 @@ pub(super) fn of_net(
     (greatest.deviation(), attained)
 }
 
-/// What points of the surface, and of curves over edges, come to; `None` if they have to be looked at one by one.
+/// The bound of points of the surface, and of curves over edges; `None` if they have to be tested
+/// one by one.
 pub(super) fn of_points(
     frame: &TrilinearFrame,
     inner: &[Trilinear],
@@ -150,7 +153,7 @@ impl<'a> Greatest<'a> {
         }
     }
 
-    /// Heights of points, and where those of the surface stand to the edges.
+    /// Heights of points, and the positions of the surface's points relative to the edges.
     #[inline(always)]
     fn most<const N: usize>(&mut self, points: [Trilinear; N]) {
         self.most = points
@@ -158,14 +161,14 @@ impl<'a> Greatest<'a> {
             .fold(self.most, |most, point| most.fast_max(with_size(point)));
     }
 
-    /// Whether one of these may stand outside an edge.
+    /// Whether one of these may be outside an edge.
     #[inline]
     fn is_beside(&self) -> bool {
         let (_, outside) = Trilinear(self.most).split();
         outside.iter().any(|&outside| outside > self.frame.on_edge)
     }
 
-    /// A point of the surface that may stand outside an edge.
+    /// Adds a point of the surface that may be outside an edge.
     #[inline]
     fn beside(&mut self, point: Trilinear) {
         let on_edge = self.frame.on_edge;
@@ -216,7 +219,7 @@ impl<'a> Greatest<'a> {
         self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
 
-    /// What that comes to; `None` if the points have to be looked at one by one.
+    /// The deviation; `None` if the points have to be tested one by one.
     #[inline]
     fn deviation(self) -> Option<Deviation> {
         let Self {

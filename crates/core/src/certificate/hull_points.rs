@@ -1,17 +1,18 @@
-//! How far hull points stand from a triangle, its plane and its edges: what the bounds of [`super::bounds`] are the greatest of.
+//! The distances of hull points from a triangle, its plane and its edges: the bounds of
+//! [`super::bounds`] are the greatest of these.
 //!
 //! Points are taken in space, for any triangle, or as the triangle sees them ([`Trilinear`]), several together.
 
 use super::borders::{Borders, Corner, INSIDE, corner};
 use super::deviation::Deviation;
 use super::greatest;
-use super::triangle_frame::{Beside, TriangleFrame};
+use super::triangle_frame::{EdgePosition, TriangleFrame};
 use super::trilinear::{Trilinear, TrilinearFrame};
 use super::{exceeds, greater};
 use crate::patch::bezier_triangle::{BezierTriangle, EDGES, INNER};
 use crate::vector::{Blend, DVec3, hypotenuse};
 
-/// A point that a bound looks at, in space or from its triangle.
+/// A point of a bound, in space or relative to its triangle.
 pub(super) trait HullPoint: Blend {
     /// The triangle, prepared for such points.
     type Frame;
@@ -28,8 +29,8 @@ pub(super) trait HullPoint: Blend {
     /// Height over the triangle's plane.
     fn height(self, frame: &Self::Frame) -> f64;
 
-    /// Where the point stands to an edge.
-    fn beside(self, frame: &Self::Frame, edge: usize) -> Beside;
+    /// The position of the point relative to an edge.
+    fn beside(self, frame: &Self::Frame, edge: usize) -> EdgePosition;
 
     /// Squared distance to the triangle.
     fn squared(self, frame: &Self::Frame) -> f64;
@@ -40,14 +41,16 @@ pub(super) trait HullPoint: Blend {
     /// The squared length of a difference.
     fn length_squared(self, frame: &Self::Frame) -> f64;
 
-    /// What a net comes to if its points can be looked at together, and a height that the piece itself attains.
+    /// The bound of a net if its points can be tested together, and a height that the piece itself
+    /// attains.
     fn net_together(
         frame: &Self::Frame,
         net: &BezierTriangle<Self>,
         borders: Borders,
     ) -> (Option<Deviation>, f64);
 
-    /// What points of the surface, and of curves over edges, come to if they can be looked at together.
+    /// The bound of points of the surface, and of curves over edges, if they can be tested
+    /// together.
     fn points_together(
         frame: &Self::Frame,
         inner: &[Self],
@@ -74,7 +77,7 @@ impl HullPoint for DVec3 {
         frame.height(self)
     }
 
-    fn beside(self, frame: &TriangleFrame, edge: usize) -> Beside {
+    fn beside(self, frame: &TriangleFrame, edge: usize) -> EdgePosition {
         frame.beside(edge, self)
     }
 
@@ -119,7 +122,7 @@ impl HullPoint for Trilinear {
         self.split().0
     }
 
-    fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
+    fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
         self.beside(frame, edge)
     }
 
@@ -290,7 +293,7 @@ impl<P: HullPoint> DeviationBound<'_, P> {
         });
     }
 
-    fn drifted(&self, edge: usize, beside: Beside, deviation: &mut Deviation) {
+    fn drifted(&self, edge: usize, beside: EdgePosition, deviation: &mut Deviation) {
         let room = beside.along.min(P::length(self.frame, edge) - beside.along);
         deviation.drift = greater(deviation.drift, beside.outside);
         let slope = if room > 0.0 {
@@ -306,7 +309,8 @@ impl<P: HullPoint> DeviationBound<'_, P> {
 mod tests {
     use super::*;
 
-    /// Points that are seen together come to what they come to one by one, whatever the net's edges are.
+    /// The bound of points tested together equals the bound one by one, whatever the net's edges
+    /// are.
     #[test]
     fn nets_come_to_what_their_points_come_to() {
         let mut count = 0.0;
@@ -315,7 +319,7 @@ mod tests {
             let t: f64 = count;
             (t * t * 0.37 + t * 1.9).sin()
         };
-        let (mut told, mut compared) = (0, 0);
+        let (mut reported, mut compared) = (0, 0);
         for case in 0..4000 {
             // A net over the triangle or a part of it, stirred.
             let noise = 0.15 * 0.5f64.powi(case % 12);
@@ -372,10 +376,11 @@ mod tests {
                     "{case}: {found:?} {each:?}"
                 );
             } else {
-                // What crosses an edge far off is seen by the angles at its own edge or by each point.
-                told += usize::from(found.slopes == each.slopes);
+                // A crossing of an edge far off shows in the angles at its own edge or at each
+                // point.
+                reported += usize::from(found.slopes == each.slopes);
             }
         }
-        assert!(compared > 500 && told > 100, "{compared}, {told}");
+        assert!(compared > 500 && reported > 100, "{compared}, {reported}");
     }
 }

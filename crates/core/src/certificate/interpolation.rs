@@ -1,9 +1,10 @@
 //! How far a function over a piece is from its linear interpolation: values at the same places, not surfaces.
 //!
-//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being linear in their indices; so is their
-//! difference, whose points' lengths bound its own (Farin, "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex
-//! the piece is refined, and what is left at the vertex is bounded by its control points: two convex hulls are nowhere farther
-//! from each other than two of their points.
+//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being
+//! linear in their indices; so is their difference, whose points' lengths bound its own (Farin,
+//! "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex the piece is refined,
+//! and the rest at the vertex is bounded by its control points: two convex hulls are nowhere
+//! farther from each other than two of their points.
 
 use super::greater;
 use super::net_part::NetPart;
@@ -12,7 +13,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules, child_corners};
 use crate::vector::DVec3;
 
-/// Refinements at most: what is left has shrunk below rounding then.
+/// Refinements at most: the rest has shrunk below rounding then.
 const DEEPEST: usize = 40;
 
 /// Levels whose vertices are compared where nothing can be certified.
@@ -21,7 +22,7 @@ const SAMPLED_LEVELS: usize = 3;
 /// Halvings of a net whose bound is too great.
 const HALVINGS: usize = 3;
 
-/// What is left at an irregular vertex is good enough at this part of what is asked.
+/// The rest at an irregular vertex is good enough at this part of the tolerance.
 const NEGLIGIBLE: f64 = 0.125;
 
 /// A function over a piece of the control mesh, and its values at the corners.
@@ -32,7 +33,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// Those over the four parts.
+    /// The bounds over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);
         let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
@@ -68,8 +69,9 @@ impl Sheet {
         )
     }
 
-    /// The same for the linear function with other values at the part's corners. Where the function is not regular over a part that is
-    /// neither all nor a quarter, the bound goes by the linear function with the second values, at the corners of the whole.
+    /// The bound for the linear function with other values at the part's corners. Where the
+    /// function is not regular over a part that is neither all nor a quarter, the bound is by the
+    /// linear function with the second values, at the corners of the whole.
     pub(crate) fn off(
         &self,
         part: SubTriangle,

@@ -1,9 +1,11 @@
-//! How far a triangle can be from the piece of the limit surface that it stands for. Knows no forest.
+//! The greatest distance of a triangle from the piece of the limit surface that it approximates.
+//! Knows no forest.
 //!
-//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate from samples for other
-//! schemes. A triangle is prepared once as a [`TriangleFrame`], and stands for a [`SubTriangle`] of a patch.
+//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate
+//! from samples for other schemes. A triangle is prepared once as a [`TriangleFrame`], and
+//! approximates a [`SubTriangle`] of a patch.
 //!
-//! What is not a number fails: wherever something is compared with a limit, it must be known to be below it.
+//! NaN fails: every comparison with a limit requires that the value is known to be below it.
 
 mod bent_parts;
 mod borders;
@@ -37,7 +39,7 @@ pub(crate) use quartic_cell::{BesideEdges, Cell, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 
-/// Whether a value is not known to be within a limit: also where either is not a number.
+/// Whether a value is not known to be within a limit: also where either is NaN.
 #[inline]
 #[expect(
     clippy::neg_cmp_op_on_partial_ord,
@@ -47,7 +49,7 @@ pub(crate) fn exceeds(value: f64, limit: f64) -> bool {
     !(value <= limit)
 }
 
-/// The greater of two, infinite where either is not a number.
+/// The greater of two, infinite where either is NaN.
 #[inline]
 fn greater(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {

@@ -1,4 +1,5 @@
-//! Bézier nets of parts of regular pieces, with what their edges are to the triangle.
+//! Bézier nets of parts of regular pieces, with the position of their edges relative to the
+//! triangle.
 
 use super::borders::{ALL, Borders};
 use super::hull_points::HullPoint;
@@ -35,7 +36,7 @@ impl NetPart {
         Self::of(net, part, ALL)
     }
 
-    /// The net, whose corners may stand in another order than the part's.
+    /// The net, whose corners may be in another order than the part's.
     pub(crate) fn net(&self) -> &BezierTriangle {
         &self.net
     }

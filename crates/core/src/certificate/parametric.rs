@@ -1,4 +1,5 @@
-//! How far a part of a regular piece is, place by place, from any triangles that may stand for it: a value of the part alone.
+//! The distance of a part of a regular piece, by parameter, from any triangles that may approximate
+//! it: a value of the part alone.
 //!
 //! Let S be the surface over a domain triangle with corners vᵢ, T the linear map with S's values there, and λ barycentric coordinates.
 //! For divided differences ∫[…, a, b] ∂(a − b)g = ∫[…, a] g − ∫[…, b] g holds. Taken at x, vᵢ, vⱼ with g = ∂(vᵢ − vⱼ)S, times
@@ -87,7 +88,8 @@ impl SecondDerivatives {
     }
 }
 
-/// The greatest of |S − T| over the whole and what may close it, by bounds along the edges and along the medians to them.
+/// The greatest of |S − T| over the whole and its closing triangles, by bounds along the edges and
+/// along the medians to them.
 fn worst(along: [f64; 3], medians: [f64; 3]) -> f64 {
     let mut most = quadratic_height(along);
     for edge in 0..3 {
@@ -99,7 +101,7 @@ fn worst(along: [f64; 3], medians: [f64; 3]) -> f64 {
             }
         }
     }
-    // What overflowed on the way is no bound.
+    // A value that overflowed on the way is no bound.
     greater(0.0, most)
 }
 

@@ -13,9 +13,10 @@
 //! So the greatest height lies within |c| + |r| of that of q, for parts of any size. Where that does not decide, the
 //! coefficients of f in Bernstein's basis over sixteen parts of D bound it.
 //!
-//! **Beside the edges.** Along an edge the curve of S differs from its chord by −½τ(1 − τ)W + (T/6)(x³ − x/4) + (F/24)(x⁴ − 1/16),
-//! x = τ − ½, W, T and F being the second, third and fourth derivatives along the edge in its middle. Its distance from the
-//! chord and its slope towards the chord's ends follow term by term.
+//! **At the edges.** Along an edge the curve of S differs from its chord by −½τ(1 − τ)W + (T/6)(x³
+//! − x/4) + (F/24)(x⁴ − 1/16), x = τ − ½, W, T and F being the second, third and fourth derivatives
+//! along the edge in its middle. Its distance from the chord and its slope towards the chord's ends
+//! follow term by term.
 //!
 //! **No two points in one place.** Let A be the derivative of the projection of S on the plane of T less that of the point of T,
 //! both over the domain, in the metric of the plane in which T has three edges of length 1. Where ‖A‖ < 1 all over D the
@@ -28,8 +29,9 @@
 //! * along an edge the derivative of c is at most Σ |tᵢ|/12 + ¼|B|, and |B| ≤ 11/12 times the greatest third derivative T: less than ½T;
 //! * that of r is linear in the fourth derivatives: at most [`QUARTIC_SLOPE`] times the greatest F of the six along pairs of edges, for
 //!   vectors, too, as each of their components obeys it;
-//! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3 times these, either with lengths in that
-//!   metric or, by bounds of T and F, times what the metric stretches lengths by at most.
+//! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3
+//!   times these, either with lengths in that metric or, by bounds of T and F, times the greatest
+//!   stretch of lengths by the metric.
 //!
 //! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6, M bounding second derivatives along edges all over D.
 
@@ -56,11 +58,11 @@ pub(super) const QUARTIC_SLOPE: f64 = 0.0695;
 /// The greatest of |x³ − x/4|/6 for |x| ≤ 1/2, √3/216, rounded up.
 pub(super) const CURVE_CUBIC: f64 = 0.00802;
 
-/// A unit vector is the sum of two edges of a triangle with edges of length 1 times factors that come to this together at most: 2/√3,
-/// rounded up.
+/// A unit vector is the sum of two edges of a triangle with edges of length 1 times factors whose
+/// sum is at most this: 2/√3, rounded up.
 pub(super) const DIRECTIONS: f64 = 1.154_701;
 
-/// What is less than 1 for all that rounding may do.
+/// Less than 1 after any rounding.
 pub(super) const NEARLY_ONE: f64 = 1.0 - 1e-6;
 
 /// A direction or a place in a piece's domain.
@@ -117,15 +119,15 @@ where
     }
 }
 
-/// A regular piece with what bounds its parts.
+/// A regular piece with bounds of its parts.
 #[derive(Clone, Debug)]
 pub(crate) struct QuarticJet {
     jet: Jet<DVec3>,
     /// The coefficients of the polynomial by their powers of u and v: the second, third and fourth ones.
     powers: ([DVec3; 3], [DVec3; 4], [DVec3; 5]),
-    /// What third derivatives along three directions with coordinates up to 1 come to at most.
+    /// The bound of third derivatives along three directions with coordinates up to 1.
     most_third: f64,
-    /// The same for fourth derivatives.
+    /// The bound of fourth derivatives along four directions with coordinates up to 1.
     most_fourth: f64,
 }
 
@@ -166,8 +168,8 @@ impl QuarticJet {
         Heights::of(&Jet::of(heights, thirds, fourths), cell)
     }
 
-    /// What a part of the surface does beside the edges of the triangle of its corners; `open` edges have no neighbour. Third and fourth
-    /// derivatives count by what they come to all over the piece.
+    /// The distances of a part of the surface from the edges of the triangle of its corners; `open`
+    /// edges have no neighbour. Third and fourth derivatives are bounded over the whole piece.
     pub(crate) fn beside(
         &self,
         cell: &Cell,
@@ -190,7 +192,8 @@ impl QuarticJet {
         BesideEdges::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
     }
 
-    /// The same by the part's own third and fourth derivatives, where the first is known.
+    /// The distances from the edges by the part's own third and fourth derivatives, where the first
+    /// is known.
     pub(crate) fn beside_closely(
         &self,
         known: &BesideEdges,
@@ -286,7 +289,7 @@ impl QuarticJet {
         &self.jet.fourth
     }
 
-    /// What third and fourth derivatives along directions with coordinates up to `reach` come to at most.
+    /// The bounds of third and fourth derivatives along directions with coordinates up to `reach`.
     pub(super) fn most(&self, reach: f64) -> (f64, f64) {
         let cube = reach * reach * reach;
         (self.most_third * cube, self.most_fourth * cube * reach)
@@ -309,20 +312,20 @@ impl QuarticJet {
     }
 }
 
-/// What a part of the surface does beside the edges of its triangle.
+/// The distances of a part of the surface from the edges of its triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BesideEdges {
     /// How far curves are from their edges within the triangle's plane.
     side: f64,
-    /// The same for edges without a neighbour.
+    /// The distance from edges without a neighbour.
     open: f64,
     /// How far curves reach over the others.
     drift: f64,
     /// The greatest ratio of that to the distance from the edge's ends, by edge.
     slopes: [f64; 3],
-    /// Where none of that tells how far the surface reaches: how far it is from the triangle.
+    /// The distance of the surface from the triangle, where none of the others is bounded.
     loose: Option<f64>,
-    /// Second derivatives along the edges in their middles, and what they may be off at most anywhere.
+    /// Second derivatives along the edges in their middles, and their greatest deviation anywhere.
     bends: [DVec3; 3],
     rest: f64,
 }
@@ -341,7 +344,7 @@ struct PartDerivatives {
 }
 
 impl PartDerivatives {
-    /// What they add along an edge.
+    /// The share of third and fourth derivatives along an edge.
     #[inline]
     fn rest(&self, edge: usize, frame: &TriangleFrame) -> EdgeRest {
         let (third, fourth) = (self.middles[edge], self.pairs[edge]);
@@ -371,7 +374,7 @@ impl PartDerivatives {
     }
 }
 
-/// What third and fourth derivatives add along an edge.
+/// The share of third and fourth derivatives along an edge.
 #[derive(Clone, Copy, Debug)]
 struct EdgeRest {
     /// To the distance of the curve from the edge's line within the triangle's plane.
@@ -382,8 +385,9 @@ struct EdgeRest {
 }
 
 impl BesideEdges {
-    /// By the second derivatives along the edges in their middles, what third and fourth ones add to the curves, whether the surface may
-    /// fold, and what second derivatives along edges may be off at most anywhere.
+    /// By the second derivatives along the edges in their middles, the share of third and fourth
+    /// ones in the curves, whether the surface may fold, and the greatest deviation of second
+    /// derivatives along edges.
     #[inline]
     fn of(
         frame: &TriangleFrame,
@@ -434,7 +438,7 @@ impl BesideEdges {
         found
     }
 
-    /// Whether the derivatives tell nothing of how far the surface reaches.
+    /// Whether the derivatives do not bound the distances from the edges.
     pub(crate) fn is_loose(&self) -> bool {
         self.loose.is_some()
     }
@@ -461,13 +465,15 @@ impl BesideEdges {
         }
     }
 
-    /// The same for a triangle whose corners were moved off the surface by up to `moved`, up to `aside` of that within its
-    /// plane, over which the surface is so high.
+    /// The deviation, at this height of the surface, of a triangle whose corners were moved off the
+    /// surface by up to `moved`, up to `aside` of that within its plane.
     ///
-    /// Let the piece be moved within the plane so that each corner stands over that of the triangle, points between as barycentric
-    /// coordinates say. Its curves stand to the triangle's edges as those of the surface stand to its own chords; its heights are what
-    /// they were; and no point was moved farther than a corner. So the surface's own curves are no more than `aside` farther from the
-    /// edges, at right angles to heights, and [`Deviation::off`] says what that leaves at the corners.
+    /// Let the piece be moved within the plane so that each corner is over that of the triangle,
+    /// and points between by their barycentric coordinates. Its curves are relative to the
+    /// triangle's edges as those of the surface to its own chords; its heights are unchanged; and
+    /// no point was moved farther than a corner. So the surface's own curves are no more than
+    /// `aside` farther from the edges, at right angles to heights, and [`Deviation::off`] bounds
+    /// the gaps at the corners.
     pub(crate) fn deviation_off(&self, height: f64, moved: f64, aside: f64) -> Deviation {
         if self.loose.is_some() {
             return self.deviation(height).grown(moved);
@@ -488,8 +494,9 @@ impl BesideEdges {
     }
 }
 
-/// Whether a map over the triangle may take two points to one place, by its second derivatives along the edges in their middles,
-/// and what third and fourth ones may change in the first derivatives along edges, in the metric of the triangle.
+/// Whether a map over the triangle may take two points to one place, by its second derivatives
+/// along the edges in their middles, and the change by third and fourth ones of the first
+/// derivatives along edges, in the metric of the triangle.
 #[inline]
 fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
     let most = bends
@@ -497,7 +504,7 @@ fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
         .map(|&bend| frame.stretched_squared(bend))
         .fold(0.0, f64::max)
         .sqrt();
-    // Fails for what is not a number.
+    // Fails for NaN.
     let is_apart = most + DIRECTIONS * rest < NEARLY_ONE;
     !is_apart
 }

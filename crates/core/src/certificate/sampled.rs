@@ -1,7 +1,8 @@
-//! Points of a piece of any limit surface, and how far a triangle is from them: an estimate where nothing is certain.
+//! Points of a piece of any limit surface, and a triangle's distance from them: an estimate where
+//! there is no proof.
 //!
-//! The piece is refined a few times, and the limits of its vertices are taken. They stand on a lattice of barycentric
-//! coordinates, so that those over each part of the piece are known exactly.
+//! The piece is refined a few times, and the limits of its vertices are taken. They are on a
+//! lattice of barycentric coordinates, so that those over each part of the piece are known exactly.
 
 use super::deviation::Deviation;
 use super::hull_points::DeviationBound;
@@ -26,7 +27,7 @@ impl Samples {
         Self(piece.samples(rules))
     }
 
-    /// What the points over a part show of the deviation of the triangle that stands for it.
+    /// The deviation, by the points over a part, of the triangle that approximates it.
     pub(crate) fn deviation(&self, part: SubTriangle, bound: &DeviationBound<'_>) -> Deviation {
         let corners = places_of(part, UNIT);
         let mut deviation = Deviation::default();

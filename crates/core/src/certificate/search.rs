@@ -1,5 +1,6 @@
-//! The search for the bound of one triangle, by the nets of regular pieces, halved where that helps, and by pieces at irregular vertices, refined
-//! where they are not good enough as they are. What it adds up is proven in [`super::bounds`].
+//! The search for the bound of one triangle, by the nets of regular pieces, halved where that
+//! helps, and by pieces at irregular vertices, refined where they are not good enough as they are.
+//! The sum is proven in [`super::bounds`].
 
 mod irregular;
 
@@ -14,18 +15,18 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::{Patch, Points, RefinedPatch, Rules};
 
-/// Pieces that reach this many times as far as the target will not pass; bounds of others stay tight, so that they are
-/// told apart even if they may not be split.
+/// Pieces that reach this many times as far as the target will not pass; bounds of others stay
+/// tight, so that they can be compared even if they may not be split.
 const HOPELESS: f64 = 1.5;
 
-/// A part of a refinement by its number, which part of that, and what its edges are.
+/// A part of a refinement by its number, the sub-part, and its edges relative to the triangle.
 type PartOf = (usize, SubTriangle, Borders);
 
-/// A refined piece, whose parts a bound looks at as they are at hand.
+/// A refined piece, whose parts a bound uses as they exist.
 pub(super) trait Parts<P: HullPoint> {
     fn is_regular(&self, part: usize) -> bool;
 
-    /// Looks at a part.
+    /// Bounds a part.
     fn look(&self, search: &mut Search<'_, P>, part: PartOf, depth: usize);
 }
 
@@ -53,7 +54,7 @@ impl<P: HullPoint> Parts<P> for RefinedExtraordinary<P> {
 
     fn look(&self, search: &mut Search<'_, P>, (part, of_part, borders): PartOf, depth: usize) {
         match self.places(part) {
-            // In place: copies of so many are not free.
+            // In place: copies of many are not free.
             Some(places) => {
                 let points: [P; 12] = core::array::from_fn(|i| self.near(places[i]));
                 search.regular(&points, of_part, borders);
@@ -81,7 +82,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// A piece as it is seen.
+    /// A piece relative to the triangle.
     pub(super) fn seen(&self, piece: &ExtraordinaryPatch) -> ExtraordinaryPatch<P> {
         piece.map(|point| P::of(self.bound.frame, point))
     }
@@ -95,7 +96,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         );
     }
 
-    /// A part of a piece that nothing is derived from yet.
+    /// A part of a piece without derived data.
     pub(super) fn part(
         &mut self,
         patch: &Patch,
@@ -126,7 +127,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// A part of a refinement, as it is at hand.
+    /// A part of a refinement, as it exists.
     pub(super) fn refined(&mut self, refined: &impl Parts<P>, part: PartOf, depth: usize) {
         if self.counts(part.2) {
             refined.look(self, part, depth);
@@ -153,19 +154,19 @@ impl<'a, P: HullPoint> Search<'a, P> {
         }
     }
 
-    /// What a deviation comes to.
+    /// The value of a deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
         deviation.bound(self.effort.chord, self.effort.slopes)
     }
 
-    /// The value that is good enough for what is left: less than what stands already adds nothing.
+    /// The value that is good enough for the rest: values below the present bound add nothing.
     fn aim(&self) -> f64 {
         self.effort.target.max(self.value(&self.found))
     }
 
-    /// What was found so far together with one more.
+    /// The result so far together with one more deviation.
     fn with(&self, deviation: Deviation) -> Deviation {
-        // A slope that is too great must not spoil what others are good for.
+        // A slope that is too great must not spoil the bound of others.
         let counts = deviation.is_within(self.effort.slopes);
         self.found.max(if counts {
             deviation
@@ -201,7 +202,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
             self.add(Deviation::alone(f64::INFINITY));
             return;
         }
-        // What is much too far away for sure stays so however it is divided.
+        // A part that is certainly much too far away stays so however it is divided.
         let is_hopeless = self.effort.target > 0.0 && attained > HOPELESS * self.effort.target;
         if halvings == 0 || is_hopeless || self.value(&deviation) <= self.aim() {
             self.add(deviation);

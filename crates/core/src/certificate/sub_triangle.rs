@@ -1,4 +1,4 @@
-//! The parts of a patch's domain that triangles stand for.
+//! The parts of a patch's domain that triangles approximate.
 
 use crate::patch::child_corners;
 
@@ -39,7 +39,8 @@ impl SubTriangle {
             .chain(quarters)
     }
 
-    /// What is at its corners, given what is at those of the domain and in the middles of its edges.
+    /// The values at its corners, given those at the corners of the domain and in the middles of
+    /// its edges.
     pub(crate) fn corners<T: Copy>(self, corners: [T; 3], middles: [T; 3]) -> [T; 3] {
         match self {
             Self::Whole => corners,

@@ -12,10 +12,10 @@ const FLAT: f64 = 1e-7;
 /// Triangles with a smaller sine are slivers, whose plane is straightened.
 pub(super) const SLIVER: f64 = 1e-2;
 
-/// Squared lengths between these neither overflow nor vanish in what is computed from them.
+/// Squared lengths between these neither overflow nor vanish in further computations.
 const SAFE: core::ops::Range<f64> = 1e-140..1e140;
 
-/// A triangle with what its distances need.
+/// A triangle with the data for distances from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleFrame {
     corners: [DVec3; 3],
@@ -26,25 +26,25 @@ pub(crate) struct TriangleFrame {
     normal: DVec3,
     /// In the plane, at right angles to the edges, pointing outwards.
     outward: [DVec3; 3],
-    /// What is no farther outside an edge than this stands on it, but for rounding.
+    /// A point no farther outside an edge than this is on it, within rounding.
     on_edge: f64,
     /// Where the edges' lines stand outwards of the first corner.
     offsets: [f64; 3],
-    /// By corner, the tangent of its angle, or of what an obtuse one leaves of π.
+    /// By corner, the tangent of its angle, or of an obtuse one's complement to π.
     tangents: [f64; 3],
     least_slope: f64,
 }
 
-/// Where a point stands to an edge, within the triangle's plane.
+/// The position of a point relative to an edge, within the triangle's plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Beside {
+pub(crate) struct EdgePosition {
     /// How far outside the edge's line; 0 inside.
     pub(crate) outside: f64,
     /// How far along the edge from its start.
     pub(crate) along: f64,
 }
 
-/// [`TriangleFrame::least_slope`] of a triangle of which nothing else is asked.
+/// [`TriangleFrame::least_slope`] of a triangle without a frame.
 #[inline]
 pub(crate) fn least_slope([a, b, c]: [DVec3; 3]) -> f64 {
     let edges = [b - a, c - b, a - c];
@@ -67,7 +67,8 @@ fn greatest_coordinate<'a>(vectors: impl Iterator<Item = &'a DVec3>) -> f64 {
 }
 
 impl TriangleFrame {
-    /// Distances below this part of the coordinates' size are what rounding leaves of zero where points coincide.
+    /// Distances below this part of the coordinates' size are within rounding where points
+    /// coincide.
     pub(crate) const ROUNDING: f64 = 5e-14;
 
     /// The triangle with those corners.
@@ -90,7 +91,7 @@ impl TriangleFrame {
             DVec3::ZERO
         };
         if sine < SLIVER && normal != DVec3::ZERO {
-            // Rounding must not tilt a sliver along its length.
+            // Rounding must not turn the normal of a sliver along its length.
             let longest = (1..3).fold(0, |longest, edge| {
                 if lengths[edge] > lengths[longest] {
                     edge
@@ -118,7 +119,7 @@ impl TriangleFrame {
             on_edge: Self::ROUNDING * greatest_coordinate(edges.iter().chain(&corners)),
             outward,
             offsets: [0, 1, 2].map(|edge| outward[edge].dot(from_first[edge])),
-            // What is not a number allows nothing.
+            // NaN allows nothing.
             tangents: cosines.map(|cosine| (area / cosine.abs()).max(0.0)),
             least_slope: area / cosines[0].larger(cosines[1]).larger(cosines[2]),
         }
@@ -162,12 +163,12 @@ impl TriangleFrame {
         self.normal.dot(point - self.corners[0])
     }
 
-    /// Where a point stands to the edge from corner `edge`.
+    /// The position of a point relative to the edge from corner `edge`.
     #[inline]
-    pub(crate) fn beside(&self, edge: usize, point: DVec3) -> Beside {
+    pub(crate) fn beside(&self, edge: usize, point: DVec3) -> EdgePosition {
         let offset = point - self.corners[edge];
         let outside = self.outward[edge].dot(offset);
-        Beside {
+        EdgePosition {
             outside: if exceeds(outside, self.on_edge) {
                 outside
             } else {
@@ -181,11 +182,11 @@ impl TriangleFrame {
     #[inline]
     pub(crate) fn squared_to_edge(&self, edge: usize, point: DVec3) -> f64 {
         let offset = point - self.corners[edge];
-        let foot = offset
+        let along = offset
             .dot(self.along[edge])
             .max(0.0)
             .min(self.lengths[edge]);
-        (offset - foot * self.along[edge]).length_squared()
+        (offset - along * self.along[edge]).length_squared()
     }
 
     /// Squared distance of a point to the triangle.
@@ -203,14 +204,15 @@ impl TriangleFrame {
         closest_to_origin(a, b, c).squared
     }
 
-    /// Tangent of the least angle; 0 or not a number for a triangle without area.
+    /// Tangent of the least angle; 0 or NaN for a triangle without area.
     #[inline]
     pub(crate) fn least_slope(&self) -> f64 {
         self.least_slope
     }
 
-    /// Tangent of the lesser of the angles at an edge, or of what an obtuse one leaves of π: a curve that leaves the edge by less than
-    /// this from either end crosses no line of another edge.
+    /// Tangent of the lesser of the angles at an edge, or of an obtuse one's complement to π: a
+    /// curve that leaves the edge by less than this from either end crosses no line of another
+    /// edge.
     #[inline]
     pub(crate) fn slope_at(&self, edge: usize) -> f64 {
         self.tangents[edge].min(self.tangents[(edge + 1) % 3])
@@ -225,8 +227,9 @@ impl TriangleFrame {
             / self.parallelogram().powi(2)
     }
 
-    /// What that metric stretches lengths within the plane by at most. With the barycentric gradients' squares, whose sum is twice the
-    /// trace of the metric, and the areas of both triangles, whose ratio is its determinant's root.
+    /// The greatest stretch by that metric of lengths within the plane. It follows from the
+    /// barycentric gradients' squares, whose sum is twice the trace of the metric, and from the
+    /// areas of both triangles, whose ratio is the root of its determinant.
     #[inline]
     pub(super) fn stretch(&self) -> f64 {
         let square = self.parallelogram().powi(2);
@@ -247,7 +250,7 @@ impl TriangleFrame {
         self.offsets[1] * self.lengths[1]
     }
 
-    /// What is no farther outside an edge than this stands on it, but for rounding.
+    /// A point no farther outside an edge than this is on it, within rounding.
     pub(crate) fn on_edge(&self) -> f64 {
         self.on_edge
     }

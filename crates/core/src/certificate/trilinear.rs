@@ -1,25 +1,27 @@
-//! Points as a triangle sees them: the height over its plane, and the trilinear coordinates, the distances of the point's foot from the
-//! lines of the edges, positive outside.
+//! Points relative to a triangle: the height over its plane, and the trilinear coordinates, the
+//! distances of the point's projection from the lines of the edges, positive outside.
 //!
-//! All four are affine functions of the point. So whatever is made of points with weights whose sum is 1 (refinements, nets, halves)
-//! can be made of these four numbers in their place, in registers of their own, and what a bound asks of a point is there at once. What
-//! it asks besides follows from the trilinear coordinates o₀, o₁, o₂, edge e running along tₑ from the triangle's angle αₑ to the next:
+//! All four are affine functions of the point. So combinations of points with weights whose sum is
+//! 1 (refinements, nets, halves) can be made of these four numbers instead, in registers, and a
+//! bound reads them at once. Its other values follow from the trilinear coordinates o₀, o₁, o₂,
+//! edge e running along tₑ from the triangle's angle αₑ to the next:
 //!
-//! * how far along edge e the foot stands from its start: −(oₑ₋₁ + oₑ cos αₑ)/sin αₑ, for oₑ₋₁ falls by sin αₑ for each unit along the
-//!   edge and by cos αₑ for each unit outwards, and vanishes at the start;
+//! * the distance along edge e of the base point from its start: −(oₑ₋₁ + oₑ cos αₑ)/sin αₑ, for
+//!   oₑ₋₁ falls by sin αₑ for each unit along the edge and by cos αₑ for each unit outwards, and
+//!   vanishes at the start;
 //! * the squared length of a vector: h² + Σ wₑoₑ² with wₑ = cos γₑ/(sin αₑ sin αₑ₊₁), γₑ being the angle opposite to the edge. For vectors along two
 //!   edges j ≠ k the sum's bilinear form is wᵢ oᵢ(tⱼ) oᵢ(tₖ), as the other two terms vanish, and has to be tⱼ · tₖ.
 //!
 //! Both lose digits as angles get small, so triangles that lose more than rounding is given are left to points in space.
 
 use super::exceeds;
-use super::triangle_frame::{Beside, SLIVER, TriangleFrame};
+use super::triangle_frame::{EdgePosition, SLIVER, TriangleFrame};
 use crate::vector::{Blend, DVec3};
 use core::ops::{Add, Div, Mul, Sub, SubAssign};
 use wide::f64x4;
 
-/// The squares of trilinear coordinates count so many times in a squared length at most: what cancels leaves less than
-/// [`TriangleFrame::ROUNDING`].
+/// The squares of trilinear coordinates count at most this many times in a squared length:
+/// cancellation leaves less than [`TriangleFrame::ROUNDING`].
 const MOST_LOST: f64 = 128.0;
 
 /// A point's height and trilinear coordinates, or the differences of two points'.
@@ -32,15 +34,16 @@ pub(super) struct TrilinearFrame {
     /// The first corner.
     origin: DVec3,
     pub(super) lengths: [f64; 3],
-    /// As [`TriangleFrame::on_edge`] and [`TriangleFrame::slope_at`] have it.
+    /// As in [`TriangleFrame::on_edge`] and [`TriangleFrame::slope_at`].
     pub(super) on_edge: f64,
     pub(super) slopes: [f64; 3],
-    /// What a point's coordinates count, by axis, and what is taken away.
+    /// The weights of a point's coordinates, by axis, and the constant that is subtracted.
     axes: [f64x4; 3],
     offsets: f64x4,
     /// Of the squares in a squared length.
     squares: f64x4,
-    /// By edge, what the trilinear coordinates of the edge before and of its own count for the place along it.
+    /// By edge, the weights of the trilinear coordinates of the edge before and of its own in the
+    /// position along it.
     along: [[f64; 2]; 3],
 }
 
@@ -98,7 +101,8 @@ impl TrilinearFrame {
         (difference * difference * self.squares).reduce_add()
     }
 
-    /// What the distances from the lines of the edge before and of an edge itself count for the place along that.
+    /// The weights of the distances from the lines of the edge before and of an edge itself in the
+    /// position along that.
     #[inline]
     pub(super) fn shares_along(&self, edge: usize) -> [f64; 2] {
         self.along[edge]
@@ -113,13 +117,13 @@ impl Trilinear {
         (height, [a, b, c])
     }
 
-    /// Where the foot stands to an edge.
-    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> Beside {
+    /// The position of the projection relative to an edge.
+    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
         let (_, outside) = self.split();
         let own = outside[edge];
         let [by_before, by_own] = frame.shares_along(edge);
         let along = by_before * outside[(edge + 2) % 3] + by_own * own;
-        Beside {
+        EdgePosition {
             outside: if exceeds(own, frame.on_edge) {
                 own
             } else {
@@ -133,7 +137,7 @@ impl Trilinear {
         self.0.to_array().iter().all(|number| number.is_finite())
     }
 
-    /// The squared distance to an edge; infinite for what is not a point.
+    /// The squared distance to an edge; infinite for NaN.
     pub(super) fn squared_to_edge(self, frame: &TrilinearFrame, edge: usize) -> f64 {
         if !self.is_finite() {
             return f64::INFINITY;
@@ -144,7 +148,7 @@ impl Trilinear {
         height * height + outside[edge] * outside[edge] + beyond * beyond
     }
 
-    /// The squared distance to the triangle; infinite for what is not a point.
+    /// The squared distance to the triangle; infinite for NaN.
     pub(super) fn squared(self, frame: &TrilinearFrame) -> f64 {
         if !self.is_finite() {
             return f64::INFINITY;
@@ -210,7 +214,7 @@ impl Div<f64> for Trilinear {
 mod tests {
     use super::*;
 
-    /// As the triangle in space says, whatever its shape.
+    /// The coordinates of a point agree with the triangle in space, whatever its shape.
     #[test]
     fn what_is_asked_of_a_point_is_what_it_is_in_space() {
         let mut count = 0.0;

@@ -11,14 +11,14 @@ use crate::vector::{DVec3, vector};
 /// A face fails where its normal leaves the cone of angle α around the limit normal of one of its vertices:
 /// `min_i N_Vi · N_f < cos α`.
 ///
-/// Vertices on sharp edges have a limit normal for each side; each face is judged by that of its own. Faces without
-/// area and vertices without a limit normal have no say.
+/// Vertices on sharp edges have a limit normal for each side; each face is compared with that of
+/// its own. Faces without area and vertices without a limit normal are ignored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LimitNormal {
     /// The cone's angle α, in radians.
     pub angle: f64,
-    /// Makes the angle depend on where the viewer stands.
+    /// Makes the angle depend on the viewer.
     pub view: Option<View>,
 }
 
@@ -82,12 +82,12 @@ pub(crate) fn ratio(normal: DVec3, corners: [DVec3; 3], limit: f64) -> f64 {
     }
 }
 
-/// What exact refinement makes of it: it goes on until the criterion is met, which by equation (11) it could not be on a
+/// Exact refinement continues until the criterion is met, which by equation (11) is impossible on a
 /// silhouette.
 impl LimitNormal {
-    /// Control faces are divided for the cone's sake until triangles would be this part of them and its angle smaller:
-    /// what does not close by then turns within a thousandth of a control face, where the surface has no tangent
-    /// plane or as good as none.
+    /// Control faces are divided by the cone until triangles would be this part of them and its
+    /// angle smaller: a cone still too wide then turns within a thousandth of a control face, where
+    /// the surface has hardly a tangent plane.
     const LEAST_PART: f64 = 1.0 / 1024.0;
 
     /// Levels below the control faces at which the cone is given up: triangles at which it stays open there lie at cusps,
@@ -97,11 +97,12 @@ impl LimitNormal {
         if levels < 64.0 { levels as usize } else { 64 }
     }
 
-    /// The least angle that any triangle in a region may have: infinite where all look away. Never less for a region
-    /// within another.
+    /// The least angle that any triangle in a region may have: infinite where all face away. Never
+    /// less for a region within another.
     ///
-    /// With a view it is equation (11)'s, but not below α itself: a viewer never asks for more than no viewer would, and
-    /// silhouettes come to an end. So it takes a dilatation above 1 to have faces that look at the viewer coarser.
+    /// With a view it is equation (11)'s, but not below α itself: a viewer never needs more
+    /// triangles than no viewer, and refinement ends at silhouettes. Only a dilatation above 1
+    /// makes faces towards the viewer coarser.
     pub(crate) fn allowed_angle(&self, region: &Region) -> f64 {
         match self.view.map(|view| view.least_limit(self.angle, region)) {
             None | Some(AngleLimit::Always) => self.angle,
@@ -221,7 +222,7 @@ mod tests {
         }
     }
 
-    /// Without a viewer, and with one who sees nothing but silhouettes, the angle is the one that was asked for.
+    /// Without a viewer, and with one who sees only silhouettes, the angle is the requested one.
     #[test]
     fn a_viewer_never_asks_for_more() {
         let region = Region {

@@ -1,4 +1,5 @@
-//! What exact refinement is asked for, all of it, as one ratio for a triangle and its piece of the surface.
+//! The goals of exact refinement, combined to one ratio for a triangle and its piece of the
+//! surface.
 
 use super::{Backs, CriterionError, Distance, LimitNormal, Pixels, Region, Viewpoint, cone};
 use crate::vector::DVec3;
@@ -20,7 +21,8 @@ impl Apart {
     }
 }
 
-/// What is not certain of a piece that looks away from a viewer may be as near to a corner as this part of its triangle's radius.
+/// The uncertain part of a piece facing away from a viewer may be as near to a corner as this part
+/// of its triangle's radius.
 const VIEW_REST: f64 = 1.0 / 64.0;
 
 /// The criteria that are to be met together; without any, ratios are plain distances.
@@ -29,7 +31,7 @@ pub(crate) struct Criteria {
     distance: Option<Distance>,
     cone: Option<LimitNormal>,
     pixels: Option<Pixels>,
-    /// What rounding may add to a distance.
+    /// The greatest rounding error of a distance.
     rounding: f64,
 }
 
@@ -52,7 +54,7 @@ impl Criteria {
         })
     }
 
-    /// Whether anything is asked for.
+    /// Whether there is any goal.
     pub(crate) fn is_some(&self) -> bool {
         self.distance.is_some() || self.cone.is_some() || self.pixels.is_some()
     }
@@ -67,19 +69,21 @@ impl Criteria {
         self.cone.is_some()
     }
 
-    /// Levels below the control faces at which what fails by the cone alone is given up.
+    /// Levels below the control faces at which triangles that fail by the cone alone are given up.
     pub(crate) fn deepest_cone(&self) -> usize {
         self.cone.map_or(usize::MAX, |cone| cone.deepest())
     }
 
-    /// How many there are that something may look away from without being seen: the cameras, then the viewer of angles.
+    /// The number of viewers from which a surface may face away: the cameras, then the viewer of
+    /// angles.
     pub(crate) fn viewers(&self) -> usize {
         let view = self.cone.and_then(|cone| cone.view);
         self.pixels.as_ref().map_or(0, Pixels::viewers) + usize::from(view.is_some())
     }
 
-    /// Who sees nothing but the back of a triangle and its piece in a region. `is_back` tells that of one of the [viewers](Self::viewers) by number: how
-    /// far from a corner of the triangle what is not certain is, if that is hardly more than the given length.
+    /// The viewers that see only the back of a triangle and its piece in a region. For one of the
+    /// [viewers](Self::viewers) by number `is_back` gives the distance from the triangle's corners
+    /// of the uncertain part, if that is hardly more than the given length.
     pub(crate) fn backs(
         &self,
         region: &Region,
@@ -132,7 +136,7 @@ impl Criteria {
             .is_some_and(|pixels| allowed(pixels) == f64::INFINITY)
     }
 
-    /// How many pixels a distance comes to at most; `None` without cameras.
+    /// The greatest number of pixels of a distance; `None` without cameras.
     pub(crate) fn pixels(&self, apart: &Apart, region: &Region, backs: &Backs) -> Option<f64> {
         let pixels = self.pixels.as_ref()?;
         let own = pixels.seen(region, (0.0, apart.own + self.rounding), backs);

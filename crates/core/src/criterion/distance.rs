@@ -6,13 +6,13 @@ const LEAST: f64 = 1e-300;
 /// A greatest distance between triangles and the surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Distance {
-    /// What a bound may come to that takes no account of rounding.
+    /// The greatest allowed bound, not counting rounding.
     allowed: f64,
 }
 
 impl Distance {
-    /// `rounding` is what rounding may add to a bound. What is within that needs no more triangles; a tolerance
-    /// below it is not called met.
+    /// `rounding` is the greatest rounding error of a bound. Bounds below it need no more
+    /// triangles; a tolerance below it is not called met.
     pub(crate) fn new(tolerance: f64, rounding: f64) -> Self {
         Self {
             allowed: (tolerance - rounding).max(rounding).max(LEAST),

@@ -1,9 +1,10 @@
-//! Criteria: how badly a triangle stands for the surface, as a ratio: 1 is just good enough, 2 twice too bad.
+//! Criteria: the error of a triangle relative to the allowed one. At 1 it is just good enough, at 2
+//! it is twice as large.
 //!
-//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) look at a mesh and the limit table of its scheme and
-//! answer with the ratio of each face; stepwise refinement divides the faces above 1. Exact refinement asks the same
-//! of a triangle and the piece of the surface that it stands for (`Criteria`) and divides the worst first.
-//! A criterion never changes anything.
+//! The paper's criteria ([`LimitNormal`], [`NeighbourNormal`]) compute the ratio of each face from
+//! a mesh and the limit table of its scheme; stepwise refinement divides the faces above 1. Exact
+//! refinement computes the ratio of a triangle and the piece of the surface that it approximates
+//! (`Criteria`), and divides the worst first. A criterion changes nothing.
 
 mod cone;
 mod criteria;
@@ -26,7 +27,7 @@ pub use view::{AngleLimit, View, Viewpoint};
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;
 
-/// Why a criterion has no answer.
+/// An error of a criterion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CriterionError {
@@ -40,12 +41,12 @@ pub enum CriterionError {
         name: &'static str,
         /// The value met.
         value: f64,
-        /// What it may be.
+        /// The range of valid values.
         expected: &'static str,
     },
 }
 
-/// Refuses what is no angle, in radians.
+/// Refuses values that are no angles in radians.
 fn check_angle(angle: f64) -> Result<(), CriterionError> {
     if (0.0..=core::f64::consts::PI).contains(&angle) {
         return Ok(());
@@ -72,12 +73,12 @@ fn angle_ratio(cosine: f64, limit: f64) -> f64 {
     }
 }
 
-/// Says how badly faces stand for the surface.
+/// The ratio of a face's error to the allowed one.
 pub trait Criterion: Sync {
     /// A short name, as on the command line.
     fn name(&self) -> &str;
 
-    /// For each face of `mesh` how many times over it fails: 1 is just good enough, what is above is to be divided;
+    /// The ratio of each face of `mesh`: 1 is just good enough, faces above are to be divided;
     /// infinite where nothing is good enough.
     ///
     /// # Errors
@@ -87,7 +88,7 @@ pub trait Criterion: Sync {
     /// For each face of `mesh`, whether it is to be divided: whether it fails.
     ///
     /// # Errors
-    /// As for [`Self::ratios`].
+    /// Those of [`Self::ratios`].
     fn divisible(&self, mesh: &Mesh, limits: &LimitTable<'_>) -> Result<Vec<bool>, CriterionError> {
         Ok(self
             .ratios(mesh, limits)?

@@ -8,7 +8,7 @@ use crate::parallel;
 
 /// A face fails where its normal and that of an edge neighbour differ by more than an angle.
 ///
-/// Faces without area have no say, and neither have neighbours across an edge that stays sharp for ever.
+/// Faces without area are ignored, and so are neighbours across an infinitely sharp edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NeighbourNormal {

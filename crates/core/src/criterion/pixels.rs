@@ -1,10 +1,12 @@
-//! Perspective cameras: how many pixels a distance in space comes to at most, and how long one may be to stay below.
+//! Perspective cameras: the greatest number of pixels of a distance in space, and the greatest
+//! length below a number of pixels.
 //!
-//! **One camera.** Let e be its eye and a point p stand at depth z before it, at the picture's (x, y)/z = u, F being
-//! the pixels of a unit length at depth 1. A point p + δ is seen F(δ′ − u δ_z)/(z + δ_z) away from it, δ′ being the
-//! part of δ across the line through the middle of the picture. The vector (δ′ − u δ_z, 0) is what is left of δ when it is projected along
-//! the line of sight on the picture, whose length is at most |δ| sin θ / cos φ: θ is the angle between δ and the line of
-//! sight, which stands φ off the axis. So the distance in the picture is at most
+//! **One camera.** Let e be its eye and p a point at depth z before it, at the picture's (x, y)/z =
+//! u, F being the pixels of a unit length at depth 1. A point p + δ appears F(δ′ − u δ_z)/(z + δ_z)
+//! away from it, δ′ being the part of δ across the line through the middle of the picture. The
+//! vector (δ′ − u δ_z, 0) is the projection of δ along the line of sight on the picture, whose
+//! length is at most |δ| sin θ / cos φ: θ is the angle between δ and the line of sight, which is φ
+//! off the axis. So the distance in the picture is at most
 //!
 //! > F |δ| sin θ / (cos φ (z − |δ|)).
 //!
@@ -18,9 +20,10 @@
 //! are within an angle κ of an axis. Then |δ| sin θ ≤ a + h sin θ, θ at most the angle between axis and the line of sight
 //! to the ball's middle, κ, and the angle at which the ball is seen, together.
 //!
-//! What looks away from all cameras is not seen on closed surfaces: of them a picture shows the front alone, and its
-//! outlines bound the front. The back of an open one may be seen. Which that is, whoever asks has to know ([`Backs`]): nothing here
-//! knows how a surface bends over a region.
+//! Regions that face away from all cameras are not visible on closed surfaces: a picture shows only
+//! the front, which its outlines bound. The back of an open surface may be visible. The caller
+//! decides which regions are backs ([`Backs`]), since this file does not know how a surface bends
+//! over a region.
 
 use smallvec::SmallVec;
 
@@ -31,7 +34,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands.
+    /// Its position.
     pub eye: [f64; 3],
     /// A point in the middle of its picture.
     pub target: [f64; 3],
@@ -47,20 +50,21 @@ pub struct Camera {
 
 impl Camera {
     /// # Errors
-    /// It looks nowhere, has no upright, no picture or an impossible angle.
+    /// It has no direction of sight, no upright, no picture or an impossible angle.
     pub fn check(&self) -> Result<(), CriterionError> {
         Lens::new(self).map(|_| ())
     }
 }
 
-/// The least sine that the angle between line of sight and normal is taken to have: what looks straight at the camera
-/// keeps some accuracy, for shading and for what happens when the camera moves a little.
+/// The least sine assumed of the angle between line of sight and normal: surfaces that face the
+/// camera keep some accuracy, for shading and for what happens when the camera moves a little.
 const LEAST_SINE: f64 = 0.25;
 
-/// What is not certain of a piece that looks away may be as near to a corner as this part of what is allowed.
+/// The uncertain part of a piece facing away may be as near to a corner as this part of the allowed
+/// length.
 const REST: f64 = 0.125;
 
-/// Sines of angles up to this are 0 but for rounding.
+/// Sines of angles up to this are 0 within rounding.
 const PARALLEL: f64 = 1e-9;
 
 /// Cameras stand no farther away: squares of distances are finite.
@@ -75,19 +79,20 @@ pub(crate) struct Allowed {
     pub(crate) height: f64,
 }
 
-/// Who sees nothing but the back of a triangle and of its piece of a closed surface.
+/// The viewers that see only the back of a triangle and of its piece of a closed surface.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Backs {
     /// By camera; nothing where none does.
     cameras: SmallVec<[bool; 8]>,
-    /// At most so many pixels from a corner of the triangle is what is not certain of that.
+    /// The part of which that is not certain is at most this many pixels from a corner of the
+    /// triangle.
     rest: f64,
     /// The viewer that an angle depends on.
     pub(crate) view: bool,
 }
 
 impl Backs {
-    /// Nobody.
+    /// The backs where no viewer sees only the back.
     pub(crate) fn nobodys() -> Self {
         Self::default()
     }
@@ -101,7 +106,7 @@ impl Backs {
 #[derive(Clone, Debug)]
 pub(crate) struct Pixels {
     limit: f64,
-    /// What looks away is not seen.
+    /// Whether the surface is closed, so that backs are not visible.
     is_closed: bool,
     lenses: Vec<Lens>,
 }
@@ -124,13 +129,14 @@ impl Pixels {
         })
     }
 
-    /// How many cameras there are that something may look away from.
+    /// The number of cameras from which a surface may face away.
     pub(crate) fn viewers(&self) -> usize {
         if self.is_closed { self.lenses.len() } else { 0 }
     }
 
-    /// Who sees nothing but the back of a region. `is_back` tells that of a camera and its place: how far from a corner of the region's
-    /// triangle what is not certain is, if that is hardly more than the given length.
+    /// The cameras that see only the back of a region. For a camera and its position `is_back`
+    /// gives the distance from the corners of the region's triangle of the uncertain part, if that
+    /// is hardly more than the given length.
     pub(crate) fn backs(
         &self,
         region: &Region,
@@ -159,8 +165,9 @@ impl Pixels {
         backs
     }
 
-    /// The greatest distance between a point that is seen in a ball and another one, in any direction, that is certainly
-    /// within the limit in all pictures: infinite where no camera sees more of the ball than its back, 0 where an eye stands in it.
+    /// The greatest distance between a point that is seen in a ball and another one, in any
+    /// direction, that is certainly within the limit in all pictures: infinite where no camera sees
+    /// more of the ball than its back, 0 where an eye is in it.
     ///
     /// Never less for a ball within the ball.
     pub(crate) fn allowed_length(&self, centre: DVec3, radius: f64, backs: &Backs) -> f64 {
@@ -169,10 +176,11 @@ impl Pixels {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The same in any direction and along the normals of a region. Neither is less than [`Self::allowed_length`].
+    /// The allowed lengths in any direction and along the normals of a region. Neither is less than
+    /// [`Self::allowed_length`].
     ///
-    /// Never less for a region within the region. Lengths that are parts of what is allowed may be added: half of one and
-    /// half of the other are within the limit together.
+    /// Never less for a region within the region. Parts of the allowed lengths may be added: half
+    /// of one and half of the other are within the limit together.
     pub(crate) fn allowed(&self, region: &Region, backs: &Backs) -> Allowed {
         let nothing = Allowed {
             length: f64::INFINITY,
@@ -187,7 +195,7 @@ impl Pixels {
             })
     }
 
-    /// How many times over what is not certain of those that see the back is more than the limit.
+    /// The ratio to the limit of the uncertain part for cameras that see the back.
     pub(crate) fn rest_ratio(&self, backs: &Backs) -> f64 {
         backs.rest / self.limit
     }
@@ -218,7 +226,7 @@ impl Pixels {
 struct Glance {
     /// Pixels of a unit length at depth 1, stretched as much as it can be off the axis.
     pixels: f64,
-    /// The least depth of what is seen of the ball; 0 where the eye stands in it.
+    /// The least depth of the visible part of the ball; 0 where the eye is in it.
     depth: f64,
     /// Unit direction to the ball's middle.
     toward: DVec3,
@@ -237,7 +245,8 @@ impl Glance {
         sum_of_angles(sine.min(1.0), spread).max(LEAST_SINE)
     }
 
-    /// The greatest length that stays within so many pixels at angles to the line of sight up to that of the sine.
+    /// The greatest length that stays within `limit` pixels at angles to the line of sight up to
+    /// that of the sine.
     fn allowed(&self, limit: f64, sine: f64) -> f64 {
         limit * self.depth / (self.pixels * sine + limit)
     }
@@ -346,7 +355,7 @@ impl Lens {
         }
         let distance = sight.length();
         let room = distance - radius;
-        // Also where either is not a number.
+        // Also where either is NaN.
         if !(room > 0.0 && distance.is_finite()) {
             let pixels = self.pixels * self.greatest_stretch;
             return Some(Glance {
@@ -497,13 +506,16 @@ mod tests {
                         );
                         closest_along = closest_along.max(found / limit);
                     }
-                    // Both parts together, and the number of pixels that is told.
+                    // Both parts together, and the number of pixels that is reported.
                     let (share, total) = (random.signed().abs(), 3.0 * random.signed().abs());
                     let (part, rest) = (share * total * height, (1.0 - share) * total * length);
-                    let told = pixels.seen(&region, (part, rest), &nobodys);
+                    let reported = pixels.seen(&region, (part, rest), &nobodys);
                     let found = pixels_between(camera, point, point + part * normal + rest * aside);
-                    assert!(found <= told * (1.0 + 1e-9), "{found} of {told}");
-                    assert!(told <= limit || total > 1.0 - 1e-9, "{told} of {limit}");
+                    assert!(found <= reported * (1.0 + 1e-9), "{found} of {reported}");
+                    assert!(
+                        reported <= limit || total > 1.0 - 1e-9,
+                        "{reported} of {limit}"
+                    );
                 }
             }
         }
@@ -586,7 +598,8 @@ mod tests {
         );
     }
 
-    /// Cameras that see nothing but the back ask for nothing but that what is not certain is within the limit; the others go on asking.
+    /// Cameras that see only the back require only that the uncertain part is within the limit;
+    /// others are unaffected.
     #[test]
     fn backs_are_not_seen() {
         let mut random = Random::new(17);
@@ -606,16 +619,17 @@ mod tests {
                 pixels.allowed(&region, &backs),
                 first.allowed(&region, &nobodys)
             );
-            let told = pixels.seen(&region, (0.01, 0.02), &backs);
+            let reported = pixels.seen(&region, (0.01, 0.02), &backs);
             assert_eq!(
-                told,
+                reported,
                 first
                     .seen(&region, (0.01, 0.02), &nobodys)
                     .max(2.0 * pixels.rest_ratio(&backs))
             );
-            // An eighth of what is allowed comes to a little more where it is nearer to the eye than the region.
+            // An eighth of the allowed length has a little more pixels where it is nearer to the
+            // eye than the region.
             assert!(pixels.rest_ratio(&backs) < 0.25);
-            half += usize::from(told > 0.0);
+            half += usize::from(reported > 0.0);
             rests = rests.max(pixels.rest_ratio(&backs));
             let open = Pixels::new(2.0, &cameras, false).unwrap();
             assert_eq!(

@@ -1,7 +1,8 @@
-//! Where a part of the surface lies and which way it looks: what criteria that depend on a viewer are asked about.
+//! The position and the normals of a part of the surface: the arguments of criteria that depend on
+//! a viewer.
 //!
-//! Angles stand as sines of half angles from 0 to 90°; 1 also stands for all beyond, every direction. Sums saturate
-//! there, so that a cone of 1 means "anything".
+//! Angles are stored as sines of half angles from 0 to 90°; 1 also means every greater angle, that
+//! is every direction. Sums saturate there, so that a cone of 1 means "anything".
 
 use crate::vector::DVec3;
 
@@ -12,7 +13,7 @@ pub(crate) struct Region {
     pub(crate) centre: DVec3,
     /// Radius of the ball.
     pub(crate) radius: f64,
-    /// Middle of the cone, of unit length and pointing outside; zero where nothing is known of the normals.
+    /// Middle of the cone, of unit length and pointing outside; zero where the normals are unknown.
     pub(crate) axis: DVec3,
     /// Sine of the greatest angle between a normal and the axis.
     pub(crate) sine: f64,
@@ -38,7 +39,7 @@ impl Region {
         }
     }
 
-    /// The same for all that is within `distance` of the ball.
+    /// The region grown to all points within `distance` of the ball.
     pub(crate) fn grown(self, distance: f64) -> Self {
         Self {
             radius: self.radius + distance,
@@ -46,7 +47,8 @@ impl Region {
         }
     }
 
-    /// The same with normals that differ by an angle with this chord (2 sin(θ/2)) from what the cone holds.
+    /// The region with normals that differ by an angle with this chord (2 sin(θ/2)) from those in
+    /// the cone.
     pub(crate) fn turned(self, chord: f64) -> Self {
         Self {
             sine: sum_of_angles(self.sine, sine_of_chord(chord)),

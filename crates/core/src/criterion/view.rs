@@ -6,7 +6,7 @@ use super::region::{cosine_of, sum_of_angles};
 use super::{CriterionError, Region};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Where the viewer looks from.
+/// The position of the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Viewpoint {
     /// Parallel projection: the direction of sight `N_view`, from the viewer into the scene; any length but 0.
@@ -15,20 +15,20 @@ pub enum Viewpoint {
     Eye([f64; 3]),
 }
 
-/// A view and how much tolerance it gives to faces that look at the viewer.
+/// A view, and the additional tolerance of faces towards the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where the viewer looks from.
+    /// The position of the viewer.
     pub viewpoint: Viewpoint,
-    /// The paper's dilatant factor k (1 in most of its experiments): the greater, the coarser the faces that
-    /// look at the viewer.
+    /// The paper's dilatant factor k (1 in most of its experiments): the greater, the coarser the
+    /// faces towards the viewer.
     pub dilatation: f64,
 }
 
-/// What a face's place in the view makes of the cone's angle α.
+/// The effect of a face's position in the view on the cone's angle α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AngleLimit {
-    /// The face looks away: never divided (α f(β) = π).
+    /// The face is turned away: never divided (α f(β) = π).
     Never,
     /// The face is seen edge-on: always divided (α f(β) = 0).
     Always,
@@ -74,7 +74,7 @@ impl View {
             return AngleLimit::Always;
         }
         let (cosine, sine) = (sight.dot(region.axis), sight.cross(region.axis).length());
-        // β is at most that of the axis and the spread: all look away.
+        // β is at most that of the axis and the spread: all face away.
         if cosine * cosine_of(spread) - sine * spread > 0.0 {
             return AngleLimit::Never;
         }
@@ -82,7 +82,7 @@ impl View {
         self.limit(angle, (cosine * cosine_of(spread) + sine * spread).min(0.0))
     }
 
-    /// Refuses a dilatation below 0, a direction without length, and what is no number.
+    /// Refuses a dilatation below 0, a direction without length, and NaN.
     pub(crate) fn check(&self) -> Result<(), CriterionError> {
         let bad = |name, value, expected| {
             Err(CriterionError::BadParameter {

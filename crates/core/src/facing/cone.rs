@@ -1,10 +1,12 @@
 //! Cones of normals (Shirman, Abi-Ezzi, "The Cone of Normals Technique for Fast Processing of Curved Patches", 1993).
 //!
-//! Normals are combinations of a net's with weights that are not negative, so a cone around an axis a with a half angle θ below 90° that holds the
-//! net's holds them all. An eye E sees the front alone where its direction from every point of the piece is within 90° − θ of a:
-//! `(E − p)·a ≥ |E − p| sin θ`. The difference of both sides is concave in p, so the points of a hull decide. The *truncated cone* puts
-//! them behind two apexes: with heights `h_p = (p − c)·a` and distances r_p from the axis through c these are
-//! `c + a max(h_p + r_p tan θ)` and `c + a min(h_p − r_p tan θ)`, and one product tells each.
+//! Normals are combinations of a net's with weights that are not negative, so a cone around an axis
+//! a with a half angle θ below 90° that holds the net's holds them all. An eye E sees the front
+//! alone where its direction from every point of the piece is within 90° − θ of a:
+//! `(E − p)·a ≥ |E − p| sin θ`. The difference of both sides is concave in p, so the points of a
+//! hull decide. The *truncated cone* puts them behind two apexes: with heights `h_p = (p − c)·a`
+//! and distances r_p from the axis through c these are `c + a max(h_p + r_p tan θ)` and
+//! `c + a min(h_p − r_p tan θ)`, and one product decides for each.
 
 use super::{Facing, Look, NormalNet, Side};
 use crate::criterion::Viewpoint;
@@ -13,7 +15,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// Steps of an axis towards the normal that is farthest from it: each does less.
 const STEPS: usize = 12;
 
-/// What rounding leaves of a sine, and of the unit length of an axis.
+/// The rounding error of a sine, and of the unit length of an axis.
 const SINE_ROUNDING: f64 = 1e-14;
 
 /// Points and eyes are off by no more than this part of their coordinates.
@@ -29,7 +31,7 @@ pub(crate) struct Cone {
 }
 
 impl Cone {
-    /// That of a regular piece; `None` where none is narrow enough.
+    /// The cone of a regular piece; `None` where none is narrow enough.
     pub(crate) fn of(net: &NormalNet) -> Option<Self> {
         Self::around(&net.normals, net.rounding)
     }
@@ -62,7 +64,7 @@ impl Cone {
                 best.dot(*direction),
                 best.cross(*direction).length() + rounding,
             );
-            // What is off by a ball's radius turns by less than the sine of its angle.
+            // An error within a ball's radius turns a direction by less than the sine of its angle.
             if !(along > rounding && length > rounding) {
                 return None;
             }
@@ -157,9 +159,11 @@ pub struct NormalCone {
     pub axis: [f64; 3],
     /// Half angle in radians, below π/2.
     pub half_angle: f64,
-    /// Whoever is, seen from here, less than π/2 − `half_angle` off the axis sees nothing but the surface's front.
+    /// A viewer seen from here at less than π/2 − `half_angle` off the axis sees only the surface's
+    /// front.
     pub front_apex: [f64; 3],
-    /// Whoever is, seen from here, less than π/2 − `half_angle` off the opposite of the axis sees nothing but its back.
+    /// A viewer seen from here at less than π/2 − `half_angle` off the opposite of the axis sees
+    /// only its back.
     pub back_apex: [f64; 3],
 }
 
@@ -203,7 +207,7 @@ mod tests {
         a.cross(b).length().atan2(a.dot(b))
     }
 
-    /// Half angles beside those of many sampled normals around the same axis.
+    /// Half angles compared with those of many sampled normals around one axis.
     #[test]
     fn cones_hold_all_normals_and_are_narrow() {
         let mut random = Random::new(11);

@@ -1,9 +1,10 @@
-//! Which way whole pieces of the limit surface look, for certain.
+//! Proven directions in which whole pieces of the limit surface face.
 //!
-//! Takes a piece and where somebody looks from; says that all of the piece shows its front, or its back, or that this is not known. A
-//! regular piece is decided by a cone of its normals ([`cone`]), else by signs of coefficients ([`normal_net`]); an irregular one by
-//! those of its parts, down to the part at an irregular vertex, whose normals are those of its characteristic map but for what dies away
-//! ([`tip`]). At vertices of other kinds nothing is known.
+//! Takes a piece and a viewer's position; decides whether all of the piece shows its front, or its
+//! back, or neither is known. A regular piece is decided by a cone of its normals ([`cone`]), else
+//! by signs of coefficients ([`normal_net`]); an irregular one by those of its parts, down to the
+//! part at an irregular vertex, whose normals are those of its characteristic map up to a term that
+//! vanishes ([`tip`]). At vertices of other kinds nothing is known.
 
 mod cone;
 mod normal_net;
@@ -18,13 +19,15 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Levels after which parts at irregular vertices are given up. What fades there dies away more slowly the more edges a vertex has.
+/// Levels after which parts at irregular vertices are given up. The subdominant terms there shrink
+/// more slowly the more edges a vertex has.
 pub(crate) const DEEPEST: u32 = 24;
 
 /// Divisions into four of regular parts that may look one way, though their coefficients have both signs.
 const DIVISIONS: u32 = 2;
 
-/// Which side of a piece of the surface somebody sees. The front is where a face's corners run counter-clockwise.
+/// The side of a piece of the surface that a viewer sees. The front is where a face's corners run
+/// counter-clockwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Facing {
     /// Every point shows its front.
@@ -35,12 +38,12 @@ pub enum Facing {
     Undecided,
 }
 
-/// What is known of a piece.
+/// How a piece faces the viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Look {
     /// All of it is seen from this side.
     All(Side),
-    /// There are points of both.
+    /// Some points are seen from each side.
     Both,
     Unknown,
 }
@@ -65,7 +68,7 @@ impl Look {
         }
     }
 
-    /// That of two pieces together.
+    /// The facing of two pieces together.
     fn and(self, other: Self) -> Self {
         match (self, other) {
             _ if self == other => self,
@@ -104,7 +107,8 @@ fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
         .unwrap_or_else(|| normals.from(eye))
 }
 
-/// How a piece looks from there, of which parts at irregular vertices are looked at so many levels down.
+/// The side of a piece seen from there, with parts at irregular vertices tested this many levels
+/// down.
 pub(crate) fn of_patch(
     patch: &Patch,
     rules: &Rules<'_>,
@@ -127,8 +131,9 @@ pub(crate) fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
     }
 }
 
-/// How far from one of the given corners those parts of a piece are that are not known to show their back, so many levels down; `None` if that is
-/// more than `rest`, and for schemes outside the Loop family.
+/// The distance from one of the given corners of those parts of a piece that are not known to show
+/// their back, `levels` levels down; `None` if that is more than `rest`, and for schemes outside
+/// the Loop family.
 pub(crate) fn back_but_for(
     patch: &Patch,
     rules: &Rules<'_>,
@@ -161,7 +166,7 @@ pub(crate) fn back_but_for(
     }
     let refined = patch.refined(rules);
     let mut left = 0.0f64;
-    // Where the middle part is not known, nothing is.
+    // Where the middle part is undecided, the whole is.
     for part in [3, 0, 1, 2] {
         let own = back_but_for(
             &refined.part(part),
@@ -196,7 +201,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
     }
     let refined = patch.refined(rules);
     let mut all: Option<Look> = None;
-    // Where the middle part is not known, nothing is.
+    // Where the middle part is undecided, the whole is.
     for part in [3, 0, 1, 2] {
         let own = look(&refined.part(part), rules, viewpoint, levels - 1);
         let together = all.map_or(own, |all| all.and(own));
@@ -208,7 +213,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
     all.unwrap_or(Look::Unknown)
 }
 
-/// A cone of the normals of a piece, and points whose hull holds it, added to those that there are.
+/// A cone of the normals of a piece, and points whose hull holds it, added to the given ones.
 pub(crate) fn cone_of_patch(
     patch: &Patch,
     rules: &Rules<'_>,
@@ -323,7 +328,8 @@ mod tests {
         assert!(found > 800 && 20 * found > 17 * all, "{found} of {all}");
     }
 
-    /// All that is seen from the front of what is said to be a back is as near to a corner as is said, beside creases, boundaries and darts.
+    /// All points seen from the front on a reported back are as near to a corner as reported,
+    /// except at creases, boundaries and darts.
     #[test]
     fn backs_but_for_corners_are_backs_elsewhere() {
         let mut random = Random::new(29);

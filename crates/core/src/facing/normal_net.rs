@@ -1,8 +1,9 @@
 //! Which way a regular piece looks, by the signs of coefficients.
 //!
-//! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28 coefficients, and all of the piece shows its
-//! front to one who looks along d if they are above 0. `(E − S)·N`, which says on which side of the tangent planes an eye E is, has a net
-//! of degree 10, of 66 coefficients that follow from those of S and of N.
+//! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28
+//! coefficients, and all of the piece shows its front in the direction of sight d if they are
+//! above 0. `(E − S)·N`, whose sign is the side of the tangent planes on which an eye E is, has
+//! a net of degree 10, of 66 coefficients that follow from those of S and of N.
 
 use super::{Look, Side};
 use crate::patch::bezier_triangle::BezierTriangle;
@@ -22,8 +23,8 @@ const fn corners(n: usize) -> [usize; 3] {
 /// Net points are off by no more than this part of their greatest coordinate: sums of a dozen terms, after some levels.
 const POINT_ROUNDING: f64 = 256.0 * f64::EPSILON;
 
-/// Cross products of differences up to 1 and their sums are off by no more than this, and by [`CROSS_ROUNDING`] times what the
-/// differences are off.
+/// Cross products of differences up to 1 and their sums are off by no more than this, and by
+/// [`CROSS_ROUNDING`] times the error of the differences.
 const SUM_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// See [`SUM_ROUNDING`]: two products of two factors, one of which is up to √3 long.
@@ -36,9 +37,9 @@ const LONGEST: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NormalNet {
     pub(super) normals: [DVec3; SEXTIC],
-    /// What rounding may do to them.
+    /// The greatest rounding error of the normals.
     pub(super) rounding: f64,
-    /// The net's points, scaled, and what rounding may do to these.
+    /// The net's points, scaled, and their rounding error.
     points: [DVec3; QUARTIC],
     point_rounding: f64,
     scale: f64,
@@ -71,7 +72,7 @@ impl NormalNet {
         })
     }
 
-    /// How it looks to one who looks along a unit direction.
+    /// The side seen along a unit direction of sight.
     pub(super) fn along(&self, sight: DVec3) -> Look {
         Look::by_signs(
             &self.normals.map(|normal| -sight.dot(normal)),
@@ -80,7 +81,7 @@ impl NormalNet {
         )
     }
 
-    /// How it looks to an eye.
+    /// The side seen from an eye.
     pub(super) fn from(&self, eye: DVec3) -> Look {
         let eye = self.scale * eye;
         let mut sides = [0.0; DECIC];
@@ -108,7 +109,8 @@ impl NormalNet {
         self.normals.iter().all(is_back) || self.from(eye) == Look::All(Side::Back)
     }
 
-    /// What rounding may do to products of normals and vectors up to so long towards an eye.
+    /// The greatest rounding error of products of normals and vectors up to this length towards an
+    /// eye.
     fn rounding_of(&self, eye: DVec3, farthest: f64) -> f64 {
         let of_sight = self.point_rounding + 8.0 * f64::EPSILON * eye.abs().max_element();
         let of_normals = self.rounding + LONGEST * SUM_ROUNDING;

@@ -1,13 +1,15 @@
 //! Normals at an irregular vertex inside the surface.
 //!
-//! The part at the vertex consists of three regular pieces a level, at all levels. At level j their points are p + λʲ(t₁χ₁ + t₂χ₂) + r_j,
-//! χ being the characteristic map's three regular pieces. A difference of neighbouring net points is then λʲ(t₁∂χ₁ + t₂∂χ₂) but for λʲρ,
-//! ρ as [`crate::patch::settling`] bounds it, so that the normals' net is
+//! The part at the vertex consists of three regular pieces a level, at all levels. At level j their
+//! points are p + λʲ(t₁χ₁ + t₂χ₂) + r_j, χ being the characteristic map's three regular pieces. A
+//! difference of neighbouring net points is then λʲ(t₁∂χ₁ + t₂∂χ₂) up to λʲρ, with ρ bounded by
+//! [`crate::patch::settling`], so that the normals' net is
 //!
 //! > `λ²ʲ (J_t · t₁ × t₂ + e_t)`, `|e_t| ≤ 2ρτ + ρ²`,
 //!
-//! J_t being the net of the map's Jacobian, which is positive, and τ the greatest `|t₁||∂χ₁| + |t₂||∂χ₂|`. So all normals are within
-//! the angle of sine `|e|/(J |t₁ × t₂|)` of t₁ × t₂. As a piece is refined, ρ falls beside t: from some level on there is a cone.
+//! J_t being the net of the map's Jacobian, which is positive, and τ the greatest
+//! `|t₁||∂χ₁| + |t₂||∂χ₂|`. So all normals are within the angle of sine `|e|/(J |t₁ × t₂|)` of t₁ ×
+//! t₂. As a piece is refined, ρ falls relative to t: from some level on there is a cone.
 
 use super::Cone;
 use crate::patch::Rules;
@@ -15,13 +17,14 @@ use crate::patch::extraordinary::ExtraordinaryPatch;
 use crate::patch::settling::settled;
 use crate::vector::{DVec3, unit_or_zero};
 
-/// Sines of cones from which on it is worth while to look at a part's parts.
+/// Sines of cones above which a part's own parts are tested.
 pub(super) const NARROW: f64 = 0.25;
 
 /// Points are off by no more than this part of their greatest coordinate.
 const POINT_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
-/// A cone that holds all normals of a piece at an irregular vertex but that of the vertex itself, which is its axis; `None` where what dies away is still too much.
+/// A cone that holds all normals of a piece at an irregular vertex but that of the vertex itself,
+/// which is its axis; `None` where the vanishing term is still too great.
 pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone> {
     let valence = patch.ring.len();
     let (map, growth) = (rules.characteristic(valence)?, rules.settling(valence)?);
@@ -44,7 +47,7 @@ pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone
     let off = left * (2.0 * steepest + left);
     let axis = unit_or_zero(normal);
     let sine = off / (map.least_jacobian * normal.length());
-    // What is not a number is no cone.
+    // A cone with a NaN is none.
     let is_one =
         scale > 0.0 && axis != DVec3::ZERO && map.least_jacobian > 0.0 && sine < 1.0 - 1e-9;
     is_one.then_some(Cone {

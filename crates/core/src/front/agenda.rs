@@ -1,5 +1,5 @@
-//! Which nodes are to be looked at again when a demand changes: entries in buckets by a key, those of nodes that are gone dropped on
-//! the way.
+//! The nodes to test again when a demand changes: entries in buckets by a key; entries of removed
+//! nodes are dropped on the way.
 
 /// A node that is due at a key.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ enum Scale {
 const STEPS: usize = 1 << 14;
 const RING: usize = 1 << 12;
 
-/// Bits of a number's fraction that tell buckets apart.
+/// Bits of a number's fraction that distinguish buckets.
 const FRACTION: u32 = 8;
 
 /// Nodes by key.
@@ -62,7 +62,7 @@ impl Agenda {
         matches!(self.scale, Scale::Turning { .. })
     }
 
-    /// Entries, those of nodes that are gone included.
+    /// Entries, those of removed nodes included.
     pub(super) fn len(&self) -> usize {
         self.entries
     }
@@ -73,7 +73,8 @@ impl Agenda {
                 let step = (key.to_bits() >> (52 - FRACTION)).saturating_sub(exponent << FRACTION);
                 (step as usize).min(STEPS - 1)
             }
-            // Conversions saturate; what is too far ahead is looked at before the hand comes round, and put off again.
+            // Conversions saturate; entries too far ahead are tested before the hand comes round,
+            // and put off again.
             Scale::Turning { width } => {
                 let ahead = ((key / width) as u64).clamp(self.now, self.now + RING as u64 - 1);
                 (ahead % RING as u64) as usize
@@ -81,7 +82,7 @@ impl Agenda {
         }
     }
 
-    /// Puts a node down; `stamp` tells it from others that had its number.
+    /// Puts a node down; `stamp` distinguishes it from earlier nodes of its number.
     pub(super) fn put(&mut self, key: f64, node: u32, stamp: u32) {
         let bucket = self.bucket(key);
         self.buckets[bucket].push(Entry { key, node, stamp });
@@ -105,8 +106,8 @@ impl Agenda {
         }
     }
 
-    /// Turns the hand of a ring to `time`, and takes out the nodes that are due by then; `is_current` tells from a node's number and stamp
-    /// whether it is still there.
+    /// Turns the hand of a ring to `time`, and takes out the nodes that are due by then;
+    /// `is_current` decides by a node's number and stamp whether it still exists.
     pub(super) fn turn_to(
         &mut self,
         time: f64,
@@ -142,7 +143,7 @@ impl Agenda {
             .for_each(|entry| self.put(entry.key, entry.node, entry.stamp));
     }
 
-    /// Drops the entries of nodes that are gone.
+    /// Drops the entries of removed nodes.
     pub(super) fn sweep(&mut self, is_current: impl Fn(u32, u32) -> bool) {
         self.entries = 0;
         for list in &mut self.buckets {
@@ -179,7 +180,7 @@ mod tests {
         assert!(found[..19].iter().chain(&found[62..]).all(|found| !found));
         ladder.sweep(|node, stamp| stamps[node as usize] == stamp);
         assert_eq!(ladder.len(), keys.len() - 1);
-        // Zero, what is tiny and what is infinite have places, too.
+        // Zero, tiny and infinite keys have places, too.
         ladder.put(0.0, 0, 7);
         ladder.put(f64::INFINITY, 1, 7);
         let mut count = 0;

@@ -1,4 +1,4 @@
-//! Asks the nodes of a forest what a demand asks, as they come, and keeps them for when they are to be asked again.
+//! Tests the nodes of a forest against a demand as they come, and keeps them until their next test.
 
 use super::agenda::Agenda;
 use super::demand::Question;
@@ -6,7 +6,7 @@ use super::forest::Forest;
 use super::halt::Halt;
 use super::least::Watch;
 
-/// Asks nodes, and keeps them for later.
+/// Tests nodes, and keeps them for later.
 pub(super) struct Asking<'q, 'o> {
     pub(super) question: &'q Question,
     pub(super) agendas: [&'q mut Agenda; 2],

@@ -4,16 +4,17 @@ use super::forest::{Forest, NONE};
 use crate::closure::{Diagonal, closure};
 use crate::vector::DVec3;
 
-/// Marks a slot whose triangle is gone.
+/// Marks a slot whose triangle was removed.
 const NOBODY: u32 = u32::MAX;
 
-/// What an update changed in a front's buffers: what is not named is as it was.
+/// The changes of an update in a front's buffers: slots that are not named are unchanged.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Changes {
     /// Vertices whose positions are new, by their numbers in [`positions`](super::Front::positions); ascending.
     pub vertices: Vec<u32>,
-    /// Triangles that are new or have moved, by their numbers in [`triangles`](super::Front::triangles); ascending. Those beyond the end are gone.
+    /// Triangles that are new or have moved, by their numbers in
+    /// [`triangles`](super::Front::triangles); ascending. Those beyond the end were removed.
     pub triangles: Vec<u32>,
     /// Nodes that were divided.
     pub divided: usize,
@@ -31,7 +32,7 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Brings the triangles up to date, and tells which slots were written.
+    /// Brings the triangles up to date, and reports the slots that were written.
     pub(super) fn update(&mut self, forest: &mut Forest<'_>) -> Vec<u32> {
         let mut holes = core::mem::take(&mut forest.released);
         holes
@@ -42,7 +43,7 @@ impl Buffers {
                 self.leaf(forest, node, &mut holes);
             }
         }
-        // From the end, so that what fills a hole is none.
+        // From the end, so that a hole is not filled by another.
         holes.sort_unstable_by(|a, b| b.cmp(a));
         for hole in holes {
             let last = self.triangles.len() - 1;

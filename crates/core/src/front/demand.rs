@@ -1,30 +1,36 @@
-//! What is asked of a front, and what that means for a node: whether it is too far from the surface, and for how long that is certain
-//! while cameras move.
+//! The demand on a front and its test for a node: whether it is too far from the surface, and for
+//! how long the outcome is certain while cameras move.
 //!
-//! **Cameras.** As the criterion for pixels proves, a distance V from a point that is seen at depth z, φ off the axis, is at most F V / (cos φ (z − V))
-//! pixels, F being those of a unit length at depth 1. With d the distance from the eye to a ball that holds the node, z ≥ d cos φ, and
-//! cos φ ≥ 1/G at the picture's corners, that is within a limit of p pixels if d ≥ V G (F G + p)/p. So a node is divided where its ball is
-//! nearer to the eye than that and not outside a side of the frame: which does not depend on how the camera is turned, but for the frame.
+//! **Cameras.** As the criterion for pixels proves, a distance V from a point that is seen at depth
+//! z, φ off the axis, is at most F V / (cos φ (z − V)) pixels, F being those of a unit length at
+//! depth 1. With d the distance from the eye to a ball that holds the node, z ≥ d cos φ, and cos φ
+//! ≥ 1/G at the picture's corners, that is within a limit of p pixels if d ≥ V G (F G + p)/p. So a
+//! node is divided where its ball is nearer to the eye than that and not outside a side of the
+//! frame: which does not depend on the camera's rotation, except for the frame.
 //!
-//! **For how long.** An eye that moves by m changes d by m at most. Where it moves from e to e′ and the outward normal n of a side of the
-//! frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ + (c − e)·(n′ − n), at most |e − e′| + |c − e| |n′ − n|. So beside a clock that advances by
-//! |e − e′|, which what is too far away keeps to, there is one that advances by |e − e′| + Λ|n′ − n|, Λ any length, margins shrink no faster than the clock advances, those of sides at a distance beyond Λ
+//! **For how long.** An eye that moves by m changes d by m at most. Where it moves from e to e′ and
+//! the outward normal n of a side of the frame becomes n′, (c − e′)·n′ − (c − e)·n = (e − e′)·n′ +
+//! (c − e)·(n′ − n), at most |e − e′| + |c − e| |n′ − n|. So in addition to a clock that advances
+//! by
+//! |e − e′|, which distant nodes use, there is one that advances by |e − e′| + Λ|n′ − n|, Λ any
+//! length, margins shrink no faster than the clock advances, those of sides at a distance beyond Λ
 //! no faster than that times distance/Λ.
 
 use super::forest::Extent;
 use crate::criterion::{Camera, CriterionError, Lens};
 use crate::vector::DVec3;
 
-/// Levels at most below a control face: paths take two bits a level.
+/// The most levels below a control face: paths take two bits a level.
 pub const MOST_LEVELS: u32 = 30;
 
-/// Triangles at most, where nothing else is asked.
+/// The most triangles, without another goal.
 pub(super) const MOST_TRIANGLES: usize = 10_000_000;
 
-/// Rounding takes no more than this of what margins are made of.
+/// The rounding error of margins relative to their terms.
 const ROUNDING: f64 = 1e-12;
 
-/// What is asked of a front: how far triangles may be from the limit surface, and how many there may be.
+/// The demand on a front: the greatest distance of its triangles from the limit surface, and the
+/// greatest number of triangles.
 ///
 /// ```
 /// use limitmesh::front::Demand;
@@ -35,12 +41,12 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
     pub(super) goal: Goal,
-    /// Asked for.
+    /// The requested number.
     pub(super) most: Option<usize>,
     pub(super) max_levels: u32,
 }
 
-/// What a node must keep.
+/// The goal that a node must meet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Goal {
     /// A distance.
@@ -55,8 +61,8 @@ impl Demand {
         Self::of(Goal::Tolerance(distance))
     }
 
-    /// Triangles within so many pixels of the limit surface wherever one of the cameras sees it; what none of them sees is left as coarse
-    /// as its neighbours allow.
+    /// Triangles within `limit` pixels of the limit surface wherever one of the cameras sees it;
+    /// invisible parts are left as coarse as their neighbours allow.
     pub fn pixels(limit: f64, cameras: &[Camera]) -> Self {
         Self::of(Goal::Pixels(limit, cameras.to_vec()))
     }
@@ -69,8 +75,8 @@ impl Demand {
         }
     }
 
-    /// No more than so many triangles; ten million by default. Where what is asked takes more, it is the least distance that does not.
-    /// The control mesh's own triangles are always there.
+    /// Limits the number of triangles; ten million by default. Where the goal needs more, the front
+    /// has the least distance that does not. The control mesh's own triangles are always there.
     pub fn triangles(mut self, most: usize) -> Self {
         self.most = Some(most);
         self
@@ -83,7 +89,7 @@ impl Demand {
     }
 
     /// # Errors
-    /// A limit that is none, or a camera that looks nowhere.
+    /// A limit out of range, or a camera without a direction of sight.
     pub fn check(&self) -> Result<(), CriterionError> {
         let (name, value, cameras) = match &self.goal {
             Goal::Tolerance(distance) => ("tolerance", *distance, &[][..]),
@@ -100,7 +106,7 @@ impl Demand {
     }
 }
 
-/// A camera, as nodes are asked about it.
+/// A camera, prepared for the test of nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Eye {
     at: DVec3,
@@ -108,7 +114,7 @@ pub(super) struct Eye {
     sides: [DVec3; 5],
     /// G, 1/cos φ at the frame's corners.
     stretch: f64,
-    /// F G², what pixels fall by with the distance.
+    /// F G², the factor by which pixels fall with the distance.
     pixels: f64,
 }
 
@@ -208,19 +214,20 @@ impl Eye {
     }
 }
 
-/// What a node answers.
+/// The outcome of a node's test.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     /// Whether it wants to be divided.
     pub(super) wants: bool,
-    /// How far a clock may advance before that changes; 0 where nothing is known.
+    /// The advance of a clock for which the answer is certain; 0 if unknown.
     pub(super) margin: f64,
     /// Whether that clock counts turns, too.
     pub(super) turns: bool,
 }
 
 impl Answer {
-    /// The answer for this camera and another one: one is enough, and none may come to want it.
+    /// The answer for this camera and another one: one that wants the node is enough, and neither
+    /// may begin to want it.
     fn and(self, other: Self) -> Self {
         let turns = self.turns || other.turns;
         match (self.wants, other.wants) {
@@ -240,10 +247,10 @@ impl Answer {
     }
 }
 
-/// What nodes are asked: whether a measure of theirs is above a limit.
+/// The test of nodes: whether a measure is above a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Question {
-    /// The cameras; without, distances are what is measured.
+    /// The cameras; without them, distances are measured.
     pub(super) eyes: Option<Vec<Eye>>,
     pub(super) limit: f64,
     pub(super) max_levels: u32,
@@ -267,7 +274,7 @@ impl Question {
         })
     }
 
-    /// What is compared with the limit.
+    /// The value that is compared with the limit.
     pub(super) fn measure(&self, extent: &Extent) -> f64 {
         match &self.eyes {
             None => extent.value,
@@ -280,7 +287,7 @@ impl Question {
 
     /// Whether a node is to be divided for the sake of a camera.
     pub(super) fn answer(&self, extent: &Extent, length: f64) -> Answer {
-        let nobody = Answer {
+        let unwanted = Answer {
             wants: false,
             margin: f64::INFINITY,
             turns: false,
@@ -288,7 +295,7 @@ impl Question {
         let eyes = self.eyes.iter().flatten();
         let answer = eyes
             .map(|eye| eye.answer(extent, self.limit, length))
-            .fold(nobody, Answer::and);
+            .fold(unwanted, Answer::and);
         Answer {
             margin: if answer.margin > 0.0 {
                 answer.margin
@@ -299,7 +306,8 @@ impl Question {
         }
     }
 
-    /// How far clocks advance from another question to this one, without turns and with them; infinitely far where margins do not tell.
+    /// How far clocks advance from another question to this one, without turns and with them;
+    /// infinitely far where margins do not apply.
     pub(super) fn moved(&self, from: &Self, length: f64) -> [f64; 2] {
         match (&self.eyes, &from.eyes) {
             (Some(eyes), Some(before))

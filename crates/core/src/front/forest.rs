@@ -1,8 +1,9 @@
 //! Quadtrees over the control faces with their neighbours and vertices, divided and merged node by node. Knows no demands.
 //!
-//! A node may be divided when the nodes of its own level beyond its edges exist, and merged when its children are not divided. Edges
-//! along which sheets were cut apart have copies: their nodes count as neighbours, and where one of them is divided, those beside it that
-//! are not have a *hanging* vertex of their own at the same place.
+//! A node may be divided when the nodes of its own level beyond its edges exist, and merged when
+//! its children are not divided. Edges along which sheets were cut apart have copies: their nodes
+//! count as neighbours, and where one of them is divided, the neighbours that are not divided have
+//! *hanging* vertices of their own at one position.
 
 use std::collections::HashMap;
 
@@ -21,7 +22,7 @@ use crate::vector::{DVec3, vector};
 /// No node.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// What is beyond an edge of a node, on its level.
+/// The region beyond an edge of a node, on its level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Across {
     /// Nothing, or copies of the edge.
@@ -49,7 +50,7 @@ pub(super) struct Node {
     ground: Ground,
 }
 
-/// What a demand looks at, in one line of the cache.
+/// The values that a demand reads, in one line of the cache.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Extent {
@@ -70,7 +71,7 @@ pub(super) struct Extent {
 pub(super) struct Vertices {
     pub(super) positions: Vec<[f64; 3]>,
     free: Vec<u32>,
-    /// Slots that were written since somebody asked.
+    /// Slots that were written since the last query.
     pub(super) written: Vec<u32>,
 }
 
@@ -103,9 +104,9 @@ pub(super) struct Forest<'a> {
     edges: Edges<'a>,
     has_copies: bool,
     hanging: HashMap<(u32, u8), u32>,
-    /// Nodes that are gone, or whose triangles may be others.
+    /// Nodes that were removed, or whose triangles may have changed.
     pub(super) touched: Vec<u32>,
-    /// Triangles' slots of nodes that are gone.
+    /// Slots of the triangles of removed nodes.
     pub(super) released: Vec<u32>,
     /// Triangles that are emitted, by Euler's formula.
     pub(super) triangles: usize,
@@ -180,7 +181,7 @@ impl<'a> Forest<'a> {
         self.pieces.surface()
     }
 
-    /// What values are.
+    /// The measure of the values.
     pub(super) fn measure(&self) -> Measure {
         self.pieces.measure()
     }
@@ -227,7 +228,7 @@ impl<'a> Forest<'a> {
     }
 
     /// The nodes of the same level that share an edge.
-    pub(super) fn beside(&self, node: u32, edge: u8) -> Copies {
+    pub(super) fn adjacent(&self, node: u32, edge: u8) -> Copies {
         match self.node(node).across[usize::from(edge)] {
             Across::Node(other, side) => SmallVec::from_slice(&[(other, side)]),
             Across::Border if self.has_copies => self.copies(node, edge),
@@ -330,7 +331,7 @@ impl<'a> Forest<'a> {
         touched
     }
 
-    /// Divides a node; what is beyond its edges exists.
+    /// Divides a node; the nodes beyond its edges exist.
     pub(super) fn divide(&mut self, node: u32) {
         if matches!(self.node(node).ground, Ground::Control) {
             let ground = self.pieces.control(self.node(node).place.face);
@@ -434,12 +435,12 @@ impl<'a> Forest<'a> {
         vertex
     }
 
-    /// The point in the middle of an edge: all sides could tell, and the first in order of control faces and paths does, so that it has
-    /// the same bits whoever asks.
+    /// The point in the middle of an edge. The first side in order of control faces and paths
+    /// computes it, so that it has the same bits on all sides.
     fn middle_position(&self, node: u32, edge: u8) -> DVec3 {
         let key = |node: u32| (self.node(node).place.face, self.node(node).place.path);
-        let beside = self.beside(node, edge);
-        let all = beside.iter().copied().chain([(node, edge)]);
+        let adjacent = self.adjacent(node, edge);
+        let all = adjacent.iter().copied().chain([(node, edge)]);
         let (teller, side) = all
             .min_by_key(|&(node, edge)| (key(node), edge))
             .unwrap_or((node, edge));

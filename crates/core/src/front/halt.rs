@@ -5,7 +5,7 @@ use crate::progress::{Observer, Stage, Watch};
 /// Steps between two calls of the observer: a fraction of a millisecond.
 const STEPS: u32 = 256;
 
-/// An observer that is called now and then, and what it has said.
+/// An observer that is called now and then, and its answer.
 pub(super) struct Halt<'o> {
     watch: Watch<'o>,
     left: u32,
@@ -21,7 +21,7 @@ impl<'o> Halt<'o> {
         }
     }
 
-    /// Whether to go on after a step, there being so many triangles; once it is not, it never is again.
+    /// Whether to go on after a step, with the number of triangles; once false, always false.
     pub(super) fn goes_on(&mut self, triangles: usize) -> bool {
         if self.left == 0 {
             self.left = STEPS;
@@ -36,7 +36,7 @@ impl<'o> Halt<'o> {
         self.is_asked
     }
 
-    /// What is polled from other loops.
+    /// The watch that other loops poll.
     pub(super) fn watch(&mut self) -> &mut Watch<'o> {
         &mut self.watch
     }

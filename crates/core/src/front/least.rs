@@ -5,17 +5,20 @@
 //! 1. a control face that wants is in S, and a child of a node in S that wants is, too;
 //! 2. where a node of S shares an edge with a node of its level, that one's parent is in S.
 //!
-//! S exists: the intersection of sets that keep both rules keeps them. A front divides just the nodes of S (the first rule says where, the
-//! second that neighbouring leaves are at most one level apart), so what it is depends on the demand alone. And the more nodes want,
-//! the greater is S.
+//! S exists: the intersection of sets that keep both rules keeps them. A front divides just the
+//! nodes of S (the first rule says where, the second that neighbouring leaves are at most one level
+//! apart), so it depends on the demand alone. And the more nodes want, the greater is S.
 //!
-//! **From one demand to the next.** A node that no longer wants may have been the reason of others, and two nodes may be each other's
-//! reason though nobody wants either. So what loses a reason is *suspected* first, with all that it may be a reason of: its children in S, and
-//! the parents beyond its edges that do not want by themselves. Then those are acquitted that have a reason which is not suspected, and what
-//! they are a reason of, until nothing changes: each node in S has a chain of reasons from control faces that want, so it is acquitted
-//! in the end. What is left goes, from the finest level up ([`loosen`]). (Gupta, Mumick, Subrahmanian, "Maintaining views
-//! incrementally", 1993, call this deletion and rederivation.) Then what comes to want joins as it would in a fresh forest ([`extend`]). Only nodes are
-//! looked at that change, or that are beside one.
+//! **From one demand to the next.** A node that no longer wants may have been the reason of others,
+//! and two nodes may be each other's reason though neither is wanted. So a node that loses a reason
+//! is first *overdeleted*, with all nodes of which it may be a reason: its children in S, and the
+//! parents beyond its edges that do not want on their own account. Then nodes with a reason that is
+//! not overdeleted are *rederived*, and the nodes of which they are a reason, until nothing
+//! changes: each node in S has a chain of reasons from control faces that want, so it is rederived
+//! in the end. The others are merged, from the finest level up ([`loosen`]). (Gupta, Mumick,
+//! Subrahmanian, "Maintaining views incrementally", 1993, call this deletion and rederivation.)
+//! Then nodes that newly want join as they would in a fresh forest ([`extend`]). The work is
+//! proportional to the nodes that change and their neighbours.
 //!
 //! To be divided, a node needs those of its level beyond its edges; where one is missing, the node above it is divided first. That is rule 2
 //! for the parents of both.
@@ -25,7 +28,7 @@ use smallvec::SmallVec;
 use super::forest::{Forest, NONE};
 use super::halt::Halt;
 
-/// What happens while nodes are divided.
+/// The callbacks while nodes are divided.
 pub(super) trait Watch {
     /// Answers whether a new node wants.
     fn arrived(&mut self, forest: &Forest<'_>, node: u32) -> bool;
@@ -34,19 +37,19 @@ pub(super) trait Watch {
     fn goes_on(&mut self, forest: &Forest<'_>) -> bool;
 }
 
-/// What a change of demands came to.
+/// The outcome of a change of demands.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outcome {
     pub(super) divided: usize,
     pub(super) merged: usize,
     /// Nodes that want and were not divided since the watch stopped it.
     pub(super) waiting: Vec<u32>,
-    /// Nodes that are to be merged and were not since somebody asked to stop.
+    /// Nodes that are to be merged and were not since the observer asked to stop.
     pub(super) leaving: Vec<u32>,
 }
 
-/// Takes out of the set what is not in it any more: `lost` want no more. What would join is left waiting, and what is not merged when
-/// somebody asks to stop, leaving.
+/// Removes the nodes that are no longer in the set: `lost` no longer want. Nodes that would join
+/// stay waiting; nodes not merged when the observer asks to stop stay leaving.
 pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_>) -> Outcome {
     let suspects = suspected(forest, lost);
     let mut settling = Settling {
@@ -79,8 +82,8 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_
     outcome
 }
 
-/// Brings into the set what is in it now: `gained` want. Where the watch stops it, the set is that of a demand between, and what is
-/// missing waits.
+/// Adds to the set the nodes that are in it now: `gained` want. Where the watch stops it, the set
+/// is that of a demand between, and the missing nodes wait.
 pub(super) fn extend(forest: &mut Forest<'_>, gained: &[u32], watch: &mut dyn Watch) -> Outcome {
     let mut settling = Settling {
         forest,
@@ -109,7 +112,7 @@ fn suspected(forest: &mut Forest<'_>, lost: Vec<u32>) -> Vec<u32> {
         let first = forest.node(node).children;
         stack.extend(first..first + 4);
         for edge in 0..3 {
-            for (other, _) in forest.beside(node, edge) {
+            for (other, _) in forest.adjacent(node, edge) {
                 let above = forest.node(other).parent;
                 if above != NONE && above != forest.node(node).parent && !forest.wants(above) {
                     stack.push(above);
@@ -122,7 +125,7 @@ fn suspected(forest: &mut Forest<'_>, lost: Vec<u32>) -> Vec<u32> {
 
 struct Settling<'f, 'a, 'w> {
     forest: &'f mut Forest<'a>,
-    /// Whom to ask; without, nothing is divided.
+    /// The callbacks; without them, nothing is divided.
     watch: Option<&'w mut dyn Watch>,
     /// Nodes of S whose consequences have not been drawn.
     work: Vec<u32>,
@@ -150,8 +153,8 @@ impl Settling<'_, '_, '_> {
         (0..3u8).any(|child| {
             let outer = [child, (child + 2) % 3];
             outer.into_iter().any(|edge| {
-                let beside = self.forest.beside(first + u32::from(child), edge);
-                beside.iter().any(|&(other, _)| self.is_in(other))
+                let adjacent = self.forest.adjacent(first + u32::from(child), edge);
+                adjacent.iter().any(|&(other, _)| self.is_in(other))
             })
         })
     }
@@ -207,7 +210,7 @@ impl Settling<'_, '_, '_> {
                 }
             }
             for edge in 0..3 {
-                for (other, _) in self.forest.beside(node, edge) {
+                for (other, _) in self.forest.adjacent(node, edge) {
                     let above = self.forest.node(other).parent;
                     if above != NONE && self.forest.node(above).is_suspect {
                         self.acquit(above);

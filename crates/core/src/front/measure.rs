@@ -1,12 +1,15 @@
-//! What a front goes by: a number for each node, of the node alone, that is compared with a limit.
+//! The measure of a front: a number for each node, of the node alone, that is compared with a
+//! limit.
 //!
-//! Beside the proven distance stand two criteria of the literature, to be compared with it. Both look at samples, so nothing is proven of
-//! what they leave:
+//! Two criteria of the literature can be chosen instead of the proven distance, for comparison.
+//! Both use samples, so they prove nothing:
 //!
-//! * **Planarity** (Zorin, Schröder and Sweldens, "Interactive multiresolution mesh editing", 1997): a node is divided where it is not
-//!   flat enough at six points of the surface, its corners and the middles of its edges, which are the vertices of the next level. What
-//!   they compare is taken here as angles between limit normals and the triangle's normal, or as heights over its plane. By angles it divides
-//!   wherever the cone around limit normals of corners does, and sees edges, too, whose ends happen to agree.
+//! * **Planarity** (Zorin, Schröder and Sweldens, "Interactive multiresolution mesh editing",
+//!   1997): a node is divided where it is not flat enough at six points of the surface, its corners
+//!   and the middles of its edges, which are the vertices of the next level. The comparison is made
+//!   here by angles between limit normals and the triangle's normal, or as heights over its plane.
+//!   By angles it divides wherever the cone around limit normals of corners does, and detects
+//!   edges, too, whose ends happen to agree.
 //! * **Vertex error** (Müller and Jaeschke, "Adaptive subdivision curves and surfaces", 1998): a node is divided where a corner's control
 //!   point on the node's level is too far from its limit. Inside a smooth surface of the Loop family that distance is multiplied by
 //!   5/8 − nβ with each level, n being the valence, along creases by 1/4.
@@ -14,12 +17,12 @@
 use crate::patch::{LimitPoint, Patch, Rules, child_corners};
 use crate::vector::{DVec3, unit_or_zero};
 
-/// What a [`Front`](super::Front) goes by.
+/// The measure of a [`Front`](super::Front).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Measure {
-    /// How far a node's triangle and the surface over it are from each other at most, place by place, in the control mesh's units; proven
-    /// for schemes of the Loop family.
+    /// The greatest distance between a node's triangle and the surface over it, by place, in the
+    /// control mesh's units; proven for schemes of the Loop family.
     #[default]
     Distance,
     /// The greatest angle between the node's triangle and the limit surface at its corners and the middles of its edges, in radians.
@@ -30,7 +33,7 @@ pub enum Measure {
     VertexError,
 }
 
-/// A node's piece of the surface with the points that a criterion looks at.
+/// A node's piece of the surface with the samples of a criterion.
 #[derive(Debug)]
 pub(super) struct Sampled {
     patch: Patch,
@@ -50,7 +53,7 @@ impl Sampled {
         }
     }
 
-    /// Those over the four parts.
+    /// The values of the four parts.
     pub(super) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);
         [0, 1, 2, 3].map(|child| {
@@ -71,7 +74,7 @@ impl Sampled {
             Measure::PlanarityDistance => self.height(),
             Measure::VertexError => self.vertex_error(),
         };
-        // What is no number is never good enough.
+        // NaN is never good enough.
         if greatest.is_nan() {
             f64::INFINITY
         } else {

@@ -1,19 +1,25 @@
-//! A front: triangles that stand for a limit surface, refined and coarsened from one demand to the next.
+//! A front: triangles that approximate a limit surface, refined and coarsened from one demand to
+//! the next.
 //!
-//! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by local operations, so that every other
-//! adaptive mesh is reached from any given one. Here the result does not depend on where one comes from: the mesh for a demand is a
-//! function of the demand, to the byte, and an update looks only at what differs.
+//! Müller and Jaeschke ("Adaptive subdivision curves and surfaces", 1998) refine and coarsen by
+//! local operations, so that every other adaptive mesh is reached from any given one. Here the
+//! result does not depend on the previous mesh: the mesh for a demand is a function of the demand,
+//! to the byte, and an update computes only the differences.
 //!
-//! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the pictures of cameras, a number of
-//! triangles. Gives a conforming mesh ([`Front::mesh`]), the same in buffers of which an update tells what it changed
-//! ([`Front::positions`], [`Front::triangles`], [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
+//! Takes a control mesh and a scheme, and [`Demand`]s one after another: a distance, pixels in the
+//! pictures of cameras, a number of triangles. Gives a conforming mesh ([`Front::mesh`]), its
+//! buffers, whose changes an update reports ([`Front::positions`], [`Front::triangles`],
+//! [`Changes`]), and a proven bound of its distance from the limit surface ([`Front::bound`]).
 //!
-//! A front may go by other criteria of the literature instead of distances ([`Measure`]), to be compared with them.
+//! A front may measure by other criteria of the literature instead of distances ([`Measure`]), to
+//! compare them.
 //!
-//! Data flows from `pieces` (the surface over a node, its *value*: how far it is from the node's triangle, whatever the neighbours
-//! are; by another `measure`, what that sees) to `forest` (nodes, neighbours, vertices), which `least` brings from one least set of divided nodes to the next, where the proof
-//! is; `demand` says which nodes want to be divided and for how long that is certain while cameras move, `agenda` keeps nodes by
-//! when they are to be asked again, `asking` asks new ones; `buffers` has the triangles, `snapshot` the mesh with where it came from.
+//! Data flows from `pieces` (the surface over a node, its *value*: its distance from the node's
+//! triangle, whatever the neighbours are, or another `measure`) to `forest` (nodes, neighbours,
+//! vertices), which `least` brings from one least set of divided nodes to the next, with the proof;
+//! `demand` decides which nodes want to be divided and for how long that is certain while cameras
+//! move, `agenda` keeps nodes by the time of their next test, `asking` tests new ones; `buffers`
+//! has the triangles, `snapshot` the mesh with its origins.
 //!
 //! ```
 //! use limitmesh::front::{Demand, Front};
@@ -66,14 +72,14 @@ use crate::mesh::{Mesh, MeshError, check_size};
 use crate::progress::{Cancelled, Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// Why there is no front.
+/// An error of a front.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrontError {
     /// The scheme has no limit at the shape of some ring.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// What is asked is out of range.
+    /// The demand is out of range.
     #[error(transparent)]
     Demand(#[from] CriterionError),
     /// The result is no mesh.
@@ -84,15 +90,15 @@ pub enum FrontError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Triangles that stand for the limit surface of a control mesh, kept up to date with what is asked of them.
+/// Triangles that approximate the limit surface of a control mesh, updated to the current demand.
 pub struct Front<'a> {
     forest: Forest<'a>,
     buffers: Buffers,
     changes: Changes,
-    /// What was asked for last.
+    /// The last demand.
     demand: Option<Demand>,
     question: Question,
-    /// Nodes by what they are measured, or by when cameras have moved so far that they are to be asked again.
+    /// Nodes by their measure, or by the movement of cameras until their next test.
     agenda: Agenda,
     /// Nodes by when cameras have moved and turned so far.
     turning: Agenda,
@@ -109,7 +115,7 @@ pub struct Front<'a> {
 const FIRST_STEP: f64 = 1.05;
 const GREATEST_STEP: f64 = 2.0;
 
-/// Entries of nodes that are gone may be as many as others, and so many more, before they are swept away.
+/// The number of outdated entries, beyond that of others, at which they are removed.
 const STALE: usize = 1 << 16;
 
 /// A ring's buckets are this part of the scene's length.
@@ -119,7 +125,7 @@ const RING_PART: f64 = 1.0 / 1024.0;
 const LAST_HOUR: f64 = 1e4;
 
 impl<'a> Front<'a> {
-    /// The control mesh's own triangles, with their corners on the limit surface.
+    /// A front of the control mesh's own triangles, with their corners on the limit surface.
     ///
     /// # Errors
     /// The scheme has no limit at the shape of some ring, or the mesh's diagonal is not within 1e-70 to 1e70.
@@ -127,11 +133,11 @@ impl<'a> Front<'a> {
         Self::measured_by(control, scheme, Measure::Distance)
     }
 
-    /// The same going by another measure than distances: what [`Demand::tolerance`] asks is then in that measure's unit. Cameras go with
-    /// distances alone.
+    /// A front with another measure than distances: [`Demand::tolerance`] is then in that measure's
+    /// unit. Cameras need distances.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub fn measured_by(
         control: &'a Mesh,
         scheme: &'a dyn Scheme,
@@ -140,10 +146,10 @@ impl<'a> Front<'a> {
         Self::measured_by_observed(control, scheme, measure, &mut unobserved)
     }
 
-    /// [`Self::measured_by`], telling an observer how it goes on.
+    /// [`Self::measured_by`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::new`], and [`FrontError::Cancelled`].
+    /// Those of [`Self::new`], and [`FrontError::Cancelled`].
     pub fn measured_by_observed(
         control: &'a Mesh,
         scheme: &'a dyn Scheme,
@@ -190,22 +196,25 @@ impl<'a> Front<'a> {
         Ok(front)
     }
 
-    /// Brings the front to another demand. What it is then depends on the demand alone; only what differs is looked at, and is told.
+    /// Brings the front to another demand. The front depends on the last demand alone. Only the
+    /// difference is computed, and the changes are reported.
     ///
-    /// Everything is looked at once where a demand is of another kind than the one before: cameras after a tolerance, other
-    /// pictures or another limit in pixels, other levels, and a number of triangles that cameras' limit does not fit.
+    /// All nodes are tested once where a demand is of another kind than the one before: cameras
+    /// after a tolerance, other pictures or another limit in pixels, other levels, and a number of
+    /// triangles that cameras' limit does not fit.
     ///
     /// # Errors
-    /// The demand is out of range, or asks for cameras where the front does not go by distances, or a stencil failed.
+    /// The demand is out of range, or has cameras where the front does not measure distances, or a
+    /// stencil failed.
     pub fn update(&mut self, demand: &Demand) -> Result<&Changes, FrontError> {
         self.update_observed(demand, &mut unobserved)
     }
 
-    /// [`Self::update`], telling an observer how it goes on. When that breaks, the front is one between both demands, [`Self::changes`] says what
-    /// is new in it, and it goes on from there with the next demand.
+    /// [`Self::update`] with an observer. When that breaks, the front is one between both demands,
+    /// [`Self::changes`] reports its changes, and the next demand continues from there.
     ///
     /// # Errors
-    /// As for [`Self::update`], and [`FrontError::Cancelled`].
+    /// Those of [`Self::update`], and [`FrontError::Cancelled`].
     pub fn update_observed(
         &mut self,
         demand: &Demand,
@@ -234,7 +243,7 @@ impl<'a> Front<'a> {
         self.demand = Some(demand.clone());
         let (mut counts, mut halt) = ((0, 0), Halt::new(observer));
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
-        // What is asked for is mostly near what there is; what nobody asked for begins with the coarsest mesh.
+        // A demand is mostly close to the last one; the first demand begins with the coarsest mesh.
         if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
             let greatest = self.forest.greatest(|extent| question.measure(extent));
             let is_near =
@@ -366,7 +375,8 @@ impl<'a> Front<'a> {
         self.settle(lost, gained, (most, counts, halt))
     }
 
-    /// The same by measures that are kept for all nodes: for distances, and while a limit is searched for.
+    /// The test by measures that are kept for all nodes: for distances, and while a limit is
+    /// searched for.
     fn ask_kept(
         &mut self,
         question: Question,
@@ -417,7 +427,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Asks all nodes another question.
+    /// Tests all nodes against another question.
     fn ask_all(&mut self, question: Question, halt: &mut Halt<'_>) -> (Vec<u32>, Vec<u32>) {
         self.question = question;
         let (mut lost, mut gained) = (Vec::new(), Vec::new());
@@ -431,7 +441,7 @@ impl<'a> Front<'a> {
         (lost, gained)
     }
 
-    /// Whether a node wants; it is put down for when it is to be asked again.
+    /// Whether a node wants; it is kept until its next test.
     fn asked(&mut self, node: u32) -> bool {
         let mut asking = Asking {
             question: &self.question,
@@ -451,7 +461,7 @@ impl<'a> Front<'a> {
         (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
     ) -> bool {
         lost.append(&mut self.leaving);
-        // First what goes, so that triangles are not counted that are about to.
+        // Nodes that leave come first, so that their triangles are not counted.
         let mut loosened = loosen(&mut self.forest, lost, halt);
         self.leaving = core::mem::take(&mut loosened.leaving);
         gained.append(&mut self.waiting);
@@ -491,23 +501,24 @@ impl<'a> Front<'a> {
         };
     }
 
-    /// The vertices' positions, on the limit surface: those of the control mesh, then others in places that stay theirs as long as they
-    /// are needed. Some may be of no triangle.
+    /// The vertices' positions, on the limit surface: those of the control mesh, then others in
+    /// slots that are theirs as long as they are needed. Some may be in no triangle.
     pub fn positions(&self) -> &[[f64; 3]] {
         &self.forest.vertices.positions
     }
 
-    /// The triangles' corners, in no order.
+    /// The triangles' corners; the triangles have no order.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.buffers.triangles
     }
 
-    /// What the last update changed.
+    /// The changes of the last update.
     pub fn changes(&self) -> &Changes {
         &self.changes
     }
 
-    /// The mesh, in an order of its own: the control mesh's vertices, then others as one comes to them on a way over the control faces.
+    /// The mesh, in an order of its own: the control mesh's vertices, then the others in the order
+    /// of a walk over the control faces.
     ///
     /// # Errors
     /// A coordinate is not finite.
@@ -519,7 +530,7 @@ impl<'a> Front<'a> {
         )?)
     }
 
-    /// The same mesh with the tags that last, and with where it came from.
+    /// The mesh with its infinitely sharp tags and its origins.
     ///
     /// # Errors
     /// A coordinate is not finite.
@@ -527,8 +538,9 @@ impl<'a> Front<'a> {
         Ok(Snapshot::of(&self.forest)?)
     }
 
-    /// How far mesh and limit surface are from each other at most, both ways and place by place, in the control mesh's units: proven for
-    /// schemes of the Loop family, an estimate from samples for others. Infinite where a front does not go by distances: nothing is known then.
+    /// The greatest distance between mesh and limit surface, both ways and by place, in the control
+    /// mesh's units: proven for schemes of the Loop family, an estimate from samples for others.
+    /// Infinite where a front does not measure distances.
     pub fn bound(&self) -> f64 {
         match self.forest.measure() {
             Measure::Distance => self.worst(),
@@ -536,13 +548,14 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The greatest value of a triangle's node, in the unit of what the front goes by: more than was asked only where levels or triangles
-    /// are limited.
+    /// The greatest value of a triangle's node, in the unit of the front's measure: above the
+    /// demand only where levels or triangles are limited.
     pub fn worst(&self) -> f64 {
         self.forest.worst(|extent| extent.value)
     }
 
-    /// How many pixels that is at most in the pictures of the cameras that were asked for; `None` where there are none.
+    /// The greatest number of pixels of [`Self::worst`] in the pictures of the demand's cameras;
+    /// `None` where there are none.
     pub fn pixels(&self) -> Option<f64> {
         self.question.eyes.as_ref()?;
         Some(self.forest.worst(|extent| self.question.measure(extent)))
@@ -553,8 +566,8 @@ impl<'a> Front<'a> {
         self.forest.worst(|extent| f64::from(extent.level)) as u32
     }
 
-    /// The distance, or number of pixels, that all triangles keep as far as levels allow: what was asked, or what so many triangles
-    /// allow.
+    /// The distance, or number of pixels, that all triangles meet as far as levels allow: the
+    /// demanded one, or the one that the number of triangles allows.
     pub fn limit(&self) -> f64 {
         self.question.limit
     }

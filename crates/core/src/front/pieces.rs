@@ -1,11 +1,13 @@
 //! The limit surface over nodes: points in the middles of edges, and how far it is from a node's triangle.
 //!
-//! Where a front goes by another [`Measure`], all nodes have their own pieces, with the points that it looks at ([`Sampled`]).
+//! Where a front has another [`Measure`], all nodes have their own pieces, with its samples
+//! ([`Sampled`]).
 //!
-//! A node over part of a regular piece keeps the piece's number and its place there; any other its own piece. Values belong to nodes
-//! alone: of parts of regular pieces by second derivatives ([`SecondDerivatives`]); of others what [`Sheet::off_linear`] finds for the
-//! node's triangle, and for closing triangles how far the middles of edges are from those of the triangle, since linear interpolation
-//! of these differences is no greater than they are.
+//! A node over part of a regular piece keeps the piece's number and its place there; any other its
+//! own piece. Values belong to nodes alone: of parts of regular pieces by second derivatives
+//! ([`SecondDerivatives`]); of others by [`Sheet::off_linear`] for the node's triangle, and for
+//! closing triangles by the distances of the middles of edges from those of the triangle, since
+//! linear interpolation of these differences is no greater than they are.
 
 use core::array::from_fn;
 
@@ -29,7 +31,7 @@ pub(super) enum Ground {
     Regular(u32, Spot),
     /// A piece of its own.
     General(u32),
-    /// A piece of its own, of a front that does not go by distances.
+    /// A piece of its own, of a front that does not measure distances.
     Sampled(u32),
 }
 
@@ -40,7 +42,7 @@ struct General {
     middles: [DVec3; 3],
 }
 
-/// What stands in places that are numbered, freed and taken again.
+/// Items in numbered slots, which are freed and used again.
 #[derive(Debug)]
 struct Shelf<T> {
     all: Vec<Option<T>>,
@@ -76,7 +78,7 @@ impl<T> Shelf<T> {
     }
 }
 
-/// The pieces of a limit surface over the nodes that there are.
+/// The pieces of a limit surface over the existing nodes.
 pub(super) struct Pieces<'a> {
     surface: LimitSurface<'a>,
     measure: Measure,
@@ -262,7 +264,7 @@ fn quartic(points: &Points) -> Quartic {
     Quartic::of(&BezierTriangle::of(points), 0)
 }
 
-/// A point of a piece: the same to the bit for whoever asks.
+/// A point of a piece, with the same bits for each caller.
 fn at(piece: &Quartic, [u, v]: [f64; 2]) -> DVec3 {
     let [[x], [y], [z]] = piece.points_at(&[u], &[v], 3);
     DVec3::new(x, y, z)

@@ -1,6 +1,7 @@
 //! A front's mesh in an order that the forest alone decides, and where its vertices and triangles came from on the control mesh.
 //!
-//! Vertices of the control mesh come first, the others as a walk over the control faces comes to them.
+//! Vertices of the control mesh come first, the others in the order of a walk over the control
+//! faces.
 
 use super::buffers::covering;
 use super::forest::{Forest, NONE};
@@ -13,7 +14,7 @@ use crate::refine::{Origin, Traced};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Snapshot {
-    /// The mesh, with the tags that are sharp for ever.
+    /// The mesh, with the infinitely sharp tags.
     pub mesh: Mesh,
     /// Where each vertex came from, in the control face of the first triangle that has it.
     pub origins: Vec<Origin>,
@@ -54,7 +55,7 @@ impl Snapshot {
         Ok(found)
     }
 
-    /// The tags of what lies along edges of the control mesh that are sharp for ever.
+    /// The tags of edges that lie on infinitely sharp edges of the control mesh.
     fn lasting_tags(&self, control: &Mesh) -> Tags {
         let lasts = |sharpness: f64| sharpness >= INFINITELY_SHARP;
         let tags = control.tags();
@@ -114,7 +115,7 @@ pub(super) struct Numbered {
     parents: Vec<u32>,
 }
 
-/// What stands in the forest.
+/// The elements of the forest, numbered.
 pub(super) fn numbered(forest: &Forest<'_>) -> Numbered {
     let control = forest.surface().control();
     let (vertices, faces) = (control.vertex_count(), control.face_count());

@@ -1,7 +1,9 @@
-//! A binary tree of boxes over anything that has one, for searches that look at what is near, or in the way of a ray, first.
+//! A binary tree of boxes over any items, for searches that visit near items, or those in the way
+//! of a ray, first.
 //!
-//! Items are ordered by median cuts across the longest side of the box of their middles; those with equal coordinates are told apart by
-//! their numbers, so that the tree depends on the boxes alone. A node's items stand together in that order.
+//! Items are ordered by median cuts across the longest side of the box of their middles; those with
+//! equal coordinates are ordered by their numbers, so that the tree depends on the boxes alone. A
+//! node's items are consecutive in that order.
 
 use smallvec::SmallVec;
 
@@ -34,7 +36,7 @@ pub(crate) fn distance_squared_to(bounds: &Bounds, point: DVec3) -> f64 {
         .length_squared()
 }
 
-/// A box, and what is in it.
+/// A box and its contents.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) bounds: Bounds,
@@ -59,18 +61,19 @@ pub(crate) struct BoxTree {
     items: Vec<u32>,
 }
 
-/// What a search wants of a tree.
+/// The query of a search.
 pub(crate) trait Search {
-    /// A bound from below on what is in a box, in whatever it is that the search wants little of; infinite where it wants nothing.
+    /// A lower bound, for the contents of a box, of the value that the search minimises; infinite
+    /// where the search skips it.
     fn bound(&self, bounds: &Bounds) -> f64;
 
-    /// From which bound on nothing is looked at any more.
+    /// The bound from which the search skips nodes.
     fn limit(&self) -> f64;
 
-    /// Looks at an item.
+    /// Visits an item.
     fn visit(&mut self, item: u32);
 
-    /// What has this bound is passed over.
+    /// Called with the bound of each node that is skipped.
     fn pass_over(&mut self, _bound: f64) {}
 }
 
@@ -85,7 +88,7 @@ impl BoxTree {
         Self { nodes, items }
     }
 
-    /// The nodes: the root first, each followed by its first child and what is below that.
+    /// The nodes: the root first, each followed by the subtree of its first child.
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes
     }
@@ -101,7 +104,7 @@ impl BoxTree {
         (own.count > 1).then_some([node + 1, own.second as usize])
     }
 
-    /// Searches from the root, what has the lesser bound first.
+    /// Searches from the root, the lesser bound first.
     pub(crate) fn search(&self, search: &mut impl Search) {
         let Some(root) = self.nodes.first() else {
             return;
@@ -126,7 +129,7 @@ impl BoxTree {
     }
 }
 
-/// Appends the node over some items, which stand at `first` among all, and what is below it; orders them.
+/// Appends the subtree over some items, which begin at `first` among all; orders them.
 fn append(nodes: &mut Vec<Node>, boxes: &[Bounds], items: &mut [u32], first: u32) {
     let joined = |a: Bounds, &b: &u32| {
         let [low, high] = boxes[b as usize];

@@ -9,7 +9,7 @@ pub(crate) struct DisjointSets {
 }
 
 impl DisjointSets {
-    /// So many sets of one.
+    /// `count` sets of one element.
     pub(crate) fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),

@@ -1,7 +1,7 @@
 //! Which triangles meet at each edge.
 //!
-//! Takes triangles by their indices, of any kind: non-manifold, turned either way, naming a vertex twice. Linear in their
-//! number but for sorting the sides at each vertex, of which there are few.
+//! Takes triangles by their indices, of any kind: non-manifold, of either orientation, naming a
+//! vertex twice. Linear in their number, except for sorting the few sides at each vertex.
 
 use crate::parallel::Poll;
 use crate::progress::Cancelled;
@@ -18,9 +18,10 @@ pub(crate) struct EdgeSide {
 /// Vertices and triangles between two calls of the poll.
 const BETWEEN_POLLS: usize = 1 << 16;
 
-/// Calls `visit` with the lower vertex of each edge and the sides along it, in ascending order of their numbers; the edges
-/// come by their lower, then by their higher vertex. Triangles that name a vertex twice have no edges. Vertices are below
-/// `vertex_count` and triangles few enough for their sides to be numbered. `poll` is told how many triangles are done.
+/// Calls `visit` with the lower vertex of each edge and the sides along it, in ascending order of
+/// their numbers; the edges come by their lower, then by their higher vertex. Triangles that name a
+/// vertex twice have no edges. Vertices are below `vertex_count` and triangles few enough for their
+/// sides to be numbered. `poll` receives the number of triangles done.
 pub(crate) fn for_each_edge(
     triangles: &[[u32; 3]],
     vertex_count: usize,
@@ -60,7 +61,7 @@ pub(crate) fn for_each_edge(
     poll(triangles.len())
 }
 
-/// [`for_each_edge`] where nobody waits for it.
+/// [`for_each_edge`] without polling.
 pub(crate) fn every_edge(
     triangles: &[[u32; 3]],
     vertex_count: usize,

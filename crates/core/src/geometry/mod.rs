@@ -1,6 +1,6 @@
-//! What several rooms need of triangles and sets of numbers, once: edges and their triangles, disjoint sets, the closest
-//! point of a triangle and its solid angle, what a rim in the plane encloses, a tree of boxes, coordinates in which a surface is about
-//! as large as 1. Knows no mesh.
+//! Geometry that several rooms share: edges and their triangles, disjoint sets, the closest point
+//! of a triangle and its solid angle, the inside of a rim in the plane, a tree of boxes,
+//! coordinates in which a surface is about as large as 1. Knows no mesh.
 
 pub(crate) mod box_tree;
 mod disjoint_sets;
@@ -12,7 +12,7 @@ mod triangle;
 pub(crate) use disjoint_sets::DisjointSets;
 pub(crate) use edges::{EdgeSide, every_edge, for_each_edge};
 pub(crate) use surface_frame::SurfaceFrame;
-pub(crate) use triangle::{Foot, closest_to_origin, nearer, solid_angle};
+pub(crate) use triangle::{Projection, closest_to_origin, nearer, solid_angle};
 
-/// Stands for "no element" among indices.
+/// The index that means "no element".
 pub(crate) const NONE: u32 = u32::MAX;

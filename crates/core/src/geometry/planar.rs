@@ -1,4 +1,4 @@
-//! The constrained Delaunay triangulation of what a rim in the plane encloses.
+//! The constrained Delaunay triangulation of the inside of a rim in the plane.
 
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -11,9 +11,10 @@ const ASKED: usize = 256;
 /// Halvings of a square in each direction along the curve through it.
 const ORDER: u32 = 16;
 
-/// Triangles that cover what lies to the left of the directed rim edges, with all points for vertices. `None` where two points are
-/// at one place or rim edges cross or touch, and when stopped. Points are at most some units from the origin.
-/// Coordinates too small to be told from 0 are 0.
+/// Triangles that cover the region to the left of the directed rim edges, with all points for
+/// vertices. `None` where two points are at one place or rim edges cross or touch, and when
+/// stopped. Points are at most some units from the origin. Coordinates too close to 0 to be
+/// distinguished are 0.
 pub(crate) fn triangulated(
     points: &[[f64; 2]],
     rim: &[[u32; 2]],
@@ -72,8 +73,8 @@ pub(crate) fn triangulated(
     )
 }
 
-/// The numbers of points in the order in which Hilbert's curve passes them: each is inserted beside the one before, so that it is found in a few steps
-/// however the points were numbered.
+/// The numbers of points in the order in which Hilbert's curve passes them: each is inserted next
+/// to the one before, so that it is found in a few steps however the points were numbered.
 fn along_curve(points: &[[f64; 2]], is_stopped: &IsStopped<'_>) -> Vec<u32> {
     let corner = [0, 1].map(|axis| {
         points
@@ -123,7 +124,7 @@ fn along_hilbert_curve([mut x, mut y]: [u32; 2]) -> u32 {
 mod tests {
     use super::*;
 
-    /// The edges of polygons of so many points, one after the other.
+    /// The edges of polygons with these numbers of points, one after the other.
     fn rim(polygons: &[u32]) -> Vec<[u32; 2]> {
         let mut first = 0;
         let polygons = polygons.iter().flat_map(|&count| {
@@ -143,7 +144,8 @@ mod tests {
         triangles.iter().map(area).sum()
     }
 
-    /// A square with a square hole and a point inside: what the holes leave, all points used.
+    /// A square with a square hole and a point inside: the rest is covered, and all points are
+    /// used.
     #[test]
     fn what_is_enclosed_is_covered() {
         let square = |r: f64| [[-r, -r], [r, -r], [r, r], [-r, r]];

@@ -12,7 +12,7 @@ pub(crate) struct SurfaceFrame {
 }
 
 impl SurfaceFrame {
-    /// Around what a box holds.
+    /// The frame around a box.
     pub(crate) fn of([low, high]: Bounds) -> Self {
         let size = diagonal(0.5 * low, 0.5 * high);
         Self {

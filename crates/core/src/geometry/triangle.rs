@@ -1,16 +1,16 @@
 //! The point of a triangle closest to the origin, in double precision, for any triangle: slivers, needles and
 //! triangles without area included.
 //!
-//! The Voronoi regions of the triangle's corners, sides and inside are told apart by the signs of dot products
-//! (Ericson, Real-Time Collision Detection, section 5.1.5). Their products of products lose too many digits on
-//! slivers and far away from small triangles; there the three sides are measured one by one and the inside
-//! through the triangle's normal.
+//! The Voronoi regions of the triangle's corners, sides and inside are distinguished by the signs
+//! of dot products (Ericson, Real-Time Collision Detection, section 5.1.5). Their products of
+//! products lose too many digits on slivers and far away from small triangles; there the three
+//! sides are measured one by one and the inside through the triangle's normal.
 
 use crate::vector::DVec3;
 
 /// The closest point as a convex combination of the corners, and its squared distance from the origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Foot {
+pub(crate) struct Projection {
     /// Weights of the corners: none negative, their sum 1.
     pub(crate) weights: [f64; 3],
     /// Squared distance.
@@ -22,10 +22,10 @@ pub(crate) struct Foot {
 /// of the height, and its effect on the distance below rounding.
 const WELL_SHAPED: f64 = 1e-7;
 
-/// The foot on the corner-weighted point.
+/// The projection with these corner weights.
 #[inline]
-fn foot(weights: [f64; 3], at: DVec3) -> Foot {
-    Foot {
+fn projection(weights: [f64; 3], at: DVec3) -> Projection {
+    Projection {
         weights,
         squared: at.length_squared(),
     }
@@ -33,19 +33,19 @@ fn foot(weights: [f64; 3], at: DVec3) -> Foot {
 
 /// The point of triangle `a`, `b`, `c` closest to the origin.
 #[inline]
-pub(crate) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Foot {
+pub(crate) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Projection {
     let (ab, ac) = (b - a, c - a);
     let (ab_a, ac_a) = (-ab.dot(a), -ac.dot(a));
     if ab_a <= 0.0 && ac_a <= 0.0 {
-        return foot([1.0, 0.0, 0.0], a);
+        return projection([1.0, 0.0, 0.0], a);
     }
     let (ab_b, ac_b) = (-ab.dot(b), -ac.dot(b));
     if ab_b >= 0.0 && ac_b <= ab_b {
-        return foot([0.0, 1.0, 0.0], b);
+        return projection([0.0, 1.0, 0.0], b);
     }
     let (ab_c, ac_c) = (-ab.dot(c), -ac.dot(c));
     if ac_c >= 0.0 && ab_c <= ac_c {
-        return foot([0.0, 0.0, 1.0], c);
+        return projection([0.0, 0.0, 1.0], c);
     }
     let size = ab.length_squared() + ac.length_squared();
     let reach = a.length_squared() + b.length_squared() + c.length_squared();
@@ -57,23 +57,23 @@ pub(crate) fn closest_to_origin(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     let weight_c = ab_a * ac_b - ab_b * ac_a;
     if weight_c <= 0.0 && ab_a >= 0.0 && ab_b <= 0.0 {
         let t = ab_a / (ab_a - ab_b);
-        return foot([1.0 - t, t, 0.0], a + ab * t);
+        return projection([1.0 - t, t, 0.0], a + ab * t);
     }
     let weight_b = ab_c * ac_a - ab_a * ac_c;
     if weight_b <= 0.0 && ac_a >= 0.0 && ac_c <= 0.0 {
         let t = ac_a / (ac_a - ac_c);
-        return foot([1.0 - t, 0.0, t], a + ac * t);
+        return projection([1.0 - t, 0.0, t], a + ac * t);
     }
     let weight_a = ab_b * ac_c - ab_c * ac_b;
     let (from_b, from_c) = (ac_b - ab_b, ab_c - ac_c);
     if weight_a <= 0.0 && from_b >= 0.0 && from_c >= 0.0 {
         let t = from_b / (from_b + from_c);
-        return foot([0.0, 1.0 - t, t], b + (c - b) * t);
+        return projection([0.0, 1.0 - t, t], b + (c - b) * t);
     }
     // Inside, the distance is that to the plane: it has more digits than the difference of the weighted corners.
     let sum = weight_a + weight_b + weight_c;
     let height = a.dot(normal);
-    Foot {
+    Projection {
         weights: [weight_a / sum, weight_b / sum, weight_c / sum],
         squared: height * height / normal.length_squared(),
     }
@@ -92,9 +92,9 @@ pub(crate) fn nearer(least: f64, [a, b, c]: [DVec3; 3]) -> f64 {
 
 /// The closest point of triangles whose region tests cannot be trusted: the best of the three sides and the inside.
 #[cold]
-fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
-    let mut best = foot([1.0, 0.0, 0.0], a);
-    let mut offer = |candidate: Foot| {
+fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Projection {
+    let mut best = projection([1.0, 0.0, 0.0], a);
+    let mut offer = |candidate: Projection| {
         if candidate.squared < best.squared {
             best = candidate;
         }
@@ -104,7 +104,7 @@ fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
         let mut weights = [0.0; 3];
         weights[slots[0]] = 1.0 - t;
         weights[slots[1]] = t;
-        offer(foot(weights, from + (to - from) * t));
+        offer(projection(weights, from + (to - from) * t));
     }
     let normal = (b - a).cross(c - a);
     let weight_a = normal.dot((c - b).cross(-b));
@@ -114,7 +114,7 @@ fn closest_by_parts(a: DVec3, b: DVec3, c: DVec3) -> Foot {
     if weight_a >= 0.0 && weight_b >= 0.0 && weight_c >= 0.0 && sum > 0.0 {
         let weights = [weight_a / sum, weight_b / sum, weight_c / sum];
         if weights.iter().all(|w| w.is_finite()) {
-            offer(foot(
+            offer(projection(
                 weights,
                 a * weights[0] + b * weights[1] + c * weights[2],
             ));

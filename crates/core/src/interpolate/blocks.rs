@@ -1,9 +1,12 @@
-//! The block triangular form of a system: which unknowns depend on one another, and in which order they can be found.
+//! The block triangular form of a system: the unknowns that depend on one another, and an order of
+//! solving.
 //!
-//! A limit position depends on some control points. Points that depend on each other in a circle have to be found together:
-//! the strongly connected components of the matrix's pattern (Tarjan 1972), which come out in an order in which each depends
-//! on earlier ones alone. So corners come first, each by itself, then the lines of creases and boundaries between them, then
-//! the inside of each smooth region; and a line that ends in a dart comes together with the region around that.
+//! A limit position depends on some control points. Points that depend on each other in a circle
+//! have to be found together: the strongly connected components of the matrix's pattern (Tarjan
+//! 1972), which come out in an order in which each depends on earlier ones alone. So corners come
+//! first, each alone, then the lines of creases and boundaries between them, then the inside of
+//! each smooth region; and a line that ends in a dart is solved together with the region around
+//! that.
 
 use super::sparse::Sparse;
 
@@ -18,7 +21,8 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// The groups of a square matrix, whose rows say what each unknown depends on; each group ascending.
+    /// The groups of a square matrix, whose rows are the dependencies of the unknowns; each group
+    /// ascending.
     pub(super) fn of(matrix: &Sparse) -> Self {
         let n = matrix.rows();
         let mut search = Search {
@@ -76,7 +80,7 @@ struct Search<'m> {
     matrix: &'m Sparse,
     /// When each unknown was visited, from 1 on; 0 for not yet.
     order: Vec<u32>,
-    /// The earliest visit among what is still open and was found from it.
+    /// The earliest open visit that was found from it.
     lowest: Vec<u32>,
     is_open: Vec<bool>,
     open: Vec<u32>,
@@ -86,7 +90,7 @@ struct Search<'m> {
 
 impl Search<'_> {
     fn visit_from(&mut self, root: u32) {
-        // Unknowns on the way, and how many of their columns have been looked at.
+        // Unknowns on the way, and the number of their columns visited.
         let mut way = vec![(root, 0usize)];
         self.enter(root);
         while let Some(top) = way.last_mut() {

@@ -1,9 +1,9 @@
-//! Which control points have which limits: the system over the whole mesh, solved block by block.
+//! The system of control points for given limits over the whole mesh, solved block by block.
 //!
-//! Unknown is how far each control point is moved, d; with the limit weights A and the mesh's vertices v,
-//! A·(v + d) = v + y, where y is how far limits may be from the vertices: nothing, if the surface passes through them. As the
-//! weights of a row sum to 1, the right side v − A·v + y is a sum of differences of neighbours and does not lose digits to
-//! coordinates far from the origin.
+//! Unknown is the displacement d of the control points; with the limit weights A and the mesh's
+//! vertices v, A·(v + d) = v + y, where y is the offset of limits from the vertices: zero, if the
+//! surface passes through them. As the weights of a row sum to 1, the right side v − A·v + y is a
+//! sum of differences of neighbours and does not lose digits to coordinates far from the origin.
 //!
 //! Copies of a vertex on sheets that were cut apart are one unknown, that of the first of them.
 
@@ -21,10 +21,10 @@ use crate::progress::{Cancelled, Watch};
 use crate::vector::{DVec3, vector};
 use std::collections::{HashMap, HashSet};
 
-/// Residuals below this, beside the greatest distance of a limit from its vertex, are nothing.
+/// Residuals below this, relative to the greatest distance of a limit from its vertex, are zero.
 const ACCURACY: f64 = 1e-14;
 
-/// Residuals below this, beside the greatest coordinate, are what rounding leaves of nothing.
+/// Residuals below this, relative to the greatest coordinate, are within rounding.
 const ROUNDING: f64 = 1e-17;
 
 /// Units in the last place that rounding the control points and adding up a limit can make.
@@ -48,7 +48,7 @@ pub(super) struct Moved {
 
 /// Where the limits of vertices are to be.
 pub(super) enum Limits<'a> {
-    /// So far from them, by vertex.
+    /// At these offsets from them, by vertex.
     At(&'a [DVec3]),
     /// Within a reach of each, and as fair as they can be.
     Near(&'a Near<'a>),
@@ -58,9 +58,9 @@ pub(super) enum Limits<'a> {
 pub(super) struct Near<'a> {
     /// By vertex.
     pub(super) reach: &'a [f64],
-    /// How much being near counts beside being fair.
+    /// The weight of nearness relative to fairness.
     pub(super) nearness: f64,
-    /// How much less fair than possible they may be, beside limits at the vertices.
+    /// How much less fair than possible they may be, relative to limits at the vertices.
     pub(super) nothing: f64,
     /// By vertex, how far limits are from them to begin with.
     pub(super) from: &'a [DVec3],
@@ -68,7 +68,7 @@ pub(super) struct Near<'a> {
 
 /// How blocks are solved.
 enum Way<'a> {
-    /// For limits so far from their vertices.
+    /// For limits at these offsets from their vertices.
     At(&'a [DVec3]),
     /// For the fairest.
     Near {
@@ -87,10 +87,11 @@ pub(super) struct ControlPoints<'m> {
     /// Where some vertices keep their place, the rows of all.
     rows: Option<Sparse>,
     matrix: Sparse,
-    /// First copies that keep their place, wherever their limit is.
+    /// First copies of the kept vertices, whatever their limits.
     kept: HashSet<u32>,
-    /// These, and first copies whose rows are for an edge beside them that is shorter than it is.
-    passed_by: HashSet<u32>,
+    /// The relaxed vertices, and first copies whose rows are for an adjacent edge that is shorter
+    /// than theirs.
+    relaxed: HashSet<u32>,
     /// First copies that keep their place though their limit is elsewhere in its plane, with the unit normal of that.
     planes: HashMap<u32, DVec3>,
     points: Vec<DVec3>,
@@ -120,7 +121,7 @@ impl<'m> ControlPoints<'m> {
         let planes = kept_in_planes(&rows, mesh, &sharpness, poll)?;
         let unit = unit(mesh);
         let points = mesh.positions().iter().map(|&p| vector(p) * unit).collect();
-        let (matrix, passed_by) = (Sparse::empty(), HashSet::new());
+        let (matrix, relaxed) = (Sparse::empty(), HashSet::new());
         let mut found = Self {
             mesh,
             sharpness,
@@ -128,7 +129,7 @@ impl<'m> ControlPoints<'m> {
             rows: None,
             matrix,
             kept,
-            passed_by,
+            relaxed,
             planes,
             points,
             unit,
@@ -143,8 +144,8 @@ impl<'m> ControlPoints<'m> {
             true => (rows, None),
             false => (keeping(&rows, |v| self.planes.contains_key(&v)), Some(rows)),
         };
-        self.passed_by = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
-        self.passed_by.extend(&self.kept);
+        self.relaxed = even(&mut self.matrix, self.mesh, &self.sharpness, poll)?;
+        self.relaxed.extend(&self.kept);
         Ok(())
     }
 
@@ -172,25 +173,25 @@ impl<'m> ControlPoints<'m> {
         Ok(true)
     }
 
-    /// How far the surface misses a vertex whose limit is so far away: only across its plane where it keeps its place, and not at all
-    /// where it is passed by.
+    /// The distance of the surface from a vertex whose limit is at this offset: only across its
+    /// plane where its control point is kept, and zero where it is relaxed.
     pub(super) fn missed(&self, v: usize, away: DVec3) -> DVec3 {
         let first = self.first_copy[v];
         match self.planes.get(&first) {
-            _ if self.passed_by.contains(&first) => DVec3::ZERO,
+            _ if self.relaxed.contains(&first) => DVec3::ZERO,
             Some(&normal) => away.dot(normal) * normal,
             None => away,
         }
     }
 
-    /// The vertices that are passed by, ascending.
-    pub(super) fn passed_by(&self) -> Vec<VertexId> {
-        if self.passed_by.is_empty() {
+    /// The relaxed vertices, ascending.
+    pub(super) fn relaxed(&self) -> Vec<VertexId> {
+        if self.relaxed.is_empty() {
             return Vec::new();
         }
         let all = (0..)
             .zip(&self.first_copy)
-            .filter(|(_, first)| self.passed_by.contains(first));
+            .filter(|(_, first)| self.relaxed.contains(first));
         all.map(|(v, _)| VertexId(v)).collect()
     }
 
@@ -204,7 +205,8 @@ impl<'m> ControlPoints<'m> {
         self.stays(self.first_copy[v] as usize)
     }
 
-    /// Whether a limit position is the vertex itself, wherever others are. Further copies have no row.
+    /// Whether a limit position is the vertex itself, whatever the others. Further copies have no
+    /// row.
     fn stays(&self, v: usize) -> bool {
         self.first_copy[v] != v as u32 || self.matrix.row(v).eq([(v as u32, 1.0)])
     }
@@ -273,7 +275,8 @@ impl<'m> ControlPoints<'m> {
         Ok(moved)
     }
 
-    /// Solves the system of a block, whose right side is that of limits at the vertices. Earlier blocks are moved `by` what is known.
+    /// Solves the system of a block, whose right side is that of limits at the vertices. Earlier
+    /// blocks are moved `by` known offsets.
     fn solve_block(
         &self,
         (number, blocks): (usize, &Blocks),
@@ -337,7 +340,7 @@ impl<'m> ControlPoints<'m> {
         reaches
     }
 
-    /// The system of a block, and its right side with what is known from earlier blocks.
+    /// The system of a block, and its right side with the known offsets of earlier blocks.
     fn system_of(
         &self,
         block: &[u32],
@@ -367,15 +370,16 @@ impl<'m> ControlPoints<'m> {
         self.matrix.row(v).map(towards).sum()
     }
 
-    /// What rounding leaves of limits at their vertices: some units in the last place of the greatest coordinate.
+    /// The rounding error of limits at their vertices: some units in the last place of the greatest
+    /// coordinate.
     pub(super) fn rounding(&self) -> f64 {
         ROUNDINGS * f64::EPSILON / self.unit
     }
 
-    /// Where a control point comes to stand.
+    /// The position of a control point.
     pub(super) fn position(&self, v: usize, by: DVec3) -> [f64; 3] {
         let from = self.mesh.positions()[v];
-        // What stays keeps its bits.
+        // A vertex that does not move keeps its bits.
         if by == DVec3::ZERO {
             from
         } else {
@@ -416,7 +420,7 @@ fn of_first_copies(rows: LimitRows, first_copy: &[u32]) -> Sparse {
     matrix
 }
 
-/// The same rows, but for vertices that keep their place.
+/// The rows, except for vertices that keep their control point.
 fn keeping(rows: &Sparse, is_kept: impl Fn(u32) -> bool) -> Sparse {
     let mut matrix = Sparse::empty();
     for v in 0..rows.rows() as u32 {

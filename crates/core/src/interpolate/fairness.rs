@@ -1,18 +1,20 @@
 //! The fairest control points whose limits are near given points: a convex problem with a certificate.
 //!
-//! The energy is that of a thin plate over the control net, ½ Σ |Bx|²: at a smooth vertex (Bx) is the mean of the neighbours
-//! less the vertex, on a crease or a boundary the mean of the two neighbours along it less the vertex, and corners have none.
-//! Each row counts in the block where its last point is found, so that lines are as fair as they can be by themselves, and
-//! regions with the lines fixed.
+//! The energy is that of a thin plate over the control net, ½ Σ |Bx|²: at a smooth vertex (Bx) is
+//! the mean of the neighbours less the vertex, on a crease or a boundary the mean of the two
+//! neighbours along it less the vertex, and corners have none. Each row counts in the block where
+//! its last point is found, so that lines are as fair as they can be alone, and regions with the
+//! lines fixed.
 //!
-//! Unknown is y, how far limits are from their vertices, |yᵢ| ≤ Tᵢ; control points follow from it by A·x = v + y. So
-//! f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which projection is exact: accelerated projected
-//! gradients (Beck and Teboulle 2009) with restarts (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in
-//! y, so that what is needed where the method looks ahead follows from the iterates without solving again. ε makes the answer
-//! unique: of equally fair ones that nearest to the vertices.
+//! Unknown is y, the offsets of limits from their vertices, |yᵢ| ≤ Tᵢ; control points follow from
+//! it by A·x = v + y. So f(y) = ½|Bx|² + ½ε|y|² is to be least over a product of balls, to which
+//! projection is exact: accelerated projected gradients (Beck and Teboulle 2009) with restarts
+//! (O'Donoghue and Candès 2015). The gradient is A⁻ᵀBᵀBx + εy. All is affine in y, so that the
+//! values at which the method looks ahead follow from the iterates without solving again. ε makes
+//! the answer unique: of equally fair ones that nearest to the vertices.
 //!
-//! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the gap of Frank and Wolfe;
-//! Jaggi 2013). The iteration ends where that gap is small, and tells it.
+//! For any feasible y the least energy is at least f(y) − (g·y + Σ Tᵢ|gᵢ|), since f is convex (the
+//! gap of Frank and Wolfe; Jaggi 2013). The iteration ends where that gap is small, and reports it.
 
 use super::sparse::{Sparse, greatest, sum, update};
 use super::system::{Solution, System};
@@ -25,10 +27,10 @@ use crate::vector::DVec3;
 /// An ε that is far below the curvature of the energy in any but the longest waves.
 pub(super) const NEARNESS: f64 = 1e-6;
 
-/// The gap that is small enough, beside the energy and beside what can be gained.
+/// The sufficient gap, relative to the energy and to the possible gain.
 const GAP: f64 = 1e-2;
 
-/// An energy that is as good as none, beside that of limits at the vertices.
+/// A negligible energy, relative to that of limits at the vertices.
 pub(super) const NOTHING: f64 = 1e-9;
 
 /// Steps of the projected gradient at most.
@@ -37,16 +39,18 @@ const MOST_STEPS: usize = 500;
 /// The greatest curvature of the energy that is tried first; doubled where that is too little.
 const CURVATURE: f64 = 8.0;
 
-/// Residuals of the systems on the way, beside what they change.
+/// Residuals of the systems on the way, relative to their changes.
 const ACCURACY: f64 = 1e-7;
 
 /// How fair a control mesh is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Fairness {
-    /// The energy, beside that of the control points whose limits are the vertices: 1 where nothing was gained.
+    /// The energy, relative to that of the control points whose limits are the vertices: 1 where
+    /// nothing was gained.
     pub energy: f64,
-    /// What the least energy is at least, in the same measure: the answer is as good as this is near.
+    /// A lower bound of the least energy, relative to the energy at which [`Self::energy`] is 1:
+    /// the answer is good where both are close.
     pub least_energy: f64,
     /// Steps of the projected gradient, in the part of the mesh that took most.
     pub steps: usize,
@@ -160,7 +164,7 @@ pub(super) struct Bounds<'a> {
     pub(super) reach: &'a [f64],
     /// ε.
     pub(super) nearness: f64,
-    /// The gap that is small enough in any case, beside the energy of limits at the vertices.
+    /// The gap that is sufficient in any case, relative to the energy of limits at the vertices.
     pub(super) nothing: f64,
 }
 
@@ -203,7 +207,7 @@ impl Problem<'_> {
         Ok(gap.x.max(0.0))
     }
 
-    /// The state of given limits; what is solved for starts from that of `near`.
+    /// The state of given limits; the iteration starts from that of `near`.
     fn state(&self, y: Vec<DVec3>, near: State, poll: &mut Poll<'_>) -> Result<State, Cancelled> {
         let mut right = self.right.to_vec();
         update(&mut right, poll, |i, b| *b += y[i])?;
@@ -242,7 +246,7 @@ impl Problem<'_> {
     }
 }
 
-/// What was found for a block.
+/// The result for a block.
 pub(super) struct Found {
     pub(super) solution: Solution,
     /// How far limits are from their vertices.

@@ -1,39 +1,47 @@
 //! Control meshes whose limit surface passes through the vertices of a mesh.
 //!
-//! A limit surface lies inside its control mesh: it shrinks, a scan by some thousandths of its size, a coarse cylinder by
-//! hundredths. Here the vertices of a mesh are taken for points of the surface, and control points are found whose limits they
-//! are: a function from mesh to mesh, with the same faces and tags, after which everything goes on as for any control mesh
-//! (Halstead, Kass and DeRose, *Efficient, Fair Interpolation using Catmull–Clark Surfaces*, 1993; here for any scheme whose
+//! A limit surface lies inside its control mesh: it shrinks, a scan by some thousandths of its
+//! size, a coarse cylinder by hundredths. Here the vertices of a mesh are taken for points of the
+//! surface, and control points are found whose limits they are: a function from mesh to mesh, with
+//! the same faces and tags, which is then used as any control mesh (Halstead, Kass and DeRose,
+//! *Efficient, Fair Interpolation using Catmull–Clark Surfaces*, 1993; here for any scheme whose
 //! limit positions are known).
 //!
 //! # The system
-//! The limit position of a vertex is a weighted sum of control points, row by row a sparse matrix A with A·x = v. Points that
-//! depend on each other in a circle are found together, the others in the order in which they depend on one another
-//! (`blocks.rs`): corners keep their place, each line of a crease or a boundary is a system of its own, and then each region
-//! between them, with the lines fixed.
+//! The limit position of a vertex is a weighted sum of control points, row by row a sparse matrix A
+//! with A·x = v. Points that depend on each other in a circle are found together, the others in the
+//! order in which they depend on one another (`blocks.rs`): corners keep their positions, each line
+//! of a crease or a boundary is a system of its own, and then each region between them, with the
+//! lines fixed.
 //!
-//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a = 3/(8β(k)) for the vertex, divided by
-//! a + k (Loop 1987). So diag(a + k)·A = diag(a) + (adjacency) is symmetric, and it is positive definite at all valences: the
-//! sum over the triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the adjacency is at least
-//! −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and Warren's (0.61 at most, at valence 2). So there is a solution
-//! for every mesh, and with the diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4 for
-//! six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients at any size. Lines have 4 on the
-//! diagonal and two neighbours. No length enters: slivers are as good as other triangles.
+//! At a smooth vertex with k edges Loop's limit weights are 1 for the neighbours and a =
+//! 3/(8β(k)) for the vertex, divided by a + k (Loop 1987). So diag(a + k)·A = diag(a) +
+//! (adjacency) is symmetric, and it is positive definite at all valences: the sum over the
+//! triangles of (x_p + x_q + x_r)² is Σ k x² + 2·xᵀ(adjacency)x and not negative, whence the
+//! adjacency is at least −k/2; and a > k/2, as k·β(k) is below 3/4 for Loop's weights and
+//! Warren's (0.61 at most, at valence 2). So there is a solution for every mesh, and with the
+//! diagonal as preconditioner the condition number is at most that of (1 + k/a)/(1 − k/2a): 4
+//! for six edges, 10 for three, 14 for two. That takes some thirty steps of conjugate gradients
+//! at any size. Lines have 4 on the diagonal and two neighbours. No length enters: slivers do
+//! not matter.
 //!
-//! Where a dart or a tag that fades gives the neighbours of a vertex weights of their own, and for schemes outside the Loop
-//! family, the system may not be symmetric: conjugate gradients on the normal equations take its place, and where there is no
-//! solution they give the least squares answer. [`Interpolated::method`] says which it was.
+//! Where a dart or a semi-sharp tag gives the neighbours of a vertex weights of their own, and for
+//! schemes outside the Loop family, the system may not be symmetric: conjugate gradients on the
+//! normal equations take its place, and where there is no solution they give the least squares
+//! answer. [`Interpolated::method`] is the method used.
 //!
 //! # Lines whose edges are of very different lengths
-//! Along a crease or boundary a vertex beside a much longer edge is passed by, not through: `spacing.rs` says how, and why. Inside a region
-//! that lies in a plane and that sharp lines close off it keeps its place as a control point; the surface passes through it as through
-//! all of the plane (`planes.rs`).
+//! Along a crease or boundary a vertex adjacent to a much longer edge is relaxed: the curve passes
+//! near it, not through it. `spacing.rs` gives the rule and its reason. Inside a region that lies
+//! in a plane and that sharp lines close off it keeps its place as a control point; the surface
+//! passes through it as through all of the plane (`planes.rs`).
 //!
 //! # Near rather than through
-//! A surface that passes through every vertex undulates where vertices are out of line. [`InterpolateOptions::within`] allows
-//! limits to be so far from their vertices, and asks for the fairest surface of those: the control net of least thin-plate
-//! energy (`fairness.rs`). It is as curved as it must be and no more, which takes all of the distance where the surface is
-//! curved. [`Interpolated::fairness`] says how near the energy is to the least that there can be.
+//! A surface that passes through every vertex undulates where vertices are out of line.
+//! [`InterpolateOptions::within`] allows limits at this distance from their vertices, and gives the
+//! fairest surface of those: the control net of least thin-plate energy (`fairness.rs`). It is as
+//! curved as it must be and no more, which uses all of the distance where the surface is curved.
+//! [`Interpolated::fairness`] compares the energy with a lower bound.
 //!
 //! ```
 //! use limitmesh::interpolate::{InterpolateOptions, interpolate};
@@ -75,16 +83,17 @@ use system::Solver;
 /// Limits farther from their vertices than this share of the bounding box's diagonal are not at them.
 const THROUGH: f64 = 1e-10;
 
-/// How far beyond the distance that is asked for limits may be, as a share of the bounding box's diagonal.
+/// The tolerance of limits beyond the requested distance, as a share of the bounding box's
+/// diagonal.
 const NEAR: f64 = 1e-12;
 
-/// Vertices that are looked at between two calls of the observer: some milliseconds.
+/// Vertices between two calls of the observer: some milliseconds.
 const POLLED: u32 = 1 << 12;
 
-/// After so many attempts to keep vertices in planes all are led through.
+/// After this many attempts to keep vertices in planes, the surface passes through all.
 const MOST_ATTEMPTS: usize = 4;
 
-/// Why there are no control points.
+/// An error of interpolation.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InterpolateError {
@@ -101,9 +110,9 @@ pub enum InterpolateError {
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,
-        /// The distance that it came to.
+        /// The distance that was reached.
         distance: f64,
-        /// What was asked for.
+        /// The requested distance.
         within: f64,
     },
     /// The observer asked to stop.
@@ -112,64 +121,69 @@ pub enum InterpolateError {
 }
 
 options! {
-    /// How near the limit surface passes to the vertices.
+    /// The options of interpolation.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct InterpolateOptions {
-        /// The greatest distance of a limit from its vertex, as a length; of all control meshes that keep it the fairest is
-        /// taken. Default: 0, the surface passes through the vertices.
+        /// The greatest distance of a limit from its vertex, as a length; the result is the fairest
+        /// control mesh that keeps it. Default: 0, the surface passes through the vertices.
         pub within: f64 = 0.0,
     }
 }
 
-/// How control points were found.
+/// The method of solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InterpolationMethod {
-    /// There was nothing to find: all limits are the vertices themselves, as with a scheme that interpolates, or vertices of flat faces.
+    /// No system was solved: all limits are the vertices themselves, as with a scheme that
+    /// interpolates, or vertices of flat faces.
     Unchanged,
     /// Conjugate gradients on systems that are symmetric and positive definite.
     ConjugateGradients,
     /// Conjugate gradients on the normal equations, for some part of the mesh at least.
     NormalEquations,
-    /// No control points have these limits: the sum of the squared distances of limits from vertices is the least that there is,
-    /// for some part of the mesh.
+    /// No control points have these limits: the sum of the squared distances of limits from
+    /// vertices is the least, for some part of the mesh.
     LeastSquares,
 }
 
-/// A control mesh and how it came about.
+/// A control mesh and a report.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Interpolated {
-    /// The control mesh, with the faces and tags of the mesh that it is for.
+    /// The control mesh, with the faces and tags of the given mesh.
     pub mesh: Mesh,
-    /// How it was found.
+    /// The method of solution.
     pub method: InterpolationMethod,
     /// Steps of conjugate gradients, in the part of the mesh that took most; where limits may leave their vertices, those of the
     /// last solution.
     pub iterations: usize,
-    /// The greatest distance of a limit from its vertex, but for those [passed by](Self::passed_by), and from its plane where the surface is
-    /// all of that: what rounding leaves, unless limits may leave their vertices or the answer is one of least squares.
+    /// The greatest distance of a limit from its vertex, except for those
+    /// [relaxed](Self::passed_by), and from its plane where the surface fills that. It is the
+    /// rounding error, unless limits may leave their vertices or the answer is one of least
+    /// squares.
     pub residual: f64,
-    /// Vertices on creases and boundaries beside edges that are much longer than those around: the curve does not pass through them, but by
-    /// them, by less than it turns there; through them it would leave the mesh and come back. And those that keep their place so that the
-    /// surface [does not fold](crate::part::interpolate_unfolded).
+    /// The relaxed vertices. On creases and boundaries these are vertices adjacent to edges much
+    /// longer than their neighbours: the curve passes near them, at a distance smaller than its
+    /// turn there; a curve through them would leave the mesh and come back. Others keep their
+    /// control point so that the surface [does not fold](crate::part::interpolate_unfolded).
     pub passed_by: Vec<VertexId>,
-    /// The greatest distance of a control point from its vertex: the more, the likelier the surface undulates in between.
+    /// The greatest distance of a control point from its vertex: the greater, the likelier the
+    /// surface undulates in between.
     pub displacement: f64,
-    /// The vertex whose control point that is.
+    /// The vertex of [`Self::displacement`].
     pub most_displaced: VertexId,
-    /// How fair it is, where limits may leave their vertices.
+    /// Its fairness, where limits may leave their vertices.
     pub fairness: Option<Fairness>,
 }
 
 /// The control mesh whose limit surface passes through the vertices of `mesh`, or as near as the options say.
 ///
-/// Vertices whose limit is their own place keep it: corners, and all with a scheme that interpolates. Copies of a vertex where
-/// sheets were cut apart stay together, bit for bit.
+/// Vertices whose limit is their own position keep it: corners, and all vertices with an
+/// interpolating scheme. Copies of a vertex where sheets were cut apart stay together, bit for bit.
 ///
 /// # Errors
-/// A vertex has no limit, a control point would not be finite, or a distance is asked for that is negative, no number, or not
-/// reached.
+/// A vertex has no limit, a control point would not be finite, or the requested distance is
+/// negative, NaN, or not reached.
 pub fn interpolate(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -178,10 +192,10 @@ pub fn interpolate(
     interpolate_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`interpolate`], telling an observer how it goes on.
+/// [`interpolate`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`interpolate`], or the observer asked to stop.
 pub fn interpolate_observed(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -191,7 +205,8 @@ pub fn interpolate_observed(
     interpolate_but(mesh, scheme, options, &[], observer)
 }
 
-/// [`interpolate_observed`], but for vertices that are `kept` for control points as they are; the surface passes by them.
+/// [`interpolate_observed`], except for `kept` vertices, which stay control points; the surface
+/// passes near them.
 pub(crate) fn interpolate_but(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -224,7 +239,7 @@ pub(crate) fn interpolate_but(
             method: InterpolationMethod::Unchanged,
             iterations: 0,
             residual: 0.0,
-            passed_by: points.passed_by(),
+            passed_by: points.relaxed(),
             displacement: 0.0,
             most_displaced: VertexId(0),
             fairness: None,
@@ -266,7 +281,7 @@ pub(crate) fn interpolate_but(
         }
         watch.stage(Stage::Interpolating, Some(mesh.vertex_count()))?;
     };
-    let passed_by = points.passed_by();
+    let relaxed = points.relaxed();
     let (residual, vertex) = farthest(&limits, mesh.positions(), |v, away| points.missed(v, away));
     let rounding = points.rounding();
     if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
@@ -290,7 +305,7 @@ pub(crate) fn interpolate_but(
         method,
         iterations: moved.steps,
         residual,
-        passed_by,
+        passed_by: relaxed,
         displacement,
         most_displaced,
         fairness: moved.energies.map(|energies| energies.fairness()),

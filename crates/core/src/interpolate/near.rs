@@ -1,5 +1,5 @@
-//! Control points of one mesh whose limits are a little away from its vertices, asked for again and again: the fairest within reaches, and
-//! those of given limits.
+//! Control points of one mesh whose limits are a little away from its vertices, computed
+//! repeatedly: the fairest within reaches, and those of given limits.
 
 use super::control_points::{ControlPoints, Limits, Near};
 use super::{InterpolateError, MOST_ATTEMPTS, THROUGH};
@@ -9,7 +9,7 @@ use crate::progress::{Cancelled, Stage, Watch};
 use crate::scheme::Scheme;
 use crate::vector::DVec3;
 
-/// An energy that is as good as none, beside that of limits at the vertices: nobody sees that the rest is missing.
+/// A negligible energy, relative to that of limits at the vertices: the rest is not visible.
 const NOTHING: f64 = 1e-4;
 
 /// Finds control points near the vertices of a mesh.
@@ -40,8 +40,9 @@ impl<'m> NearVertices<'m> {
         !self.points.is_fixed(v)
     }
 
-    /// By vertex, how far from it the limits of the fairest control points are that stay within a reach of each. `nearness` is what being
-    /// near counts beside being fair, and the search begins with limits that are `from` their vertices.
+    /// By vertex, the distance from it of the limits of the fairest control points that stay within
+    /// a reach of each. `nearness` is the weight of nearness relative to fairness, and the search
+    /// begins with limits that are `from` their vertices.
     pub(crate) fn fairest(
         &self,
         reach: &[f64],

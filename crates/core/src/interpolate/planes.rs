@@ -1,9 +1,10 @@
 //! Vertices inside regions that lie in one plane and that sharp lines close off.
 //!
-//! The surface over such a region is that part of the plane, wherever the control points inside are. So a vertex inside need not be the
-//! limit of its own: the surface passes through it all the same. Where its edges are of very different lengths, as programs that cut solids
-//! leave them, it keeps its place as a control point. Led through it, that came to lie far away, perhaps beyond the region's rim, and the
-//! region folded.
+//! The surface over such a region is that part of the plane, wherever the control points inside
+//! are. So a vertex inside need not be the limit of its own: the surface passes through it anyway.
+//! Where its edges are of very different lengths, as programs that cut solids leave them, its
+//! control point stays at the vertex. With its limit at the vertex, the control point would lie far
+//! away, perhaps beyond the region's rim, and the region would fold.
 
 use std::collections::{HashMap, HashSet};
 
@@ -19,7 +20,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// How far vertices may be off a plane, as a part of the greatest coordinate: files in single precision round to half of this.
 const IN_PLANE: f64 = 2e-7;
 
-/// The vertices whose own places are as good as their limits', with the unit normals of their planes.
+/// The vertices that keep their control points, with the unit normals of their planes.
 pub(super) fn kept_in_planes(
     matrix: &Sparse,
     mesh: &Mesh,
@@ -53,7 +54,7 @@ pub(super) fn kept_in_planes(
                 .iter()
                 .filter(|&&u| planes.is_inside(u))
             {
-                // What goes on smoothly is in the plane, too, or what is beside it is not.
+                // A smooth continuation is in the plane, too, or its neighbours are not.
                 if planes.of_vertex(u).is_none() {
                     is_flat = false;
                 } else if seen.insert(u) {
@@ -69,7 +70,7 @@ pub(super) fn kept_in_planes(
     Ok(kept)
 }
 
-/// What is asked of the vertices of a mesh.
+/// The planes of the vertices of a mesh.
 struct Planes<'a> {
     matrix: &'a Sparse,
     mesh: &'a Mesh,

@@ -1,11 +1,13 @@
 //! Lines of creases and boundaries whose edges are of very different lengths.
 //!
-//! A limit curve through points that are spaced unevenly runs past those beside a long edge and comes back: it knows no lengths. Where a long
-//! straight edge of a part meets the short ones of a rounding, or a vertex stands near the end of an edge, it leaves the part by more than
-//! the rounding is large, and the flat faces beside it fold. So for a vertex beside an edge that is more than [`MOST_UNEVEN`] times as
-//! long as the edges at its ends are, what is asked is not that its limit be at it, but that it would be if that edge were so much
-//! shorter. With v the vertex, u the one at the other end and w < 1 the part that is left of the edge, v + w(u − v) takes u's place in
-//! v's row: the weights of the row still sum to 1, and v has more of it. The limit then lies beyond v along the long edge, and the curve
+//! A limit curve through points that are spaced unevenly overshoots those at a long edge and comes
+//! back: it ignores lengths. Where a long straight edge of a part meets the short ones of a
+//! rounding, or a vertex is near the end of an edge, it leaves the part by more than the rounding
+//! is large, and the adjacent flat faces fold. So a vertex of an edge more than [`MOST_UNEVEN`]
+//! times as long as the edges at its ends gets another condition: its limit would be at the vertex
+//! if that edge were that much shorter. With v the vertex, u the one at the other end and w < 1 the
+//! part that is left of the edge, v + w(u − v) replaces u in v's row: the weights of the row still
+//! sum to 1, and v has more of it. The limit then lies beyond v along the long edge, and the curve
 //! passes v by less than it turns there: not at all where it is straight.
 
 use std::collections::HashSet;
@@ -70,7 +72,7 @@ fn is_on_line(matrix: &Sparse, mesh: &Mesh, sharpness: &Sharpness<'_>, v: u32) -
 /// The part that is left of the edge between two vertices on a line, or of one of these and the line's end; all of it where they are the same.
 fn part_left(matrix: &Sparse, mesh: &Mesh, sharpness: &Sharpness<'_>, ends: [u32; 2]) -> f64 {
     let length = length(mesh, ends);
-    // At the end of a line nobody knows how long edges should be.
+    // At the end of a line there is no edge to compare with.
     let on_line = ends
         .into_iter()
         .filter(|&end| is_on_line(matrix, mesh, sharpness, end));

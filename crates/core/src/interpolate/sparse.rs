@@ -83,7 +83,7 @@ impl Sparse {
         parallel::map_polled(self.rows(), poll, |i| self.row_times(i, x))
     }
 
-    /// The transposed matrix of one with so many columns.
+    /// The transposed matrix of a matrix with `columns` columns.
     pub(super) fn transposed(&self, columns: usize) -> Self {
         let mut starts = vec![0; columns + 1];
         self.columns

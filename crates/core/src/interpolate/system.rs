@@ -1,10 +1,10 @@
 //! Linear systems A·x = b for points: by conjugate gradients where a scaling of the rows makes A symmetric and positive
 //! definite, else by conjugate gradients on AᵀA·x = Aᵀb.
 //!
-//! **Symmetric.** Where all weights of a row outside the diagonal are the same, γᵢ > 0, and pairs of unknowns occur mutually,
-//! S = diag(1/γ)·A is symmetric: diag(aᵢᵢ/γᵢ) and a pattern of ones. It is solved by the method of Hestenes and Stiefel
-//! (1952), preconditioned by its diagonal, each coordinate by itself. A direction in which it bends the wrong way shows that S
-//! is not positive definite.
+//! **Symmetric.** Where all weights of a row outside the diagonal are equal, γᵢ > 0, and pairs of
+//! unknowns occur mutually, S = diag(1/γ)·A is symmetric: diag(aᵢᵢ/γᵢ) and a pattern of ones. It is
+//! solved by the method of Hestenes and Stiefel (1952), preconditioned by its diagonal, each
+//! coordinate alone. A direction of negative curvature shows that S is not positive definite.
 //!
 //! **General.** CGLS (Björck, *Numerical Methods for Least Squares Problems*, 1996, section 7.4) never breaks down; where A is
 //! singular it ends at the least squares solution that is nearest to where it started.
@@ -20,7 +20,8 @@ const MOST_STEPS: usize = 1000;
 /// Steps at most on the normal equations, whose condition is that of the system squared.
 const MOST_NORMAL_STEPS: usize = 20_000;
 
-/// Gradients of the sum of squares shorter than this, beside the residual, are what rounding leaves of zero: A's weights sum to 1.
+/// Gradients of the sum of squares shorter than this, relative to the residual, are within
+/// rounding: A's weights sum to 1.
 const NO_GRADIENT: f64 = 1e-14;
 
 /// How far weights of a row may differ that are called the same: rounding of their formulas.
@@ -33,7 +34,7 @@ pub(super) enum Solver {
     Normal,
 }
 
-/// A solution and how it came about.
+/// A solution and a report.
 pub(super) struct Solution {
     pub(super) x: Vec<DVec3>,
     pub(super) steps: usize,
@@ -51,7 +52,7 @@ pub(super) struct System {
 struct Symmetric {
     scale: Vec<f64>,
     diagonal: Vec<f64>,
-    /// The pattern outside the diagonal, by rows; its weights are not looked at.
+    /// The pattern outside the diagonal, by rows; its weights are not used.
     pattern: Sparse,
 }
 

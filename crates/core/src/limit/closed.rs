@@ -20,7 +20,7 @@ use crate::scheme::Support;
 /// never; beyond it a ring has its limit position but no tangent plane.
 const MOST_WORK: usize = 1 << 29;
 
-/// How far two rows that should be the same up to a turn may differ.
+/// The greatest difference between two rows that are equal up to a turn.
 const TURN_TOLERANCE: f64 = 1e-11;
 
 /// An eigenvalue of the difference matrix and the frequency of its block.
@@ -30,7 +30,7 @@ struct Mode {
     frequency: usize,
 }
 
-/// The rows of one sector, and what follows from them for all the others.
+/// The rows of one sector, and their images for all the others.
 struct Sector<'n, 's> {
     neighbourhood: &'n Neighbourhood<'s>,
     /// Kinds of points a sector has.
@@ -210,7 +210,8 @@ impl<'n, 's> Sector<'n, 's> {
         Ok(core::iter::once(centre).chain(all).collect())
     }
 
-    /// Eigenvalues of D by falling modulus; those of a frequency between 0 and k/2 stand for their conjugates too.
+    /// Eigenvalues of D by falling modulus; an entry of a frequency between 0 and k/2 represents
+    /// its conjugate too.
     fn modes(&self) -> Result<Vec<Mode>, LimitError> {
         let mut modes = Vec::with_capacity((self.valence() / 2 + 1) * self.kinds);
         for frequency in 0..=self.valence() / 2 {

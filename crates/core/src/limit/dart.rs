@@ -96,8 +96,9 @@ fn sparse(row: &[f64]) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// Weights of the limit position. Sums of many terms may differ by their rounding from step to step for ever: the iteration has ended
-/// once what changes is no more than that and has not shrunk for some steps.
+/// Weights of the limit position. Sums of many terms may differ by their rounding from step to step
+/// endlessly: the iteration has ended once the change is no more than that and has not shrunk for
+/// some steps.
 fn position(
     neighbourhood: &Neighbourhood<'_>,
     rows: &[Vec<(usize, f64)>],
@@ -181,7 +182,7 @@ impl<'d> Parity<'d> {
         let points: Vec<usize> = (0..mirror.len())
             .filter(|&i| i < mirror[i] || (is_own(i) && sign > 0.0))
             .collect();
-        // What a functional with weight 1 at i, and ±1 at its image, gives at j after a step.
+        // The value at j after a step of a functional with weight 1 at i and ±1 at its image.
         let matrix = DMatrix::from_fn(points.len(), points.len(), |a, b| {
             let (i, j) = (points[a], points[b]);
             let image = if is_own(i) {
@@ -236,7 +237,8 @@ mod tests {
     use crate::ring::SharpRing;
     use crate::scheme::{Loop, LoopWarren, Scheme};
 
-    /// Numbers at the points of a dart's neighbourhood run to what the weights make of them, whatever the valence.
+    /// Values at the points of a dart's neighbourhood converge to the weighted sum, whatever the
+    /// valence.
     #[test]
     fn positions_are_found_at_all_valences() {
         for k in (3..350).chain([512, 600, 1024]) {

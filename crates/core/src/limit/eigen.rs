@@ -16,7 +16,7 @@ const RESIDUAL: f64 = 1e-9;
 /// length even where the matrix is singular.
 const SINGULAR_VALUES_UP_TO: usize = 24;
 
-/// Where the iteration for singular values stops; at machine precision itself it may go on for ever.
+/// Where the iteration for singular values stops; at machine precision itself it may not end.
 const SINGULAR_VALUE_ACCURACY: f64 = 5.0 * f64::EPSILON;
 
 /// Eigenvalues of a real square matrix.
@@ -79,7 +79,8 @@ where
 {
     let n = matrix.nrows();
     let size = matrix.norm().max(f64::MIN_POSITIVE);
-    // A shift beside the eigenvalue keeps the system solvable; the error it leaves shrinks by 1e-10 a step.
+    // A shift next to the eigenvalue keeps the system solvable; the error it leaves shrinks by
+    // 1e-10 a step.
     let shift = eigenvalue + T::from_real(size * 1e-11);
     let system = (matrix - DMatrix::identity(n, n) * shift).lu();
     // Starting with unequal entries: a vector with the matrix's symmetry could miss the eigenvector.
@@ -239,7 +240,7 @@ pub(super) fn left_vector(
     own.iter()
         .zip(start.iter())
         .for_each(|(&row, &weight)| vector[row] = weight);
-    // Components stand after those that they depend on: whatever this one reaches stands before it.
+    // Components come after those that they depend on: this one reaches only earlier ones.
     for rows in components[..component].iter().rev() {
         let columns = DMatrix::from_fn(matrix.nrows(), rows.len(), |i, j| matrix[(i, rows[j])]);
         let right = -columns.tr_mul(&vector);

@@ -14,7 +14,7 @@ pub enum LimitError {
         scheme: String,
         /// The ring at fault.
         shape: RingShape,
-        /// What was expected of the masks, and what was met.
+        /// The expected and the actual property of the masks.
         what: String,
     },
 }

@@ -1,9 +1,9 @@
 //! Limit positions and normals on a mesh.
 //!
-//! Takes a mesh and a table of stencils; gives a position or a unit normal for each vertex. A scheme with
-//! one-ring support is evaluated on the ring as it is. For one with two-ring support the neighbours of the ring
-//! may be irregular, where no stencil is tabulated: the neighbourhood is refined once by the scheme's own masks,
-//! after which it is regular, and its stencil is exact.
+//! Takes a mesh and a table of stencils; gives a position or a unit normal for each vertex. A
+//! scheme with one-ring support is evaluated on the ring itself. For one with two-ring support the
+//! neighbours of the ring may be irregular, where no stencil is tabulated: the neighbourhood is
+//! refined once by the scheme's own masks, after which it is regular, and its stencil is exact.
 
 use std::sync::Arc;
 
@@ -24,10 +24,11 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// 1e-16 for a flat ring, and a few digits are left to coordinates far from the origin.
 const LEAST_SINE: f64 = 1e-12;
 
-/// A tangent shorter than this fraction of the longest difference that entered it is what rounding left of zero.
+/// A tangent shorter than this fraction of the longest difference that entered it is zero within
+/// rounding.
 const LEAST_LENGTH: f64 = 1e-14;
 
-/// Vertices beside sharp edges that are looked at together.
+/// The most vertices adjacent to sharp edges that are evaluated together.
 const TAGGED: usize = 256;
 
 /// Squared lengths whose product, even times [`LEAST_SINE`] twice, neither vanishes nor overflows.
@@ -129,7 +130,7 @@ impl LimitTable<'_> {
         }
     }
 
-    /// Unit limit normals; `without_plane` says what stands where the limit surface has no tangent plane.
+    /// Unit limit normals; `without_plane` is used where the limit surface has no tangent plane.
     fn normals_or(
         &self,
         stencils: &Stencils,
@@ -170,7 +171,8 @@ impl LimitTable<'_> {
         Ok(normals.finished())
     }
 
-    /// Limit normal at the vertex that `corner` leaves, on the side of its face, as [`Self::sided_normals`] gives it.
+    /// Limit normal at the vertex that `corner` leaves, on the side of its face, one of
+    /// [`Self::sided_normals`].
     ///
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
@@ -231,7 +233,7 @@ impl LimitTable<'_> {
         })
     }
 
-    /// Limit normal of one vertex, as [`Self::normals`] gives it.
+    /// Limit normal of one vertex, one of [`Self::normals`].
     ///
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
@@ -288,9 +290,9 @@ impl LimitTable<'_> {
 
 /// The weights of one vertex.
 pub(super) enum Stencil {
-    /// By the shape of its ring.
+    /// The stencil by the shape of its ring.
     Plain(Arc<LimitStencil>),
-    /// By the sharpness of its edges.
+    /// The stencil by the sharpness of its edges.
     Sharp(Arc<SharpStencil>),
 }
 
@@ -429,7 +431,7 @@ pub(super) fn stays(weights: &[f64]) -> bool {
     weights[0] == 1.0 && weights[1..].iter().all(|&weight| weight == 0.0)
 }
 
-/// Sums of two tangents and the size of what entered them.
+/// Sums of two tangents and the size of their terms.
 #[derive(Clone, Copy, Default)]
 struct Tangents {
     first: DVec3,
@@ -449,9 +451,7 @@ impl Tangents {
         self.greatest = self.greatest.max(difference.abs().max_element());
     }
 
-    /// The unit normal of the plane they span, if they do span one.
-    #[inline]
-    /// Those of a closed ring that is counted from another edge, this angle away on the regular ring.
+    /// The tangents of a closed ring counted from another edge, at this angle on the regular ring.
     fn turned(&self, angle: f64) -> Self {
         let (sine, cosine) = angle.sin_cos();
         let first = cosine * self.first + sine * self.second;
@@ -462,6 +462,8 @@ impl Tangents {
         }
     }
 
+    /// The unit normal of the plane they span, if they do span one.
+    #[inline]
     fn normal(&self) -> Option<DVec3> {
         let squares = [self.first.length_squared(), self.second.length_squared()];
         let least = LEAST_LENGTH * self.greatest;
@@ -475,7 +477,7 @@ impl Tangents {
         spans.then(|| normal / square.sqrt())
     }
 
-    /// As [`Self::normal`], for tangents whose squares would vanish or overflow.
+    /// The normal of tangents whose squares would vanish or overflow.
     #[cold]
     fn normal_at_any_size(&self) -> Option<DVec3> {
         let long = |tangent: DVec3| tangent.abs().max_element() > LEAST_LENGTH * self.greatest;

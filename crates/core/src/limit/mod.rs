@@ -6,10 +6,10 @@
 //!
 //! # Theory
 //!
-//! A refinement takes the points around a vertex to new points around it by the **ring matrix** S (equation 3,
-//! [`ring_matrix`]), and their differences to the vertex by the **difference matrix** D (equation 6,
-//! [`difference_matrix`]). After n refinements a linear functional that is a *left* eigenvector, x·S = λx, has
-//! become λⁿ times what it was. Hence
+//! A refinement takes the points around a vertex to new points around it by the **ring matrix** S
+//! (equation 3, [`ring_matrix`]), and their differences to the vertex by the **difference matrix**
+//! D (equation 6, [`difference_matrix`]). After n refinements a linear functional that is a *left*
+//! eigenvector, x·S = λx, is multiplied by λⁿ. Hence
 //!
 //! * the limit position is given by the left eigenvector of S for the eigenvalue 1, with weights that sum to 1;
 //! * differences tend to the plane of the two dominant left eigenvectors u, w of D, and the normal to
@@ -27,9 +27,10 @@
 //! faces', and zero where that vanishes. At boundary vertices with seven or more edges Loop's surface is not
 //! smooth: the normal there is that of the ribbon along the boundary, to which the two boundary faces tend.
 //!
-//! Schemes with [`Support::TwoRing`](crate::scheme::Support::TwoRing) are analysed on the two-ring with regular
-//! neighbours. On a mesh, whose neighbours may be irregular, the vertex's neighbourhood is refined once by the
-//! actual masks, after which that is its shape; the limit is the same, so this is exact.
+//! Schemes with [`Support::TwoRing`](crate::scheme::Support::TwoRing) are analysed on the two-ring
+//! with regular neighbours. On a mesh, whose neighbours may be irregular, the vertex's
+//! neighbourhood is refined once by the actual masks, after which it has this shape; the limit does
+//! not change, so this is exact.
 //!
 //! # Your own scheme
 //!

@@ -12,8 +12,8 @@
 //! 2k+1 … 2k+f       the points M_j opposite V across the edge P_j P_{j+1}   (two-ring schemes only)
 //! ```
 //!
-//! After refinement the same points are: V moved, the edge points of the spokes V P_j, the P_j moved, and the
-//! edge points of the link edges P_j P_{j+1}.
+//! After refinement these points are: V moved, the edge points of the spokes V P_j, the P_j moved,
+//! and the edge points of the link edges P_j P_{j+1}.
 
 use super::LimitError;
 use crate::masks::views::{LabelledRing, edge_views, vertex_views};
@@ -41,7 +41,7 @@ impl<'s> Neighbourhood<'s> {
     /// The neighbourhood of a vertex with the ring `shape`, as large as the scheme's support.
     ///
     /// # Errors
-    /// The ring has fewer than two edges, or is closed and has so many that indices overflow.
+    /// The ring has fewer than two edges, or is closed and so long that indices overflow.
     pub(super) fn new(scheme: &'s dyn Scheme, shape: RingShape) -> Result<Self, LimitError> {
         if shape.valence < 2 || shape.valence > u32::MAX / 4 {
             let what = format!(
@@ -62,7 +62,7 @@ impl<'s> Neighbourhood<'s> {
     /// The neighbourhood of a vertex whose edges have some sharpness.
     ///
     /// # Errors
-    /// As for [`Self::new`].
+    /// Those of [`Self::new`].
     pub(super) fn of_sharp(scheme: &'s dyn Scheme, sharp: SharpRing) -> Result<Self, LimitError> {
         let shape = RingShape {
             open: sharp.open,
@@ -203,7 +203,7 @@ impl<'s> Neighbourhood<'s> {
     /// Weights on the points after a refinement, as weights on those before it.
     ///
     /// # Errors
-    /// As for [`Self::row`].
+    /// Those of [`Self::row`].
     pub(super) fn pulled_back(&self, weights: &[f64]) -> Result<Vec<f64>, LimitError> {
         let mut before = vec![0.0; weights.len()];
         let is_family = self.scheme.loop_family().is_some();
@@ -227,7 +227,7 @@ impl<'s> Neighbourhood<'s> {
         Ok(before)
     }
 
-    /// What is not 0 in the row of the new point on the edge to P_j, by the masks of the Loop family.
+    /// The non-zero weights of the new point on the edge to P_j, by the masks of the Loop family.
     fn spoke_row(&self, j: usize) -> [(usize, f64); 4] {
         let k = self.valence();
         let is_boundary = self.shape.open && (j == 0 || j + 1 == k);
@@ -236,9 +236,9 @@ impl<'s> Neighbourhood<'s> {
         } else {
             self.sharp.spokes[j].clamp(0.0, 1.0)
         };
-        let (ends, beside) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
+        let (ends, others) = (sharp * 0.5 + (1.0 - sharp) * 0.375, (1.0 - sharp) * 0.125);
         let [at, previous, next] = [j, j + k - 1, j + 1].map(|j| self.ring_point(j));
-        [(0, ends), (at, ends), (previous, beside), (next, beside)]
+        [(0, ends), (at, ends), (previous, others), (next, others)]
     }
 
     fn vertex_row(&self, ring: &LabelledRing<usize>) -> Result<Vec<f64>, LimitError> {

@@ -1,9 +1,10 @@
 //! Limit stencils of open rings: boundary vertices and corners on a boundary.
 //!
-//! The boundary curve refines by itself (the scheme's contract), so that the difference matrix D is block
-//! triangular: boundary rows have boundary columns only. Its strongly connected components split it further, and
-//! each eigenvalue belongs to one component. A left eigenvector is supported on its component and on those that
-//! this one depends on: with D = [[B, 0], [C, A]] (boundary first), `y·A = λy` and `x·(B − λ) = −y·C`.
+//! The boundary curve refines alone (the scheme's contract), so that the difference matrix D is
+//! block triangular: boundary rows have boundary columns only. Its strongly connected components
+//! split it further, and each eigenvalue belongs to one component. A left eigenvector is supported
+//! on its component and on those that this one depends on: with D = [[B, 0], [C, A]] (boundary
+//! first), `y·A = λy` and `x·(B − λ) = −y·C`.
 //!
 //! * **Smooth boundary vertex**: the first tangent runs along the boundary and is the dominant left eigenvector
 //!   of B; the second crosses it and is the dominant one of A, continued to the boundary. For Loop's rules with
@@ -33,8 +34,8 @@ struct Mode {
     value: Complex<f64>,
     component: usize,
     on_boundary: bool,
-    /// Whether it stands for a Jordan block: its pattern grows by a power of the number of steps over others of
-    /// the same modulus, and its one left eigenvector tells where to.
+    /// Whether the eigenvalue has a Jordan block: its pattern grows by a power of the number of
+    /// steps over others of equal modulus, and its one left eigenvector gives the direction.
     defective: bool,
 }
 
@@ -161,7 +162,7 @@ fn modes(
     Ok(modes)
 }
 
-/// The modes of both tangents, what they span, and the greatest modulus among the others.
+/// The modes of both tangents, their span, and the greatest modulus among the others.
 fn choose(
     neighbourhood: &Neighbourhood<'_>,
     differences: &DMatrix<f64>,

@@ -13,7 +13,7 @@ use crate::vector::DVec3;
 
 /// Where points stand after one refinement.
 pub(super) trait Refined {
-    /// What is known of a point.
+    /// The data of a point.
     type Point;
     /// The new position of a vertex.
     fn moved(&self, vertex: VertexId) -> Self::Point;
@@ -72,7 +72,7 @@ impl Refined for RefinedMesh {
     }
 }
 
-/// Points computed when asked for.
+/// Points are computed on demand.
 impl Refined for Masks<'_> {
     type Point = DVec3;
 
@@ -85,7 +85,7 @@ impl Refined for Masks<'_> {
     }
 }
 
-/// Weights on the mesh's vertices, found when asked for; a vertex may have several, which add up.
+/// Weights on the mesh's vertices, computed on demand; a vertex may have several, which add up.
 pub(super) struct RefinedWeights<'m>(pub(super) Masks<'m>);
 
 impl Refined for RefinedWeights<'_> {

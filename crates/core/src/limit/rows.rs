@@ -75,8 +75,9 @@ impl LimitTable<'_> {
         Ok(self.row(mesh, vertex, stencil.position()))
     }
 
-    /// The weights that two tangents have on the mesh's vertices at the vertex that `corner` leaves, on the side of its face: what
-    /// [`Self::normal_at`] is perpendicular to where they span a plane.
+    /// The weights that two tangents have on the mesh's vertices at the vertex that `corner`
+    /// leaves, on the side of its face: [`Self::normal_at`] is perpendicular to these where they
+    /// span a plane.
     pub(crate) fn tangent_rows(
         &self,
         mesh: &Mesh,

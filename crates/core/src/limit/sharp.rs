@@ -1,9 +1,9 @@
-//! Limit stencils of rings with sharp edges: creases, corners, darts, and all that fades.
+//! Limit stencils of rings with sharp edges: creases, corners, darts and semi-sharp edges.
 //!
-//! What never fades cuts the ring into sectors, each with the stencil of its shape: one position, and a tangent plane
-//! for each side. What fades is refined away first: with S₀ … S₍ₘ₋₁₎ the ring matrices of the ring as it fades, a
-//! weight row w on the points after m refinements is w·S₍ₘ₋₁₎ ⋯ S₀ on those before. The limit is the same, so this
-//! is exact.
+//! Infinitely sharp edges cut the ring into sectors, each with the stencil of its shape: one
+//! position, and a tangent plane for each side. Semi-sharp tags are refined away first: with S₀ …
+//! S₍ₘ₋₁₎ the ring matrices of the ring at successive levels, a weight row w on the points after m
+//! refinements is w·S₍ₘ₋₁₎ ⋯ S₀ on those before. The limit is the same, so this is exact.
 
 use std::sync::Arc;
 
@@ -33,7 +33,7 @@ impl SharpSide {
         self.faces
     }
 
-    /// What the tangents span.
+    /// The plane or line that the tangents span.
     pub fn tangent_plane(&self) -> TangentPlane {
         self.plane
     }
@@ -70,13 +70,14 @@ impl SharpStencil {
         &self.position
     }
 
-    /// The sides of what stays sharp for ever, counter-clockwise; one where the limit surface is smooth.
+    /// The sides of the infinitely sharp edges, counter-clockwise; one where the limit surface is
+    /// smooth.
     pub fn sides(&self) -> &[SharpSide] {
         &self.sides
     }
 }
 
-/// What identifies a ring in a table: its sharpness by bits.
+/// The key of a ring in a table: its sharpness by bits.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct SharpKey {
     open: bool,
@@ -84,7 +85,7 @@ pub(super) struct SharpKey {
     spokes: Vec<u64>,
 }
 
-/// A ring whose sharpness is infinite where it never fades, and 0 where it is none.
+/// The ring with infinite sharpness where it is infinitely sharp, and 0 where it is smooth.
 fn normalised(ring: &SharpRing) -> SharpRing {
     let plain = |sharpness: f64| match sharpness {
         s if s >= INFINITELY_SHARP => f64::INFINITY,
@@ -220,7 +221,7 @@ impl Points {
             return Ok(side);
         };
         let row = |axis: usize| {
-            // On points rather than differences: the vertex has what the others lack to a sum of 0.
+            // On points rather than differences: the weight of the vertex makes the sum 0.
             let others = tangents.iter().map(|weights| weights[axis]);
             let centre = -others.clone().sum::<f64>();
             let weights: Vec<f64> = core::iter::once(centre).chain(others).collect();

@@ -34,7 +34,7 @@ impl SidedNormals {
         self.sides.extend(faces.map(|h| (h, normal)));
     }
 
-    /// Ready to be asked.
+    /// Sorts for queries.
     pub(crate) fn finished(mut self) -> Self {
         self.sides.sort_unstable_by_key(|&(h, _)| h);
         self
@@ -65,7 +65,7 @@ impl SidedNormals {
         &mut self.by_vertex
     }
 
-    /// Those of [`Self::sides`], to be changed.
+    /// Mutable access to the normals of [`Self::sides`].
     pub(crate) fn sides_mut(&mut self) -> impl Iterator<Item = (HalfEdgeId, &mut [f64; 3])> {
         self.sides.iter_mut().map(|(h, normal)| (*h, normal))
     }
@@ -75,7 +75,7 @@ impl SidedNormals {
         &self.by_vertex
     }
 
-    /// As [`Self::by_vertex`], without the sides.
+    /// The normals by vertex, without those of further sides.
     pub fn into_by_vertex(self) -> Vec<[f64; 3]> {
         self.by_vertex
     }

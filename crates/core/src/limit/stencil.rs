@@ -1,7 +1,7 @@
-//! The limit stencil of a ring: weights of the limit position and of two limit tangents, with the eigenvalues
-//! that they belong to.
+//! The limit stencil of a ring: weights of the limit position and of two limit tangents, with their
+//! eigenvalues.
 //!
-//! Made by the analysis of closed and open rings; used by the evaluation on meshes.
+//! Computed by the analysis of closed and open rings; used by the evaluation on meshes.
 
 use core::f64::consts::{FRAC_PI_3, PI, TAU};
 
@@ -11,7 +11,7 @@ use crate::ring::RingShape;
 use crate::scheme::Support;
 use crate::vector::DVec3;
 
-/// Which plane the tangents of a stencil span.
+/// The plane that the tangents of a stencil span.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[non_exhaustive]
 pub enum TangentPlane {
@@ -20,8 +20,8 @@ pub enum TangentPlane {
     /// The plane that the surface approaches along the boundary curve. The normals of the two faces on the
     /// boundary tend to its normal, those of other faces need not: the surface is not smooth at this vertex.
     ///
-    /// So it is for Loop's rules at boundary vertices with seven or more edges, where two patterns of the
-    /// interior neighbours shrink no faster than the boundary curve.
+    /// Loop's rules have it at boundary vertices with seven or more edges, where two patterns of
+    /// the interior neighbours shrink no faster than the boundary curve.
     BoundaryRibbon,
     /// None: no two patterns of differences dominate all the others.
     None,
@@ -44,7 +44,7 @@ pub struct LimitStencil {
 }
 
 impl LimitStencil {
-    /// The ring that the weights are for.
+    /// The ring of the weights.
     pub fn shape(&self) -> RingShape {
         self.shape
     }
@@ -54,8 +54,8 @@ impl LimitStencil {
         self.support
     }
 
-    /// Weights of the limit position, the vertex's first; they sum to 1. The left eigenvector of the ring matrix
-    /// for the eigenvalue 1.
+    /// Weights of the limit position, the vertex's first; they sum to 1. They are the left
+    /// eigenvector of the ring matrix for the eigenvalue 1.
     pub fn position_weights(&self) -> &[f64] {
         &self.position
     }
@@ -71,12 +71,12 @@ impl LimitStencil {
         (!self.tangents.is_empty()).then_some(&self.tangents[..])
     }
 
-    /// What the tangents span.
+    /// The plane or line that the tangents span.
     pub fn tangent_plane(&self) -> TangentPlane {
         self.plane
     }
 
-    /// Moduli of the eigenvalues of the two tangents: how much they shrink with each refinement. 0 without a
+    /// Moduli of the eigenvalues of the two tangents: their factors in each refinement. 0 without a
     /// tangent plane.
     pub fn tangent_eigenvalues(&self) -> [f64; 2] {
         self.eigenvalues

@@ -1,4 +1,4 @@
-//! The table of a scheme's limit stencils by ring shape, built when first asked for.
+//! The table of a scheme's limit stencils by ring shape, built on first use.
 
 use core::fmt;
 use core::hash::Hash;
@@ -12,7 +12,7 @@ use super::{LimitError, closed, dart, open};
 use crate::ring::RingShape;
 use crate::scheme::{Scheme, declared};
 
-/// What is known of each ring.
+/// The stencils found so far, by ring.
 type Known<K, S> = RwLock<HashMap<K, Result<Arc<S>, LimitError>>>;
 
 /// Limit stencils of one scheme, by the shape of the ring; may be shared between threads.
@@ -31,7 +31,7 @@ impl fmt::Debug for LimitTable<'_> {
 }
 
 impl<'s> LimitTable<'s> {
-    /// An empty table for `scheme`; stencils are built when first asked for.
+    /// An empty table for `scheme`; stencils are built on first use.
     pub fn new(scheme: &'s dyn Scheme) -> Self {
         Self {
             scheme: declared(scheme),
@@ -65,7 +65,7 @@ impl<'s> LimitTable<'s> {
     }
 }
 
-/// What is known for a key, built if nothing is.
+/// The entry of a key, built if there is none.
 fn known<K: Eq + Hash, S>(
     all: &Known<K, S>,
     key: K,

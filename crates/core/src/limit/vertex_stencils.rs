@@ -1,4 +1,5 @@
-//! The limit stencils of a mesh's vertices, each kind once: for whoever applies them to other positions of the same mesh.
+//! The limit stencils of a mesh's vertices, each kind once, to be applied to other positions of the
+//! mesh.
 //!
 //! Takes a mesh and a table of a scheme with one-ring support; gives the weights of positions and of tangents by side.
 
@@ -25,7 +26,7 @@ pub(crate) struct VertexStencil {
     pub(crate) sides: Vec<StencilSide>,
 }
 
-/// A side of what is sharp for ever at a vertex.
+/// A side of the infinitely sharp edges at a vertex.
 pub(crate) struct StencilSide {
     /// The slot of its first edge, and its number of faces, counter-clockwise from there.
     pub(crate) first: usize,

@@ -1,4 +1,4 @@
-//! Places on a face as people write them: weights of its corners with few digits, made ones that add up to 1.
+//! Places on a face as weights of its corners with few digits, corrected to a sum of 1.
 
 /// How far the sum of weights may be from 1: three of four decimals each, such as 0.3333, are off by up to 1.5e-4 together.
 const OF_SUMS: f64 = 2e-4;
@@ -6,10 +6,10 @@ const OF_SUMS: f64 = 2e-4;
 /// How far below 0 a weight may be that counts as 0, such as one that came out of a computation.
 const OF_WEIGHTS: f64 = 1e-6;
 
-/// How far a sum is from 1 by the rounding of its three terms: weights of such a sum stay to the bit what they are.
+/// The rounding error of three weights' sum of 1: weights with such a sum are kept to the bit.
 const OF_DOUBLES: f64 = 4.0 * f64::EPSILON;
 
-/// Why weights are no place on a face.
+/// An error of barycentric coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BarycentricError {
@@ -22,7 +22,7 @@ pub enum BarycentricError {
     /// The weights do not add up to 1, or are no numbers.
     #[error("the weights add up to {sum:?} rather than 1 (to {OF_SUMS:?})")]
     Sum {
-        /// What they add up to.
+        /// The sum of the weights.
         sum: f64,
     },
 }

@@ -1,9 +1,10 @@
 //! First and second derivatives of the limit surface, and its curvature.
 //!
-//! Pieces are refined towards a place until its part is a polynomial, as [`super`] does, whose derivatives are those of the control
-//! face's barycentric coordinates but for a factor of 2 a level, −2 in middle parts, which stand on their heads. Near an irregular
-//! vertex what counts are differences that are far smaller than the coordinates themselves: so at each level the piece is moved to the
-//! origin, and the weights that are small are kept, not those near 1.
+//! Pieces are refined towards a place until its part is a polynomial, as in [`super`], whose
+//! derivatives are those of the control face's barycentric coordinates times a factor of 2 a level,
+//! −2 in middle parts, which are inverted. Near an irregular vertex the differences are far smaller
+//! than the coordinates themselves: so at each level the piece is moved to the origin, and the
+//! weights that are small are kept, not those near 1.
 //!
 //! Curvature follows from the first and second fundamental forms (do Carmo, Differential Geometry of Curves and Surfaces, 3-3).
 
@@ -24,7 +25,7 @@ const BLOCK: usize = 256;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Derivatives {
-    /// Where it is, in the control mesh's units.
+    /// The position, in the control mesh's units.
     pub position: [f64; 3],
     /// The derivatives by the second corner's weight and by the third's.
     pub first: [[f64; 3]; 2],
@@ -49,7 +50,7 @@ pub struct Curvature {
 impl Derivatives {
     /// The unit normal, on the side from which the face's corners run counter-clockwise; `None` where the derivatives span no plane.
     pub fn normal(&self) -> Option<[f64; 3]> {
-        // Lengths of both may be next to nothing beside an irregular vertex.
+        // Both lengths may be close to zero near an irregular vertex.
         let [along, across] = self.first.map(|first| unit_or_zero(vector(first)));
         let normal = unit_or_zero(along.cross(across));
         (normal != DVec3::ZERO).then(|| normal.to_array())
@@ -67,7 +68,8 @@ impl Derivatives {
     pub fn curvature(&self) -> Option<Curvature> {
         let normal = vector(self.normal()?);
         let [by_u, by_v] = self.first.map(vector);
-        // In orthonormal directions of the tangent plane the shape operator is symmetric, and no product is large beside another.
+        // In orthonormal directions of the tangent plane the shape operator is symmetric, and the
+        // products are of similar size.
         let along = unit_or_zero(by_u);
         let across = normal.cross(along);
         let [uu, uv, vv] = self.second.map(|second| vector(second).dot(normal));
@@ -96,9 +98,10 @@ impl Derivatives {
 }
 
 impl LimitSurface<'_> {
-    /// The derivatives at a place of a control face, given by barycentric coordinates: weights of its corners that add up to 1, of which
-    /// the two least count. `None` where there are none: at irregular vertices, for schemes outside the Loop family, where a weight is
-    /// below 0 or none, and on faces that there are not.
+    /// The derivatives at a place of a control face, given by barycentric coordinates: weights of
+    /// its corners that add up to 1, of which the two least are used. `None` where there are none:
+    /// at irregular vertices, for schemes outside the Loop family, where a weight is below 0 or
+    /// NaN, and on faces that do not exist.
     ///
     /// Near an irregular vertex of valence 3 or above 6 curvature grows without bound, near one of 4 or 5 it depends on the direction
     /// from there; half of a curvature's digits are lost 2⁻¹³ of a face away from one of valence 3, 2⁻²³ from 5, and 2⁻³⁴ from 12.
@@ -121,13 +124,14 @@ impl LimitSurface<'_> {
             .then(|| self.derivatives_on(face, &[barycentric]).pop())??
     }
 
-    /// Two unit vectors that span the tangent plane at a corner of a control face, by the scheme's limit masks: also at irregular
-    /// vertices, where there are no derivatives, and for schemes outside the Loop family. Their cross product looks to the side from
-    /// which the face's corners run counter-clockwise. Away from boundaries and sharp edges the first is the direction in which the
-    /// surface leaves the vertex over the face's edge to the next corner.
+    /// Two unit vectors that span the tangent plane at a corner of a control face, by the scheme's
+    /// limit masks: also at irregular vertices, where there are no derivatives, and for schemes
+    /// outside the Loop family. Their cross product points to the side from which the face's
+    /// corners run counter-clockwise. Away from boundaries and sharp edges the first is the
+    /// direction in which the surface leaves the vertex over the face's edge to the next corner.
     ///
-    /// `None` where there is no tangent plane, where the place, given by barycentric coordinates, is no corner, and on faces that
-    /// there are not.
+    /// `None` where there is no tangent plane, where the place, given by barycentric coordinates,
+    /// is no corner, and on faces that do not exist.
     pub fn tangents_at_corner(&self, face: FaceId, barycentric: [f64; 3]) -> Option<[[f64; 3]; 2]> {
         let corner = nearest(barycentric);
         let is_corner = (1..3).all(|step| barycentric[(corner + step) % 3] == 0.0);
@@ -139,7 +143,8 @@ impl LimitSurface<'_> {
         found.map_err(|why| self.rules.fail(why)).ok().flatten()
     }
 
-    /// The derivatives at places of many faces, in order, on all threads. Places of one face that stand together share its work.
+    /// The derivatives at places of many faces, in order, on all threads. Consecutive places of one
+    /// face share its work.
     pub fn derivatives_at(&self, places: &[(FaceId, [f64; 3])]) -> Vec<Option<Derivatives>> {
         let blocks = parallel::pieces_of(places.len(), BLOCK, |block| {
             let mut found = Vec::with_capacity(block.len());
@@ -213,7 +218,7 @@ fn nearest(weights: [f64; 3]) -> usize {
     })
 }
 
-/// Weights of which the greatest is what the others leave of 1; `None` where one is below 0 or none.
+/// Weights of which the greatest is 1 minus the others; `None` where one is below 0 or NaN.
 fn weights_in_order(mut weights: [f64; 3]) -> Option<[f64; 3]> {
     if !weights
         .iter()

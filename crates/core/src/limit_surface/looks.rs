@@ -1,4 +1,4 @@
-//! Which way the surface over whole control faces looks, and cones of its normals.
+//! The direction in which the surface over whole control faces faces, and cones of its normals.
 
 use super::LimitSurface;
 use crate::criterion::Viewpoint;
@@ -8,13 +8,14 @@ use crate::parallel::Cancelled;
 use crate::patch::root_patch;
 use crate::progress::{Observer, SharedWatch, Stage, uncancelled};
 
-/// Faces that are looked at together.
+/// Faces that are processed together.
 const BLOCK: usize = 64;
 
 impl LimitSurface<'_> {
-    /// Whether all of the surface over a control face shows its front to a viewer, or its back: never wrong, and
-    /// [undecided](Facing::Undecided) where both are seen, where it is a close thing, where the surface has no tangent plane, for schemes
-    /// outside the Loop family and on faces that there are not.
+    /// Whether all of the surface over a control face shows its front to a viewer, or its back:
+    /// proven, and [undecided](Facing::Undecided) where both are seen, where rounding or bounds do
+    /// not decide, where the surface has no tangent plane, for schemes outside the Loop family and
+    /// on faces that do not exist.
     ///
     /// ```
     /// use limitmesh::criterion::Viewpoint;
@@ -43,7 +44,7 @@ impl LimitSurface<'_> {
         uncancelled(|observer| self.facing_of_all_observed(viewpoint, observer))
     }
 
-    /// [`Self::facing_of_all`], telling how it goes on.
+    /// [`Self::facing_of_all`] with an observer.
     ///
     /// # Errors
     /// It was cancelled.
@@ -62,8 +63,9 @@ impl LimitSurface<'_> {
         Ok(blocks.concat())
     }
 
-    /// A cone that holds all normals of the surface over a control face, with the apexes by which one product tells how it looks from
-    /// anywhere; `None` where the normals take up more than a half space, or are not known to take up less.
+    /// A cone that holds all normals of the surface over a control face, with the apexes which
+    /// decide by one product how the surface faces any viewpoint; `None` where the normals are not
+    /// known to be within a half space.
     pub fn normal_cone(&self, face: FaceId) -> Option<NormalCone> {
         if face.index() >= self.mesh.face_count() {
             return None;

@@ -1,4 +1,4 @@
-//! Places over a face, handed down to its parts as these are refined, and what is answered for them.
+//! Places over a face, handed down to its parts as these are refined, and their values.
 
 use core::array::from_fn;
 use core::ops::Range;
@@ -23,7 +23,7 @@ pub(super) struct Place {
     v: f64,
 }
 
-/// As many parts as a face has.
+/// The number of parts of a face.
 const PARTS: usize = 4;
 
 impl Place {
@@ -60,7 +60,8 @@ impl Place {
 
     /// The part of four that it is in, those at the corners and the middle one.
     fn part(self) -> usize {
-        // Which part is which by the corners that are no farther than the middles of the edges; without branches, which nobody foresees.
+        // The part of a point by the corners that are no farther than the middles of the edges. A
+        // table avoids branches that cannot be predicted.
         const PARTS: [usize; 8] = [3, 0, 1, 0, 2, 0, 1, 0];
         let is_near = [self.first_weight() >= 0.5, self.u >= 0.5, self.v >= 0.5].map(usize::from);
         PARTS[is_near[0] | is_near[1] << 1 | is_near[2] << 2]
@@ -135,9 +136,9 @@ pub(super) fn take_nearest<A: Answers>(corners: [A::Limit; 3], places: &[Place],
         .for_each(|place| found.is(place.at, corners[place.nearest()]));
 }
 
-/// What is computed of points.
+/// The values computed at points.
 pub(super) trait Answers {
-    /// What is wanted of corners.
+    /// The limit that is computed at corners.
     type Limit: Limit;
 
     /// The point of that number.

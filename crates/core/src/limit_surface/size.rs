@@ -1,8 +1,9 @@
 //! Area and volume of the limit surface.
 //!
-//! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a polynomial of degree 10, which a product
-//! of Gauss rules with six nodes integrates exactly; the area's integrand |S_u × S_v| is none, and pieces are divided until two rules
-//! agree. Towards irregular vertices pieces are refined until what is left is a speck, for which a flat triangle stands.
+//! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a
+//! polynomial of degree 10, which a product of Gauss rules with six nodes integrates exactly; the
+//! area's integrand |S_u × S_v| is none, and pieces are divided until two rules agree. Towards
+//! irregular vertices pieces are refined down to a speck, which a flat triangle approximates.
 
 use super::{LimitSurface, regular};
 use crate::index::FaceId;
@@ -13,8 +14,9 @@ use crate::vector::{DVec3, vector};
 /// Faces that are integrated together.
 const BLOCK: usize = 64;
 
-/// Pieces are refined until their triangle is this part of the face's. Beside an irregular vertex they are flat then, but their edges
-/// are bent at every size, so that the triangle's own error is some tenths of it.
+/// Pieces are refined until their triangle is this part of the face's. Near an irregular vertex
+/// they are flat then, but their edges are bent at every size, so that the triangle's own error is
+/// some tenths of it.
 const SPECK: f64 = 1e-12;
 
 /// Refinements at most, where pieces do not get smaller.
@@ -37,7 +39,8 @@ const FOUR: [(f64, f64); 2] = [
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
 
-/// What is integrated: over a regular piece, given the area of its face, and over the flat triangle that stands for a speck.
+/// The integrand: its value over a regular piece, given the area of its face, and over the flat
+/// triangle that approximates a speck.
 trait Integrand: Sync {
     fn of_piece(&self, piece: &Quartic, whole: f64) -> f64;
     fn of_triangle(&self, corners: [DVec3; 3]) -> f64;
@@ -72,14 +75,15 @@ impl Integrand for Volume {
 }
 
 impl LimitSurface<'_> {
-    /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control mesh's unit; `None` for schemes outside the
-    /// Loop family, and where it is beyond what numbers hold.
+    /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control
+    /// mesh's unit; `None` for schemes outside the Loop family, and where it overflows.
     pub fn area(&self) -> Option<f64> {
         self.integrated(&Area, 2)
     }
 
-    /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control mesh's unit: below 0 where normals point
-    /// inwards. `None` for surfaces with a boundary, for schemes outside the Loop family, and where it is beyond what numbers hold.
+    /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control
+    /// mesh's unit: below 0 where normals point inwards. `None` for surfaces with a boundary, for
+    /// schemes outside the Loop family, and where it overflows.
     ///
     /// ```
     /// use limitmesh::{LimitSurface, Mesh, scheme::Loop};
@@ -105,7 +109,8 @@ impl LimitSurface<'_> {
         if !self.rules.is_certified() {
             return None;
         }
-        // Seen from its middle, and about as large as 1, a surface keeps its digits wherever it is and however large.
+        // Seen from its middle, and about as large as 1, a surface keeps its digits at any position
+        // and size.
         let [low, high] = self
             .mesh
             .as_triangles()

@@ -1,4 +1,4 @@
-//! The weights that control points have at places of the limit surface, which is a linear function of them.
+//! The weights of control points at places of the limit surface, which depends linearly on them.
 //!
 //! The surface over a face depends on the face and a few rings of faces around it. That part is cut out and evaluated as a mesh of its own,
 //! once for every three of its vertices, one of which has the first unit vector as its position, one the second and one the third, and all
@@ -17,9 +17,10 @@ const BLOCK: usize = 64;
 const RINGS: [usize; 2] = [1, 2];
 
 impl LimitSurface<'_> {
-    /// The weights of control points at a place of a control face, in the order of their numbers, those that are 0 left out: the point there
-    /// is the sum of the control points, each times its weight. They add up to 1; for the Loop family none is below 0 but by rounding. The place is
-    /// understood as by [`Self::at`]; a face that there is not has none.
+    /// The weights of control points at a place of a control face, in the order of their numbers,
+    /// those that are 0 left out: the point there is the sum of the control points, each times its
+    /// weight. They add up to 1; for the Loop family none is below 0 except by rounding. The place
+    /// is used as by [`Self::at`]; a face that does not exist has no weights.
     ///
     /// ```
     /// use limitmesh::{FaceId, LimitSurface, Mesh, VertexId, scheme::Loop};
@@ -48,10 +49,11 @@ impl LimitSurface<'_> {
             .unwrap_or_default())
     }
 
-    /// [`Self::weights`] at places of many faces, in order, on all threads. Places of one face that stand together share its work.
+    /// [`Self::weights`] at places of many faces, in order, on all threads. Consecutive places of
+    /// one face share its work.
     ///
     /// # Errors
-    /// As for [`Self::weights`].
+    /// Those of [`Self::weights`].
     pub fn weights_at(
         &self,
         places: &[(FaceId, [f64; 3])],
@@ -112,7 +114,7 @@ impl LimitSurface<'_> {
     }
 }
 
-/// In the order of the vertices; one that stands at several places of the rim counts once.
+/// In the order of the vertices; one that occurs several times on the rim counts once.
 fn joined(weights: &mut Vec<(VertexId, f64)>) {
     weights.sort_by_key(|&(vertex, _)| vertex);
     weights.dedup_by(|next, own| {

@@ -1,5 +1,5 @@
-//! Steps around a vertex from any of its edges, either way: what lies near an edge is found without going round
-//! a ring of any size.
+//! Steps around a vertex from any of its edges, either way: the neighbours of an edge are found
+//! without going round a large ring.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Topology;

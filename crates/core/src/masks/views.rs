@@ -1,10 +1,10 @@
-//! What a scheme is shown of a vertex or an edge: rings with named points, cut at sharp edges.
+//! The views of a vertex or an edge for a scheme: rings with named points, cut at sharp edges.
 //!
-//! Takes rings whose neighbours carry labels (points of a canonical neighbourhood, or vertices of a mesh) and the
-//! sharpness of their edges; gives the rings that the scheme's masks are for, each with the share that it has in
-//! the result. There is one, unless something is about to fade: then the rules of now and of afterwards are mixed.
-//! The labels of a ring may repeat (a closed ring of two edges names each neighbour of a neighbour twice); weights
-//! of one label add up.
+//! Takes rings whose neighbours carry labels (points of a canonical neighbourhood, or vertices of a
+//! mesh) and the sharpness of their edges; gives the rings that the scheme's masks are for, each
+//! with the share that it has in the result. There is one, unless a semi-sharp tag is about to end:
+//! then the rules before and after are mixed. The labels of a ring may repeat (a closed ring of two
+//! edges names each neighbour of a neighbour twice); weights of one label add up.
 
 use crate::ring::{EdgeShape, RingShape, SharpRing};
 

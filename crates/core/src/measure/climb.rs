@@ -30,8 +30,8 @@ struct Candidate {
     distance: f64,
 }
 
-/// The farthest point found around the samples of `from`, whose `distances` to `to` are given; `None` if there are no
-/// samples beside the vertices.
+/// The farthest point found around the samples of `from`, whose `distances` to `to` are given;
+/// `None` if there are no samples but the vertices.
 pub(super) fn climb(
     samples: &Samples<'_, '_>,
     distances: &[f64],
@@ -61,7 +61,7 @@ pub(super) fn climb(
                     .map(move |[u, v, w]| a * *u + b * *v + c * *w)
             })
             .collect();
-        // Each triangle is measured by itself: the next one may be far away.
+        // Each triangle is measured alone: the next one may be far away.
         let mut distances = vec![0.0; points.len()];
         let poll = &mut |_| watch.poll();
         parallel::for_each_chunk_polled(&mut distances, lattice.len(), poll, |i, distances| {
@@ -91,7 +91,8 @@ pub(super) fn climb(
 /// The triangles of the farthest samples, each once, in the tree's order.
 fn farthest_triangles(samples: &Samples<'_, '_>, distances: &[f64]) -> Vec<usize> {
     let mut farthest: Vec<usize> = samples.beside_vertices().collect();
-    // Several of the farthest samples may be of one triangle; four times as many as triangles are looked at.
+    // Several of the farthest samples may be of one triangle; four times as many samples as
+    // triangles are used.
     let wanted = 4 * SCREENED;
     if farthest.len() > wanted {
         farthest.select_nth_unstable_by(wanted, |&a, &b| {

@@ -1,7 +1,7 @@
 //! Symmetric Hausdorff distance by sampling (the paper's equations 14 to 16; Metro's sampling).
 //!
-//! Takes two surfaces; gives, for each direction, the greatest, mean and root-mean-square distance of samples of
-//! one to the other, measured exactly, and where the greatest was found.
+//! Takes two surfaces; gives, for each direction, the greatest, mean and root-mean-square distance
+//! of samples of one to the other, measured exactly, and the point of the greatest.
 
 use core::ops::Range;
 
@@ -16,18 +16,19 @@ use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled, unobserved
 use crate::vector::{DVec3, vector};
 
 options! {
-    /// How densely to sample.
+    /// The density of samples.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct SamplingOptions {
-        /// Number of samples on each surface, spread over vertices, sides and insides of triangles. All vertices are
-        /// always taken and count; where they are nearly as many or more, a quarter of this number is still spread
-        /// over the rest of the surface. More than [`Self::MOST_SAMPLES`] count as that many.
+        /// Number of samples on each surface, spread over vertices, sides and insides of triangles.
+        /// All vertices are always taken and count; where they are nearly as many or more, a
+        /// quarter of this number is still spread over the rest of the surface. At most
+        /// [`Self::MOST_SAMPLES`] are used.
         pub samples: usize = 100_000,
     }
 }
 
 impl SamplingOptions {
-    /// Samples asked for at most: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
+    /// The most samples: each takes 8 bytes while it is measured, so that these take 2 gigabytes.
     pub const MOST_SAMPLES: usize = 1 << 28;
 }
 
@@ -38,11 +39,12 @@ impl SamplingOptions {
 pub struct OneSided {
     /// Greatest distance found, at the samples and in a search around the farthest of them.
     pub max: f64,
-    /// Mean over the surface: that of the samples inside triangles, which each stand for the same area.
+    /// Mean over the surface: that of the samples inside triangles, each of which represents an
+    /// equal area.
     pub mean: f64,
-    /// Root mean square of the same samples.
+    /// Root mean square over the samples of [`Self::mean`].
     pub rms: f64,
-    /// What 95 % of the same samples do not exceed.
+    /// The distance that 95 % of the samples of [`Self::mean`] do not exceed.
     pub percentile_95: f64,
     /// Samples taken, vertices included. Points measured only in the search for the maximum do not count.
     pub samples: usize,
@@ -85,8 +87,8 @@ const RUN: usize = 1024;
 
 /// Samples both surfaces and measures each against the other (equations 14 to 16).
 ///
-/// The greatest distances are lower bounds: the surfaces are measured at samples, not everywhere. The same
-/// surfaces and options give the same bytes for any number of threads.
+/// The greatest distances are lower bounds: the surfaces are measured at samples, not everywhere.
+/// The bytes of the result do not depend on the number of threads.
 ///
 /// ```
 /// use limitmesh::Triangles;
@@ -114,10 +116,10 @@ pub fn hausdorff(
     hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`hausdorff`], telling an observer how it goes on.
+/// [`hausdorff`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`hausdorff`], or the observer asked to stop.
 pub fn hausdorff_observed(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
@@ -131,7 +133,7 @@ pub fn hausdorff_observed(
     )?)
 }
 
-/// [`hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`hausdorff`] between surfaces with given hierarchies, for measuring several against one.
 pub fn hausdorff_between(
     surface: &Bvh<'_>,
     reference: &Bvh<'_>,
@@ -140,7 +142,7 @@ pub fn hausdorff_between(
     uncancelled(|observer| hausdorff_between_observed(surface, reference, options, observer))
 }
 
-/// [`hausdorff_between`], telling an observer how it goes on.
+/// [`hausdorff_between`] with an observer.
 ///
 /// # Errors
 /// The observer asked to stop.
@@ -175,7 +177,8 @@ fn one_sided(
             (farthest, max) = (index, distance);
         }
     }
-    // A surface without area has no samples inside; its vertices and sides then stand for it.
+    // A surface without area has no samples inside; its vertices and sides are then measured
+    // instead.
     let insides = samples.insides();
     let over_the_surface = if insides.is_empty() {
         0..distances.len()
@@ -260,10 +263,10 @@ pub fn distances_to(
     distances_to_observed(points, reference, &mut unobserved)
 }
 
-/// [`distances_to`], telling an observer how it goes on.
+/// [`distances_to`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`distances_to`], or the observer asked to stop.
 pub fn distances_to_observed(
     points: &[[f64; 3]],
     reference: Triangles<'_>,

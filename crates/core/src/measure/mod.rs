@@ -1,6 +1,6 @@
 //! Measurement: distances between surfaces, watertightness, triangle quality.
 //!
-//! Takes [`Triangles`], manifold or not; knows nothing of how they came about.
+//! Takes [`Triangles`], manifold or not.
 
 mod bvh;
 mod certified;
@@ -28,7 +28,7 @@ use crate::mesh::Triangles;
 use crate::parallel;
 use crate::progress::Cancelled;
 
-/// Why something could not be measured.
+/// An error of a measurement.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {
@@ -94,8 +94,8 @@ pub enum MeasureError {
     Cancelled(#[from] Cancelled),
 }
 
-/// Refuses what has no distances: no triangles, an index out of range, a coordinate that is not finite. `which`
-/// names the surface in the error.
+/// Refuses surfaces without distances: no triangles, an index out of range, a coordinate that is
+/// not finite. `which` names the surface in the error.
 fn check(surface: Triangles<'_>, which: &'static str) -> Result<(), MeasureError> {
     if surface.triangles.is_empty() {
         return Err(MeasureError::Empty { which });

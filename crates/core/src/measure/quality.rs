@@ -1,7 +1,7 @@
 //! Triangle quality: the least angle of each triangle and its distribution.
 //!
-//! Takes a surface; gives the least angle and where it is, the mean and a histogram. A triangle without area, or
-//! whose corners do not exist or are not finite, counts as one of 0°.
+//! Takes a surface; gives the least angle and its triangle, the mean and a histogram. A triangle
+//! without area, or whose corners do not exist or are not finite, counts as one of 0°.
 
 use crate::mesh::Triangles;
 use crate::parallel;
@@ -16,7 +16,7 @@ const BIN_DEGREES: f64 = 5.0;
 pub struct TriangleQuality {
     /// The least angle of all, in degrees; 0 without triangles.
     pub min_angle_degrees: f64,
-    /// The triangle that has it; the first of equals.
+    /// The triangle of the least angle; the first of equals.
     pub worst_face: Option<u32>,
     /// Mean of the triangles' least angles, in degrees; 0 without triangles.
     pub mean_min_angle_degrees: f64,
@@ -49,7 +49,7 @@ pub fn triangle_quality(surface: Triangles<'_>) -> TriangleQuality {
     }
 }
 
-/// What is known of some of the triangles.
+/// The sums over some of the triangles.
 struct Tally {
     sum: f64,
     least: Option<(f64, usize)>,

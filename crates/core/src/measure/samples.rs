@@ -1,10 +1,10 @@
-//! Where a surface is sampled: all its vertices, points along the sides of its triangles by length, points in
-//! its triangles by area (Metro's three kinds; Cignoni, Rocchini, Scopigno 1998).
+//! The samples of a surface: all its vertices, points along the sides of its triangles by length,
+//! points in its triangles by area (Metro's three kinds; Cignoni, Rocchini, Scopigno 1998).
 //!
-//! The points are spread evenly and reproducibly rather than at random: sample k of m stands at the fraction
-//! (k + 1/2) / m of the total length or area, and inside its triangle at the k-th point of a low-discrepancy
-//! sequence (Roberts' R2, built on the plastic number). All kinds follow the order of the surface's tree, so that
-//! consecutive samples are near each other.
+//! The points are spread evenly and reproducibly rather than at random: sample k of m is at the
+//! fraction (k + 1/2) / m of the total length or area, and inside its triangle at the k-th point of
+//! a low-discrepancy sequence (Roberts' R2, built on the plastic number). All kinds follow the
+//! order of the surface's tree, so that consecutive samples are near each other.
 
 use core::ops::Range;
 
@@ -16,12 +16,12 @@ use crate::vector::{DVec3, vector};
 /// many enough that the list of sums stays small.
 const PIECE: usize = 16;
 
-/// Share of the samples beside the vertices that goes to the sides: 1 in 5. They matter where the greatest
-/// distance lies on a sharp edge; the mean needs the points inside.
+/// Share of the samples other than the vertices that goes to the sides: 1 in 5. They matter where
+/// the greatest distance lies on a sharp edge; the mean needs the points inside.
 const SIDE_SHARE: usize = 5;
 
-/// Where the vertices alone are more than the samples asked for, sides and insides still get this share of the
-/// number: 1 in 4. Without it the mean would not see the insides at all.
+/// Where the vertices alone are more than the requested samples, sides and insides still get this
+/// share of the number: 1 in 4. Without it the mean would not see the insides at all.
 const LEAST_SHARE: usize = 4;
 
 /// Reciprocals of the plastic number (the real root of x³ = x + 1) and of its square.
@@ -45,7 +45,7 @@ struct Spread {
 }
 
 /// Where a point of a spread stands.
-struct Spot {
+struct SpreadPoint {
     /// Its number.
     number: usize,
     /// Its triangle, by place in the tree's order.
@@ -110,7 +110,8 @@ impl<'s, 'a> Samples<'s, 'a> {
         self.vertices.len() + self.sides.count + self.insides.count
     }
 
-    /// The samples inside triangles, each standing for the same area; empty if the surface has no area.
+    /// The samples inside triangles, each representing an equal area; empty if the surface has no
+    /// area.
     pub(super) fn insides(&self) -> Range<usize> {
         self.vertices.len() + self.sides.count..self.len()
     }
@@ -164,7 +165,7 @@ impl<'s, 'a> Samples<'s, 'a> {
         self.vertices.len()..self.len()
     }
 
-    /// The triangle, by its place in the tree's order, that a sample beside the vertices was taken from.
+    /// The triangle, by its position in the tree's order, of a sample that is no vertex.
     pub(super) fn triangle(&self, index: usize) -> usize {
         let mut found = 0;
         let first_inside = self.vertices.len() + self.sides.count;
@@ -191,7 +192,7 @@ fn vertices_in_order(surface: &Bvh<'_>) -> Vec<u32> {
     vertices
 }
 
-/// The point `into` along the sides of a triangle laid end to end, as long as they are when scaled.
+/// The point at the length `into` along the scaled sides of a triangle laid end to end.
 fn along_sides([a, b, c]: [DVec3; 3], scaled: [DVec3; 3], into: f64) -> DVec3 {
     let [ab, bc, ca] = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| scaled[from].distance(scaled[to]));
     let between = |from: DVec3, to: DVec3, into: f64, length: f64| {
@@ -246,7 +247,7 @@ impl Spread {
     }
 
     /// Calls `f` with each point of `range` in turn.
-    fn visit(&self, surface: &Bvh<'_>, range: Range<usize>, mut f: impl FnMut(Spot)) {
+    fn visit(&self, surface: &Bvh<'_>, range: Range<usize>, mut f: impl FnMut(SpreadPoint)) {
         if range.is_empty() {
             return;
         }
@@ -278,7 +279,7 @@ impl Spread {
                 corners = surface.scaled_corners(slot);
                 weight = (self.weight)(corners);
             }
-            f(Spot {
+            f(SpreadPoint {
                 number: k,
                 slot,
                 scaled: corners,

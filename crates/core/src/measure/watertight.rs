@@ -13,7 +13,7 @@ use crate::geometry::{DisjointSets, for_each_edge};
 use crate::mesh::Triangles;
 use crate::progress::{Cancelled, Observer, Stage, Watch, uncancelled};
 
-/// What keeps a surface from being a closed, conforming manifold.
+/// The defects that keep a surface from being a closed, conforming manifold.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Watertightness {
@@ -21,12 +21,13 @@ pub struct Watertightness {
     pub boundary_edges: usize,
     /// Edges with more than two faces.
     pub non_manifold_edges: usize,
-    /// Edges with two faces that run along it the same way.
+    /// Edges with two faces that run along it in one direction.
     pub inconsistent_edges: usize,
-    /// Vertices that lie inside a boundary edge of which they are no end: within 1e-5 of its length from it and
-    /// farther than that from its ends. Vertices of different index at one place are no T-junction by themselves.
+    /// Vertices on the inside of a boundary edge of others: within 1e-5 of its length from it and
+    /// farther than that from its ends. Vertices of different index at one position alone are no
+    /// T-junction.
     pub t_junctions: usize,
-    /// Triangles that name a vertex twice. They are no part of the other counts.
+    /// Triangles that name a vertex twice. The other counts ignore them.
     pub degenerate_faces: usize,
     /// Number of connected components, joined through edges.
     pub components: usize,
@@ -48,7 +49,7 @@ pub fn watertightness(surface: Triangles<'_>) -> Watertightness {
     uncancelled(|observer| watertightness_observed(surface, observer))
 }
 
-/// [`watertightness`], telling an observer how it goes on.
+/// [`watertightness`] with an observer.
 ///
 /// # Errors
 /// The observer asked to stop.

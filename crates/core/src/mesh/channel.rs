@@ -1,14 +1,16 @@
-//! Channels: what a mesh carries beside positions, such as texture coordinates, colours, weights of skins, materials.
+//! Channels: the data that a mesh carries in addition to positions, such as texture coordinates,
+//! colours, weights of skins, materials.
 //!
-//! A channel is a table of values and, for each element of its domain, which of them it has. So that two corners at one vertex have
-//! one value is known from their indices, not guessed from numbers; where they differ, the channel has a *seam*.
+//! A channel is a table of values and, for each element of its domain, the index of its value. Two
+//! corners at one vertex have one value if their indices are equal; where they differ, the channel
+//! has a *seam*.
 
 use thiserror::Error;
 
 use super::{FaceParts, Mesh, PolygonSoup};
 use crate::index::HalfEdgeId;
 
-/// What has the values of a channel.
+/// The elements that have the values of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Domain {
     /// The vertices.
@@ -19,26 +21,26 @@ pub enum Domain {
     Face,
 }
 
-/// What the values of a channel mean.
+/// The meaning of a channel's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Semantic {
     /// Places on a texture.
     TextureCoordinates,
-    /// Red, green, blue, and how opaque, from 0 to 1.
+    /// Red, green, blue and opacity, from 0 to 1.
     Colour,
-    /// How much a joint of a skin moves a vertex.
+    /// The weight of a skin's joint at a vertex.
     SkinWeight,
-    /// How far a vertex of a morph target is from the base's.
+    /// The displacement of a morph target's vertex from the base's.
     Displacement,
     /// Numbers that name something: materials, groups, regions.
     Label,
-    /// Any other.
+    /// Any other meaning.
     Other,
 }
 
 impl Semantic {
-    /// How values of this kind are usually interpolated.
+    /// The usual interpolation of values of this kind.
     pub fn interpolation(self) -> Interpolation {
         match self {
             Self::TextureCoordinates => Interpolation::Smooth(SeamRule::Boundaries),
@@ -49,11 +51,12 @@ impl Semantic {
     }
 }
 
-/// How values between those of the control mesh come about.
+/// The interpolation of values between those of the control mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Interpolation {
-    /// As positions do, by the scheme's masks and their limits; the rule says what happens along seams.
+    /// Refined as positions are, by the scheme's masks and their limits; the rule decides along
+    /// seams.
     Smooth(SeamRule),
     /// Linear over each control face.
     Linear,
@@ -61,8 +64,8 @@ pub enum Interpolation {
     Nearest,
 }
 
-/// Where smooth channels keep their values along seams: OpenSubdiv's face-varying modes. A value that is kept stays what it is in the
-/// control mesh.
+/// The places along seams where smooth channels keep their values: OpenSubdiv's face-varying modes.
+/// A kept value is that of the control mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum SeamRule {
@@ -70,16 +73,17 @@ pub enum SeamRule {
     None,
     /// At values that one face alone has.
     CornersOnly,
-    /// There, and where more than two values meet at a vertex, or two and a sharp edge.
+    /// As [`Self::CornersOnly`], and where more than two values meet at a vertex, or two and a
+    /// sharp edge.
     CornersPlus1,
-    /// There, and where a seam ends or one of two values is kept.
+    /// As [`Self::CornersPlus1`], and where a seam ends or one of two values is kept.
     CornersPlus2,
     /// Along all seams and boundaries, which stay straight from vertex to vertex.
     #[default]
     Boundaries,
 }
 
-/// How files hold the numbers of a channel.
+/// The storage of a channel's numbers in files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Storage {
@@ -88,31 +92,31 @@ pub enum Storage {
     Double,
     /// In single precision.
     Single,
-    /// As bytes, 255 for 1: colours.
+    /// Unsigned bytes, 255 for 1: colours.
     Byte,
-    /// As whole numbers of 32 bits with a sign.
+    /// Signed integers of 32 bits.
     Int32,
-    /// As whole numbers of 8 bits with a sign.
+    /// Signed integers of 8 bits.
     Int8,
-    /// As whole numbers of 8 bits, 0 to 255.
+    /// Unsigned integers of 8 bits, 0 to 255.
     Uint8,
-    /// As whole numbers of 16 bits with a sign.
+    /// Signed integers of 16 bits.
     Int16,
-    /// As whole numbers of 16 bits, 0 to 65,535; colours of 65,535 for 1.
+    /// Unsigned integers of 16 bits, 0 to 65,535; colours of 65,535 for 1.
     Uint16,
-    /// As whole numbers of 32 bits from 0 on.
+    /// Unsigned integers of 32 bits.
     Uint32,
 }
 
-/// Values that a mesh carries.
+/// Values on the elements of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Channel {
     /// Its name in the file.
     pub name: String,
-    /// What it means.
+    /// The meaning of the values.
     pub semantic: Semantic,
-    /// What has its values.
+    /// The elements that have the values.
     pub domain: Domain,
     /// Numbers in a value.
     pub arity: usize,
@@ -120,15 +124,16 @@ pub struct Channel {
     pub values: Vec<f64>,
     /// By element of the domain, the number of its value.
     pub indices: Vec<u32>,
-    /// How values between those of the control mesh come about.
+    /// The interpolation between the values of the control mesh.
     pub interpolation: Interpolation,
-    /// How its file holds the numbers.
+    /// The storage in its file.
     pub storage: Storage,
-    /// Where the values are [`Semantic::Label`], what each number stands for; empty where they stand for themselves.
+    /// The name of each number where the values are [`Semantic::Label`]; empty where they have no
+    /// names.
     pub labels: Vec<String>,
 }
 
-/// Why a channel does not fit its mesh.
+/// An error of a channel on its mesh.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ChannelError {
@@ -141,10 +146,10 @@ pub enum ChannelError {
         count: usize,
         /// Elements.
         expected: usize,
-        /// What they are.
+        /// The kind of element.
         elements: &'static str,
     },
-    /// An index leads beyond the values.
+    /// An index is out of the values' range.
     #[error("channel {name} has index {index} at element {element}, but there are {count} values")]
     Index {
         /// The channel.
@@ -163,7 +168,7 @@ pub enum ChannelError {
         name: String,
         /// The value.
         value: usize,
-        /// What was found.
+        /// The actual count.
         what: String,
         /// Numbers in a value.
         arity: usize,
@@ -186,19 +191,20 @@ pub enum ChannelError {
     },
 }
 
-/// From which faces and corners of a soup those of a mesh are.
+/// The faces and corners of a soup of which those of a mesh are made.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Trace {
     /// By face of the mesh, the soup's face.
     pub faces: Vec<u32>,
-    /// By corner of the mesh, three a face, the soup's corner, counted over all its faces. Where repairs gave a face a corner that its
-    /// polygon has not, one of another at the same vertex.
+    /// For each corner of the mesh, three a face, the soup's corner, counted over all its faces.
+    /// Where a repair gave a face a corner that its polygon has not, it is a corner of another
+    /// polygon at that vertex.
     pub corners: Vec<u32>,
 }
 
 impl Trace {
-    /// By corner of the mesh, the vertex of the soup that it was made of.
+    /// By corner of the mesh, its vertex in the soup.
     pub fn vertices(&self, soup: &PolygonSoup) -> Vec<u32> {
         self.corners
             .iter()
@@ -208,7 +214,7 @@ impl Trace {
 }
 
 impl Channel {
-    /// A channel that is interpolated as usual for what it means.
+    /// A channel with the usual interpolation for its meaning.
     pub fn new(name: impl Into<String>, semantic: Semantic, domain: Domain, arity: usize) -> Self {
         Self {
             name: name.into(),
@@ -223,18 +229,18 @@ impl Channel {
         }
     }
 
-    /// The same with other values and indices.
+    /// The channel with other values and indices.
     pub fn with(mut self, values: Vec<f64>, indices: Vec<u32>) -> Self {
         (self.values, self.indices) = (values, indices);
         self
     }
 
-    /// The same, held in another way by files.
+    /// The channel with another storage in files.
     pub fn stored(self, storage: Storage) -> Self {
         Self { storage, ..self }
     }
 
-    /// The same, interpolated in another way.
+    /// The channel with another interpolation.
     pub fn interpolated(self, interpolation: Interpolation) -> Self {
         Self {
             interpolation,
@@ -242,12 +248,12 @@ impl Channel {
         }
     }
 
-    /// How many values the table has.
+    /// The number of values of the table.
     pub fn value_count(&self) -> usize {
         self.values.len().checked_div(self.arity).unwrap_or(0)
     }
 
-    /// The value of an element of the domain; nothing if there is none.
+    /// The value of an element of the domain; empty if there is none.
     pub fn value(&self, element: usize) -> &[f64] {
         let index = self
             .indices
@@ -264,15 +270,15 @@ impl Channel {
         (1..self.indices.len()).all(|element| self.value(element) == self.value(0))
     }
 
-    /// Whether it has other values in other places of one face.
+    /// Whether its values differ within a face.
     pub fn varies_within_faces(&self) -> bool {
         self.domain != Domain::Face && !self.is_constant()
     }
 
-    /// Whether the channel fits a mesh of so many vertices, corners and faces.
+    /// Checks that the channel fits a mesh with these numbers of vertices, corners and faces.
     ///
     /// # Errors
-    /// Names the first index or value that does not.
+    /// The first index or value that does not fit.
     pub fn check(&self, vertices: usize, corners: usize, faces: usize) -> Result<(), ChannelError> {
         let (expected, elements) = match self.domain {
             Domain::Vertex => (vertices, "vertices"),
@@ -317,8 +323,8 @@ impl Channel {
         }
     }
 
-    /// The soup's channel as one of the mesh's corners or faces. Corners at one vertex whose values are equal come to have one value,
-    /// so that a seam is where values differ.
+    /// The soup's channel as one of the mesh's corners or faces. Equal values of corners at one
+    /// vertex become one value, so that a seam is where values differ.
     ///
     /// # Errors
     /// The channel does not fit the soup.
@@ -365,7 +371,7 @@ impl Channel {
         })
     }
 
-    /// The same with one value where corners at a vertex have equal ones.
+    /// The channel with one value where corners at a vertex have equal ones.
     fn joined(self, mesh: &Mesh) -> Self {
         let mut values = Vec::with_capacity(self.values.len());
         let mut indices = vec![0; self.indices.len()];
@@ -396,7 +402,8 @@ impl Channel {
         }
     }
 
-    /// The channel of a mesh as one of the mesh whose faces are parts of that one's: linear inside the faces that were divided.
+    /// The channel on a mesh whose faces are parts of the original's: linear inside the faces that
+    /// were divided.
     pub fn on_parts(&self, parts: &FaceParts, mesh: &Mesh) -> Self {
         if parts.is_empty() {
             return self.clone();
@@ -444,7 +451,8 @@ impl Channel {
         }
     }
 
-    /// Whether the values at both ends of an edge are the same on both sides, for a channel of corners; the half-edge's twin is `twin`.
+    /// Whether the values at both ends of an edge are equal on both sides, for a channel of
+    /// corners; the half-edge's twin is `twin`.
     pub(crate) fn is_continuous(&self, h: HalfEdgeId, twin: HalfEdgeId) -> bool {
         let index = |corner: HalfEdgeId| self.indices[corner.index()];
         index(h) == index(twin.next()) && index(h.next()) == index(twin)

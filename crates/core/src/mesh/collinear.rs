@@ -11,8 +11,9 @@ const MIDDLING: core::ops::Range<f64> = 1e-120..1e120;
 const MAGNIFIED: f64 = 4.149_515_568_880_993e180;
 const REDUCED: f64 = 1.0 / MAGNIFIED;
 
-/// Whether three points lie on one line as far as their numbers tell: the cross product of two sides is no larger than its rounding
-/// error. Points are in any unit; equal ones lie on a line with every other.
+/// Whether three points lie on one line within rounding: the cross product of two sides is no
+/// larger than its rounding error. Points are in any unit; equal ones lie on a line with every
+/// other.
 pub fn are_on_one_line(points: [[f64; 3]; 3]) -> bool {
     // Each factor carries half an ulp from its subtraction, the product and the difference half an ulp each:
     // below 2.5 ulp together, rounded up to 4.

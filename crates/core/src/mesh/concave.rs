@@ -1,9 +1,10 @@
-//! Sharp edges inside sectors that are too wide for the rules of corners.
+//! Divides sectors that are too wide for the rules of corners by sharp edges.
 //!
-//! A corner keeps its place, and its limit plane is that of the two sharp edges beside each sector: the smooth surface fills
-//! the wedge between their directions, which is the sector's own only up to 180°. Beyond, it fills the other side of the
-//! corner, turned over, and a flat face folds over its edge. Here such a sector is divided by edges that become sharp,
-//! until each part is narrower: `Σ αᵢ < π` over its angles αᵢ at the corner. Each part then has a wedge of its own.
+//! A corner keeps its place, and its limit plane is that of the two sharp edges that bound each
+//! sector: the smooth surface fills the wedge between their directions, which is the sector's own
+//! only up to 180°. Beyond, it fills the other side of the corner, turned over, and a flat face
+//! folds over its edge. Here such a sector is divided by edges that become sharp, until each part
+//! is narrower: `Σ αᵢ < π` over its angles αᵢ at the corner. Each part then has a wedge of its own.
 
 use core::f64::consts::PI;
 use core::ops::Range;
@@ -24,26 +25,28 @@ const WIDEST: f64 = PI * (1.0 - 1e-3);
 /// Faces whose normals differ by less are in one plane, in radians: 0.1°, which no shading shows.
 const FLAT: f64 = 0.1 * PI / 180.0;
 
-/// What was done about sectors of corners of 180° and more.
+/// The changes to sectors of corners of 180° and more.
 #[derive(Clone, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ConcaveCorners {
     /// The corners that had such sectors.
     pub corners: Finding,
-    /// Edges that became sharp, or half of them did.
+    /// Edges that became sharp, all or half of them.
     pub edges: usize,
     /// The faces that were divided, where an edge is sharp on one half only.
     pub parts: FaceParts,
 }
 
 impl Mesh {
-    /// The mesh with every sector of 180° and more at its corners (vertices that keep their place, at three sharp edges or
-    /// by a tag) divided by sharp edges, so that flat faces stay flat there; and what that took.
+    /// The mesh with every sector of 180° and more at its corners (vertices that keep their place,
+    /// at three sharp edges or by a tag) divided by sharp edges, so that flat faces stay flat
+    /// there; and a report.
     ///
-    /// Of the edges inside a sector those nearest to its bisector become sharp, in a plane all that lead to other corners.
-    /// Where that would make a corner of the vertex at the other end, or show a line on a curved surface, only the half at the
-    /// corner does: the edge is divided in its middle, and the faces beside it around a point inside each. Vertices keep their
-    /// numbers, and so do faces and the first parts of those that were divided; the others follow.
+    /// Of the edges inside a sector those nearest to its bisector become sharp, in a plane all that
+    /// lead to other corners. Where that would make a corner of the vertex at the other end, or
+    /// show a line on a curved surface, only the half at the corner does: the edge is divided in
+    /// its middle, and its two faces around a point inside each. Vertices keep their numbers, and
+    /// so do faces and the first parts of those that were divided; the others follow.
     ///
     /// ```
     /// use limitmesh::mesh::{CornerTag, Tags};
@@ -163,14 +166,14 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
                 twin.is_some_and(|twin| is_flat_beyond(mesh, sharpness, twin))
             };
             let dividing = fan.dividing(is_straight);
-            let lasts = lasting(&ring).min(fan.bounds(sharpness));
-            let lasts = if lasts >= INFINITELY_SHARP {
+            let levels = sharp_levels(&ring).min(fan.bounds(sharpness));
+            let levels = if levels >= INFINITELY_SHARP {
                 f64::INFINITY
             } else {
-                lasts
+                levels
             };
             let rib = |edge: usize| Rib {
-                sharpness: lasts,
+                sharpness: levels,
                 is_flat,
                 middle: fan.middle(edge),
             };
@@ -180,8 +183,8 @@ fn ribs_of(mesh: &Mesh, sharpness: &Sharpness<'_>) -> BTreeMap<HalfEdgeId, Rib> 
     ribs
 }
 
-/// How long a corner stays one: as its own sharpness says, or that of its third edge.
-fn lasting(ring: &SharpRing) -> f64 {
+/// The number of levels for which a vertex is a corner: its own sharpness, or that of its third edge.
+fn sharp_levels(ring: &SharpRing) -> f64 {
     let mut spokes = ring.spokes.clone();
     spokes.sort_unstable_by(|a, b| b.total_cmp(a));
     spokes.get(2).copied().unwrap_or(0.0).max(ring.vertex)
@@ -277,10 +280,11 @@ impl Fan {
     }
 }
 
-/// Edges nearer to one line than this sine of their angle (5°) are not asked for their plane.
+/// Edges nearer to one line than this sine of their angle (5°) do not define a plane.
 const LEAST_SINE: f64 = 0.087;
 
-/// An edge that leaves the plane by more than this sine (15°) stays as it is: moving it so far would show more than a line.
+/// An edge that leaves the plane by more than this sine (15°) is not changed: so large a movement
+/// would be more visible than a line.
 const FARTHEST_SINE: f64 = 0.26;
 
 /// Whether the faces of half-edges are in one plane, those without area left aside.

@@ -1,22 +1,22 @@
-//! What was found in a soup and repaired on the way to a mesh.
+//! The defects of a soup, repaired on the way to a mesh.
 
 use core::fmt;
 
-/// How often something was found, and where first.
+/// The number of findings of a kind, and the first of them.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Finding {
-    /// How many there are.
+    /// The number of findings.
     pub count: usize,
     /// The first few, in the input's numbering and in ascending order.
     pub first: Vec<u32>,
 }
 
 impl Finding {
-    /// How many places a finding names.
+    /// The number of elements that a finding names.
     pub const NAMED: usize = 8;
 
-    /// Counts one more at `place`, which must not lie before an earlier one.
+    /// Counts one more at `place`, which must not be below an earlier one.
     pub fn add(&mut self, place: u32) {
         self.count += 1;
         if self.first.len() < Self::NAMED {
@@ -49,17 +49,17 @@ pub struct Diagnosis {
     pub input_faces: usize,
     /// Faces with more than three corners, cut into triangles (no defect).
     pub polygons: Finding,
-    /// Vertices that were merged into an earlier one: at the same place (no defect), or within a distance
-    /// that was asked for (no defect either).
+    /// Vertices that were merged into an earlier one: at one position, or within the given
+    /// distance; neither is a defect.
     pub welded_vertices: Finding,
     /// Faces with fewer than three corners, or whose corners fell together.
     pub collapsed_faces: Finding,
-    /// Polygons so far from flat that they cross themselves seen along their normal (no defect): their
-    /// triangles bridge them, but no choice of diagonals is free of folds.
+    /// Polygons that are not flat and cross themselves in the projection along their normal (no
+    /// defect): their triangles bridge them, but no choice of diagonals is free of folds.
     pub twisted_polygons: Finding,
     /// Faces with three different corners on one line.
     pub zero_area_faces: Finding,
-    /// Faces that repeat an earlier one, whichever way round.
+    /// Faces that repeat an earlier one, in either orientation.
     pub repeated_faces: Finding,
     /// Vertices in no face.
     pub isolated_vertices: Finding,
@@ -74,23 +74,25 @@ pub struct Diagnosis {
     pub non_manifold_edges: Finding,
     /// Vertices whose faces form several fans.
     pub bow_tie_vertices: Finding,
-    /// Tags that name no vertex or edge of the mesh, by their place among the input's tags (creases first).
+    /// Tags that name no vertex or edge of the mesh, by their index among the input's tags (creases
+    /// first).
     pub dropped_tags: Finding,
-    /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by their vertices in the mesh.
-    /// Whoever calls [`Mesh::with_divided_concave_corners`](super::Mesh::with_divided_concave_corners) adds them.
+    /// Corners with a sector of 180° and more that was divided by sharp edges (no defect), named by
+    /// their vertices in the mesh. The caller of
+    /// [`Mesh::with_divided_concave_corners`](super::Mesh::with_divided_concave_corners) adds them.
     pub concave_corners: Finding,
 }
 
-/// How a finding is told.
+/// The words of a finding.
 struct Wording {
     /// In reports: the field's name.
     name: &'static str,
     defect: bool,
     /// One of it, and many of it.
     nouns: [&'static str; 2],
-    /// What is done about it.
+    /// The repair.
     repair: &'static str,
-    /// What its numbers name.
+    /// The kind of element that its numbers name.
     place: &'static str,
 }
 
@@ -149,7 +151,7 @@ const WORDINGS: [Wording; 14] = [
             "polygon that crosses itself",
             "polygons that cross themselves",
         ],
-        "cut into triangles as well as may be",
+        "cut into triangles as well as possible",
         "face",
     ),
     wording(
@@ -227,8 +229,8 @@ const WORDINGS: [Wording; 14] = [
         "dropped_tags",
         true,
         [
-            "crease or corner tag of nothing in the mesh",
-            "crease or corner tags of nothing in the mesh",
+            "crease or corner tag without an edge or vertex in the mesh",
+            "crease or corner tags without an edge or vertex in the mesh",
         ],
         "left out",
         "tag",
@@ -270,8 +272,8 @@ impl Diagnosis {
             .map(|(wording, finding)| (wording.name, finding))
     }
 
-    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld vertices. This is what
-    /// [`strict`](super::BuildOptions::strict) asks for.
+    /// Whether the input had no defect: nothing was done but to triangulate polygons and to weld
+    /// vertices. [`strict`](super::BuildOptions::strict) requires this.
     pub fn is_clean(&self) -> bool {
         WORDINGS
             .iter()
@@ -279,28 +281,28 @@ impl Diagnosis {
             .all(|(wording, finding)| !wording.defect || finding.is_empty())
     }
 
-    /// A line for each kind of defect that was found, and what was done about it.
+    /// A line for each kind of defect, with its repair.
     pub fn repairs(&self) -> Vec<String> {
-        self.told(true, Wording::line)
+        self.lines(true, Wording::line)
     }
 
-    /// A line for each finding that is no defect, and what was done about it.
+    /// A line for each finding that is no defect, with its treatment.
     pub fn preparations(&self) -> Vec<String> {
-        self.told(false, Wording::line)
+        self.lines(false, Wording::line)
     }
 
     /// The defects in one line, for errors.
     pub(crate) fn defects(&self) -> String {
-        self.told(true, |wording, finding| wording.found(finding, ""))
+        self.lines(true, |wording, finding| wording.found(finding, ""))
             .join("; ")
     }
 
-    fn told(&self, defects: bool, tell: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
+    fn lines(&self, defects: bool, format: impl Fn(&Wording, &Finding) -> String) -> Vec<String> {
         let all = WORDINGS.iter().zip(self.in_order());
         let found =
             all.filter(|(wording, finding)| wording.defect == defects && !finding.is_empty());
         found
-            .map(|(wording, finding)| tell(wording, finding))
+            .map(|(wording, finding)| format(wording, finding))
             .collect()
     }
 }
@@ -311,7 +313,7 @@ impl Wording {
         self.found(finding, &format!(": {}", self.repair))
     }
 
-    /// The same with other words, or none, before the places.
+    /// A finding's message with other words, or none, before the numbers.
     fn found(&self, finding: &Finding, words: &str) -> String {
         let noun = self.nouns[usize::from(finding.count != 1)];
         let mut places = finding

@@ -1,8 +1,8 @@
-//! Faces divided in the middle of some of their edges, and which face each part came from.
+//! Faces divided in the middle of some of their edges, and the faces of which they are parts.
 //!
-//! Takes a mesh and the edges to divide, each with the place of its new vertex; gives the mesh with the parts of the faces
-//! on both sides. Points of the parts are found again on the whole faces by their barycentric coordinates,
-//! `b = Σ bᵢ cᵢ` with cᵢ those of the part's corners.
+//! Takes a mesh and the edges to divide, each with the position of its new vertex; gives the mesh
+//! with the parts of the faces on both sides. Points of the parts are found again on the whole
+//! faces by their barycentric coordinates, `b = Σ bᵢ cᵢ` with cᵢ those of the part's corners.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,8 @@ struct Part {
 /// The barycentric coordinates of a face's own corners.
 const WHOLE: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Where the faces of a mesh came from some of whose faces were divided: undivided faces have the numbers of their wholes.
+/// The original face of each face of a mesh some of whose faces were divided. Undivided faces keep
+/// their numbers.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct FaceParts {
     /// By ascending face; faces that are whole are not among them.
@@ -35,7 +36,7 @@ impl FaceParts {
         self.parts.is_empty()
     }
 
-    /// The face of the mesh before that `face` is, or is a part of.
+    /// The original face of `face`, which is itself or the face that was divided.
     pub fn whole(&self, face: u32) -> u32 {
         self.part(face).map_or(face, |part| part.whole)
     }
@@ -65,7 +66,7 @@ impl FaceParts {
         }
     }
 
-    /// The same faces as parts of those that were divided before.
+    /// The faces as parts of those that were divided before.
     pub fn after(&self, before: &Self) -> Self {
         let of_first = |part: &Part| {
             let corners = part
@@ -100,14 +101,16 @@ impl FaceParts {
 pub(super) struct Cut {
     /// One of the edge's half-edges.
     pub(super) edge: HalfEdgeId,
-    /// Where the new vertex stands; half as far as it is from the edge's middle move those inside the faces beside it.
+    /// The position of the new vertex. New vertices inside the adjacent faces move by half its
+    /// distance from the edge's middle.
     pub(super) position: [f64; 3],
 }
 
-/// Divides edges, each once at most, and the faces beside them: these in the triangles around a point inside, so that the new
-/// vertices have neighbours near them on either side. Old vertices keep their numbers, new ones on edges follow in the order
-/// of their cuts, then those inside faces; a divided face's first part keeps its number, and the others follow all faces.
-/// Edges along which sheets were cut apart are not to be divided.
+/// Divides edges, each once at most, and their faces, each into the triangles around a point
+/// inside, so that the new vertices have neighbours near them on either side. Old vertices keep
+/// their numbers, new ones on edges follow in the order of their cuts, then those inside faces; a
+/// divided face's first part keeps its number, and the others follow all faces. Edges along which
+/// sheets were cut apart are not to be divided.
 ///
 /// # Errors
 /// The mesh gets more elements than can be numbered.
@@ -210,7 +213,7 @@ fn inside(on_sides: &[Option<u32>; 3]) -> [f64; 3] {
     core::array::from_fn(|i| 0.25 + (is_cut[i] + is_cut[(i + 2) % 3]) / (8.0 * cuts))
 }
 
-/// A crease tag on both halves of an edge that was divided; as it is on others.
+/// A crease tag on both halves of an edge that was divided; unchanged on others.
 fn halves(tag: &CreaseTag, middles: &BTreeMap<[u32; 2], u32>) -> [Option<CreaseTag>; 2] {
     let [a, b] = tag.vertices;
     match middles.get(&sorted([a, b])) {

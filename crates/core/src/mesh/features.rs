@@ -1,27 +1,28 @@
-//! Tags by rule: creases where faces meet at a sharp angle, and what happens at boundaries.
+//! Tags by rule: creases where faces meet at a sharp angle, and corners of boundaries.
 //!
-//! Takes a mesh, gives it with more tags; every method then honours them alike.
+//! Takes a mesh, gives it with more tags, which every method follows.
 
 use super::needles::SharpEdges;
 use super::{CornerTag, CreaseTag, Mesh, MeshError};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::parallel;
 
-/// The shape of a surface's boundary. The edges along which a mesh was cut into sheets are boundaries of these.
+/// The rule of a surface's boundary. The edges along which a mesh was cut into sheets are
+/// boundaries of these.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 #[non_exhaustive]
 pub enum BoundaryRule {
-    /// Smooth all along: with Loop's scheme the cubic B-spline of the boundary polygon.
+    /// Smooth: with Loop's scheme the cubic B-spline of the boundary polygon.
     #[default]
     Smooth,
-    /// Smooth but for the vertices that are in one face only, which keep their place.
+    /// Smooth, except for the vertices that are in one face only: they are corners.
     Corners,
-    /// The boundary polygon itself: all its vertices keep their place.
+    /// The boundary polygon itself: all its vertices are corners.
     Fixed,
 }
 
 impl Mesh {
-    /// The mesh with the corner tags that make its boundary what `rule` says; those that it has stay.
+    /// The mesh with the corner tags that `rule` gives its boundary; existing tags stay.
     ///
     /// ```
     /// use limitmesh::Mesh;
@@ -48,7 +49,7 @@ impl Mesh {
         self.with_corners(&kept)
     }
 
-    /// The mesh with corners that never fade at these vertices; the tags that it has stay.
+    /// The mesh with infinitely sharp corners at these vertices; existing tags stay.
     pub fn with_corners(mut self, vertices: &[VertexId]) -> Self {
         let corners = vertices.iter().map(|v| CornerTag {
             vertex: v.0,
@@ -59,7 +60,8 @@ impl Mesh {
         self
     }
 
-    /// The mesh with creases that never fade along the edges of [`Self::creases_above`]; the tags that it has stay.
+    /// The mesh with infinitely sharp creases along the edges of [`Self::creases_above`]; existing
+    /// tags stay.
     ///
     /// # Errors
     /// The angle is not within 0 … π.
@@ -68,7 +70,7 @@ impl Mesh {
         Ok(self.with_creases(&edges))
     }
 
-    /// The mesh with creases that never fade along these edges; the tags that it has stay.
+    /// The mesh with infinitely sharp creases along these edges; existing tags stay.
     pub fn with_creases(mut self, edges: &[HalfEdgeId]) -> Self {
         let ends = edges.iter().map(|&h| self.topology.ends(h).map(|v| v.0));
         let creases: Vec<CreaseTag> = ends
@@ -84,9 +86,10 @@ impl Mesh {
 
     /// The edges whose faces' normals differ by more than `angle` (radians). Faces without area have no normal and give none.
     ///
-    /// Where two of them are the sides of a needle, a triangle with a tip of less than 45°, and nothing else is sharp at the tip, the faces
-    /// beyond them are compared instead: they give the sharper of the two edges, or none. The normal of a needle says little, and a
-    /// crease that turned back at its tip would fold the surface over.
+    /// Where two of them are the sides of a needle, a triangle with a tip of less than 45°, and no
+    /// other edge is sharp at the tip, the faces beyond them are compared instead: they give the
+    /// sharper of the two edges, or none. The normal of a needle is unreliable, and a crease that
+    /// turned back at its tip would fold the surface over.
     ///
     /// # Errors
     /// The angle is not within 0 … π.
@@ -116,12 +119,12 @@ impl Mesh {
     }
 }
 
-/// What [`Mesh::creases_above`] finds.
+/// The result of [`Mesh::creases_above`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct CreasesAbove {
     /// The edges, once each.
     pub edges: Vec<HalfEdgeId>,
-    /// Edges along needles that are as sharp and not among them.
+    /// Edges along needles that are above the angle and not among them.
     pub along_needles: usize,
 }

@@ -1,4 +1,4 @@
-//! Where sheets that were cut apart belong together.
+//! The connections of sheets that were cut apart.
 //!
 //! A non-manifold edge or a bow-tie vertex is cut so that each sheet is a manifold of its own. The copies of
 //! a vertex, and the boundary half-edges that run along one original edge, are remembered here: refinement
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use super::{MeshError, Topology};
 use crate::index::HalfEdgeId;
 
-/// Disjoint groups of element indices.
+/// Disjoint groups of indices of elements.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Groups {
     /// Start of each group in `members`, and its end as a last entry; empty without groups.
@@ -53,12 +53,12 @@ impl Groups {
     }
 }
 
-/// Copies of vertices and edges that stand for one original each.
+/// Copies of vertices and edges, in groups of one original each.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Junctions {
-    /// Vertices at one place.
+    /// Groups of vertices at one position.
     pub vertices: Groups,
-    /// Boundary half-edges along one edge.
+    /// Groups of boundary half-edges along one edge.
     pub edges: Groups,
 }
 
@@ -76,7 +76,8 @@ impl Junctions {
             .collect()
     }
 
-    /// Checks that copies stand at equal positions and that grouped half-edges are boundaries with the same ends.
+    /// Checks that copies have equal positions and that grouped half-edges are boundaries with the
+    /// same ends.
     pub(crate) fn validate(
         &self,
         topology: &Topology,

@@ -1,7 +1,7 @@
-//! Control meshes: manifold, oriented triangle meshes with half-edge topology, and what it takes to make one
-//! from any file's content.
+//! Control meshes: manifold, oriented triangle meshes with half-edge topology, and how they are
+//! made from any file's content.
 //!
-//! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of what was found and repaired on the way.
+//! Takes a [`PolygonSoup`], gives a [`Mesh`] and a [`Diagnosis`] of the repaired defects.
 
 mod build;
 mod channel;
@@ -43,14 +43,14 @@ use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
 use crate::vector::{DVec3, diagonal, normal, unit_or_zero, vector};
 
-/// What can be wrong with the data a mesh is made of.
+/// An error in the data of a mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// More elements than `u32` indices can name.
+    /// More elements than `u32` indices allow.
     #[error("{count} {what} are too many: at most {limit} can be indexed")]
     TooMany {
-        /// What is counted.
+        /// The kind of element.
         what: &'static str,
         /// How many there are.
         count: usize,
@@ -77,7 +77,7 @@ pub enum MeshError {
         /// The value met.
         value: f64,
     },
-    /// A face names the same vertex twice.
+    /// A face names a vertex twice.
     #[error("face {face} names vertex {vertex} twice")]
     RepeatedCorner {
         /// The face at fault.
@@ -85,7 +85,7 @@ pub enum MeshError {
         /// The repeated vertex.
         vertex: usize,
     },
-    /// An edge has more than two faces, or two faces run along it the same way.
+    /// An edge has more than two faces, or two faces run along it in one direction.
     #[error(
         "the edge from vertex {from} to vertex {to} is used by face {face} and by an earlier face in the same direction"
     )]
@@ -111,16 +111,16 @@ pub enum MeshError {
         /// The vertex at fault.
         vertex: usize,
     },
-    /// Nothing is left to refine.
+    /// No face is left to refine.
     #[error("no face is left: {reason}")]
     NoFaces {
-        /// How it came to that.
+        /// The cause.
         reason: String,
     },
-    /// A repair would be needed and was forbidden.
+    /// A repair is needed and forbidden.
     #[error("the mesh needs repair, which strict mode refuses: {summary}")]
     NeedsRepair {
-        /// What was found, in words.
+        /// A summary in words.
         summary: String,
     },
     /// An option is out of range.
@@ -130,7 +130,7 @@ pub enum MeshError {
         name: &'static str,
         /// The value met.
         value: f64,
-        /// What it may be.
+        /// The expected value.
         expected: &'static str,
     },
     /// An internal invariant is broken.
@@ -143,7 +143,8 @@ pub enum MeshError {
     },
 }
 
-/// A view of triangles over positions, manifold or not: what measuring, drawing and writing need.
+/// A view of triangles over positions, manifold or not: the input of measuring, drawing and
+/// writing.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
     /// Vertex positions.
@@ -179,7 +180,7 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// A manifold, oriented triangle mesh: topology, positions, tags, and where cut sheets belong together.
+/// A manifold, oriented triangle mesh: topology, positions, tags, and junctions of cut sheets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     topology: Topology,
@@ -192,7 +193,7 @@ impl Mesh {
     /// A mesh from triangles that are already manifold and consistently oriented; repairs nothing.
     ///
     /// # Errors
-    /// Names the first element that breaks a condition: an index out of range, a coordinate that is not
+    /// The first element that breaks a condition: an index out of range, a coordinate that is not
     /// finite, an edge used twice in one direction, a vertex with several fans or none.
     pub fn from_triangles(
         positions: Vec<[f64; 3]>,
@@ -208,8 +209,8 @@ impl Mesh {
         })
     }
 
-    /// A mesh from whatever a file held: polygons are triangulated, equal positions welded, defects repaired
-    /// and counted.
+    /// A mesh from the contents of a file: polygons are triangulated, equal positions welded,
+    /// defects repaired and counted.
     ///
     /// # Errors
     /// Bad indices, coordinates that are not finite, nothing left to refine, or any repair under
@@ -224,7 +225,7 @@ impl Mesh {
     /// [`Self::from_soup`], with the faces and corners of the soup that those of the mesh are from.
     ///
     /// # Errors
-    /// The same.
+    /// Those of [`Self::from_soup`].
     pub fn from_soup_traced(
         soup: &PolygonSoup,
         options: &BuildOptions,
@@ -303,13 +304,13 @@ impl Mesh {
         Ok(self)
     }
 
-    /// Vertices and boundary edges of different sheets that stand at the same place and must stay together.
+    /// Vertices and boundary edges of different sheets at one position that must stay together.
     pub fn junctions(&self) -> &Junctions {
         &self.junctions
     }
 
-    /// Number of half-edges without a partner: boundaries, but for those along cuts that go as often one way as the other. Solids that
-    /// touch along an edge have none.
+    /// Number of half-edges without a partner: boundaries, without cuts that are matched by as many
+    /// half-edges in either direction. Solids that touch along an edge have none.
     pub fn open_edge_count(&self) -> usize {
         let firsts = self.junctions.first_copies();
         let first = |v: VertexId| firsts.get(&v.0).copied().unwrap_or(v.0);
@@ -344,7 +345,7 @@ impl Mesh {
         self.topology.face_count()
     }
 
-    /// Positions and triangles without copying them; all else is given up.
+    /// Positions and triangles without copying them; everything else is dropped.
     pub fn into_positions_and_triangles(self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         (self.positions, self.topology.into_triangles())
     }
@@ -363,8 +364,8 @@ impl Mesh {
         self.as_triangles().diagonal()
     }
 
-    /// The shape of the one-ring of `vertex`, which decides its rules unless there are sharp edges inside the mesh or
-    /// corners that fade (see [`Sharpness::sectors`]).
+    /// The shape of the one-ring of `vertex`, which decides its rules unless there are sharp edges
+    /// inside the mesh or semi-sharp corners (see [`Sharpness::sectors`]).
     #[inline]
     pub fn ring_shape(&self, vertex: VertexId) -> RingShape {
         let (valence, open) = self.topology.valence_and_openness(vertex);
@@ -376,7 +377,7 @@ impl Mesh {
         }
     }
 
-    /// The shapes of the rings at both ends of `edge`, and where it stands in them.
+    /// The shapes of the rings at both ends of `edge`, and its slots in them.
     pub fn edge_shape(&self, edge: HalfEdgeId) -> EdgeShape {
         let [from, to] = self.topology.ends(edge);
         let (origin, target) = (self.ring_shape(from), self.ring_shape(to));
@@ -424,7 +425,7 @@ impl Mesh {
     /// Checks every invariant of the mesh: topology, finite positions, tags and junctions.
     ///
     /// # Errors
-    /// Names the first element that breaks one.
+    /// The first element that breaks one.
     pub fn validate(&self) -> Result<(), MeshError> {
         self.topology.validate()?;
         if self.positions.len() != self.topology.vertex_count() {
@@ -453,10 +454,11 @@ pub(crate) fn check_finite(positions: &[[f64; 3]]) -> Result<(), MeshError> {
     }
 }
 
-/// Sizes of control meshes at which squares of areas neither vanish nor overflow, for what does not scale its input.
+/// Sizes of control meshes at which squares of areas neither vanish nor overflow, for functions
+/// that do not scale their input.
 const SAFE_DIAGONALS: core::ops::RangeInclusive<f64> = 1e-70..=1e70;
 
-/// Refuses a mesh that is too large or too small to be computed with as it is.
+/// Refuses a mesh that is too large or too small to be computed with at its size.
 pub(crate) fn check_size(mesh: &Mesh) -> Result<(), MeshError> {
     let value = mesh.diagonal();
     if SAFE_DIAGONALS.contains(&value) {

@@ -1,10 +1,11 @@
 //! Creases that turn back along the two sides of one triangle.
 //!
-//! A needle, a triangle that is long and thin, is turned by little that its corners are moved, as measured and simplified meshes have many: then
-//! it stands across the faces beside it, and both of its long edges are sharper than any angle that is asked for, though nobody sees
-//! an edge there. A crease along both would be a line that turns back at the tip, which is no curve: the surface folds over beside it.
-//! So there the faces beyond the two edges are compared. If these differ by more than the angle there is one edge, the sharper of the
-//! two; else there is none.
+//! A needle, a triangle that is long and thin, turns by a small movement of its corners; measured
+//! and simplified meshes have many. It may then stand across the adjacent faces, and both of its
+//! long edges are sharper than any requested angle, though no edge is visible there. A crease along
+//! both would be a line that turns back at the tip, which is no curve: the surface next to it folds
+//! over. Therefore the faces beyond the two edges are compared. If these differ by more than the
+//! angle, there is one edge, the sharper of the two; else there is none.
 
 use super::Topology;
 use crate::index::{HalfEdgeId, VertexId};
@@ -58,7 +59,7 @@ impl<'a> SharpEdges<'a> {
         found
     }
 
-    /// The same without creases that turn back.
+    /// The creases without those that turn back.
     pub(super) fn without_needles(mut self, angle: f64) -> Self {
         let mut pending: Vec<VertexId> = self.topology.vertices().collect();
         // Taken from the end: in ascending order.
@@ -91,7 +92,8 @@ impl<'a> SharpEdges<'a> {
             .filter(is_first)
     }
 
-    /// The half-edges of the triangle that leave a vertex and come to it, if they are all its sharp edges and it is a needle's tip.
+    /// The half-edges of the triangle that leave a vertex and that enter it, if they are all its
+    /// sharp edges and it is a needle's tip.
     fn needle(&self, vertex: VertexId) -> Option<[HalfEdgeId; 2]> {
         if self.counts[vertex.index()] != 2 || self.topology.is_boundary(vertex) {
             return None;

@@ -7,7 +7,7 @@ use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
 use crate::ring::RingShape;
 
-/// Vertices that are looked at together.
+/// Vertices that are processed together.
 const PIECE: usize = 1 << 13;
 
 /// The distinct shapes of a mesh's rings, ascending, and for each vertex the place of its shape among them.
@@ -31,7 +31,7 @@ impl RingShapes {
         });
         let shapes = shapes?.concat();
         let distinct = parallel::pieces_polled(shapes.len(), PIECE, poll, |piece| {
-            // Neighbouring vertices mostly have the same shape: what is left to sort is little.
+            // Neighbouring vertices mostly have equal shapes, so that few are left to sort.
             let mut shapes = shapes[piece].to_vec();
             shapes.dedup();
             sorted_once(shapes)

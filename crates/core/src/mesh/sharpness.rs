@@ -1,8 +1,9 @@
 //! How sharp the edges and vertices of a mesh are, which rule each vertex follows, and into which sectors its sharp
 //! edges cut its ring.
 //!
-//! Takes a mesh with its tags; answers for single half-edges and vertices. The classification is OpenSubdiv's: it
-//! goes by the number of sharp edges at a vertex, those of a boundary included (see [`SharpRing`]).
+//! Takes a mesh with its tags; answers for single half-edges and vertices. The classification is
+//! OpenSubdiv's, by the number of sharp edges at a vertex, those of a boundary included (see
+//! [`SharpRing`]).
 
 use super::{Mesh, Topology};
 use crate::index::{HalfEdgeId, VertexId};
@@ -11,8 +12,8 @@ use crate::ring::{INFINITELY_SHARP, RingSector, RingShape, SharpRing, VertexRule
 /// One side of the sharp edges at a vertex; all of the ring where there are fewer than two of them.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Sector {
-    /// The half-edge that leaves the vertex along the first edge of the sector, counter-clockwise. It is sharp but
-    /// in the closed ring of a vertex without sharp edges.
+    /// The half-edge that leaves the vertex along the first edge of the sector, counter-clockwise.
+    /// It is sharp except in the closed ring of a vertex without sharp edges.
     pub first: HalfEdgeId,
     /// The shape of the ring from there on: open between two sharp edges.
     pub shape: RingShape,
@@ -117,7 +118,7 @@ impl<'m> Sharpness<'m> {
         }
     }
 
-    /// What is left after so many levels of refinement that only what never fades is still sharp.
+    /// The infinitely sharp tags: those left after enough levels of refinement.
     pub fn lasting(&self) -> Self {
         let half_edges = self
             .half_edges
@@ -137,7 +138,7 @@ impl<'m> Sharpness<'m> {
         self.tagged.is_empty()
     }
 
-    /// Whether something sharp that will fade is left.
+    /// Whether there are semi-sharp tags.
     pub fn fades(&self) -> bool {
         let mut all = self
             .half_edges
@@ -147,7 +148,7 @@ impl<'m> Sharpness<'m> {
         all.any(|s| s < INFINITELY_SHARP)
     }
 
-    /// Levels of refinement after which nothing fades any more.
+    /// Levels of refinement after which only infinitely sharp tags are left.
     pub(crate) fn fading_levels(&self) -> usize {
         let all = self
             .half_edges
@@ -159,8 +160,8 @@ impl<'m> Sharpness<'m> {
             .ceil() as usize
     }
 
-    /// Whether an interior edge at `vertex` is sharp, or the vertex itself by its tag: whether it may follow other
-    /// rules than its ring alone says.
+    /// Whether an interior edge at `vertex` is sharp, or the vertex itself by its tag: whether its
+    /// rules may differ from those of its ring alone.
     #[inline]
     pub fn is_tagged(&self, vertex: VertexId) -> bool {
         self.tagged
@@ -223,7 +224,7 @@ impl<'m> Sharpness<'m> {
         }
     }
 
-    /// The rule that `vertex` follows, as sharp as everything is now.
+    /// The rule of `vertex` at the present level.
     pub fn rule(&self, vertex: VertexId) -> VertexRule {
         match self.is_tagged(vertex) {
             true => self.ring(vertex).rule(),
@@ -232,7 +233,7 @@ impl<'m> Sharpness<'m> {
         }
     }
 
-    /// The sectors of the ring of `vertex`, counter-clockwise, as sharp as everything is now.
+    /// The sectors of the ring of `vertex`, counter-clockwise, at the present level.
     pub fn sectors(&self, vertex: VertexId) -> Vec<Sector> {
         let sectors = self.ring(vertex).sectors();
         let mut outgoing = self.topology.outgoing_ring(vertex).enumerate();

@@ -1,4 +1,4 @@
-//! A polygon soup: what a file held, before anything is checked or repaired.
+//! A polygon soup: the contents of a file, before anything is checked or repaired.
 
 use super::{Channel, CornerTag, CreaseTag};
 
@@ -82,26 +82,27 @@ impl<'a> FromIterator<&'a [u32]> for PolygonFaces {
     }
 }
 
-/// What a file held: positions, polygons, tags. Indices may be anything; [`super::Mesh::from_soup`] checks.
+/// The contents of a file: positions, polygons, tags. Indices may be anything;
+/// [`super::Mesh::from_soup`] checks.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct PolygonSoup {
     /// Vertex positions in the file's units.
     pub positions: Vec<[f64; 3]>,
     /// Polygons over `positions`.
     pub faces: PolygonFaces,
-    /// Faces that count though they have no area, in ascending order: where something moves the vertices apart, such as a morph
-    /// target or a joint, they have one.
+    /// Faces without area that are kept, in ascending order: they have an area once a morph target
+    /// or a joint moves their vertices apart.
     pub opening: Vec<u32>,
     /// Sharp edges.
     pub creases: Vec<CreaseTag>,
     /// Sharp vertices.
     pub corners: Vec<CornerTag>,
-    /// What vertices, corners and faces carry.
+    /// The channels of vertices, corners and faces.
     pub channels: Vec<Channel>,
     /// Files that describe the materials that channels name.
     pub material_libraries: Vec<String>,
-    /// Pictures that texture coordinates are places on, where the file names them itself.
+    /// Pictures of the texture coordinates, where the file itself names them.
     pub texture_files: Vec<String>,
-    /// What the file held beside these and was left out, in words such as "texture coordinates".
+    /// Further contents of the file that were left out, in words such as "texture coordinates".
     pub left_out: Vec<String>,
 }

@@ -1,7 +1,8 @@
-//! A surface whose vertices on sharp edges stand once for each side, so that every vertex has one normal: what graphics cards and
-//! most files want.
+//! A surface whose vertices on sharp edges are repeated for each side, so that every vertex has one
+//! normal, as graphics cards and most files need.
 //!
-//! Takes a mesh and a normal for each of its corners; gives positions, normals and triangles, and which vertex of the mesh each is.
+//! Takes a mesh and a normal for each of its corners; gives positions, normals and triangles, and
+//! the vertex of the mesh for each.
 
 use std::collections::HashMap;
 
@@ -15,19 +16,19 @@ const ALIKE: f64 = 1e-6;
 /// A surface with a normal for each vertex.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SplitSurface {
-    /// Those of the mesh, then the further copies of vertices with several sides.
+    /// The positions of the mesh, then further copies of vertices with several sides.
     pub positions: Vec<[f64; 3]>,
-    /// One for each position.
+    /// The normal of each position.
     pub normals: Vec<[f64; 3]>,
-    /// The mesh's, in its order.
+    /// The triangles of the mesh, in its order.
     pub triangles: Vec<[u32; 3]>,
-    /// By position, the vertex of the mesh: itself, but for copies.
+    /// By position, the vertex of the mesh: itself, except for copies.
     pub sources: Vec<u32>,
 }
 
 impl SplitSurface {
-    /// The mesh with the normals that `normal` gives for the corners that half-edges leave. A vertex stands as often as its corners
-    /// have normals that differ; the first of them keeps its number.
+    /// The mesh with the normals that `normal` gives for the corners that half-edges leave. A
+    /// vertex is repeated for each different normal of its corners; the first keeps its number.
     pub fn new(mesh: &Mesh, normal: impl Fn(HalfEdgeId) -> [f64; 3]) -> Self {
         let count = mesh.vertex_count();
         let mut split = Self {
@@ -70,8 +71,8 @@ impl SplitSurface {
         split
     }
 
-    /// The mesh with the mean normals of the faces around each vertex, weighted by area, on each side of what its tags keep sharp for
-    /// ever: how a mesh of which nothing else is known is shaded.
+    /// The mesh with the mean normals of the faces around each vertex, weighted by area, on each
+    /// side of its infinitely sharp edges: the shading of a mesh without other data.
     pub fn by_faces(mesh: &Mesh) -> Self {
         let sharpness = Sharpness::of(mesh).lasting();
         let topology = mesh.topology();

@@ -6,28 +6,30 @@ use super::{Junctions, MeshError, Topology};
 use crate::index::VertexId;
 use crate::ring::INFINITELY_SHARP;
 
-/// An edge that is to stay sharp.
+/// The tag of a sharp edge.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct CreaseTag {
     /// The ends of the edge, in any order.
     pub vertices: [u32; 2],
-    /// 0 smooth, [`INFINITELY_SHARP`] and above for ever sharp, between them sharp for that many levels.
+    /// 0 is smooth, [`INFINITELY_SHARP`] and above infinitely sharp; between them the tag is sharp
+    /// for that many levels.
     pub sharpness: f64,
 }
 
-/// A vertex that is to stay where it is.
+/// The tag of a vertex that keeps its position.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct CornerTag {
     /// The vertex.
     pub vertex: u32,
-    /// As for [`CreaseTag::sharpness`].
+    /// Levels of refinement for which the tag holds; see [`CreaseTag::sharpness`].
     pub sharpness: f64,
 }
 
-/// The tags of a mesh: what is to stay sharp where its surface would be smooth.
+/// The tags of a mesh: edges and vertices that stay sharp where the surface would be smooth.
 ///
-/// The rules are OpenSubdiv's (see [`crate::ring::SharpRing`]). Refinement hands the tags on to the pieces of what
-/// they name, less sharp by one; several tags on one edge count as the sharpest of them.
+/// The rules are OpenSubdiv's (see [`crate::ring::SharpRing`]). Refinement hands the tags on to the
+/// parts of their edges and vertices, less sharp by one; several tags on one edge count as the
+/// sharpest of them.
 #[derive(Clone, PartialEq, Debug, Default)]
 pub struct Tags {
     /// Sharp edges.
@@ -42,7 +44,7 @@ impl Tags {
         self.creases.is_empty() && self.corners.is_empty()
     }
 
-    /// Whether `vertex` keeps its place for ever.
+    /// Whether `vertex` is an infinitely sharp corner.
     #[inline]
     pub fn is_corner(&self, vertex: VertexId) -> bool {
         if self.corners.is_empty() {
@@ -64,9 +66,9 @@ impl Tags {
         self.corners.dedup_by_key(|tag| tag.vertex);
     }
 
-    /// The tags with the same outcome for all copies of a vertex that was cut: each is as sharp as the sharpest, and
-    /// where an edge inside one of the sheets is sharp, which makes its copy a corner, all are corners for a level
-    /// longer than that lasts.
+    /// The tags with the same outcome for all copies of a vertex that was cut: each is as sharp as
+    /// the sharpest, and where an edge inside one of the sheets is sharp, which makes its copy a
+    /// corner, all are corners for one level more than that edge is sharp.
     pub(crate) fn joined(mut self, topology: &Topology, junctions: &Junctions) -> Self {
         if self.is_empty() || junctions.vertices.is_empty() {
             return self;

@@ -29,7 +29,7 @@ impl Topology {
     /// Connects triangles over `vertex_count` vertices.
     ///
     /// # Errors
-    /// As for [`super::Mesh::from_triangles`], but for positions.
+    /// Those of [`super::Mesh::from_triangles`], except for positions.
     pub fn from_triangles(
         triangles: Vec<[u32; 3]>,
         vertex_count: usize,
@@ -46,7 +46,7 @@ impl Topology {
         Ok(topology)
     }
 
-    /// The parts as they are; the caller vouches for the invariants.
+    /// Takes the parts unchecked; the caller guarantees the invariants.
     pub(crate) fn from_parts(
         triangles: Vec<[u32; 3]>,
         twins: Vec<u32>,
@@ -94,7 +94,7 @@ impl Topology {
         (0..self.outgoing.len() as u32).map(VertexId)
     }
 
-    /// The same without the connections.
+    /// The triangles without the connections.
     pub(crate) fn into_triangles(self) -> Vec<[u32; 3]> {
         self.triangles
     }
@@ -105,14 +105,14 @@ impl Topology {
         &self.triangles
     }
 
-    /// Which of the edges at its origin a half-edge is, in the order of [`Self::outgoing_ring`].
+    /// The position of a half-edge among those at its origin, in the order of [`Self::outgoing_ring`].
     pub(crate) fn slot(&self, h: HalfEdgeId) -> usize {
         self.outgoing_ring(self.origin(h))
             .take_while(|&other| other != h)
             .count()
     }
 
-    /// The half-edge along the same edge in the neighbouring face; `None` on a boundary.
+    /// The half-edge along this edge in the neighbouring face; `None` on a boundary.
     #[inline]
     pub fn twin(&self, h: HalfEdgeId) -> Option<HalfEdgeId> {
         let twin = self.twins[h.index()];
@@ -212,7 +212,7 @@ impl Topology {
                 None
             }
         };
-        // Round both ends at once, so that the lower valence decides the time.
+        // Round both ends together, so that the lower valence decides the time.
         let mut around_both = self.outgoing_ring(a).zip(self.outgoing_ring(b));
         around_both.find_map(|(from_a, from_b)| along(from_a, b).or_else(|| along(from_b, a)))
     }
@@ -236,7 +236,7 @@ impl Topology {
     /// Checks every invariant.
     ///
     /// # Errors
-    /// Names the first element that breaks one.
+    /// The first element that breaks one.
     pub fn validate(&self) -> Result<(), MeshError> {
         check_indices(&self.triangles, self.vertex_count())?;
         let broken = |place: String, what| Err(MeshError::Broken { place, what });
@@ -420,7 +420,7 @@ fn match_twins(triangles: &[[u32; 3]], vertex_count: usize) -> Result<Vec<u32>, 
             [a, b] if from(a) != from(b) => {
                 (twins[a.side as usize], twins[b.side as usize]) = (b.side, a.side);
             }
-            // Of two that run the same way, or of three or more, two have the same origin.
+            // Of two half-edges in one direction, or of three or more, two have equal origins.
             _ if twice.is_none() => {
                 twice = (1..edge.len())
                     .find(|&i| edge[..i].iter().any(|e| from(e) == from(&edge[i])))
@@ -475,7 +475,7 @@ pub(crate) fn outgoing_half_edges_polled(
     Ok(outgoing)
 }
 
-/// Half-edges that are looked at between two calls of an observer.
+/// Half-edges between two calls of an observer.
 const POLLED: usize = 1 << 18;
 
 /// The triangle's faces as ids, for callers that walk them.

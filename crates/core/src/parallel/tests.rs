@@ -46,7 +46,7 @@ fn polled_loops_give_what_plain_ones_give_for_any_number_of_threads() {
     }
 }
 
-/// Between two calls the calling thread does one block at most, and what it is told only grows.
+/// Between two calls the calling thread does one block at most, and its count only grows.
 #[test]
 fn the_calling_thread_polls_after_each_of_its_blocks() {
     for threads in [1, 2, 4] {
@@ -86,7 +86,7 @@ fn a_cancelled_loop_begins_no_further_blocks() {
             let result = with_threads(threads, || {
                 let poll = &mut |_| {
                     calls += 1;
-                    // What the others have begun by now does not count.
+                    // Blocks that other threads have begun by now do not count.
                     if calls == after {
                         begun.store(0, Ordering::Relaxed);
                         return Err(Cancelled);
@@ -100,13 +100,14 @@ fn a_cancelled_loop_begins_no_further_blocks() {
             });
             assert_eq!(result, Err(Cancelled));
             assert_eq!(calls, after);
-            // Each of the others may take a few blocks until it sees the flag; a machine under load is slow to tell.
+            // Each of the others may take a few blocks until it sees the flag; a machine under load
+            // is slow to show it.
             assert!(begun.into_inner() < 100_000);
         }
     }
 }
 
-/// A block may take as long as it likes if it asks: it is polled for on the calling thread, and told to stop on all.
+/// A long block that asks is polled for on the calling thread, and stopped on all.
 #[test]
 fn long_blocks_are_polled_for_and_stopped() {
     for threads in [1, 2, 4] {
@@ -142,10 +143,11 @@ fn what_is_sorted_in_parts_is_sorted() {
     }
 }
 
-/// What several threads touch is as long, as roomy and as empty as what one does.
+/// The memory of several threads has the length, the capacity and the contents that one thread
+/// gives.
 #[test]
 fn defaults_are_the_same_for_any_number_of_threads() {
-    // So many are touched by several, one less is not.
+    // This many are touched by several threads, one less is not.
     let many = (1usize << 18).div_ceil(size_of::<[u32; 3]>());
     for threads in [1, 3] {
         for (length, room) in [

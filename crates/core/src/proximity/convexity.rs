@@ -13,14 +13,15 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{CUBIC, SEXTIC, multinomials, place, tangents};
 use crate::vector::DVec3;
 
-/// What of a piece decides how its distance from points bends.
+/// The part of a piece that decides how its distance from points bends.
 #[derive(Clone, Debug)]
 pub(super) struct Convexity {
     /// The least and greatest of `S_i·S_j + S·S_ij`: both by the first parameter, one by each, both by the second.
     products: [[f64; 2]; 3],
     /// Boxes around `S_ij`, alike.
     second: [Bounds; 3],
-    /// Factors `p`, `r`, `s` so that `p·S_u` and `r·S_u + s·S_v` are orthonormal amid the piece; no numbers where nothing is.
+    /// Factors `p`, `r`, `s` so that `p·S_u` and `r·S_u + s·S_v` are orthonormal amid the piece;
+    /// NaN where they do not exist.
     factors: [f64; 3],
 }
 
@@ -71,8 +72,8 @@ impl Convexity {
         }
     }
 
-    /// A bound from below on the eigenvalues of the second derivatives of half the squared distance from a point, all over the piece, in
-    /// the orthonormal parameters; perhaps no number, where nothing is known.
+    /// A bound from below on the eigenvalues of the second derivatives of half the squared distance
+    /// from a point, all over the piece, in the orthonormal parameters; NaN where unknown.
     pub(super) fn least_eigenvalue(&self, point: DVec3) -> f64 {
         let [uu, uv, vv] = from_fn(|entry| {
             let ([low, high], [least, most]) = (self.products[entry], self.second[entry]);
@@ -121,7 +122,7 @@ fn orthonormal(e: f64, f: f64, g: f64) -> [f64; 3] {
     [e.sqrt().recip(), -f / e * s, s]
 }
 
-/// Second derivatives in the parameters that the factors lead to.
+/// Second derivatives in the parameters given by the factors.
 fn turned([p, r, s]: [f64; 3], [uu, uv, vv]: [f64; 3]) -> [f64; 3] {
     [
         p * p * uu,
@@ -227,7 +228,7 @@ mod tests {
                         "height {height}, point {point}: {bound} and {least}"
                     );
                 }
-                // Where f is least nothing is far below it: a bound that says nothing would not do.
+                // Where f is least no value is far below it: the bound must not be trivial.
                 let nearest = places()
                     .min_by(|a, b| half(*a).total_cmp(&half(*b)))
                     .unwrap_or_default();

@@ -1,9 +1,11 @@
-//! How points lie to a limit surface: the closest point, certified, and whether a point is inside.
+//! The closest point of a limit surface, certified, and whether a point is inside.
 //!
-//! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is in the hull of control points
-//! ([`pieces`]), so that no point of it is farther from the triangle of its limit corners than the hull's points are; boxes of hulls
-//! stand in a tree. What a search ([`nearest`]) passes over is at least so far away, and where the squared distance bends little over a piece
-//! ([`convexity`]), its value and derivatives at one place bound it. What is inside is told by the winding number ([`winding`]).
+//! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is
+//! in the hull of control points ([`pieces`]), so that no point of it is farther from the triangle
+//! of its limit corners than the hull's points are; boxes of hulls are in a tree. A search
+//! ([`nearest`]) skips a box by its distance, and where the squared distance bends little over a
+//! piece ([`convexity`]), its value and derivatives at one place bound it. The winding number
+//! decides whether a point is inside ([`winding`]).
 
 mod convexity;
 mod nearest;
@@ -21,7 +23,8 @@ use nearest::Query;
 use pieces::FacePieces;
 use winding::Chains;
 
-/// Control faces up to which their pieces are kept, some ten kilobytes a face; those of larger meshes are made when they are looked at.
+/// Control faces up to which their pieces are kept, some ten kilobytes a face; those of larger
+/// meshes are made when visited.
 const MOST_KEPT: usize = 40_000;
 
 /// Control faces whose pieces are made together.
@@ -33,14 +36,14 @@ const POINTS: usize = 64;
 /// Points up to this part of the surface's size from it are neither inside nor outside.
 const NEAR: f64 = 1e-9;
 
-/// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
+/// The least part of the surface's size that a tolerance can be: smaller ones are within rounding.
 const LEAST_TOLERANCE: f64 = 1e-13;
 
-/// Why there is nothing to be near to.
+/// An error of proximity.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProximityError {
-    /// A bound is known for schemes of Loop's family alone.
+    /// Bounds exist only for schemes of Loop's family.
     #[error("closest points are found on surfaces of the Loop family, not of the scheme '{name}'")]
     Scheme {
         /// The scheme's name.
@@ -49,7 +52,7 @@ pub enum ProximityError {
     /// A mesh without faces has no surface.
     #[error("the control mesh has no faces")]
     Empty,
-    /// Some stencil failed.
+    /// A limit stencil failed.
     #[error(transparent)]
     Limit(#[from] crate::limit::LimitError),
     /// An open surface has no inside.
@@ -62,7 +65,7 @@ pub enum ProximityError {
         /// Where it ends.
         to: u32,
     },
-    /// A point that is none.
+    /// A point is not finite.
     #[error("point {index} is not finite: ({}, {}, {})", .point[0], .point[1], .point[2])]
     NotFinite {
         /// Which of those that were given.
@@ -70,7 +73,7 @@ pub enum ProximityError {
         /// Its coordinates.
         point: [f64; 3],
     },
-    /// A point whose distance is no number any more.
+    /// A point whose squared distance overflows.
     #[error(
         "point {index} at ({}, {}, {}) is too far from the surface for its distance, by the surface's size, to be squared",
         .point[0], .point[1], .point[2]
@@ -81,10 +84,10 @@ pub enum ProximityError {
         /// Its coordinates.
         point: [f64; 3],
     },
-    /// A tolerance that is none.
+    /// A tolerance is out of range.
     #[error("the tolerance must be a length above 0, but is {tolerance}")]
     Tolerance {
-        /// What was given.
+        /// The given value.
         tolerance: f64,
     },
     /// The observer asked to stop.
@@ -96,9 +99,9 @@ pub enum ProximityError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest {
-    /// Where it is, in the control mesh's units.
+    /// Its position, in the control mesh's units.
     pub point: [f64; 3],
-    /// The control face that it is on.
+    /// Its control face.
     pub face: FaceId,
     /// The weights of that face's corners.
     pub barycentric: [f64; 3],
@@ -108,18 +111,18 @@ pub struct Closest {
     pub lower: f64,
 }
 
-/// Where a point is, as seen from a closed surface.
+/// The position of a point relative to a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Membership {
     /// The surface winds around it.
     Inside,
-    /// It does not.
+    /// The surface does not wind around it.
     Outside,
-    /// It is within some 1e-9 of the surface's size of the surface, or no number.
+    /// It is within about 1e-9 of the surface's size of the surface, or NaN.
     Near,
 }
 
-/// A limit surface that is prepared for questions about points.
+/// A limit surface, prepared for queries of points.
 ///
 /// ```
 /// use limitmesh::{LimitSurface, Membership, Mesh, Proximity, scheme::Loop};
@@ -157,10 +160,10 @@ impl<'a> Proximity<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
@@ -222,11 +225,12 @@ impl<'a> Proximity<'a> {
         self.surface
     }
 
-    /// The closest points of the surface to given ones, in their order, on all threads; each distance is within the tolerance (a length in
-    /// the control mesh's unit) of the least. Below some 1e-13 of the surface's size, tolerances are that.
+    /// The closest points of the surface to given ones, in their order, on all threads; each
+    /// distance is within the tolerance (a length in the control mesh's unit) of the least. The
+    /// least tolerance is about 1e-13 of the surface's size.
     ///
-    /// A point with many equally close ones, such as the middle of a sphere, takes long: the whole surface is looked at, in pieces that
-    /// are off by less than the tolerance.
+    /// A point with many equally close ones, such as the middle of a sphere, takes long: the search
+    /// visits the whole surface, in pieces with an error below the tolerance.
     ///
     /// # Errors
     /// A point or the tolerance is not finite, or the tolerance is not above 0.
@@ -238,10 +242,10 @@ impl<'a> Proximity<'a> {
         self.closest_observed(points, tolerance, &mut unobserved)
     }
 
-    /// [`Self::closest`], telling an observer how it goes on.
+    /// [`Self::closest`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::closest`], or the observer asked to stop.
+    /// Those of [`Self::closest`], or the observer asked to stop.
     pub fn closest_observed(
         &self,
         points: &[[f64; 3]],
@@ -277,7 +281,8 @@ impl<'a> Proximity<'a> {
         }
     }
 
-    /// How often a closed surface winds around a point, counter-clockwise as seen from outside; `None` where the point is too near to say.
+    /// The winding number of a closed surface around a point, counter-clockwise as seen from
+    /// outside; `None` where the point is too near to decide.
     ///
     /// # Errors
     /// The surface is open, or the point is not finite.
@@ -287,10 +292,10 @@ impl<'a> Proximity<'a> {
         Ok(chains.winding_number(self, self.frame.inside(vector(point))))
     }
 
-    /// Where a point is: inside if the surface winds around it, whichever way its normals point.
+    /// Whether a point is inside: the surface winds around it, whichever way its normals point.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`].
+    /// Those of [`Self::winding_number`].
     pub fn membership(&self, point: [f64; 3]) -> Result<Membership, ProximityError> {
         Ok(match self.winding_number(point)? {
             None => Membership::Near,
@@ -302,7 +307,7 @@ impl<'a> Proximity<'a> {
     /// [`Self::membership`] of many points, in their order, on all threads.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`].
+    /// Those of [`Self::winding_number`].
     pub fn memberships(&self, points: &[[f64; 3]]) -> Result<Vec<Membership>, ProximityError> {
         uncancelled(
             |observer| match self.memberships_observed(points, observer) {
@@ -312,10 +317,10 @@ impl<'a> Proximity<'a> {
         )
     }
 
-    /// [`Self::memberships`], telling an observer how it goes on.
+    /// [`Self::memberships`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::winding_number`], or the observer asked to stop.
+    /// Those of [`Self::winding_number`], or the observer asked to stop.
     pub fn memberships_observed(
         &self,
         points: &[[f64; 3]],

@@ -1,8 +1,10 @@
-//! The closest point, by branch and bound over boxes, faces and pieces, what may be nearest first.
+//! The closest point, by branch and bound over boxes, faces and pieces, the least bound first.
 //!
-//! What has a bound that is not below the least distance found less the tolerance need not be looked at: its box is that far, or the triangle
-//! that it is near, or the squared distance bends so little downwards that its value and derivatives at one place bound it
-//! ([`super::convexity`]). Others are searched by Newton's method within their triangle, and quartered where that does not decide.
+//! A piece is skipped if a lower bound of its distance is not below the least distance found less
+//! the tolerance: the bound is by its box, or by the triangle that it is near, or the squared
+//! distance bends so little downwards that its value and derivatives at one place bound it
+//! ([`super::convexity`]). Others are searched by Newton's method within their triangle, and
+//! quartered where that does not decide.
 
 use core::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,7 +21,7 @@ use crate::vector::{DVec3, vector};
 /// Newton's steps on a piece at most: it converges within five, or it is better to quarter the piece.
 const STEPS: usize = 8;
 
-/// The same where nothing is known of convexity, only to find a near point.
+/// The number of steps where nothing is known of convexity, only to find a near point.
 const FEW_STEPS: usize = 2;
 
 /// Pieces between two questions whether to stop: some milliseconds at most.
@@ -33,14 +35,14 @@ pub(super) struct Query<'q> {
     proximity: &'q Proximity<'q>,
     tolerance: f64,
     is_stopped: &'q IsStopped<'q>,
-    /// What is still to be looked at.
+    /// The pieces that wait.
     waiting: BinaryHeap<Waiting>,
     /// Pieces until the next question whether to stop.
     left: u32,
     /// The point, and the nearest one so far.
     from: DVec3,
     best: Best,
-    /// What was passed over is no nearer than this.
+    /// A lower bound of the distance of all skipped pieces.
     passed_over: f64,
 }
 
@@ -63,12 +65,12 @@ const NOTHING: Best = Best {
 /// Something that is no nearer than its bound.
 struct Waiting {
     bound: f64,
-    /// Tells those with equal bounds apart.
+    /// The order of pieces with equal bounds.
     number: u32,
-    what: What,
+    pending: Pending,
 }
 
-enum What {
+enum Pending {
     /// A node of the tree.
     Node(usize),
     /// A piece that is kept, by its face and place there, and whether its bound is that of its triangle, not only of its box.
@@ -78,7 +80,8 @@ enum What {
 }
 
 impl Ord for Waiting {
-    /// The one with the least bound is the greatest, as heaps want it; among equals what waits shortest, which is smallest.
+    /// The entry with the least bound is the greatest, as heaps need it; among equals the latest,
+    /// which is smallest.
     fn cmp(&self, other: &Self) -> Ordering {
         other
             .bound
@@ -120,22 +123,22 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// What it finds is of no use once it was stopped.
+    /// The closest point; meaningless once the search was stopped.
     pub(super) fn closest(&mut self, point: [f64; 3]) -> Closest {
         let frame = &self.proximity.frame;
         (self.from, self.best, self.passed_over) =
             (frame.inside(vector(point)), NOTHING, f64::INFINITY);
         let mut number = 0;
         self.waiting.clear();
-        self.wait(&mut number, 0.0, What::Node(0));
-        while let Some(Waiting { bound, what, .. }) = self.waiting.pop() {
+        self.wait(&mut number, 0.0, Pending::Node(0));
+        while let Some(Waiting { bound, pending, .. }) = self.waiting.pop() {
             if bound >= self.limit() {
                 self.pass_over(bound);
                 break;
             }
-            match what {
-                What::Node(node) => self.open(node, &mut number),
-                What::Kept(face, at, is_of_triangle) => {
+            match pending {
+                Pending::Node(node) => self.open(node, &mut number),
+                Pending::Kept(face, at, is_of_triangle) => {
                     let piece = &self.proximity.faces[face as usize].pieces[at as usize];
                     let own = if is_of_triangle {
                         bound
@@ -143,12 +146,12 @@ impl<'q> Query<'q> {
                         self.bound(piece)
                     };
                     if own > bound && self.waiting.peek().is_some_and(|next| next.bound < own) {
-                        self.wait(&mut number, own, What::Kept(face, at, true));
+                        self.wait(&mut number, own, Pending::Kept(face, at, true));
                     } else {
                         self.look_at(piece, face, &mut number);
                     }
                 }
-                What::Own(piece, face) => self.look_at(&piece, face, &mut number),
+                Pending::Own(piece, face) => self.look_at(&piece, face, &mut number),
             }
             self.left -= 1;
             if self.left == 0 {
@@ -168,7 +171,7 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// From which bound on nothing is looked at.
+    /// The bound from which the search skips pieces.
     fn limit(&self) -> f64 {
         self.best.distance - self.tolerance
     }
@@ -177,12 +180,12 @@ impl<'q> Query<'q> {
         self.passed_over = self.passed_over.min(bound);
     }
 
-    fn wait(&mut self, number: &mut u32, bound: f64, what: What) {
+    fn wait(&mut self, number: &mut u32, bound: f64, pending: Pending) {
         *number = number.wrapping_add(1);
         self.waiting.push(Waiting {
             bound,
             number: *number,
-            what,
+            pending,
         });
     }
 
@@ -193,7 +196,7 @@ impl<'q> Query<'q> {
         if let Some(children) = tree.children(node) {
             for child in children {
                 let bound = distance_to(&tree.nodes()[child].bounds, self.from);
-                self.wait(number, bound, What::Node(child));
+                self.wait(number, bound, Pending::Node(child));
             }
             return;
         }
@@ -203,7 +206,7 @@ impl<'q> Query<'q> {
                 for (piece, at) in kept.pieces.iter().zip(0..) {
                     let bound = distance_to(&piece.bounds, self.from);
                     match bound < self.limit() {
-                        true => self.wait(number, bound, What::Kept(face, at, false)),
+                        true => self.wait(number, bound, Pending::Kept(face, at, false)),
                         false => self.pass_over(bound),
                     }
                 }
@@ -213,7 +216,7 @@ impl<'q> Query<'q> {
                     FacePieces::of(proximity.surface, &proximity.frame, FaceId(face)).pieces
                 {
                     let bound = self.bound(&piece);
-                    self.wait(number, bound, What::Own(Box::new(piece), face));
+                    self.wait(number, bound, Pending::Own(Box::new(piece), face));
                 }
             }
         }
@@ -229,7 +232,7 @@ impl<'q> Query<'q> {
         of_box.max(closest_to_origin(a, b, c).squared.sqrt() - piece.height)
     }
 
-    /// Looks at a piece, and has its parts wait if that does not decide.
+    /// Tests a piece, and lets its parts wait if that does not decide.
     fn look_at(&mut self, piece: &Piece, face: u32, number: &mut u32) {
         match &piece.form {
             Form::Regular(regular) => {
@@ -262,12 +265,12 @@ impl<'q> Query<'q> {
             let bound = self.bound(&part);
             match bound >= self.limit() {
                 true => self.pass_over(bound),
-                false => self.wait(number, bound, What::Own(Box::new(part), face)),
+                false => self.wait(number, bound, Pending::Own(Box::new(part), face)),
             }
         }
     }
 
-    /// Takes a point if it is nearer than any before, and tells whether it is.
+    /// Takes a point if it is nearer than any before, and reports whether it is.
     fn offer(
         &mut self,
         distance: f64,
@@ -287,8 +290,9 @@ impl<'q> Query<'q> {
         is_nearer
     }
 
-    /// Newton's method on a regular piece, from a place; gives a bound for all of the piece that need not be looked at any more. A point that
-    /// is the nearest so far is followed to where it is nearest, which moves it by far more than its distance shows.
+    /// Newton's method on a regular piece, from a place; gives a bound for the whole piece. The
+    /// nearest point so far is iterated until it converges, which moves it by far more than its
+    /// distance changes.
     fn descend(
         &mut self,
         piece: &RegularPiece,
@@ -312,7 +316,7 @@ impl<'q> Query<'q> {
             let is_nearest = self.offer(away.length(), point + piece.origin, over, at);
             let gradient = [away.dot(by_u), away.dot(by_v)];
             let lower = convexity.bound(0.5 * away.length_squared(), at, gradient, eigenvalue);
-            // What is no number is no bound.
+            // NaN is no bound.
             let lower = if lower > 0.0 {
                 (2.0 * lower).sqrt()
             } else {

@@ -12,7 +12,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{self, Patch, Quartic, Rules, Spot, child_corners};
 use crate::vector::DVec3;
 
-/// Refinements of a face towards irregular corners before its pieces are kept as they are.
+/// Refinements of a face towards irregular corners before its pieces are kept.
 const KEPT_LEVELS: u32 = 3;
 
 /// Regular pieces are quartered once if they leave their triangle by more than this part of their longest edge.
@@ -34,12 +34,12 @@ pub(super) struct Piece {
     pub(super) form: Form,
 }
 
-/// What a piece is made of.
+/// The form of a piece.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
     /// A polynomial.
     Regular(Box<RegularPiece>),
-    /// What is still to be refined.
+    /// A piece that is still to be refined.
     Irregular(Box<Patch>),
 }
 
@@ -139,7 +139,7 @@ impl Piece {
         }
     }
 
-    /// With what decides how distances from it bend.
+    /// With the data that decide how distances from it bend.
     fn with_convexity(mut self) -> Self {
         if let Form::Regular(regular) = &mut self.form {
             regular.convexity = Some(regular.convexity());
@@ -179,8 +179,8 @@ fn hull(points: impl Iterator<Item = DVec3>, [a, b, c]: [DVec3; 3]) -> (Bounds, 
 #[derive(Clone, Debug)]
 pub(super) struct FacePieces {
     pub(super) pieces: Vec<Piece>,
-    /// Triangles between edges and their halves, where pieces were divided: with those of the pieces they close what the face's own
-    /// triangle bounds.
+    /// Triangles between edges and their halves, where pieces were divided: together with the
+    /// triangles of the pieces they have the boundary of the face's own triangle.
     pub(super) closing: Vec<[DVec3; 3]>,
 }
 

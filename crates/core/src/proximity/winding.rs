@@ -1,11 +1,14 @@
 //! How often a closed surface winds around a point.
 //!
-//! The solid angle of triangles that stand for the surface (van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983) is that of
-//! the surface itself if the straight way of each point of the surface to that of the triangle with the same weights does not
-//! meet the point q: where q is farther from the triangle than the parametric deviation, or not in the box around both. Other pieces are
-//! quartered, and triangles between an edge and its halves keep the whole closed. Seen from outside of a box, what is in it may be replaced by
-//! anything with the same boundary, such as a cone over it, so that far faces count by the rims of nodes of the tree (Jacobson, Kavan and
-//! Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers", 2013).
+//! The solid angle of triangles that approximate the surface (van Oosterom and Strackee, "The Solid
+//! Angle of a Plane Triangle", 1983) is that of the surface itself if the straight way of each
+//! point of the surface to that of the triangle with the same weights does not meet the point q:
+//! where q is farther from the triangle than the parametric deviation, or not in the box around
+//! both. Other pieces are quartered, and triangles between an edge and its halves keep the whole
+//! closed. Seen from outside of a box, its contents may be replaced by anything with the same
+//! boundary, such as a cone over it, so that far faces count by the rims of nodes of the tree
+//! (Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized
+//! Winding Numbers", 2013).
 
 use core::f64::consts::PI;
 
@@ -20,7 +23,7 @@ use crate::vector::{DVec3, vector};
 /// Points this near to a triangle that closes a gap are moved: on which side of it they are is not certain.
 const ON_CLOSING: f64 = 1e-12;
 
-/// How they are moved, one after the other: far less than what counts as near.
+/// The displacements to try, one after the other: far less than the distance that counts as near.
 const MOVES: [[f64; 3]; 3] = [
     [0.0; 3],
     [3.1e-11, 5.3e-11, 7.9e-11],

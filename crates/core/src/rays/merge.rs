@@ -1,4 +1,4 @@
-//! What two pieces found on their common edge is one hit.
+//! Hits of two pieces on their common edge are merged to one.
 
 use super::Crossing;
 use super::search::Found;
@@ -6,11 +6,12 @@ use super::search::Found;
 /// Weights that differ by no more are those of one place, and corners with no more weight than this count for none.
 const SAME: f64 = 1e-6;
 
-/// Sorts what was found along the ray and takes together what is met at one place. Depths up to `tolerance` apart may be one.
+/// Sorts the hits along the ray and merges those at one place. Depths up to `tolerance` apart may
+/// be one.
 pub(super) fn merged(mut found: Vec<Found>, triangles: &[[u32; 3]], tolerance: f64) -> Vec<Found> {
     found.sort_by(|a, b| a.depth.total_cmp(&b.depth).then(a.face.cmp(&b.face)));
     let mut kept: Vec<Found> = Vec::with_capacity(found.len());
-    // The last of those that were taken together counts on: what is grazed is a chain of pieces.
+    // The last of the merged hits counts on: a grazed region is a chain of pieces.
     let mut last: Vec<Found> = Vec::with_capacity(found.len());
     for one in found {
         let near = last

@@ -1,9 +1,11 @@
-//! Where rays meet a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision Surfaces", 1998).
+//! The hits of rays on a limit surface (Kobbelt, Daubert, Seidel, "Ray Tracing of Subdivision
+//! Surfaces", 1998).
 //!
-//! Their envelopes of the control mesh become hulls of pieces: a ray that passes beside the hull of a piece's control points misses it.
-//! A regular piece whose projection along the ray is injective ([`planar`]) is met once at most, and Newton's method finds where; any
-//! other is divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing is passed over in any other
-//! way, so no hit is missed. Boxes of pieces stand in a tree.
+//! Their envelopes of the control mesh become hulls of pieces: a ray that misses the hull of a
+//! piece's control points misses the piece. A regular piece whose projection along the ray is
+//! injective ([`planar`]) is met once at most, and Newton's method finds the hit; any other is
+//! divided, until it is missed, or met for certain, or so small that it counts as grazed. Nothing
+//! else is skipped, so no hit is missed. Boxes of pieces are in a tree.
 
 mod merge;
 mod pieces;
@@ -22,22 +24,22 @@ use search::{Found, RayFrame, RaySearch};
 /// Control faces whose pieces are made together, and rays that are followed together.
 const BLOCK: usize = 64;
 
-/// The least part of the surface's size that a tolerance can be: rounding may hide what is less.
+/// The least part of the surface's size that a tolerance can be: smaller ones are within rounding.
 const LEAST_TOLERANCE: f64 = 1e-12;
 
-/// The tolerance where none is asked for, as a part of the surface's size.
+/// The default tolerance, as a part of the surface's size.
 const TOLERANCE: f64 = 1e-10;
 
 /// A half line: all `origin + t · direction` with t from 0 on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins, in the control mesh's units.
+    /// The origin, in the control mesh's units.
     pub origin: [f64; 3],
-    /// Where it goes, of any length but 0.
+    /// The direction, of any length but 0.
     pub direction: [f64; 3],
 }
 
-/// What of a ray counts, and how exactly.
+/// Options of the queries of a ray: which hits count, and the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RayOptions {
@@ -45,8 +47,8 @@ pub struct RayOptions {
     pub from: f64,
     /// The greatest t that counts. Default: infinite.
     pub to: f64,
-    /// A length in the control mesh's units: a ray that touches the surface without being told to cross it within so little of it grazes
-    /// it. Default: 1e-10 of the control mesh's diagonal.
+    /// A length in the control mesh's units: a ray that touches the surface without certainly
+    /// crossing it, within this distance, grazes it. Default: 1e-10 of the control mesh's diagonal.
     pub tolerance: Option<f64>,
 }
 
@@ -61,7 +63,7 @@ impl Default for RayOptions {
 }
 
 impl RayOptions {
-    /// The range of t that counts.
+    /// Sets the range of t that counts.
     pub fn between(self, from: f64, to: f64) -> Self {
         Self { from, to, ..self }
     }
@@ -75,15 +77,15 @@ impl RayOptions {
     }
 }
 
-/// How a ray meets a surface.
+/// The kind of a hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Crossing {
     /// Through the front, where a face's corners run counter-clockwise.
     Entering,
     /// Through the back.
     Leaving,
-    /// It touches the surface, or comes within a few tolerances of it, or crosses it and back within so little; or it meets a vertex at
-    /// which the surface has no tangent plane.
+    /// It touches the surface, or comes within a few tolerances of it, or crosses it and back
+    /// within this distance; or it meets a vertex at which the surface has no tangent plane.
     Grazing,
 }
 
@@ -91,25 +93,25 @@ pub enum Crossing {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hit {
-    /// How far along the ray, in lengths of its direction.
+    /// The distance along the ray, in lengths of its direction.
     pub t: f64,
     /// The control face, one of those that share the point.
     pub face: FaceId,
-    /// Where on it, as weights of its corners.
+    /// The place on the face, as weights of its corners.
     pub barycentric: [f64; 3],
     /// The point of the surface, in the control mesh's units.
     pub position: [f64; 3],
     /// The surface's unit normal there, on the side of the face; zero where there is none.
     pub normal: [f64; 3],
-    /// How it is met.
+    /// The kind of the hit.
     pub crossing: Crossing,
 }
 
-/// Why rays cannot be followed.
+/// An error of rays.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {
-    /// Hulls are known for schemes of Loop's family alone.
+    /// Hulls exist only for schemes of Loop's family.
     #[error("rays are followed to surfaces of the Loop family, not of the scheme '{name}'")]
     Scheme {
         /// The scheme's name.
@@ -157,10 +159,10 @@ impl<'a> RayCaster<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
@@ -198,8 +200,9 @@ impl<'a> RayCaster<'a> {
         })
     }
 
-    /// All points where a ray meets the surface, in their order along it. None is missed; what lies on an edge or a vertex is told once.
-    /// Rays without a direction, or that are not finite, meet nothing.
+    /// All points where a ray meets the surface, in their order along it. None is missed; a hit on
+    /// an edge or a vertex is reported once. Rays without a direction, or that are not finite, have
+    /// no hits.
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Vec<Hit> {
         let Some((search, tolerance)) = self.searched(ray, options, false) else {
             return Vec::new();
@@ -225,7 +228,7 @@ impl<'a> RayCaster<'a> {
         uncancelled(|observer| self.first_of_all_observed(rays, options, observer))
     }
 
-    /// [`Self::first_of_all`], telling how it goes on.
+    /// [`Self::first_of_all`] with an observer.
     ///
     /// # Errors
     /// It was cancelled.
@@ -244,7 +247,7 @@ impl<'a> RayCaster<'a> {
         uncancelled(|observer| self.intersections_of_all_observed(rays, options, observer))
     }
 
-    /// [`Self::intersections_of_all`], telling how it goes on.
+    /// [`Self::intersections_of_all`] with an observer.
     ///
     /// # Errors
     /// It was cancelled.
@@ -258,7 +261,7 @@ impl<'a> RayCaster<'a> {
         Ok(blocks.into_iter().flatten().collect())
     }
 
-    /// What there is of each ray, in blocks of rays.
+    /// The results for each ray, in blocks of rays.
     fn of_all<T: Send>(
         &self,
         rays: &[Ray],
@@ -311,11 +314,11 @@ impl<'a> RayCaster<'a> {
 }
 
 impl LimitSurface<'_> {
-    /// All points where a ray meets the surface, as [`RayCaster::intersections`] gives them: for a few rays, since all is prepared for
-    /// each anew.
+    /// All points where a ray meets the surface, as by [`RayCaster::intersections`]: for a few
+    /// rays, since each call prepares the search anew.
     ///
     /// # Errors
-    /// As for [`RayCaster::new`].
+    /// Those of [`RayCaster::new`].
     pub fn intersections(&self, ray: &Ray, options: &RayOptions) -> Result<Vec<Hit>, RayError> {
         Ok(RayCaster::new(self)?.intersections(ray, options))
     }
@@ -328,7 +331,7 @@ mod tests {
     use crate::random::Random;
     use crate::scheme::Loop;
 
-    /// How many pieces rays look at; what is printed stands in docs/paper.md.
+    /// The number of pieces that rays test; docs/paper.md has the printed numbers.
     #[test]
     fn rays_look_at_few_pieces() {
         let soup = crate::models::find("head")

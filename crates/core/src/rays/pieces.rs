@@ -10,13 +10,14 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Points, Rules, Spot};
 use crate::vector::DVec3;
 
-/// Refinements of a face towards irregular corners before its pieces are kept as they are.
+/// Refinements of a face towards irregular corners before its pieces are kept.
 const KEPT_LEVELS: u32 = 3;
 
-/// Control faces up to which that is done: each takes some kilobytes. Beyond, pieces are refined when they are looked at.
+/// Control faces up to which that is done: each takes some kilobytes. Beyond, pieces are refined
+/// when visited.
 const MOST_DIVIDED: usize = 40_000;
 
-/// What rounding may do to a box, as a part of the surface's size.
+/// The rounding error of a box, as a part of the surface's size.
 const ROUNDING: f64 = 1e-13;
 
 /// A piece of the surface.
@@ -27,17 +28,17 @@ pub(super) struct Piece {
     pub(super) form: Form,
 }
 
-/// What a piece is made of.
+/// The form of a piece.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
     /// The points of a polynomial, scaled.
     Regular(Box<Points>),
-    /// What is still to be refined, as it is in the control mesh.
+    /// A piece that is still to be refined, as in the control mesh.
     Irregular(Box<Patch>),
 }
 
-/// The weights of a part's second and third corner at the one that is a corner of the face, as it is where pieces stay irregular; its
-/// middle's where there is none.
+/// The weights of a part's second and third corner at the one that is a corner of the face, as in
+/// pieces that stay irregular; at its middle where there is none.
 pub(super) fn control_corner(spot: Spot) -> [f64; 2] {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let is_control = |at: &[f64; 2]| spot.weights(*at).contains(&1.0);
@@ -47,7 +48,7 @@ pub(super) fn control_corner(spot: Spot) -> [f64; 2] {
         .unwrap_or([1.0 / 3.0; 2])
 }
 
-/// The pieces over a face of a mesh with so many, and their boxes.
+/// The pieces over a face of a mesh with `faces` faces, and their boxes.
 pub(super) fn pieces(
     surface: &LimitSurface<'_>,
     frame: &SurfaceFrame,

@@ -1,6 +1,7 @@
-//! A regular piece as it is seen along a ray: whether the ray can meet it, at most once, and where.
+//! A regular piece relative to a ray: whether the ray can meet it, at most once, and where.
 //!
-//! Points stand in the ray's frame: x and y across, z along it, so the ray is the z axis, and all is decided in the plane.
+//! Points are in the ray's frame: x and y across, z along it, so the ray is the z axis, and all is
+//! decided in the plane.
 
 use crate::geometry::box_tree::{NO_BOUNDS, grown};
 use crate::patch::Quartic;
@@ -53,7 +54,7 @@ pub(super) fn is_beside(
 pub(super) enum Projection {
     /// No two places fall on one point, so the ray meets it once at most.
     Injective,
-    /// All falls on a line, but for rounding.
+    /// The projection is a line within rounding.
     EdgeOn,
     /// It may fold over.
     Any,
@@ -94,8 +95,8 @@ pub(super) struct Meeting {
     pub(super) is_front: bool,
 }
 
-/// Where the ray meets an injective piece, by Newton's method; `None` where that comes to no place of it, which does not say that there is
-/// none.
+/// Where the ray meets an injective piece, by Newton's method; `None` where that does not converge
+/// to a point of the piece, which does not prove that there is none.
 pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
     let quartic = Quartic::of(net, 0);
     let [mut u, mut v] = on_triangle(net.corners()).unwrap_or([1.0 / 3.0; 2]);

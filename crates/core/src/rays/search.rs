@@ -13,10 +13,11 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Points, Refined, Spot};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Pieces that are looked at for a ray before those that are left count as grazed: a ray that runs within a surface that is nowhere flat.
+/// The most pieces visited for a ray. The others then count as grazed: a ray may run within a
+/// surface that is nowhere flat.
 const MOST_PIECES: usize = 100_000;
 
-/// What is left undecided is no larger than this many times the tolerance.
+/// An undecided part is no larger than this many times the tolerance.
 const SIZE: f64 = 10.0;
 
 /// Coordinates along a ray.
@@ -83,7 +84,7 @@ impl RayFrame {
             let (a, b) = (low / sight[axis], high / sight[axis]);
             (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
         }
-        // Boxes have a margin for what rounding does here.
+        // Boxes have a margin for the rounding here.
         (first <= last).then_some([first, last])
     }
 }
@@ -117,7 +118,7 @@ pub(super) struct RaySearch<'a> {
     is_first_enough: bool,
     tolerance: f64,
     pub(super) found: Vec<Found>,
-    /// Pieces that were looked at.
+    /// Pieces that were visited.
     pub(super) looked_at: usize,
 }
 
@@ -150,7 +151,7 @@ impl<'a> RaySearch<'a> {
             return;
         }
         if self.is_first_enough {
-            // What is met twice there is still found twice.
+            // A point met twice there is still found twice.
             self.last = self.last.min(depth + self.tolerance);
         }
         self.found.push(Found {
@@ -161,7 +162,8 @@ impl<'a> RaySearch<'a> {
         });
     }
 
-    /// Whether points in whose hull a piece is are beside the ray, or before its start or behind its end.
+    /// Whether the hull of a piece's points is beyond the ray's sides, before its start or behind
+    /// its end.
     fn is_missed(
         &self,
         points: impl Iterator<Item = DVec3> + Clone,

@@ -1,8 +1,9 @@
-//! Goals for what a mesh carries beside its shape: values at its vertices, or where its vertices move to.
+//! Goals for the data that a mesh carries in addition to its shape: values at its vertices, or
+//! other positions of its vertices.
 
 use crate::mesh::{Mesh, MeshError};
 
-/// What is bounded.
+/// The function that is bounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum GoalKind {
     /// The difference at the same place.
@@ -11,11 +12,13 @@ pub(crate) enum GoalKind {
     Surface,
 }
 
-/// A goal for a function on the control mesh's faces that triangles hold at their corners only and that is linear between: it must be
-/// within a tolerance of what it stands for, everywhere ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
+/// A goal for a function on the control mesh's faces, which triangles store at their corners and
+/// interpolate linearly: it must be within a tolerance of the original, everywhere
+/// ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
 ///
-/// The function is the limit surface of a mesh with the control mesh's faces in the same order, whose positions are the values. Its
-/// vertices may be others: where they are divided, values have a seam.
+/// The function is the limit surface of a mesh with the control mesh's faces in the same order,
+/// whose positions are the values. Its vertices may differ: where one is repeated, values have a
+/// seam.
 #[derive(Clone, Debug)]
 pub struct AttributeGoal {
     pub(crate) meshes: Vec<Mesh>,
@@ -34,8 +37,8 @@ impl AttributeGoal {
         }
     }
 
-    /// The surface of `moved`, as a morph target or a pose makes it, and the refined triangles moved alike are within `tolerance` of each
-    /// other, both ways.
+    /// The surface of `moved`, by a morph target or a pose, and the refined triangles moved alike
+    /// are within `tolerance` of each other, both ways.
     pub fn surface(moved: Mesh, tolerance: f64) -> Self {
         Self {
             meshes: vec![moved],
@@ -44,7 +47,7 @@ impl AttributeGoal {
         }
     }
 
-    /// Refuses tolerances that are none, and meshes with other faces than so many.
+    /// Refuses tolerances that are not positive numbers, and meshes with another number of faces.
     pub(crate) fn check(&self, faces: usize) -> Result<(), MeshError> {
         let bad = |name, value, expected| {
             Err(MeshError::BadOption {

@@ -1,15 +1,17 @@
-//! Sides of sharp edges after a collapse: which corner of the fine mesh a corner of the coarse one goes by.
+//! Sides of sharp edges after a collapse: the corner of the fine mesh for each corner of the coarse
+//! one.
 //!
-//! Takes a fine mesh, edges of it that were kept, and what its collapse left; gives, for corners at vertices on sharp edges, a corner
-//! of the fine mesh at the same vertex between the same two edges. Vertices go along lines of sharp edges only from their insides, so an edge
-//! of the coarse mesh on such a line leads to where the line of the fine one first meets a vertex that is still there; from edge to edge
-//! the corners around a vertex stand in the same order in both.
+//! Takes a fine mesh, edges of it that were kept, and its collapsed mesh; gives, for corners at
+//! vertices on sharp edges, a corner of the fine mesh at the same vertex between the same two
+//! edges. Vertices go along lines of sharp edges only from their insides, so an edge of the coarse
+//! mesh on such a line leads to the first vertex of the fine line that still exists; from edge to
+//! edge the corners around a vertex have the same order in both.
 
 use crate::index::VertexId;
 use crate::mesh::{Mesh, NONE, Topology};
 use crate::simplify::Features;
 
-/// Edges of a mesh along which its sides are told apart: its tags' and some others.
+/// Edges of a mesh along which its sides are distinct: its tags' and some others.
 pub(super) struct SharpLines {
     /// Both ways, ascending.
     edges: Vec<[u32; 2]>,
@@ -50,7 +52,8 @@ impl SharpLines {
     }
 }
 
-/// The features that keep edges as they are asked for: these, and the vertices where their lines end or meet.
+/// The features that keep the requested edges: these, and the vertices where their lines end or
+/// meet.
 pub(super) fn features(kept: Vec<[u32; 2]>) -> Features {
     let mut ends: Vec<u32> = kept.iter().flatten().copied().collect();
     ends.sort_unstable();

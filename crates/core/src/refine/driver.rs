@@ -12,7 +12,7 @@ use crate::mesh::{Mesh, check_finite};
 use crate::progress::{Observer, Stage, Watch};
 use crate::scheme::Scheme;
 
-/// What a run of steps needs to know besides how to flag faces.
+/// The data of a run of steps, except for how faces are flagged.
 pub(super) struct Driver<'a> {
     pub(super) scheme: &'a dyn Scheme,
     pub(super) levels: usize,

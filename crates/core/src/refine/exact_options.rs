@@ -6,33 +6,36 @@ use super::exact_result::ExactStop;
 use crate::criterion::{Camera, View};
 use crate::mesh::{Mesh, MeshError};
 
-/// What exact refinement is to reach, and what it must not exceed.
+/// The goals of exact refinement, and its caps.
 ///
-/// Of the goals on quality (tolerance, angle) each that is given is to be met everywhere; a number of triangles ends
-/// the refinement early, with the worst places refined first.
+/// Each given goal on quality (tolerance, angle) is met everywhere; a number of triangles ends the
+/// refinement early, with the worst places refined first.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct ExactOptions {
     /// Greatest distance between mesh and limit surface, either way, as a length. Default: none.
     pub tolerance: Option<f64>,
-    /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's equation 2), in
-    /// radians. Control faces are not divided for its sake once triangles are 1/1024 of them and the angle (in radians)
-    /// smaller: where it is not met by then, at cusps and where the surface is not regular, it cannot be, and
-    /// [`Exact::open_cones`](super::Exact::open_cones) says so. Default: none.
+    /// Greatest angle between a triangle's normal and the limit normals of its corners (the paper's
+    /// equation 2), in radians. Control faces are not divided for this goal once triangles are
+    /// 1/1024 of them and the angle (in radians) smaller. At cusps and where the surface is not
+    /// regular it may not be met then and cannot be;
+    /// [`Exact::open_cones`](super::Exact::open_cones) counts these triangles. Default: none.
     pub angle: Option<f64>,
-    /// Makes the angle depend on where the viewer stands, as in the paper's equation 11, but never smaller than
-    /// [`Self::angle`], so that silhouettes come to an end and a viewer asks for no more than none: what looks away is not
-    /// divided for its own sake, and with a dilatation above 1 what looks at the viewer has greater angles. Default: none.
+    /// Makes the angle depend on the viewer's position, as in the paper's equation 11, but never
+    /// smaller than [`Self::angle`], so that refinement ends at silhouettes and a viewer never
+    /// needs more triangles than no viewer: faces that face away have the angle of no viewer, and
+    /// with a dilatation above 1 faces towards the viewer have greater angles. Default: none.
     pub view: Option<View>,
-    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: of each point of one that is in a
-    /// picture from the other. Of closed surfaces what looks away from a camera is not seen, and where it certainly does it is not divided for its
-    /// own sake. Default: none.
+    /// Greatest distance between mesh and limit surface as the cameras see it, in pixels: from each
+    /// visible point of one to the other. Parts of closed surfaces that face away from a camera are
+    /// invisible to it; parts that certainly do are not divided for it. Default: none.
     pub pixels: Option<f64>,
     /// The cameras that the distance in pixels is for; one mesh serves them all. Default: none.
     pub cameras: Vec<Camera>,
-    /// The best mesh with at most so many triangles. Up to 20,000 of them the face that is farthest off is divided next; of more, faces that
-    /// are about as far off are divided together. Then a 32nd may be left over, and more where many faces are alike, as on a
-    /// regular sphere: dividing some of those would bring the mesh no nearer. Default: none.
+    /// The best mesh with at most this many triangles. Up to 20,000 of them the face with the
+    /// greatest error is divided next; of more, faces with about equal errors are divided together.
+    /// Then a 32nd of the number may stay unused, and more where many faces are alike, as on a
+    /// regular sphere: dividing some of those would not reduce the distance. Default: none.
     pub triangles: Option<usize>,
     /// Moves vertices off the limit surface by about half the local error, so that the error lies on both sides and
     /// fewer triangles are needed. Default: no.
@@ -44,45 +47,50 @@ pub struct ExactOptions {
     /// creases and boundaries: seams of textures, borders of materials ([`crate::carry::borders`]). They bound [`Self::flat_regions`], too.
     /// Default: none.
     pub kept_edges: Vec<[u32; 2]>,
-    /// Tells where each vertex came from, [`Exact::origins`](super::Exact::origins), which is a quarter of what a result takes.
-    /// Default: yes.
+    /// Whether to report the origin of each vertex, [`Exact::origins`](super::Exact::origins), a
+    /// quarter of the memory of a result. Default: yes.
     pub origins: bool,
-    /// Regions of control faces whose limit surface lies in a plane are triangulated from their rims alone, with no vertices
-    /// inside but those of the control mesh. Triangles that lie in one plane side by side though the surface is curved elsewhere, as on a
-    /// cylinder's side, are put together, too. None of these triangles reaches over one of [`Self::kept_edges`]. Else all follow the hierarchy. With [`Self::balance`] only regions for which [`Self::unfold`] takes what their
-    /// rims enclose. Default: yes.
+    /// Regions of control faces whose limit surface lies in a plane are triangulated from their
+    /// rims alone, with no vertices inside but those of the control mesh. Triangles that lie in one
+    /// plane side by side though the surface is curved elsewhere, as on a cylinder's side, are
+    /// merged, too. None of these triangles crosses one of [`Self::kept_edges`]. If false, all
+    /// triangles follow the hierarchy. With [`Self::balance`] this is done only for regions that
+    /// [`Self::unfold`] replaces by the inside of their rims. Default: yes.
     pub flat_regions: bool,
-    /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of a fan meet a hole, what the
-    /// region's rim encloses is taken for the surface: what people mean, and what [`Exact::unfolded`](super::Exact::unfolded)
-    /// counts. It is the scheme's where limit curves around it are smooth, or cross so that nothing can be
-    /// triangulated, and without this option. Default: no.
+    /// Where the scheme's rules fold the surface over in a flat region, as they do where slivers of
+    /// a fan meet a hole, the plane inside the region's rim replaces the surface. This is mostly
+    /// the intended shape; [`Exact::unfolded`](super::Exact::unfolded) counts these regions. The
+    /// scheme's surface is kept where limit curves around it are smooth, or cross so that nothing
+    /// can be triangulated, and without this option. Default: no.
     pub unfold: bool,
     /// Whether triangles side by side in one plane are put together; with [`Self::flat_regions`].
     pub(crate) strips: bool,
-    /// Whether bounds that are far above what was found are measured anew.
+    /// Whether bounds that are far above the distance found are measured anew.
     pub(crate) tightens: bool,
-    /// What is to be met beside the shape ([`AttributeGoal`]): with goals on quality, without a number of triangles, [`Self::balance`] and
-    /// [`Self::optimize`]; flat regions follow the hierarchy then. Default: none.
+    /// Goals in addition to the shape ([`AttributeGoal`]): with goals on quality, without a number
+    /// of triangles, [`Self::balance`] and [`Self::optimize`]; flat regions then follow the
+    /// hierarchy. Default: none.
     pub attributes: Vec<AttributeGoal>,
-    /// Levels at most below the control faces: up to 30. Default: 24.
+    /// The most levels below the control faces: up to 30. Default: 24.
     pub max_levels: usize,
-    /// Triangles at most, as a cap rather than a goal: reaching it is a failure to meet the others. Default: 50
-    /// million, so that tolerances that nothing meets come to an end.
+    /// The most triangles, as a cap rather than a goal: reaching it is a failure to meet the goals.
+    /// Default: 50 million, so that refinement ends at tolerances that cannot be met.
     pub max_triangles: Option<usize>,
-    /// Bytes that the refinement and its result may take, about. Default: no limit.
+    /// The most bytes for the refinement and its result, approximately. Default: no limit.
     pub max_memory: Option<usize>,
 }
 
 /// Levels that are tried where none are given: edges are divided by more than ten million then.
 const USUAL_LEVELS: usize = 24;
 
-/// Levels at most: places along the edge of a control face are told apart by 32 bits.
+/// The most levels: places along the edge of a control face are distinguished by 32 bits.
 pub(super) const MOST_LEVELS: usize = 30;
 
 /// Triangles at most where no cap is given.
 const USUAL_TRIANGLES: usize = 50_000_000;
 
-/// Memory for a triangle and what belongs to it while the mesh grows, the result included: measured, with a margin.
+/// Memory for a triangle and its data while the mesh grows, the result included: measured, with a
+/// margin.
 pub(super) const BYTES_PER_TRIANGLE: usize = 320;
 
 impl Default for ExactOptions {

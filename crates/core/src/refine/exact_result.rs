@@ -6,24 +6,25 @@ use crate::mesh::{Mesh, SplitSurface};
 use crate::parallel;
 use crate::vector::vector;
 
-/// Why an exact refinement ended.
+/// The reason why an exact refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ExactStop {
     /// Every goal on quality is met.
     Met,
-    /// The number of triangles asked for is used up.
+    /// The requested number of triangles is used up.
     Triangles,
     /// The next split would have passed the cap on triangles.
     TriangleCap,
     /// The next split would have taken more memory than allowed.
     MemoryCap,
-    /// What still fails has been divided as often as allowed.
+    /// The triangles that still fail have been divided as often as allowed.
     LevelCap,
-    /// The tolerance is below what rounding leaves certain.
+    /// The tolerance is within rounding.
     Rounding,
-    /// Every goal is met, but for [`Exact::open_cones`]: triangles outside their cones where no division brings their
-    /// normals nearer to the limit normals, such as at cusps and where the surface is not regular.
+    /// Every goal is met, except for [`Exact::open_cones`]: triangles outside their cones where no
+    /// division brings their normals nearer to the limit normals, such as at cusps and where the
+    /// surface is not regular.
     Cones,
 }
 
@@ -31,28 +32,30 @@ pub enum ExactStop {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ErrorBounds {
-    /// Some point of the one is so far from the other.
+    /// A distance that some point of one has from the other.
     pub lower: f64,
-    /// A distance that is not exceeded where [`Self::certified`] holds; infinite where nothing was asked of distances, nor a
-    /// number of triangles, and nothing near [`Self::lower`] could be proven. Otherwise an estimate, the greatest distance of
-    /// the surface's points three levels below the triangles, which the true one may exceed by some per cent.
+    /// An upper bound where [`Self::certified`] holds; infinite without a goal for distances or a
+    /// number of triangles where nothing near [`Self::lower`] could be proven. Otherwise an
+    /// estimate, the greatest distance of the surface's points three levels below the triangles,
+    /// which the true one may exceed by some per cent.
     pub upper: f64,
-    /// Whether `upper` is proven: so it is for the Loop family ([`crate::scheme::LoopFamily`]), whose masks are convex
-    /// combinations.
+    /// Whether `upper` is proven. It is for the Loop family ([`crate::scheme::LoopFamily`]), whose
+    /// masks are convex combinations.
     pub certified: bool,
-    /// That point: one of the mesh, or of the limit surface, give or take an eighth of `lower`.
+    /// The point at which `lower` is attained: one of the mesh, or of the limit surface, within an
+    /// eighth of `lower`.
     pub at: [f64; 3],
 }
 
 impl ErrorBounds {
-    /// Upper bounds up to so many times what was found are tight enough.
+    /// Upper bounds up to this many times the distance found are tight enough.
     pub(crate) const TIGHT: f64 = 1.25;
 
     /// Distances below this part of the control mesh's diagonal count as that.
     pub(crate) const LEAST: f64 = 1e-6;
 }
 
-/// A point of the control mesh: where a vertex came from.
+/// A point of the control mesh: the origin of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {
     /// The control face, the first of those that share the point.
@@ -62,8 +65,9 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// The same point in another face of the control mesh, whose triangles these are; `None` where that face hasn't it. A point of
-    /// two faces is on a vertex or an edge of both, so its coordinates go by the names of vertices.
+    /// The point in another face of the control mesh, whose triangles these are; `None` where that
+    /// face does not contain it. A point of two faces is on a vertex or an edge of both, so its
+    /// coordinates follow the vertices' indices.
     pub fn in_face(&self, triangles: &[[u32; 3]], face: u32) -> Option<Self> {
         if self.face == face {
             return Some(*self);
@@ -95,43 +99,51 @@ pub struct Exact {
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
     /// ascending; see [`Self::corner_normal`]. Empty without sharp edges.
     pub sides: Vec<(u32, [f64; 3])>,
-    /// Where each vertex came from; empty unless [`ExactOptions::origins`](super::ExactOptions::origins) asks for it.
+    /// The origin of each vertex; empty unless
+    /// [`ExactOptions::origins`](super::ExactOptions::origins) is set.
     pub origins: Vec<Origin>,
-    /// How far the limit surface, and the triangles that stand for it, can be off the planes of the regions that were triangulated
-    /// from their rims ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
+    /// The greatest distance of the limit surface, and of its triangles, from the planes of the
+    /// regions that were triangulated from their rims
+    /// ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
     pub off_planes: f64,
-    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do where a fan of slivers meets
-    /// a hole: what the rim encloses stands in their place, and is the surface that [`Self::error`] is about.
+    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do
+    /// where a fan of slivers meets a hole: the plane inside the rim replaces them, and
+    /// [`Self::error`] is the distance from this surface.
     pub unfolded: usize,
-    /// Flat regions, by their first control faces, whose surface is taken to be what their rims enclose, whether the rules fold it or not;
-    /// ascending.
+    /// Flat regions, by their first control faces, whose surface is taken to be the plane inside
+    /// their rims, whether the rules fold it or not; ascending.
     pub(crate) within_rims: Vec<u32>,
-    /// The control face of each triangle; after optimisation, whose triangles reach over several, one of these.
+    /// The control face of each triangle; after optimisation, when triangles cover parts of
+    /// several, one of these.
     pub parents: Vec<u32>,
-    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)): triangles reach over several control
-    /// faces then.
+    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)):
+    /// triangles then cover parts of several control faces.
     pub is_optimized: bool,
-    /// After optimisation, where triangles' corners on sharp and [kept](super::ExactOptions::kept_edges) edges came from, each on its own
-    /// side, by the half-edge that leaves the corner, ascending; see [`Traced::corner_origin`].
+    /// After optimisation, the origins of triangles' corners on sharp and
+    /// [kept](super::ExactOptions::kept_edges) edges, each on its own side, by the half-edge that
+    /// leaves the corner, ascending; see [`Traced::corner_origin`].
     pub side_origins: Vec<(u32, Origin)>,
-    /// How far mesh and limit surface can be from each other.
+    /// The distance between mesh and limit surface.
     pub error: ErrorBounds,
-    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels at most: each point of one
-    /// that is in a picture, and on closed surfaces faces the camera, has a point of the other that near. `None` without cameras; infinite where it is not bounded.
+    /// The greatest distance between mesh and limit surface as the cameras see it, in pixels: each
+    /// point of one that is in a picture, and on closed surfaces faces the camera, has a point of
+    /// the other within this. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
-    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), how far values or surfaces are from what the triangles
-    /// hold at most: proven where [`ErrorBounds::certified`] says so of the distance.
+    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), the greatest
+    /// distance of values or surfaces from those of the triangles: proven where
+    /// [`ErrorBounds::certified`] says so of the distance.
     pub attribute_bounds: Vec<f64>,
     /// Triangles whose normals leave the cone of [`ExactOptions::angle`](super::ExactOptions::angle); 0 without that goal, or where it is met.
     pub open_cones: usize,
-    /// How many times over the worst triangle fails the goals on quality: at most 1 where all are met; 0 without any.
+    /// The greatest ratio of a triangle's error to the goals on quality: at most 1 where all are
+    /// met; 0 without any.
     pub worst: f64,
-    /// Why the refinement ended.
+    /// The reason why the refinement ended.
     pub stop: ExactStop,
     /// Levels of the deepest part of the hierarchy.
     pub levels: usize,
-    /// After optimisation, how many vertices stayed only because the proof failed where they are: around them the fine
-    /// triangles were not collapsed any further.
+    /// After optimisation, the number of vertices that stayed only because a proof failed there:
+    /// around them the fine triangles were not collapsed any further.
     pub refused: usize,
 }
 
@@ -149,8 +161,9 @@ impl Exact {
         SplitSurface::new(&self.mesh, |corner| self.corner_normal(corner))
     }
 
-    /// Triangles that are turned over: their normal is more than 90° from the limit normal at one of their corners, on their
-    /// own side of sharp edges. There the surface folds, or is not regular.
+    /// The number of triangles that are turned over: their normal is more than 90° from the limit
+    /// normal at one of their corners, on their own side of sharp edges. There the surface folds,
+    /// or is not regular.
     pub fn inverted_triangles(&self) -> usize {
         self.turned_over().len()
     }
@@ -206,13 +219,14 @@ impl Traced for Exact {
     }
 }
 
-/// What an exact refinement would give.
+/// The expected result of an exact refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
-    /// Triangles: exactly where there are few, extrapolated where there are many, from a sample of faces of large meshes.
+    /// The number of triangles: counted where there are few, extrapolated where there are many,
+    /// from a sample of faces of large meshes.
     pub triangles: usize,
-    /// Bytes that the refinement and its result would take at most, about.
+    /// The most bytes that the refinement and its result need, approximately.
     pub memory_bytes: usize,
     /// Whether all triangles were counted.
     pub is_counted: bool,

@@ -1,17 +1,19 @@
-//! How far a refined mesh is from the mesh that was given, proven.
+//! The proven distance of a refined mesh from the given mesh.
 //!
-//! Exact refinement knows where on the control mesh each vertex comes from, and its triangles come from pieces that
-//! tile the control faces. So each triangle has a piece of the given mesh's surface as its partner, point by point; as both are
-//! flat, no two partners are farther apart than those at the corners. The greatest distance between a vertex and where it came
-//! from bounds the Hausdorff distance, in both directions.
+//! Exact refinement knows the origin of each vertex on the control mesh, and its triangles are of
+//! pieces that tile the control faces. So each triangle has a piece of the given mesh's surface as
+//! its partner, point by point; as both are flat, no two partners are farther apart than those at
+//! the corners. The greatest distance between a vertex and its origin bounds the Hausdorff
+//! distance, in both directions.
 //!
-//! Regions that lie in a plane are triangulated from their rims alone, which have partners as all edges have. A point of one region that
-//! is not in the other lies on a segment between partners of the rims: moved along these, the one rim must pass it to become the
-//! other. So the rims bound the distance, but for what both are off the plane.
+//! Regions that lie in a plane are triangulated from their rims alone, which have partners as all
+//! edges have. A point of one region that is not in the other lies on a segment between partners of
+//! the rims: moved along these, the one rim must pass it to become the other. So the rims bound the
+//! distance, up to the distances of both from the plane.
 //!
-//! Below stand true distances of the points that were moved most along
-//! normals: along the surface, vertices drift where triangles are of different sizes, and the interval is wide there. Of a mesh that is not
-//! too large the two are measured then, by the certified search.
+//! The lower bounds are true distances of the points that were moved most along normals: vertices
+//! move along the surface where triangles are of different sizes, and the interval is wide there.
+//! Of a mesh that is not too large the two are measured then, by the certified search.
 
 use super::{Exact, Origin};
 use crate::measure::{Bvh, CertifiedOptions, MeasureError, certified_hausdorff_between_observed};
@@ -23,7 +25,7 @@ use crate::vector::{DVec3, vector};
 /// Points whose distance is measured.
 const MEASURED: usize = 4;
 
-/// An interval is wide where its upper end is more than so many times the lower one.
+/// An interval is wide where its upper end is more than this many times the lower one.
 const WIDE: f64 = 1.25;
 
 /// How narrow it is to be then, the work for that, about a second, and the triangles of both meshes at most.
@@ -34,21 +36,25 @@ const MOST_TRIANGLES: usize = 200_000;
 /// How narrow it is to be where a bound is to be kept that lies inside.
 const NARROWEST: f64 = 0.01;
 
-/// What rounding may do to a computed point or distance, as a share of the greatest coordinate: some hundred units in the last place.
+/// The rounding error of a computed point or distance, as a share of the greatest coordinate: some
+/// hundred units in the last place.
 const ROUNDING: f64 = 2e-14;
 
-/// The symmetric Hausdorff distance between the mesh that was given and the refined one lies between these, in the mesh's unit.
+/// An interval for the symmetric Hausdorff distance between the given mesh and the refined one, in
+/// the mesh's unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InputDistance {
-    /// Some point of the one is so far from the other.
+    /// A distance that some point of one has from the other.
     pub lower: f64,
-    /// What is not exceeded, proven.
+    /// A proven upper bound.
     pub upper: f64,
 }
 
 impl InputDistance {
-    /// Of a refined mesh whose triangles each come from one face of the control mesh, and where on the mesh that was given its vertices came
-    /// from ([`Exact::origins`], where that has the control mesh's faces); `None` where triangles reach over several, or origins are missing.
+    /// The distance of a refined mesh whose triangles each belong to one face of the control mesh,
+    /// by the origins of its vertices on the given mesh ([`Exact::origins`], where that has the
+    /// control mesh's faces); `None` where triangles cover parts of several faces, or origins are
+    /// missing.
     ///
     /// Where the surface lies in a plane, the given mesh's vertices are within `residual` of it.
     ///
@@ -78,7 +84,8 @@ impl InputDistance {
         }))
     }
 
-    /// Of another mesh that stands for the limit surface of this one's, where these are within `apart` of each other.
+    /// The distance of another mesh that approximates the limit surface of this one, where these
+    /// are within `apart` of each other.
     ///
     /// # Errors
     /// Coordinates too large to be measured.
@@ -96,7 +103,8 @@ impl InputDistance {
         })
     }
 
-    /// Measured anew where the interval is wide and reaches beyond what is `expected`.
+    /// The distance, measured anew where the interval is wide and reaches beyond the `expected`
+    /// distance.
     ///
     /// # Errors
     /// Coordinates too large to be measured, or the observer asked to stop.
@@ -114,7 +122,7 @@ impl InputDistance {
         }
     }
 
-    /// Measured anew where it is open whether the distance is below a bound.
+    /// The distance, measured anew where the interval contains a bound.
     ///
     /// # Errors
     /// Coordinates too large to be measured, or the observer asked to stop.
@@ -155,7 +163,7 @@ impl InputDistance {
         })
     }
 
-    /// After vertices were rounded by so much at most.
+    /// The distance after vertices were rounded by at most `rounding`.
     pub fn rounded(self, rounding: f64) -> Self {
         Self {
             lower: (self.lower - rounding).max(0.0),
@@ -186,7 +194,7 @@ pub(super) fn place(input: Triangles<'_>, origin: &Origin) -> DVec3 {
 struct Moves {
     /// The greatest.
     greatest: f64,
-    /// Those that were moved most along normals, in their order.
+    /// The points that were moved most along normals, in their order.
     most: Vec<usize>,
 }
 

@@ -1,4 +1,5 @@
-//! Keeps the copies of cut vertices and edges together through a step: the same splits, the same bits.
+//! Keeps the copies of cut vertices and edges together through a step: they are split alike and
+//! have equal bits.
 
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::HalfEdgeId;
@@ -52,7 +53,7 @@ pub(super) fn join_copies(positions: &mut [[f64; 3]], groups: &Groups) {
     }
 }
 
-/// Makes the flags of all copies of a vertex agree: set on all where `combine` of all says so.
+/// Makes the flags of all copies of a vertex agree: set on all where `combine` of all is true.
 pub(super) fn agree(flags: &mut [bool], groups: &Groups, combine: fn(bool, bool) -> bool) {
     for group in groups.iter() {
         let Some(flag) = group.iter().map(|&v| flags[v as usize]).reduce(combine) else {

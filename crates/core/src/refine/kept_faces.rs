@@ -1,5 +1,5 @@
-//! Edges of a control mesh that something tells the sides of apart, such as borders of materials: collapses keep them, and no triangle
-//! reaches over one.
+//! Edges of a control mesh with distinct sides, such as borders of materials: collapses keep them,
+//! and no triangle crosses one.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ use crate::mesh::{Mesh, MeshError};
 pub(super) struct KeptFaces(HashSet<[u32; 2]>);
 
 impl KeptFaces {
-    /// Those of the edges with these ends.
+    /// The edges with these ends.
     ///
     /// # Errors
     /// One of them is no edge of the control mesh.

@@ -1,37 +1,42 @@
-//! A level of detail: what it is, how far it is from the limit surface, and how it grows out of the coarser one.
+//! A level of detail: its mesh, its distance from the limit surface, and how it grows out of the
+//! coarser one.
 
 use super::exact_result::Exact;
 use crate::mesh::SplitSurface;
 use crate::vector::vector;
 
-/// One of several meshes of the same surface, each nested in the next.
+/// One of several nested meshes of one surface.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Level {
-    /// The mesh, with what is known of it. Control vertices keep their numbers on all levels.
+    /// The mesh and its bounds. Control vertices keep their numbers on all levels.
     pub exact: Exact,
-    /// The tolerance that it was refined to.
+    /// The tolerance of its refinement.
     pub tolerance: f64,
-    /// How far a point of the limit surface is from the point of the mesh with the same place on the control mesh, at most: more
-    /// than the distance between both, by a half and more, and what a texture slides by as well. Proven where
+    /// The greatest distance of a point of the limit surface from the point of the mesh with the
+    /// same place on the control mesh: more than the distance between both, by a half and more. It
+    /// also bounds how far a texture slides. Proven where
     /// [`ErrorBounds::certified`](super::ErrorBounds::certified) says so of the distance.
     pub parametric: f64,
-    /// How it grows out of the coarser level; `None` for the coarsest, and where that was not asked for.
+    /// Its geomorph from the coarser level; `None` for the coarsest, and if not requested.
     pub geomorph: Option<Geomorph>,
 }
 
-/// Where the vertices of a level are on the coarser level: the triangles of the level, with its vertices there, are the coarser level's
-/// surface, and by moving them straight to the level's own positions one becomes the other (Hoppe's geomorph).
+/// The positions of a level's vertices on the coarser level (Hoppe's geomorph): the triangles of
+/// the level, with its vertices there, are the coarser level's surface; moving them straight to the
+/// level's own positions gives the level.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Geomorph {
     /// By vertex, its place on the coarser mesh.
     pub positions: Vec<[f64; 3]>,
-    /// By vertex, the coarser mesh's normal there as it is shaded: linear between the normals of its corners, not of unit length.
+    /// By vertex, the coarser mesh's normal there for shading: linear between the normals of its
+    /// corners, not of unit length.
     pub normals: Vec<[f64; 3]>,
-    /// Those of triangles' corners at sharp edges, as in [`Exact::sides`].
+    /// The normals of triangles' corners at sharp edges, as in [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,
-    /// How far the mesh is from the limit surface before it has moved, place by place as [`Level::parametric`] is afterwards.
+    /// The distance of the mesh from the limit surface at the start, by place as in
+    /// [`Level::parametric`].
     pub start: f64,
 }
 
@@ -47,8 +52,8 @@ impl Level {
         morph.positions.iter().zip(own).map(between).collect()
     }
 
-    /// How far mesh and limit surface are from each other at most, both ways and place by place, at a moment of the geomorph
-    /// (module [`levels_of_detail`](super::levels_of_detail()) has the proof).
+    /// The greatest distance between mesh and limit surface, both ways and by place, at a moment of
+    /// the geomorph (module [`levels_of_detail`](super::levels_of_detail()) has the proof).
     pub fn deviation_at(&self, t: f64) -> f64 {
         let start = self
             .geomorph
@@ -77,8 +82,9 @@ impl Level {
     }
 }
 
-/// How near a camera may come to a surface until a deviation shows as more than so many pixels, in the middle of a picture of so many
-/// pixels' height and with a vertical field of view (in radians): `deviation · height / (2 tan(field of view / 2) · pixels)`.
+/// The least distance of a camera from a surface at which a deviation covers at most `pixels`
+/// pixels, in the middle of a picture `height` pixels high with the vertical `field_of_view` in
+/// radians: `deviation · height / (2 tan(field of view / 2) · pixels)`.
 pub fn switching_distance(deviation: f64, pixels: f64, height: f64, field_of_view: f64) -> f64 {
     deviation * height / (2.0 * (0.5 * field_of_view).tan() * pixels)
 }

@@ -1,8 +1,9 @@
 //! Levels of detail: meshes of one limit surface, each nested in the next, and the geomorphs between them.
 //!
-//! Takes a control mesh, a scheme and tolerances from coarse to fine; gives a [`Level`] for each. Everything is exact refinement, so
-//! each level has the certified distance that a refinement to its tolerance has; what the coarser level divides is divided here as
-//! well, so that its triangles are unions of the finer ones but for those that close gaps.
+//! Takes a control mesh, a scheme and tolerances from coarse to fine; gives a [`Level`] for each.
+//! Everything is exact refinement, so each level has the certified distance that a refinement to
+//! its tolerance has; nodes that the coarser level divides are divided here as well, so that its
+//! triangles are unions of the finer ones but for those that close gaps.
 //!
 //! **Geomorphs** (Hoppe, "Progressive Meshes", 1996; "View-Dependent Refinement of Progressive Meshes", 1997). Each vertex of a level
 //! M knows its place u on the control mesh, so also its point c on the coarser mesh C: on C's triangle that holds u, by u's barycentric
@@ -17,10 +18,12 @@
 //! |M_t(u) − S(u)| = |(1 − t) (M₀(u) − S(u)) + t (M₁(u) − S(u))| ≤ (1 − t) P₀ + t P₁,    Pᵢ = max |Mᵢ(u) − S(u)|,
 //! ```
 //!
-//! over all u of all triangles. As u runs over the whole control mesh, M_t over the whole mesh and S over the whole limit surface, that is a
-//! bound for both directed distances. Distances from set to set are no such thing: they are not convex in t. Both P₀ and P₁ are
-//! bounded over the pieces of S (`certificate/interpolation.rs`), on the triangles of M: nothing is lost to closing triangles but
-//! where one ends at an irregular vertex, where the bound of the leaf and the height of its split edges add up.
+//! over all u of all triangles. As u runs over the whole control mesh, M_t over the whole mesh and
+//! S over the whole limit surface, that is a bound for both directed distances. Distances from set
+//! to set are no such thing: they are not convex in t. Both P₀ and P₁ are bounded over the pieces
+//! of S (`certificate/interpolation.rs`), on the triangles of M: nothing is lost to closing
+//! triangles except where one ends at an irregular vertex, where the bound of the leaf and the
+//! height of its split edges add up.
 //!
 //! With geomorphs tolerances are for P: a level's P₁ is within its own tolerance and its P₀ within the coarser's, so that the mesh
 //! is within the coarser level's tolerance at every moment.
@@ -35,21 +38,21 @@ use crate::mesh::{Mesh, MeshError};
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// What levels of detail are to be, and what they must not exceed.
+/// The goals of levels of detail, and their caps.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LodOptions {
     /// By level, from the coarsest to the finest, the greatest distance between mesh and limit surface, either way, as a length; each below the one
     /// before. With [`Self::geomorphs`] it holds place by place ([`Level::parametric`]).
     pub tolerances: Vec<f64>,
-    /// Finds how each level grows out of the coarser one ([`Level::geomorph`]), within the coarser one's tolerance at every moment.
-    /// Default: yes.
+    /// Whether to compute how each level grows out of the coarser one ([`Level::geomorph`]), within
+    /// the coarser one's tolerance at every moment. Default: yes.
     pub geomorphs: bool,
-    /// Levels of the hierarchy at most, as [`ExactOptions::max_levels`].
+    /// The most levels of the hierarchy; see [`ExactOptions::max_levels`].
     pub max_levels: usize,
-    /// Triangles of a level at most, as [`ExactOptions::max_triangles`].
+    /// The most triangles of a level; see [`ExactOptions::max_triangles`].
     pub max_triangles: Option<usize>,
-    /// Bytes that a level may take, about, as [`ExactOptions::max_memory`].
+    /// The most bytes for a level, approximately; see [`ExactOptions::max_memory`].
     pub max_memory: Option<usize>,
 }
 
@@ -107,7 +110,7 @@ impl LodOptions {
         Ok(())
     }
 
-    /// What the engine is asked for.
+    /// The options of the engine.
     fn exact(&self, tolerance: f64) -> ExactOptions {
         ExactOptions {
             max_levels: self.max_levels,
@@ -120,8 +123,9 @@ impl LodOptions {
     }
 }
 
-/// Levels of detail, from the coarsest to the finest, each nested in the next: a level for each tolerance, or up to the first that could
-/// not be reached, as the last one's [`stop`](super::Exact::stop) tells. None has fewer triangles than the control mesh.
+/// Levels of detail, from the coarsest to the finest, each nested in the next: a level for each
+/// tolerance, or up to the first that could not be reached, by the last one's
+/// [`stop`](super::Exact::stop). None has fewer triangles than the control mesh.
 ///
 /// ```
 /// use limitmesh::refine::{LodOptions, levels_of_detail};
@@ -150,10 +154,10 @@ pub fn levels_of_detail(
     levels_of_detail_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`levels_of_detail`], telling an observer how it goes on, level by level.
+/// [`levels_of_detail`], with an observer, called level by level.
 ///
 /// # Errors
-/// The same, or the observer asked to stop; nothing comes with that.
+/// Those of [`levels_of_detail`], or the observer asked to stop; nothing comes with that.
 pub fn levels_of_detail_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -210,7 +214,7 @@ fn all(
     Ok(levels)
 }
 
-/// A level at the size that was asked for.
+/// A level at the original size.
 fn rescaled(level: Level, factor: f64) -> Result<Level, RefineError> {
     let Level {
         exact,

@@ -1,9 +1,9 @@
 //! The distance between any triangles and a true limit surface, bounded from both sides.
 //!
-//! Exact refinement of the control mesh stands for its limit surface. The distance to that mesh is certified, and as no
-//! point of the one is farther from the other than exact refinement proves, the interval widened by that much holds the
-//! distance to the limit surface (the triangle inequality, in either direction): finer and finer meshes are taken until it is as
-//! narrow as asked for.
+//! Exact refinement of the control mesh approximates its limit surface. The distance to that mesh
+//! is certified, and widened by the proven error of the refinement the interval holds the distance
+//! to the limit surface (the triangle inequality, in either direction): finer and finer meshes are
+//! taken until it is narrow enough.
 
 use super::{ExactOptions, ExactStop, RefineError, exact_observed, is_certified};
 use crate::measure::{
@@ -23,40 +23,43 @@ const USUAL_SHARE: f64 = 0.1;
 /// Without a gap, an interval of this share of the diagonal is narrow enough.
 const LEAST_SHARE: f64 = 1e-6;
 
-/// As long as no distance is found that could not be the mesh's own error, that is divided by this: an eighth takes about
-/// eight times the triangles, as many as all before together.
+/// As long as no distance is found that could not be the mesh's own error, that is divided by this:
+/// an eighth takes about eight times the triangles, more than all before together.
 const STEP: f64 = 8.0;
 
-/// Triangles of the mesh that stands for the limit surface: with its search tree, about two gigabytes.
+/// Triangles of the mesh that approximates the limit surface: with its search tree, about two
+/// gigabytes.
 const MOST_TRIANGLES: usize = 6_000_000;
 
 options! {
-    /// How narrow the interval is to be.
+    /// The requested width of the interval.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct LimitDistanceOptions {
         /// An interval no wider than this is narrow enough, in the mesh's unit. `None`, the default: a tenth of the distance, or a
         /// millionth of the control mesh's diagonal.
         pub gap: Option<f64> = None,
-        /// As [`CertifiedOptions::max_work`], for each mesh that stands for the limit surface.
+        /// The limit [`CertifiedOptions::max_work`] for each mesh that approximates the limit
+        /// surface.
         pub max_work: u64 = 1_000_000_000,
-        /// As [`ExactOptions::unfold`].
+        /// See [`ExactOptions::unfold`].
         pub unfold: bool = false,
     }
 }
 
-/// A distance to a limit surface, and the mesh that stood for it.
+/// A distance to a limit surface, and the mesh that approximates it.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct LimitDistance {
-    /// To the limit surface itself: the interval is widened by [`Self::error`].
+    /// The distance to the limit surface itself: the interval is widened by [`Self::error`].
     pub distance: CertifiedHausdorff,
-    /// The mesh that stands for the limit surface.
+    /// The mesh that approximates the limit surface.
     pub reference: Mesh,
-    /// How far it is from the limit surface at most.
+    /// Its greatest distance from the limit surface.
     pub error: f64,
-    /// Levels of its most divided part.
+    /// The levels of its most divided part.
     pub levels: usize,
-    /// Whether it was to be finer, for the interval asked for, than there may be triangles.
+    /// Whether the mesh had to be finer, for the requested interval, than the cap on triangles
+    /// allows.
     pub is_capped: bool,
 }
 
@@ -76,7 +79,8 @@ pub struct LimitDistance {
 /// ```
 ///
 /// # Errors
-/// Nothing is proven for the scheme ([`is_certified`]), the gap is negative or no number, or a surface cannot be measured.
+/// A scheme without proofs ([`is_certified`]), a gap that is negative or NaN, or a surface that
+/// cannot be measured.
 pub fn limit_distance(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -86,10 +90,10 @@ pub fn limit_distance(
     limit_distance_observed(surface, control, scheme, options, &mut unobserved)
 }
 
-/// [`limit_distance`], telling an observer how it goes on.
+/// [`limit_distance`], with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`limit_distance`], or the observer asked to stop.
 pub fn limit_distance_observed(
     surface: Triangles<'_>,
     control: &Mesh,
@@ -161,8 +165,8 @@ pub fn limit_distance_observed(
     }
 }
 
-/// How narrow the search's own interval is to be: half of what is asked for, as the mesh's error of a quarter counts on
-/// both sides.
+/// How narrow the search's own interval is to be: half of the requested width, as the mesh's error
+/// of a quarter counts on both sides.
 fn search(options: &LimitDistanceOptions, tolerance: f64) -> CertifiedOptions {
     let search = match options.gap {
         Some(gap) => CertifiedOptions::default()

@@ -9,20 +9,22 @@ use crate::scheme::Scheme;
 /// mesh's.
 const USUAL_LEVELS: usize = 5;
 
-/// Triangles that a reference of so many levels has at most: it and its search tree take about a gigabyte.
+/// The most triangles of a reference: it and its search tree take about a gigabyte.
 const USUAL_TRIANGLES: usize = 4_000_000;
 
-/// Levels that a reference is finer than what is measured against it, at least: a mesh two levels coarser is measured
-/// sixteenfold nearer than it is far itself.
+/// The least number of levels by which a reference is finer than the measured mesh: a mesh two
+/// levels coarser is measured sixteenfold nearer than it is far itself.
 const FINER: usize = 2;
 
 /// Triangles that a reference has at most for that: four gigabytes.
 const MOST_TRIANGLES: usize = 1 << 24;
 
-/// Levels of [`limit_reference`] that suit a mesh of so many triangles which is measured against the limit surface of a
-/// control mesh of `control_faces` faces: five, or as many as come to four million triangles, but at least two more
-/// than take the control mesh about to the measured mesh's number of triangles, so that a mesh is not compared with itself. `None`
-/// where these come to more than 16 million triangles: [`limit_distance`](super::limit_distance()) needs fewer.
+/// The suitable levels of [`limit_reference`] for a mesh of `measured_triangles` triangles that is
+/// measured against the limit surface of a control mesh of `control_faces` faces: five, or as many
+/// as give four million triangles, but at least two more than take the control mesh about to the
+/// measured mesh's number of triangles, so that a mesh is not compared with itself. `None` where
+/// these give more than 16 million triangles: [`limit_distance`](super::limit_distance()) needs
+/// fewer.
 pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Option<usize> {
     let fits = |levels: usize, most: usize| {
         4usize
@@ -41,11 +43,12 @@ pub fn reference_levels(control_faces: usize, measured_triangles: usize) -> Opti
     Some(usual.max(own + FINER)).filter(|&levels| fits(levels, MOST_TRIANGLES))
 }
 
-/// The limit surface of `control` under `scheme`, as triangles after `levels` uniform refinements with all vertices on
-/// the surface: what the paper measures distances to (section 5).
+/// The limit surface of `control` under `scheme`, as triangles after `levels` uniform refinements
+/// with all vertices on the surface: the paper measures distances to these (section 5).
 ///
-/// Each level has four times the triangles of the one before; the chords still leave the surface by about a
-/// quarter of what they did a level earlier, which bounds what a distance to this reference can tell.
+/// Each level has four times the triangles of the one before; the chords still leave the surface by
+/// about a quarter of the distance a level earlier, which bounds the precision of a distance to
+/// this reference.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -75,7 +78,7 @@ mod tests {
         // A mesh of five levels is compared with seven, one of nearly as many triangles, too.
         assert_eq!(reference_levels(200, 200 * 1024), Some(7));
         assert_eq!(reference_levels(200, 190 * 1024), Some(7));
-        // Large ones as they are with two, as long as there is room.
+        // Large ones with two levels, as long as there is room.
         assert_eq!(reference_levels(530_450, 530_450), Some(2));
         assert_eq!(reference_levels(530_450, 533_106), Some(2));
         assert_eq!(reference_levels(530_450, 4 * 530_450), None);

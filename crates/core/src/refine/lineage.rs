@@ -18,8 +18,9 @@ pub trait Traced {
     /// The control face of each triangle, of several one; empty if that is not known.
     fn parents(&self) -> &[u32];
 
-    /// Where the corner that a half-edge leaves came from, in a control face on its own triangle's side of edges that tell sides apart.
-    /// `control` are the control mesh's triangles. `None` where that is not known.
+    /// The origin of the corner that a half-edge leaves, in a control face on its own triangle's
+    /// side of edges with distinct sides. `control` are the control mesh's triangles. `None` where
+    /// that is not known.
     fn corner_origin(&self, control: &[[u32; 3]], corner: HalfEdgeId) -> Option<Origin> {
         let origin = self
             .origins()
@@ -87,7 +88,7 @@ impl<'a> Lineage<'a> {
             .collect();
     }
 
-    /// What is known in the end.
+    /// The origins at the end.
     pub(super) fn finish(self) -> (Vec<Origin>, Vec<u32>) {
         (self.origins, self.parents)
     }

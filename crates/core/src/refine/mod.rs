@@ -1,6 +1,7 @@
 //! Refinement: uniform, and the paper's stepwise adaptive method.
 //!
-//! Takes a control mesh, a scheme and what decides (levels, a criterion); gives a finer mesh and a report.
+//! Takes a control mesh, a scheme and a rule (levels, a criterion); gives a finer mesh and a
+//! report.
 
 mod adaptive;
 mod attribute_goal;
@@ -60,7 +61,7 @@ use crate::progress::Cancelled;
 use crate::ring::INFINITELY_SHARP;
 use crate::simplify::SimplifyError;
 
-/// Why a refinement gave no mesh.
+/// The reason why a refinement gave no mesh.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RefineError {
@@ -73,10 +74,10 @@ pub enum RefineError {
     /// The result would not be a mesh, or an option is out of range.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// A tag that fades, for a method that knows only what is smooth and what is sharp for ever.
+    /// A semi-sharp tag, for a method that supports only smooth and infinitely sharp ones.
     #[error(
-        "{tag} has the sharpness {sharpness}, which fades: √3-subdivision knows edges and vertices that are smooth (0) \
-         or sharp for ever ({INFINITELY_SHARP} and more); the schemes that split triangles in four follow such tags"
+        "{tag} has the sharpness {sharpness}, which is semi-sharp: √3-subdivision supports smooth (0) \
+         and infinitely sharp ({INFINITELY_SHARP} and more) edges and vertices only; use a scheme that splits triangles in four"
     )]
     FadingTag {
         /// The edge or vertex that is tagged.
@@ -90,10 +91,11 @@ pub enum RefineError {
     /// Edges could not be collapsed.
     #[error(transparent)]
     Simplify(SimplifyError),
-    /// There are no control points for the limits that are asked for.
+    /// There are no control points for the requested limits.
     #[error(transparent)]
     Interpolate(InterpolateError),
-    /// A scheme that leaves vertices where they are, for what smooths by moving them.
+    /// A scheme that passes through its control points, for a method that smooths by moving
+    /// vertices.
     #[error(
         "the scheme {scheme} passes through its control points, so that it smooths nothing; Loop's and Warren's do"
     )]
@@ -147,7 +149,7 @@ impl From<ReplayError> for RefineError {
     }
 }
 
-/// What one step did.
+/// The result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StepReport {
@@ -155,7 +157,7 @@ pub struct StepReport {
     pub step: usize,
     /// Faces before the step.
     pub faces_before: usize,
-    /// Faces that the criterion called divisible.
+    /// Faces that fail by the criterion.
     pub divisible: usize,
     /// Indivisible faces with 0, 1, 2 and 3 split edges: the cases (a) to (d) of the paper's Figure 5.
     pub closure: [usize; 4],
@@ -165,11 +167,11 @@ pub struct StepReport {
     pub duration: Duration,
 }
 
-/// Why a refinement ended.
+/// The reason why a refinement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// All the levels asked for were done.
+    /// All requested levels were done.
     Levels,
     /// No face was divisible any more.
     Satisfied,
@@ -180,21 +182,22 @@ pub enum Stop {
     },
 }
 
-/// A refined mesh and how it came about.
+/// A refined mesh and a report.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Refinement {
     /// The refined mesh.
     pub mesh: Mesh,
-    /// Unit limit normals, where they were asked for.
+    /// Unit limit normals, if requested.
     pub normals: Option<SidedNormals>,
-    /// Where each vertex came from, in the control face of one of its triangles; empty unless options ask for it.
+    /// The origin of each vertex, in the control face of one of its triangles; empty unless
+    /// requested.
     pub origins: Vec<Origin>,
-    /// The control face of each triangle; empty unless options ask for it.
+    /// The control face of each triangle; empty unless requested.
     pub parents: Vec<u32>,
-    /// What each step did.
+    /// The reports of all steps.
     pub steps: Vec<StepReport>,
-    /// Why there were no more steps.
+    /// The reason why there were no more steps.
     pub stop: Stop,
 }
 

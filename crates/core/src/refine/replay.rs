@@ -1,9 +1,11 @@
 //! Replay: a refinement's vertices on the limit surfaces of other positions of its control mesh, such as the frames of an animation.
 //!
-//! Takes a control mesh and a refinement of it; gives a table of weights, and with it, for any positions of the control vertices, all
-//! positions and normals of the refined mesh, each on the true limit surface of these, with the same triangles. This is what stencils
-//! do for uniform refinement; here faces whose surroundings are alike share their weights, and where many vertices stand on one
-//! polynomial (Stam, "Evaluation of Loop Subdivision Surfaces", 1998) that is found once and evaluated.
+//! Takes a control mesh and a refinement of it; gives a table of weights, and with it, for any
+//! positions of the control vertices, all positions and normals of the refined mesh, each on the
+//! true limit surface of these; the triangles are unchanged. Stencils do this for uniform
+//! refinement; here faces whose surroundings are alike share their weights, and where many vertices
+//! are on one polynomial (Stam, "Evaluation of Loop Subdivision Surfaces", 1998), that is found
+//! once and evaluated.
 
 mod build;
 mod table;
@@ -23,7 +25,7 @@ use build::{Control, build};
 use table::{LANES, Table, average};
 use wanted::Wants;
 
-/// Why there is no replay.
+/// An error of a replay.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
@@ -33,7 +35,7 @@ pub enum ReplayError {
         /// Its name.
         scheme: String,
     },
-    /// Nobody knows where the vertices came from.
+    /// The origins of the vertices are not known.
     #[error("{origins} origins for {vertices} vertices: a replay needs a refinement with origins")]
     NoOrigins {
         /// Origins that are known.
@@ -49,21 +51,21 @@ pub enum ReplayError {
         /// The vertex of the refined mesh.
         vertex: u32,
     },
-    /// A place over a control face comes to no polynomial.
-    #[error("the limit surface over control face {face} comes to no polynomial")]
+    /// A place over a control face is on no polynomial.
+    #[error("the limit surface over control face {face} is on no polynomial")]
     NoPolynomial {
         /// The control face, or one like it.
         face: u32,
     },
-    /// A frame is none of the control mesh's.
+    /// A frame does not fit the control mesh.
     #[error("frame {frame}: {why}")]
     Frame {
         /// Its number, from 0.
         frame: usize,
-        /// What is wrong with it.
+        /// The cause.
         why: MeshError,
     },
-    /// A frame's surface takes too many triangles.
+    /// A frame's surface needs too many triangles.
     #[error("frame {frame} would take more than {most} triangles")]
     TooMany {
         /// Its number, from 0.
@@ -85,7 +87,7 @@ pub enum ReplayError {
     Cancelled(#[from] Cancelled),
 }
 
-/// What it takes to give a refinement's vertices for other positions of the control vertices.
+/// The data that compute a refinement's vertices for other positions of the control vertices.
 ///
 /// ```
 /// use limitmesh::refine::{ExactOptions, Frame, Replay, exact};
@@ -114,7 +116,7 @@ pub struct Replay {
     control_vertices: usize,
     /// The vertices around control vertices of very many edges, whose means count as points.
     rings: Groups,
-    /// Half-edges beside sharp edges, and the slots of their normals.
+    /// Half-edges adjacent to sharp edges, and the slots of their normals.
     sides: Vec<(u32, u32)>,
     /// Vertices with several sides, and the slots of these.
     averages: Vec<(u32, Vec<u32>)>,
@@ -127,31 +129,33 @@ pub struct Replay {
 pub struct Frame {
     /// Points of the limit surface, by the refined mesh's vertices.
     pub positions: Vec<[f64; 3]>,
-    /// Unit limit normals as in [`Exact::normals`].
+    /// Unit limit normals; see [`Exact::normals`].
     pub normals: Vec<[f64; 3]>,
-    /// Normals by side as in [`Exact::sides`].
+    /// Normals by side; see [`Exact::sides`].
     pub sides: Vec<(u32, [f64; 3])>,
-    /// What is kept from one use to the next.
+    /// Memory that is used again.
     slots: [Vec<[f64; 3]>; 2],
     inputs: Vec<[f64; LANES]>,
 }
 
 impl Replay {
     /// Prepares a replay of `refined`, a refinement of `control`: with
-    /// [origins](super::ExactOptions::origins), and without [flat regions](super::ExactOptions::flat_regions), which bend when the
-    /// control mesh does. The positions of `control` mean nothing. Vertices that were moved off the surface, to
-    /// [balance](super::ExactOptions::balance) its distance, stand on it in every frame.
+    /// [origins](super::ExactOptions::origins), and without
+    /// [flat regions](super::ExactOptions::flat_regions), which bend when the control mesh does.
+    /// The positions of `control` are ignored. Vertices that were moved off the surface, to
+    /// [balance](super::ExactOptions::balance) its distance, are on it in every frame.
     ///
     /// # Errors
-    /// A scheme outside the Loop family, a refinement whose vertices have no place in the control mesh, or a vertex without a limit.
+    /// A scheme outside the Loop family, a refinement whose vertices have no origins in the control
+    /// mesh, or a vertex without a limit.
     pub fn new(control: &Mesh, scheme: &dyn Scheme, refined: &Exact) -> Result<Self, ReplayError> {
         Self::new_observed(control, scheme, refined, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
-    /// As for [`Self::new`], or the observer asked to stop.
+    /// Those of [`Self::new`], or the observer asked to stop.
     pub fn new_observed(
         control: &Mesh,
         scheme: &dyn Scheme,
@@ -201,8 +205,9 @@ impl Replay {
         })
     }
 
-    /// The positions and normals of the refined mesh, given those of the control vertices. The results are the same bytes for any
-    /// number of threads, and whatever `frame` held.
+    /// The positions and normals of the refined mesh, given those of the control vertices. The
+    /// bytes of the results depend neither on the number of threads nor on the previous contents of
+    /// `frame`.
     ///
     /// # Errors
     /// Not as many positions as control vertices, or a coordinate that is not finite.
@@ -224,10 +229,10 @@ impl Replay {
         Ok(())
     }
 
-    /// [`Self::frame`] without normals, which are left as they are.
+    /// [`Self::frame`] without normals, which are unchanged.
     ///
     /// # Errors
-    /// As for [`Self::frame`].
+    /// Those of [`Self::frame`].
     pub fn positions(&self, control: &[[f64; 3]], frame: &mut Frame) -> Result<(), ReplayError> {
         self.fill(control, frame, false)
     }
@@ -274,7 +279,7 @@ impl Replay {
         Ok(())
     }
 
-    /// Bytes of all that is kept between frames.
+    /// Bytes of the data kept between frames.
     pub fn table_bytes(&self) -> usize {
         let of_groups = |groups: &Groups| {
             groups
@@ -301,8 +306,8 @@ fn mean(ring: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl Exact {
-    /// The same triangles with the vertices of a frame. Nothing is proven of them: the bounds are infinite, and what is told of other goals
-    /// is that of the refinement.
+    /// The triangles with the vertices of a frame. Nothing is proven of them: the bounds are
+    /// infinite, and the other reports are those of the refinement.
     ///
     /// # Errors
     /// The frame is that of another mesh, or a coordinate is not finite.

@@ -1,7 +1,7 @@
 //! Exact refinement followed by edge collapse: the fewest triangles for a tolerance.
 //!
-//! A mesh finer than asked for, certified against the limit surface, is collapsed with proof of how far the result is from
-//! it; both distances add up.
+//! A mesh finer than requested, certified against the limit surface, is collapsed with a proven
+//! distance of the result from it; both distances add up.
 
 use super::adaptive::adaptive;
 use super::corner_sources::{SharpLines, corner_sources, features};
@@ -18,10 +18,11 @@ use crate::simplify::{Features, Simplified, SimplifyOptions, simplify_observed};
 /// collapse, eight times those of refinement alone where the surface is curved both ways.
 const FINE_SHARE: f64 = 1.0 / 8.0;
 
-/// Triangles of the fine mesh for each triangle asked for: with half as many its own error is felt.
+/// Triangles of the fine mesh for each requested triangle: with half as many its own error matters.
 const FINE_TIMES: usize = 16;
 
-/// Triangles of a fine mesh that nobody asked about: some gigabytes. A greater cap on the result is the fine mesh's too.
+/// The most triangles of a fine mesh without a cap: some gigabytes. A greater cap on the result is
+/// the fine mesh's too.
 const AFFORDABLE: usize = 8_000_000;
 
 /// Refines and collapses.
@@ -38,7 +39,7 @@ pub(super) fn simplified(
         flat_regions: options.flat_regions && options.kept_edges.is_empty(),
         tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
         triangles: times(options.triangles),
-        // What is capped is the result.
+        // The cap is on the result.
         max_triangles: options
             .max_triangles
             .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
@@ -70,7 +71,8 @@ pub(super) fn simplified(
         optimize: false,
         ..options.clone()
     };
-    // Where no more edges can go, refinement alone keeps the number of triangles; where nothing is proven, it proves.
+    // Where no more edges can go, refinement alone keeps the number of triangles; where there is no
+    // proof, it proves.
     let is_over = collapsed.mesh.face_count() > most;
     if is_over || collapsed.bound.is_none() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
@@ -82,7 +84,8 @@ pub(super) fn simplified(
     let is_met = options
         .tolerance
         .is_some_and(|tolerance| error.upper <= tolerance);
-    // Refinement alone may need fewer, as beside edges that are sharp for a while, and takes little time beside this.
+    // Refinement alone may need fewer, as at semi-sharp edges, and takes little time compared with
+    // this.
     if options.tolerance.is_some() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
         if plain.stop == ExactStop::Met
@@ -152,7 +155,8 @@ fn collapse(
     Ok(simplify_observed(fine, features, &goals, observer)?)
 }
 
-/// What the corners and triangles of the collapsed mesh have of the fine one's, each on its side of sharp edges.
+/// The data that the corners and triangles of the collapsed mesh have from the fine one, each on
+/// its side of sharp edges.
 struct Inherited {
     sides: Vec<(u32, [f64; 3])>,
     side_origins: Vec<(u32, Origin)>,
@@ -176,7 +180,7 @@ impl Inherited {
             ))
         };
         let side_origins: Vec<(u32, Origin)> = sources.iter().filter_map(origin).collect();
-        // Where no side is to be told, any triangle around a corner will do.
+        // Where sides need not be distinguished, any triangle around a corner will do.
         let topology = fine.mesh.topology();
         let any = |triangle: &[u32; 3]| {
             topology

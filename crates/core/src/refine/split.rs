@@ -1,5 +1,5 @@
-//! One step of refinement on the topology: which edges are split, what the new elements are called, and how
-//! they hang together. Knows no positions.
+//! One step of refinement on the topology: which edges are split, the numbers of the new elements,
+//! and their connections. Knows no positions.
 
 use crate::closure::{Diagonal, Pattern, closure};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -10,7 +10,7 @@ use crate::refine::RefineError;
 
 /// All three edges of a face are split.
 pub(super) const ALL_EDGES: u8 = 0b111;
-/// Set beside the edge bits where the diagonal starts at the unsplit edge's end.
+/// Set in addition to the edge bits where the diagonal starts at the unsplit edge's end.
 const DIAGONAL_BIT: u8 = 0b1000;
 
 /// Which edges of each face are split: bit `c` for the edge from corner `c`.
@@ -19,8 +19,9 @@ pub(super) struct SplitEdges {
     faces: Vec<u8>,
 }
 
-/// The elements of a split mesh, numbered: old vertices keep their numbers, new ones follow in the order of
-/// their edges' first half-edges; the triangles of a face stand together, in the order of the faces.
+/// The elements of a split mesh, numbered: old vertices keep their numbers, new ones follow in the
+/// order of their edges' first half-edges; the triangles of a face are consecutive, in the order of
+/// the faces.
 pub(super) struct SplitTopology {
     /// The half-edge on which each new vertex stands (the lower of two twins).
     pub(super) edges: Vec<HalfEdgeId>,
@@ -142,7 +143,7 @@ impl SplitTopology {
     /// Numbers the new vertices and triangles.
     ///
     /// # Errors
-    /// There are more than `u32` half-edge indices can name, or the observer asked to stop.
+    /// There are more elements than `u32` half-edge indices allow, or the observer asked to stop.
     pub(super) fn number(
         mesh: &Mesh,
         split: &SplitEdges,
@@ -276,7 +277,7 @@ impl SplitTopology {
         self.vertex_on[h.index()]
     }
 
-    /// What the pattern labels 0 to 5 stand for in `face`.
+    /// The vertices of the pattern's labels 0 to 5 in `face`.
     #[inline]
     fn labels(&self, topology: &Topology, face: usize) -> [u32; 6] {
         let [a, b, c] = topology.triangles()[face];

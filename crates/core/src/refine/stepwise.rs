@@ -13,7 +13,7 @@ use crate::parallel;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// Which vertices take their new position in a step; the paper does not say.
+/// The vertices that take their new position in a step; the paper does not define them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SeamRule {
     /// All vertices of the mesh.
@@ -26,23 +26,24 @@ pub enum SeamRule {
 }
 
 options! {
-    /// How to refine step by step.
+    /// The options of stepwise refinement.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct StepwiseOptions {
         /// Greatest number of steps.
         pub levels: usize = 3,
-        /// Which vertices move.
+        /// The vertices that move.
         pub seam: SeamRule = SeamRule::All,
-        /// Move the vertices to the limit surface of the last mesh at the end.
+        /// Whether to move the vertices to the limit surface of the last mesh at the end.
         pub limit: bool = false,
-        /// Tells where vertices and triangles came from ([`Refinement::origins`](crate::refine::Refinement::origins)).
+        /// Whether to report the origins of vertices and triangles
+        /// ([`Refinement::origins`](crate::refine::Refinement::origins)).
         pub origins: bool = false,
-        /// Stop before the step that would give more triangles.
+        /// The most triangles: refinement stops before the step that would exceed them.
         pub max_triangles: Option<usize> = None,
     }
 }
 
-/// Refines `mesh` where `criterion` asks for it.
+/// Refines the faces of `mesh` that fail by `criterion`.
 ///
 /// Each step's mesh is the next step's control mesh. Its faces are flagged, every edge of a flagged face is
 /// split, the other faces are closed by the cases of Figure 5, and all points are computed from the old
@@ -59,7 +60,7 @@ pub fn stepwise(
     stepwise_observed(mesh, scheme, criterion, options, &mut unobserved)
 }
 
-/// [`stepwise`], telling an observer how it goes on.
+/// [`stepwise`], with an observer.
 ///
 /// # Errors
 /// See [`RefineError`].

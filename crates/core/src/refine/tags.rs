@@ -1,13 +1,13 @@
-//! Crease and corner tags through a step: each goes to the pieces of what it names.
+//! Crease and corner tags through a step: each goes to the parts of its edge or vertex.
 
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::VertexId;
 use crate::mesh::{CornerTag, CreaseTag, Mesh, Tags};
 use crate::ring::faded;
 
-/// The tags after a step: both halves of a split edge take over its crease, and sharpness falls by one where a tag
-/// does not last for ever. `moves` says which old vertices take their new position; those that wait for it stay as
-/// sharp as they are. Old vertices keep their numbers.
+/// The tags after a step: both halves of a split edge take over its crease, and the sharpness of
+/// semi-sharp tags falls by one. `moves` marks the old vertices that take their new position; the
+/// tags of others keep their sharpness. Old vertices keep their numbers.
 pub(super) fn refined_tags(
     mesh: &Mesh,
     split: &SplitEdges,

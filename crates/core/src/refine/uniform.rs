@@ -1,7 +1,8 @@
 //! Uniform refinement: every triangle is split in four at each level.
 //!
-//! Takes a mesh, a scheme and a number of levels; gives the mesh of the last level, or its triangles alone, with the vertices on
-//! the limit surface and their normals if asked for. Levels are done one by one; the last ones before the limit of a scheme of Loop's family are done
+//! Takes a mesh, a scheme and a number of levels; gives the mesh of the last level, or its
+//! triangles alone, with the vertices on the limit surface and their normals if requested. Levels
+//! are done one by one; the last ones before the limit of a scheme of Loop's family are done
 //! together, by arithmetic and the exact surface instead of masks.
 
 mod grid;
@@ -26,19 +27,19 @@ use crate::scheme::Scheme;
 /// Levels that are done together at most: tables of the combined triangle then stay in the processor's caches.
 const MOST_TOGETHER: usize = 4;
 
-/// How to refine uniformly.
+/// The options of uniform refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UniformOptions {
     /// Number of levels.
     pub levels: usize,
-    /// Move the vertices to the limit surface at the end.
+    /// Whether to move the vertices to the limit surface at the end.
     pub limit: bool,
-    /// Give the limit normals of the vertices, too ([`Refinement::normals`]).
+    /// Whether to compute the limit normals of the vertices, too ([`Refinement::normals`]).
     pub normals: bool,
-    /// Tells where vertices and triangles came from ([`Refinement::origins`]).
+    /// Whether to report the origins of vertices and triangles ([`Refinement::origins`]).
     pub origins: bool,
-    /// Stop before the level that would have more triangles.
+    /// The most triangles: refinement stops before the level that would exceed them.
     pub max_triangles: Option<usize>,
 }
 
@@ -88,8 +89,9 @@ impl UniformOptions {
 
 /// Refines `mesh` uniformly.
 ///
-/// Old vertices keep their numbers, new ones follow level by level in the order of their edges' first half-edges; the four
-/// triangles of a face stand together, those at its corners first, then the middle one.
+/// Old vertices keep their numbers, new ones follow level by level in the order of their edges'
+/// first half-edges; the four triangles of a face are consecutive, those at its corners first, then
+/// the middle one.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -101,7 +103,7 @@ pub fn uniform(
     uniform_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`uniform`], telling an observer how it goes on.
+/// [`uniform`], with an observer.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -139,22 +141,23 @@ pub fn uniform_observed(
     })
 }
 
-/// What uniform refinement gives whoever needs no connections, as to draw, to measure or to write it.
+/// The result of uniform refinement without connections, to draw, to measure or to write.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UniformTriangles {
-    /// Where the vertices are.
+    /// The positions of the vertices.
     pub positions: Vec<[f64; 3]>,
     /// The vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Unit limit normals of the vertices, an average of the sides at sharp edges; empty where nobody asked for them.
+    /// Unit limit normals of the vertices, an average of the sides at sharp edges; empty if not
+    /// requested.
     pub normals: Vec<[f64; 3]>,
     /// The limit normals of triangles' corners at sharp edges, each of its own side, by 3 · triangle + corner, ascending. Empty
     /// without sharp edges.
     pub sides: Vec<(u32, [f64; 3])>,
     /// Levels that were done.
     pub levels: usize,
-    /// Why there were no more.
+    /// The reason why there were no more.
     pub stop: Stop,
 }
 
@@ -189,11 +192,13 @@ impl UniformTriangles {
     }
 }
 
-/// [`uniform`] without origins and without the mesh's connections: the same vertices, triangles and normals in the same order.
+/// [`uniform`] without origins and without the mesh's connections: its vertices, triangles and
+/// normals are those of [`uniform`], in the same order.
 ///
-/// Connections are more than a third of a mesh's bytes, a quarter beside normals. They are spared where the last levels are done
-/// together: on the limit surface of schemes of Loop's family, where nothing fades any more and no sheets were cut apart. Elsewhere they
-/// are made for the steps, and given up at the end.
+/// Connections are more than a third of a mesh's bytes, a quarter where it has normals. They are
+/// not computed where the last levels are done together: on the limit surface of schemes of Loop's
+/// family, where no semi-sharp tags are left and no sheets were cut apart. Elsewhere they are
+/// computed for the steps, and dropped at the end.
 ///
 /// ```
 /// use limitmesh::Mesh;
@@ -218,7 +223,7 @@ pub fn uniform_triangles(
     uniform_triangles_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`uniform_triangles`], telling an observer how it goes on.
+/// [`uniform_triangles`], with an observer.
 ///
 /// # Errors
 /// See [`RefineError`].
@@ -319,8 +324,9 @@ impl End {
     }
 }
 
-/// How many of the last levels can be done together: none for other schemes, while tags fade, where sheets were cut apart
-/// (whose copies of vertices the steps keep alike), and at the first level, after which most faces are regular.
+/// How many of the last levels can be done together: none for other schemes, while there are
+/// semi-sharp tags, where sheets were cut apart (whose copies of vertices the steps keep alike),
+/// and at the first level, after which most faces are regular.
 fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     if !rules.is_certified() || !mesh.junctions().is_empty() {
         return 0;
@@ -373,7 +379,7 @@ impl<'a> LastLevels<'a> {
         }))
     }
 
-    /// The first levels by steps, then the last ones; with what each level did.
+    /// The first levels by steps, then the last ones; with a report of each level.
     fn refined(
         &self,
         mesh: &Mesh,
@@ -398,7 +404,7 @@ impl<'a> LastLevels<'a> {
         let mut faces = mesh.face_count();
         for step in end.levels - together + 1..=end.levels {
             let (faces_before, faces_after) = (faces, 4 * faces);
-            // The time of levels that are done together stands at the last.
+            // The time of levels that are done together is that of the last.
             let duration = if step == end.levels {
                 start.elapsed()
             } else {
@@ -424,9 +430,10 @@ impl<'a> LastLevels<'a> {
     }
 }
 
-/// Whether no point of the limit surface can overflow. Points are combinations of control points by weights whose sizes come to 1, and
-/// what they are computed from, differences and coefficients of quartics, is within some thousand times these, or at a vertex as
-/// many times as it has edges, which are fewer than [`MAX_FACES`].
+/// Whether no point of the limit surface can overflow. Points are combinations of control points by
+/// weights whose absolute values sum to 1; the intermediate values, differences and coefficients of
+/// quartics, are within some thousand times these, or at a vertex as many times as it has edges,
+/// which are fewer than [`MAX_FACES`].
 fn stays_finite(control: &Mesh) -> bool {
     const FAR: f64 = 1e290;
     control

@@ -8,7 +8,7 @@ mod sharp;
 pub use sharp::{INFINITELY_SHARP, RingSector, SharpRing, VertexRule};
 pub(crate) use sharp::{faded, present_weight, rule};
 
-/// Which rules a vertex follows.
+/// The rule of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 #[non_exhaustive]
 pub enum VertexKind {
@@ -16,7 +16,7 @@ pub enum VertexKind {
     Interior,
     /// Smooth along a boundary curve of the mesh.
     Boundary,
-    /// Keeps its place, whatever surrounds it.
+    /// Keeps its position, whatever surrounds it.
     Corner,
 }
 
@@ -27,10 +27,10 @@ pub struct RingShape {
     pub valence: u32,
     /// Whether the ring ends at two boundary edges.
     pub open: bool,
-    /// Whether the vertex keeps its place.
+    /// Whether the vertex keeps its position.
     pub corner: bool,
-    /// Whether a crease ends at the vertex, along the first edge of its closed ring. The rules of the vertex and of
-    /// its other edges are those without it; masks never see it, the limit does.
+    /// Whether a crease ends at the vertex, along the first edge of its closed ring. The rules of
+    /// the vertex and of its other edges ignore it; masks never get it, limits do.
     pub dart: bool,
 }
 
@@ -84,11 +84,11 @@ impl RingShape {
 pub struct EdgeShape {
     /// Ring of the vertex that the edge leaves.
     pub origin: RingShape,
-    /// Where the edge's far end stands in the origin's ring: 0 in a closed ring.
+    /// The slot of the edge's far end in the origin's ring: 0 in a closed ring.
     pub origin_slot: u32,
     /// Ring of the vertex that the edge reaches.
     pub target: RingShape,
-    /// Where the edge's near end stands in the target's ring: 0 in a closed ring.
+    /// The slot of the edge's near end in the target's ring: 0 in a closed ring.
     pub target_slot: u32,
 }
 

@@ -1,9 +1,10 @@
-//! A one-ring with the sharpness of its edges: which rule its vertex follows, the sectors that sharp edges cut it
-//! into, and how it is after refinements.
+//! A one-ring with the sharpness of its edges: the rule of its vertex, the sectors between sharp
+//! edges, and its state after refinements.
 //!
-//! The rules are OpenSubdiv's: a vertex goes by the number of its sharp edges, those of a boundary included.
-//! Sharpness falls by one with each refinement and is gone at 0; where it falls from 1 or less, the points of that
-//! refinement lie between those of the sharp and of the faded rules.
+//! The rules are OpenSubdiv's: the rule of a vertex follows from the number of its sharp edges,
+//! those of a boundary included. Sharpness falls by one with each refinement and ends at 0; where
+//! it falls from 1 or less, the points of that refinement lie between those of the sharp and of the
+//! smooth rules.
 //!
 //! At a vertex with two sharp edges or more, each part of the ring between two of them refines as a boundary's open
 //! ring would: the rules on sharp edges use points on sharp edges only, and all others points of their own side.
@@ -11,10 +12,10 @@
 
 use super::RingShape;
 
-/// Sharpness from which nothing ever fades: OpenSubdiv's convention for files.
+/// Sharpness from which edges are infinitely sharp: OpenSubdiv's convention for files.
 pub const INFINITELY_SHARP: f64 = 10.0;
 
-/// Which rule a vertex follows.
+/// The rule of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum VertexRule {
@@ -24,14 +25,14 @@ pub enum VertexRule {
     Dart,
     /// Two sharp edges: the vertex stays on the curve that they form. Boundary vertices among them.
     Crease,
-    /// Three sharp edges or more, or sharp itself: the vertex keeps its place.
+    /// Three sharp edges or more, or sharp itself: the vertex keeps its position.
     Corner,
 }
 
 /// A part of a ring between two sharp edges; all of a closed ring with fewer than two.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct RingSector {
-    /// The slot of its first edge, which is sharp but in a ring without sharp edges.
+    /// The slot of its first edge, which is sharp except in a ring without sharp edges.
     pub first: usize,
     /// Its shape from there on: open between two sharp edges.
     pub shape: RingShape,
@@ -48,7 +49,7 @@ pub struct SharpRing {
     pub spokes: Vec<f64>,
 }
 
-/// What is left of a sharpness after one refinement.
+/// The sharpness after one refinement.
 #[inline]
 pub(crate) fn faded(sharpness: f64) -> f64 {
     if sharpness >= INFINITELY_SHARP {
@@ -92,7 +93,7 @@ pub(crate) fn rule(open: bool, vertex: f64, spokes: &[f64]) -> VertexRule {
 }
 
 impl SharpRing {
-    /// A ring as sharp as its shape says and no sharper.
+    /// A ring with the sharpness of its shape only.
     pub fn of(shape: RingShape) -> Self {
         let mut spokes = vec![0.0; shape.valence as usize];
         if shape.open {
@@ -127,7 +128,7 @@ impl SharpRing {
         }
     }
 
-    /// The greatest sharpness that fades; 0 where nothing does.
+    /// The greatest semi-sharp sharpness; 0 without semi-sharp tags.
     pub fn fading(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]);
         all.copied()
@@ -135,14 +136,15 @@ impl SharpRing {
             .fold(0.0, f64::max)
     }
 
-    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
+    /// The least semi-sharp sharpness; [`INFINITELY_SHARP`] without semi-sharp tags.
     pub(crate) fn fades_first(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]).copied();
         all.filter(|&s| s > 0.0).fold(INFINITELY_SHARP, f64::min)
     }
 
-    /// How much of the next refinement follows the rules of the ring as sharp as it is now; the rest follows those
-    /// of the ring after it. Less than 1 where something is about to fade: the mean sharpness of all that is.
+    /// The share of the next refinement that follows the rules of the present ring; the rest
+    /// follows those of the ring after it. It is below 1 where semi-sharp tags are about to end:
+    /// their mean sharpness.
     pub fn present_weight(&self) -> f64 {
         present_weight(self.vertex, &self.spokes)
     }

@@ -1,8 +1,8 @@
 //! The modified butterfly scheme (Zorin, Schröder and Sweldens 1996), with the boundary rules of Zorin's course
 //! notes ("Subdivision for Modeling and Animation", SIGGRAPH 1998–2000).
 //!
-//! Vertices stay where they are. The point of an edge inside follows the kinds of its ends, where a boundary
-//! vertex is regular with four edges and an interior one with six:
+//! Vertices keep their positions. The point of an edge inside follows the kinds of its ends, where
+//! a boundary vertex is regular with four edges and an interior one with six:
 //!
 //! | ends | rule |
 //! |---|---|
@@ -70,7 +70,7 @@ impl Scheme for ModifiedButterfly {
 /// One end of an edge, with the weights that a rule puts on it and on its ring.
 struct End<'m> {
     shape: RingShape,
-    /// Where the other end stands in the ring.
+    /// The slot of the other end in the ring.
     slot: usize,
     centre: &'m mut f64,
     ring: &'m mut [f64],
@@ -214,8 +214,8 @@ fn boundary_vertex_rule(end: &mut End<'_>, scale: f64) {
     }
 }
 
-/// An end that is a corner of the boundary: with d_i the edge from the corner and d_{i−1}, d_{i+1} the ones beside
-/// it, ½ d_i + ⅛ (d_{i−1} + d_{i+1} − 2 cos φ d_i).
+/// An end that is a corner of the boundary: with d_i the edge from the corner and d_{i−1}, d_{i+1}
+/// its neighbours, ½ d_i + ⅛ (d_{i−1} + d_{i+1} − 2 cos φ d_i).
 ///
 /// The bracket vanishes for linear functions on a fan of K equal angles φ; with φ = 120°/K that includes the
 /// corner of a grid cut by its diagonal (K = 2). Patterns of the edges inside shrink by ½ + ¼(cos(mπ/K) − cos φ),
@@ -246,7 +246,7 @@ fn boundary_rule<'m>(origin: &mut End<'m>, target: &mut End<'m>) {
     for ((end, corner), weight) in [origin, target].into_iter().zip(corners).zip(weights) {
         *end.centre += weight;
         if !corner {
-            // The other boundary neighbour stands at the other end of the ring.
+            // The other boundary neighbour is at the other end of the ring.
             let other = if end.slot == 0 { end.ring.len() - 1 } else { 0 };
             end.ring[other] += beyond;
         }

@@ -10,8 +10,8 @@ use core::f64::consts::TAU;
 use super::{EdgeMask, Scheme, Support, VertexMask, stay};
 use crate::ring::{EdgeShape, RingShape, VertexKind};
 
-/// A member of the Loop family: [`Loop`] or [`LoopWarren`]. There are no others, as nothing else than their formulas
-/// would make sure of the weights at every valence.
+/// A member of the Loop family: [`Loop`] or [`LoopWarren`]. There are no others, as only their
+/// formulas guarantee the weights at every valence.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct LoopFamily {
     weights: Weights,
@@ -59,7 +59,7 @@ impl LoopFamily {
         }
     }
 
-    /// The same member, for as long as anybody may want.
+    /// This family member as a static reference.
     pub(crate) fn scheme(self) -> &'static dyn Scheme {
         match self.weights {
             Weights::Loop => &Loop,

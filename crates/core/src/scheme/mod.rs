@@ -48,7 +48,7 @@ impl EdgeMask {
     }
 }
 
-/// How far around a vertex its refined neighbourhood of the same size reaches.
+/// How far a vertex's refined neighbourhood of equal size reaches.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Support {
     /// The refined one-ring depends on the one-ring alone, and the masks of its edges do not depend on the
@@ -62,8 +62,8 @@ pub enum Support {
 ///
 /// # Contract
 /// * Weights sum to 1 and do not depend on where in a closed ring it is cut.
-/// * A boundary vertex's mask, and a boundary edge's, use boundary vertices only, so that sheets that share a
-///   boundary stay together; edge masks do not depend on which end is called the origin.
+/// * A boundary vertex's mask, and a boundary edge's, use boundary vertices only, so that sheets
+///   that share a boundary stay together; edge masks do not depend on which end is the origin.
 /// * A corner ([`RingShape::corner`]) keeps its place.
 pub trait Scheme: Send + Sync {
     /// A short name, as on the command line.
@@ -78,8 +78,9 @@ pub trait Scheme: Send + Sync {
     /// Position of the new vertex on an edge.
     fn edge_mask(&self, shape: EdgeShape) -> EdgeMask;
 
-    /// The member of the Loop family that this scheme is, if it is one. Distances are proven for these only, and a scheme
-    /// that says so has that member's masks everywhere, whatever it answers itself.
+    /// The member of the Loop family that is this scheme, if any. Distances are proven for these
+    /// only. A scheme that returns a member has that member's masks everywhere, regardless of its
+    /// own methods.
     fn loop_family(&self) -> Option<LoopFamily> {
         None
     }

@@ -121,7 +121,7 @@ fn boundaries_use_boundary_vertices_only() {
                     "{shape:?}"
                 );
             }
-            // Nor may they depend on how many faces stand on the other side.
+            // Nor may they depend on how many faces are on the other side.
             let with_valence = |ring: RingShape, slot| {
                 let ring = RingShape { valence: 4, ..ring };
                 (ring, if slot == 0 { 0 } else { 3 })
@@ -141,7 +141,7 @@ fn boundaries_use_boundary_vertices_only() {
     }
 }
 
-/// An edge as a map from vertices to weights, for vertices named by what both ends know of them.
+/// An edge as a map from vertices to weights, for vertices named from both ends.
 fn unified(mask: &EdgeMask, shape: &EdgeShape) -> Vec<(String, f64)> {
     let mut weights: Vec<(String, f64)> = Vec::new();
     let mut add =

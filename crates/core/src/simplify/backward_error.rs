@@ -16,7 +16,7 @@ const LANES: usize = 4;
 pub(super) struct BackwardProbes {
     origin: DVec3,
     sites: Vec<(u32, DVec3)>,
-    /// The same relative to the first of them; single precision is enough to tell which is nearest.
+    /// The positions relative to the first one; single precision is enough to find the nearest.
     near: Vec<Vec3>,
     points: Vec<DVec3>,
 }
@@ -70,7 +70,7 @@ impl BackwardProbes {
             core::array::from_fn(|i| (points[i.min(points.len() - 1)] - self.origin).as_vec3());
         let [x, y, z] = [0, 1, 2].map(|axis| Vec4::from_array(lanes.map(|p| p[axis])));
         let mut least = Vec4::INFINITY;
-        // Places as numbers, since all lanes are chosen at once: exact below 2^24.
+        // Places as floating-point numbers, since all lanes are chosen together: exact below 2^24.
         let mut which = Vec4::ZERO;
         for (i, near) in self.near.iter().enumerate() {
             let (dx, dy, dz) = (x - near.x, y - near.y, z - near.z);

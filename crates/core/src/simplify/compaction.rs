@@ -1,11 +1,11 @@
-//! The mesh that is left: its vertices renumbered, with the tags and junctions of what is still there.
+//! The mesh after collapses: its vertices renumbered, with the tags and junctions that still exist.
 
 use super::editable_mesh::EditableMesh;
 use super::kept_features::Kind;
 use crate::index::VertexId;
 use crate::mesh::{CornerTag, CreaseTag, Junctions, Mesh, MeshError, NONE, Tags, Topology};
 
-/// Builds the mesh, and tells which fine vertex each of its vertices is.
+/// Builds the mesh, and gives the fine vertex of each of its vertices.
 pub(super) fn mesh(
     fine: &Mesh,
     surface: &EditableMesh,
@@ -39,7 +39,7 @@ pub(super) fn mesh(
     ))
 }
 
-/// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it stands for.
+/// Each crease edge of the coarse mesh once, with the sharpness of the fine ones that it replaces.
 fn creases(
     fine: &Mesh,
     surface: &EditableMesh,
@@ -53,7 +53,7 @@ fn creases(
             if surface.is_alive(start) {
                 let end = super::kept_features::end_of_chain(start, step, surface, kinds);
                 let ends = [number(start), number(end)];
-                // Seen from both ends, told from one.
+                // Seen from both ends, handled from one.
                 if ends[0] < ends[1] {
                     creases.push(CreaseTag {
                         vertices: ends,

@@ -1,8 +1,9 @@
 //! Edge collapses in the order of the error that they leave behind, up to a threshold that rises from round to round.
 //!
-//! A round passes over the vertices in their order, so that what is near in the mesh is near in memory, and collapses
-//! those whose best collapse stays below the threshold. What the others would cost is remembered; since that almost only
-//! rises while the stars grow, they are left alone until the threshold has reached it.
+//! A round passes over the vertices in their order, so that neighbours are near in memory, and
+//! collapses those whose best collapse stays below the threshold. The costs of the others are kept;
+//! since they almost only rise while the stars grow, they are left alone until the threshold has
+//! reached it.
 
 use super::Goals;
 use super::edge_flip::{Flipper, edges};
@@ -16,14 +17,14 @@ use super::vertex_star::{VertexStar, Way};
 use crate::geometry::NONE;
 use crate::progress::{Cancelled, Watch};
 
-/// Growth of the threshold far from the goal. In a round of that growth the order hardly matters yet: what it costs is
-/// made good for later, and larger steps save little more time.
+/// Growth of the threshold far from the goal. In a round of that growth the order hardly matters
+/// yet: its cost is recovered later, and larger steps save little more time.
 const FAST: f64 = 1.4;
 
 /// Growth of the threshold when the number of triangles is near: the last round decides how even the errors are.
 const SLOW: f64 = 1.03;
 
-/// How many times as many triangles as asked for count as far.
+/// A number of triangles is far above the requested one from this factor on.
 const FAR: usize = 2;
 
 /// How often collapses and flips take turns: later ones find next to nothing.
@@ -32,10 +33,11 @@ const MOST_RESUMPTIONS: usize = 4;
 /// Vertices with more edges than this wait until they have fewer: the time for one grows with the square.
 const MOST_EDGES: usize = 64;
 
-/// Where a number of triangles stops the collapses: what is proven of a new triangle over the threshold at most.
+/// Where a number of triangles stops the collapses: the greatest proven distance of a new triangle
+/// over the threshold.
 const UNEVEN: f64 = 1.03;
 
-/// Changes looked at between two calls of the observer: some milliseconds.
+/// Changes between two calls of the observer: some milliseconds.
 const OBSERVED: usize = 256;
 
 /// The mesh on its way from fine to coarse.
@@ -44,22 +46,22 @@ pub(super) struct Collapser<'t, 's, 'a> {
     pub(super) samples: FineSamples,
     pub(super) reference: Reference<'a>,
     star: VertexStar,
-    /// For each vertex what its best collapse would cost, or less; infinite if it has none.
+    /// For each vertex a lower bound of the cost of its best collapse; infinite if it has none.
     costs: Vec<f64>,
     /// Greatest error that a collapse has left so far.
     pub(super) reached: f64,
     /// Errors up to this are rounding.
     flat: f64,
     flipper: Flipper,
-    /// Asked before each change.
+    /// Proves each change before it is made.
     prover: Option<Prover<'t, 's, 'a>>,
-    /// What costs no more is proven in the end.
+    /// The cost below which a collapse is proven in the end.
     sure: f64,
     /// Kept where there may be anything to take back.
     history: Option<History>,
     /// Vertices that stay because their going was not proven to be within the goal.
     refused: Vec<bool>,
-    /// Changes looked at since the observer was last called.
+    /// Changes since the observer was last called.
     unobserved: usize,
     /// The part of the tolerance that collapses may cost by now.
     share: f64,
@@ -107,7 +109,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         Ok(())
     }
 
-    /// Takes the proofs that were put off, and takes back what does not hold.
+    /// Does the proofs that were put off, and takes back changes without proof.
     pub(super) fn finish(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         let mut back = Vec::new();
         if let Some(prover) = &mut self.prover {
@@ -135,7 +137,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         if back.is_empty() {
             return Ok(());
         }
-        // Most of it may go after all, now that nothing is put off.
+        // Most of it may be collapsed after all, now that no proof is put off.
         (self.sure, self.history) = (0.0, None);
         for vertex in back {
             self.costs[vertex as usize] = 0.0;
@@ -158,7 +160,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         (0..self.refused.len()).filter(is_refused).count()
     }
 
-    /// Counts a look at a change, and tells the observer after every some hundred of them.
+    /// Counts the trial of a change, and calls the observer after every few hundred.
     fn observe(&mut self, goals: Goals, watch: &mut Watch<'_>) -> Result<(), Cancelled> {
         self.unobserved += 1;
         if self.unobserved < OBSERVED {
@@ -167,7 +169,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         self.unobserved = 0;
         let (all, left) = (self.reference.fine.face_count(), self.surface.faces_left());
         watch.triangles(left);
-        // What is left at a cost falls with its reciprocal: heights grow with the square of a triangle's size.
+        // The number left at a cost falls with its reciprocal: heights grow with the square of a
+        // triangle's size.
         let expected = (left as f64 * self.share) as usize;
         watch.done_of(all - left, all - expected.max(goals.triangles).min(left))
     }
@@ -255,8 +258,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         Ok(least)
     }
 
-    /// Collapses a vertex if that costs no more than `threshold`, and gives what it costs; infinite if it is gone, or
-    /// cannot go within the tolerance.
+    /// Collapses a vertex if that costs no more than `threshold`, and gives the cost; infinite if
+    /// it was removed, or cannot be within the tolerance.
     fn consider(&mut self, vertex: u32, threshold: f64, goals: Goals) -> f64 {
         self.refused[vertex as usize] = false;
         if self.reference.kind(vertex) == Kind::Fixed
@@ -314,7 +317,7 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
         self.star.hand_over(&mut self.samples);
         self.reached = self.reached.max(cost);
         for &neighbour in &self.star.ring {
-            // What could not go may do so now.
+            // A collapse that was refused may be possible now.
             let known = &mut self.costs[neighbour as usize];
             if known.is_infinite() {
                 *known = cost;
@@ -337,12 +340,13 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
             let Some(cost) = self.star.cost(way, &self.reference, bound) else {
                 continue;
             };
-            // Where it is flat, one way is as good as another for the distance.
+            // Where it is flat, all collapses are equal in distance.
             let shape = self.star.shape();
             if best.is_some_and(|best| best.1 <= self.flat && shape <= best_shape) {
                 continue;
             }
-            // Whether the mesh stays a manifold takes long to find out, and matters only for what is to be done now.
+            // Whether the mesh stays a manifold takes long to find out, and matters only for
+            // collapses to be done now.
             if cost > threshold
                 || self
                     .surface

@@ -13,13 +13,13 @@ use crate::vector::DVec3;
 /// A flip must lower the error to this share at most: less is not worth the time, nor sure to be a gain.
 const GAIN: f64 = 0.95;
 
-/// Looks at edges one after the other.
+/// Tests edges one after the other.
 #[derive(Default)]
 pub(super) struct Flipper {
     region: StarRegion,
 }
 
-/// What proves that the new faces keep a distance, that distance, and where changes are recorded if they are.
+/// The prover of the new faces' distance, that distance, and the record of changes if there is one.
 pub(super) type Proof<'p, 't, 's, 'a> = (&'p mut Prover<'t, 's, 'a>, f64, Option<&'p mut History>);
 
 /// The two faces at an edge: their corners counter-clockwise, the edge running from the first to the third.
@@ -29,7 +29,7 @@ struct Quadrilateral {
     faces: [u32; 2],
 }
 
-/// What two new triangles are measured by: those that are there.
+/// The standard for two new triangles: the existing ones.
 #[derive(Clone, Copy)]
 struct Standard {
     worst: Worst,
@@ -170,8 +170,8 @@ impl Flipper {
         Some(quadrilateral.corners)
     }
 
-    /// Looks at two triangles of the quadrilateral; `None` if their error is not below `bound`, or if they do not meet
-    /// the standard.
+    /// Measures two triangles of the quadrilateral; `None` if their error is not below `bound`, or
+    /// if they do not meet the standard.
     fn cut(
         &mut self,
         quadrilateral: &Quadrilateral,
@@ -203,8 +203,9 @@ impl Flipper {
     }
 }
 
-/// The triangles of the quadrilateral (counter-clockwise 0, 1, 2, 3) as they are, cut from 0 to 2, first the face of the
-/// half-edge from 0 to 2; and as the flip leaves them in the same faces. Each begins with the diagonal.
+/// The triangles of the quadrilateral (counter-clockwise 0, 1, 2, 3) before the flip, cut from 0 to
+/// 2, first the face of the half-edge from 0 to 2; and after it in the same faces. Each begins with
+/// the diagonal.
 const BEFORE: [[usize; 3]; 2] = [[0, 2, 3], [2, 0, 1]];
 const AFTER: [[usize; 3]; 2] = [[3, 1, 2], [1, 3, 0]];
 

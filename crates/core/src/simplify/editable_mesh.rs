@@ -1,9 +1,9 @@
 //! A triangle mesh that can be edited in place: half-edge connectivity with collapses, flips and renamed vertices.
 //!
 //! It knows no positions. Half-edge `3·face + corner` runs from that corner to the next one, as in
-//! [`Topology`]; faces that were collapsed stay in the arrays and are marked dead. The same
-//! invariants hold at all times: twins are mutual, the faces at a vertex form one fan, and the outgoing half-edge of
-//! a boundary vertex is the one without a twin.
+//! [`Topology`]; faces that were collapsed stay in the arrays and are marked dead. These invariants
+//! hold at all times: twins are mutual, the faces at a vertex form one fan, and the outgoing
+//! half-edge of a boundary vertex is the one without a twin.
 
 use crate::mesh::{NONE, Topology};
 
@@ -17,7 +17,7 @@ pub(super) fn previous(h: u32) -> u32 {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
-/// What is known of a half-edge.
+/// The data of a half-edge.
 #[derive(Clone, Copy)]
 pub(super) struct Slot {
     origin: u32,
@@ -59,7 +59,7 @@ impl EditableMesh {
         self.faces_left
     }
 
-    /// Corners of `face`; [`NONE`] in all of them once the face is gone.
+    /// Corners of `face`; [`NONE`] in all of them once the face was removed.
     #[inline]
     pub(super) fn corners(&self, face: u32) -> [u32; 3] {
         let first = 3 * face as usize;
@@ -165,7 +165,7 @@ impl EditableMesh {
         if twin != NONE && self.is_boundary(from) {
             return false;
         }
-        // A triangle by itself, and a tetrahedron, whose last two faces would be one.
+        // A triangle alone, and a tetrahedron, whose last two faces would be one.
         let is_ear = |h: u32| self.twin(next(h)) == NONE && self.twin(previous(h)) == NONE;
         if is_ear(h) || (twin != NONE && is_ear(twin)) {
             return false;
@@ -181,8 +181,8 @@ impl EditableMesh {
         shared == 1 + usize::from(twin != NONE) && !is_tetrahedron()
     }
 
-    /// Collapses the edge of `h`: its end `from` goes, and its faces now meet at the other. The caller has asked
-    /// [`Self::can_collapse`].
+    /// Collapses the edge of `h`: its end `from` goes, and its faces now meet at the other. The
+    /// caller has checked [`Self::can_collapse`].
     pub(super) fn collapse(&mut self, h: u32, from: u32) {
         let into = if self.origin(h) == from {
             self.target(h)
@@ -192,7 +192,7 @@ impl EditableMesh {
         let twin = self.twin(h);
         self.rename_fan(from, into);
         self.outgoing[from as usize] = NONE;
-        // The outgoing half-edges can be told once both faces are gone.
+        // The outgoing half-edges are known once both faces were removed.
         let mut seats = [(NONE, NONE); 4];
         [seats[0], seats[1]] = self.close(h, into);
         if twin != NONE {
@@ -209,7 +209,8 @@ impl EditableMesh {
     /// Takes out the face of `h`, whose ends have become the vertex `merged`, and joins its two neighbours. Gives its two
     /// corners, each with a half-edge that leaves it.
     fn close(&mut self, h: u32, merged: u32) -> [(u32, u32); 2] {
-        // Of the two half-edges outside one leaves the corner beside the merged ones and one reaches it.
+        // Of the two half-edges outside one leaves the corner next to the merged ones and one
+        // reaches it.
         let other = self.origins[previous(h) as usize];
         let [leaving, reaching] = [next(h), previous(h)].map(|side| self.twins[side as usize]);
         let sharp = self.sharp[next(h) as usize] || self.sharp[previous(h) as usize];
@@ -252,7 +253,7 @@ impl EditableMesh {
         self.outgoing[vertex as usize] = first;
     }
 
-    /// What is known of the half-edge `h`, to be [`Self::put`] back.
+    /// The data of the half-edge `h`, to be [`Self::put`] back.
     pub(super) fn slot(&self, h: u32) -> Slot {
         let at = h as usize;
         Slot {
@@ -262,7 +263,7 @@ impl EditableMesh {
         }
     }
 
-    /// Makes the half-edge `h` what it was.
+    /// Restores the half-edge `h`.
     pub(super) fn put(&mut self, h: u32, slot: Slot) {
         let at = h as usize;
         // A face that was gone is back.

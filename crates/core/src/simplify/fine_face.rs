@@ -20,7 +20,7 @@ struct Candidate {
     corners: [u32; 3],
     positions: [DVec3; 3],
     /// The triangles with which it shares an edge, as bits.
-    beside: u64,
+    adjacent: u64,
 }
 
 /// A corner of a piece.
@@ -29,11 +29,11 @@ pub(super) struct Corner {
     at: DVec3,
     /// The triangles that it is known to be near enough to.
     near: u64,
-    /// One of them, or a number too large, and what the distance to it does not exceed.
+    /// One of them, or a number too large, and a bound of the distance to it.
     known: (usize, f64),
     /// The vertex of the mesh that it is, or [`NONE`].
     vertex: u32,
-    /// Whether all triangles have been looked at.
+    /// Whether all triangles have been measured.
     complete: bool,
 }
 
@@ -100,22 +100,22 @@ impl Candidates {
         }
         let place = self.triangles.len();
         if place < MOST {
-            let mut beside = 0;
+            let mut adjacent = 0;
             for (other, triangle) in self.triangles.iter_mut().enumerate() {
                 let shared = corners
                     .iter()
                     .filter(|corner| triangle.corners.contains(corner))
                     .count();
                 if shared == 2 {
-                    beside |= 1 << other;
-                    triangle.beside |= 1 << place;
+                    adjacent |= 1 << other;
+                    triangle.adjacent |= 1 << place;
                 }
             }
             self.triangles.push(Candidate {
                 face,
                 corners,
                 positions,
-                beside,
+                adjacent,
             });
         }
         place
@@ -142,8 +142,8 @@ impl Candidates {
         Corner::near(at, place, distance)
     }
 
-    /// What the face with these corners is within of the triangles, and which of them served, as bits; `None` if it is not
-    /// found to be within `goal`.
+    /// A bound of the distance of the face with these corners from the triangles, and the triangles
+    /// used, as bits; `None` if it is not found to be within `goal`.
     pub(super) fn bound(&mut self, mut corners: [Corner; 3], goal: f64) -> Option<(f64, u64)> {
         (self.goal, self.cuts, self.used) = (goal, MOST_CUTS, 0);
         for corner in &mut corners {
@@ -157,7 +157,7 @@ impl Candidates {
         Some((bound, self.used))
     }
 
-    /// What a corner is within of one of the triangles.
+    /// The distance of a corner from one of the triangles.
     #[inline]
     fn distance(&self, corner: &Corner, place: usize) -> f64 {
         let triangle = &self.triangles[place];
@@ -238,12 +238,12 @@ impl Candidates {
         let (p, q) = (corners[i], corners[j]);
         for (wanted, all) in [(q.near, false), (!p.near, true)] {
             for a in bits(p.near) {
-                for b in bits(self.triangles[a].beside & wanted) {
+                for b in bits(self.triangles[a].adjacent & wanted) {
                     let Some([from, to]) = self.edge_between(a, b) else {
                         continue;
                     };
-                    let (s, at, foot) = nearest_points([p.at, q.at], [from, to]);
-                    let distance = at.distance(foot);
+                    let (s, at, nearest) = nearest_points([p.at, q.at], [from, to]);
+                    let distance = at.distance(nearest);
                     if !is_within(distance, self.goal) || (all && (s <= 0.0 || s >= 1.0)) {
                         continue;
                     }
@@ -275,7 +275,7 @@ impl Candidates {
         (middle.near != 0).then_some(middle)
     }
 
-    /// Looks at all triangles.
+    /// Measures all triangles.
     fn complete(&self, corner: &mut Corner) {
         for (place, triangle) in self.triangles.iter().enumerate() {
             if corner.near >> place & 1 == 0 && distance(corner.at, triangle.positions) <= self.goal
@@ -303,7 +303,7 @@ enum Crossing {
     Corner,
 }
 
-/// Whether a distance is at most so much; what is not a number is not.
+/// Whether a distance is at most `goal`; false for NaN.
 #[inline]
 pub(super) fn is_within(distance: f64, goal: f64) -> bool {
     distance <= goal
@@ -318,15 +318,15 @@ fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// The distance of a point from a point of a triangle, the nearest but for rounding.
+/// The distance of a point from a point of a triangle, the nearest within rounding.
 #[inline]
 fn distance(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let [u, v, w] = closest_to_origin(a - p, b - p, c - p).weights;
     (a * u + b * v + c * w).distance(p)
 }
 
-/// Points of two segments that are nearest to each other, but for rounding, and where the first lies on its segment, from 0
-/// to 1 (Ericson, Real-Time Collision Detection, section 5.1.9).
+/// Points of two segments that are nearest to each other, within rounding, and where the first lies
+/// on its segment, from 0 to 1 (Ericson, Real-Time Collision Detection, section 5.1.9).
 fn nearest_points([p, q]: [DVec3; 2], [a, b]: [DVec3; 2]) -> (f64, DVec3, DVec3) {
     let (along, edge, from) = (q - p, b - a, p - a);
     let (pp, ee, pe) = (
@@ -372,7 +372,8 @@ mod tests {
             .collect()
     }
 
-    /// The greatest distance of dense points of a face from a fan, each against all triangles one by one, and what is told of the face.
+    /// The greatest distance of dense points of a face from a fan, each against all triangles one
+    /// by one, and the bound reported for the face.
     fn looked_at(
         heights: &[f64],
         corners: [(f64, f64, f64); 3],

@@ -67,7 +67,7 @@ impl FineSamples {
         }
     }
 
-    /// Sets what [`Self::error`] says.
+    /// Sets [`Self::error`].
     #[inline]
     pub(super) fn set_error(&mut self, face: u32, error: f64) {
         self.errors[face as usize] = error;

@@ -1,7 +1,7 @@
 //! The changes of a mesh, so that single ones can be taken back: those whose proof was put off and does not hold.
 //!
-//! A change is recorded before it happens, by the faces that it touches as they are. Taking one back first takes back
-//! those that touched any of them since, which are few: what is far away stays.
+//! A change is recorded before it happens, by the state of the faces that it touches. Taking one
+//! back first takes back those that touched any of them since, which are few: distant changes stay.
 
 use super::editable_mesh::{EditableMesh, Slot};
 use super::fine_samples::FineSamples;
@@ -43,7 +43,7 @@ pub(super) struct History {
 }
 
 impl History {
-    /// None yet, of a mesh with so many faces.
+    /// An empty history of a mesh with `faces` faces.
     pub(super) fn new(faces: usize) -> Self {
         Self {
             changes: Vec::new(),
@@ -103,14 +103,14 @@ impl History {
             .max()
     }
 
-    /// Takes back a change and those that came after it where it was; tells of each which faces are as they were again, and
-    /// the vertex that is back.
+    /// Takes back a change and those that came after it where it was; reports for each the restored
+    /// faces and vertex.
     pub(super) fn take_back(
         &mut self,
         change: u32,
         surface: &mut EditableMesh,
         samples: &mut FineSamples,
-        mut told: impl FnMut(&mut dyn Iterator<Item = u32>, u32),
+        mut report: impl FnMut(&mut dyn Iterator<Item = u32>, u32),
     ) {
         let mut waiting = vec![change];
         while let Some(&change) = waiting.last() {
@@ -130,7 +130,7 @@ impl History {
             waiting.pop();
             self.restore(change, surface, samples);
             let faces = &self.faces[records.0];
-            told(
+            report(
                 &mut faces.iter().map(|old| old.face),
                 self.changes[change as usize].centre,
             );
@@ -156,7 +156,7 @@ impl History {
 
     fn restore(&mut self, change: u32, surface: &mut EditableMesh, samples: &mut FineSamples) {
         let (faces, across, below) = self.records(change);
-        // A face across may stand there more than once: the first record is the oldest.
+        // A face across may be recorded more than once: the first record is the oldest.
         for across in self.across[across].iter().rev() {
             surface.put(across.h, across.slot);
             self.last[across.h as usize / 3] = across.before;
@@ -188,7 +188,7 @@ mod tests {
     use crate::random::Random;
     use crate::vector::vector;
 
-    /// Whatever was collapsed and flipped, and in whichever order it is taken back, the mesh is what it was in the end.
+    /// Regardless of which changes are taken back and in which order, the mesh is as it was.
     #[test]
     fn what_is_taken_back_leaves_no_trace() {
         for name in ["sphere", "sheet", "bunny"] {

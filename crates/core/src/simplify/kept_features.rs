@@ -1,11 +1,12 @@
-//! What must stay in place: crease edges and boundaries, corners, ends of creases.
+//! The features that stay: crease edges and boundaries, corners, ends of creases.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, MeshError, NONE};
 
 use super::editable_mesh::EditableMesh;
 
-/// Edges that stay edges and vertices that stay, beside boundaries and the mesh's own tags, which always stay.
+/// Edges that stay edges and vertices that stay, in addition to boundaries and the mesh's own tags,
+/// which always stay.
 ///
 /// Along a chain of edges vertices may go; where a chain ends or branches they stay.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,7 +28,7 @@ pub(super) enum Kind {
     Fixed,
 }
 
-/// Marks the edges in `surface` and tells the kind of each vertex of `fine`.
+/// Marks the edges in `surface` and gives the kind of each vertex of `fine`.
 pub(super) fn kinds(
     fine: &Mesh,
     features: &Features,
@@ -110,7 +111,7 @@ pub(super) fn end_of_chain(start: u32, step: u32, surface: &EditableMesh, kinds:
     walk_chain(start, step, surface, kinds, |_| {})
 }
 
-/// The same; calls `gone` for each vertex on the way, which is no longer there.
+/// Walks the chain; calls `gone` for each vertex on the way, which no longer exists.
 pub(super) fn walk_chain(
     start: u32,
     step: u32,

@@ -1,20 +1,22 @@
 //! Fewer triangles at the same distance: edge collapses of a fine mesh whose vertices lie on the surface.
 //!
-//! Takes a fine mesh, features to keep and a goal; gives a mesh whose vertices are some of the fine mesh's, exactly where
-//! they were. Closed meshes stay closed, manifolds stay manifolds of the same genus, boundaries and creases stay along
-//! their lines, and no triangle folds over.
+//! Takes a fine mesh, features to keep and a goal; gives a mesh whose vertices are some of the fine
+//! mesh's, at their exact positions. Closed meshes stay closed, manifolds stay manifolds of the
+//! same genus, boundaries and creases stay along their lines, and no triangle folds over.
 //!
-//! What a collapse costs is estimated from samples, locally and in both directions: the vertices that are gone are points of
-//! the surface, each cared for by the face nearest to it (`fine_samples.rs`); points of the new faces are measured from the
-//! tangent planes of the samples around (`backward_error.rs`); and where samples are few, the normals at the ends of an edge
-//! tell how far the surface bulges over it (`reference.rs`). Where the surface is curved more in one direction than in the
-//! other, long triangles come out of this by themselves.
+//! The cost of a collapse is estimated from samples, locally and in both directions: the vertices
+//! that are gone are points of the surface, each assigned to the face nearest to it
+//! (`fine_samples.rs`); points of the new faces are measured from the tangent planes of the samples
+//! around (`backward_error.rs`); and where samples are few, the normals at the ends of an edge give
+//! the height of the surface over it (`reference.rs`). Where the surface is curved more in one
+//! direction than in the other, this gives long triangles.
 //!
-//! Whether a collapse may happen is proven before it happens, for what it touches (`proof.rs`, `fine_face.rs`). Where there
-//! is no proof the edge stays, and everything else goes on.
+//! A collapse is proven before it happens, for the faces that it touches (`proof.rs`,
+//! `fine_face.rs`). Where there is no proof the edge stays.
 //!
-//! How good the result can be is known: a smooth surface with Gaussian curvature K needs about
-//! 0.19245·∫√|K| dA / ε vertices for inscribed triangles within a distance ε where K > 0 (and fewer where K < 0).
+//! The best possible result is known: a smooth surface with Gaussian curvature K needs about
+//! 0.19245·∫√|K| dA / ε vertices for inscribed triangles within a distance ε where K > 0 (and fewer
+//! where K < 0).
 
 mod backward_error;
 mod compaction;
@@ -47,32 +49,34 @@ use fine_samples::FineSamples;
 use proof::Prover;
 use reference::{LEAST_AGREEMENT, Reference};
 
-/// Why a mesh could not be simplified.
+/// An error of simplification.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimplifyError {
-    /// An option is out of range, or a feature is none of the mesh's.
+    /// An option is out of range, or a feature does not fit the mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// A distance could not be measured.
     #[error(transparent)]
     Measure(#[from] MeasureError),
-    /// The observer asked to stop. This is the mesh by then: as good as any result, with more triangles.
+    /// The observer asked to stop. This is the mesh by then: as valid as any result, with more
+    /// triangles.
     #[error("cancelled by the observer")]
     Cancelled(Box<Simplified>),
 }
 
-/// When to stop: at whichever goal is reached first.
+/// The goals of simplification, which ends at the first one reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SimplifyOptions {
     /// The greatest distance between the result and the fine mesh, in the mesh's units, in either direction. Without this
     /// and without [`Self::triangles`] it is [`Self::DEFAULT_SHARE`] of the bounding box's diagonal.
     pub tolerance: Option<f64>,
-    /// Stop once there are no more triangles than this.
+    /// The number of triangles at which to stop.
     pub triangles: Option<usize>,
-    /// Prove the distance, and keep the tolerance where the samples' estimate proves too low; `true` by default. Without
-    /// it the result is faster, and a few per cent over the tolerance in places.
+    /// Whether to prove the distance, and keep the tolerance where the samples' estimate proves too
+    /// low; `true` by default. Without it the result is faster, and a few per cent over the
+    /// tolerance in places.
     pub certify: bool,
 }
 
@@ -87,8 +91,8 @@ impl Default for SimplifyOptions {
 }
 
 impl SimplifyOptions {
-    /// The tolerance where none is given, as a share of the bounding box's diagonal: hardly to be seen on a model that
-    /// fills the screen.
+    /// The default tolerance, as a share of the bounding box's diagonal: hardly visible on a model
+    /// that fills the screen.
     pub const DEFAULT_SHARE: f64 = 0.001;
 
     /// Sets [`Self::tolerance`].
@@ -145,8 +149,9 @@ struct Goals {
     triangles: usize,
 }
 
-/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: of what is left then, little was
-/// not changed again, and estimates are rarely wrong by so much. Where they are, changes are taken back.
+/// Collapses whose estimate is up to this share of the tolerance are proven in the end only: most
+/// of them are changed again before, and estimates are rarely wrong by this factor. Where they are,
+/// changes are taken back.
 const SURE: f64 = 0.35;
 
 /// Errors up to this share of the diagonal are taken for rounding: some ten thousand units in the last place.
@@ -158,22 +163,23 @@ const ROUNDING: f64 = 1e-12;
 pub struct Simplified {
     /// The mesh, with the tags and junctions of the fine one.
     pub mesh: Mesh,
-    /// For each of its vertices the fine mesh's vertex that it is.
+    /// For each of its vertices the vertex of the fine mesh.
     pub vertices: Vec<u32>,
     /// The greatest distance between the mesh and the surface that was found while collapsing: an estimate, since only
     /// samples were measured.
     pub estimate: f64,
-    /// The greatest distance between the mesh and the fine one, in both directions, is certainly no more than this;
-    /// `None` if no proof was asked for, or if the observer stopped before there was one.
+    /// The greatest distance between the mesh and the fine one, in both directions, is certainly no
+    /// more than this; `None` if no proof was requested, or if the observer stopped before there
+    /// was one.
     pub bound: Option<f64>,
-    /// How many of the vertices stayed only because their going was not proven to keep the goal, although the samples
-    /// would have let them go: mostly since it would have gone beyond it by a little.
+    /// The number of vertices that stayed only because their collapse was not proven to keep the
+    /// goal, although the samples allowed it; mostly it would have exceeded the goal a little.
     pub refused: usize,
 }
 
 /// Collapses edges of `fine` until a goal is reached.
 ///
-/// Where no more edges can go, the result has more triangles than asked for.
+/// Where no more edges can be collapsed, the result has more triangles than requested.
 ///
 /// ```
 /// use limitmesh::refine::limit_reference;
@@ -201,10 +207,10 @@ pub fn simplify(
     simplify_observed(fine, features, options, &mut unobserved)
 }
 
-/// [`simplify`], telling an observer how it goes on.
+/// [`simplify`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop; what there was by then comes with the error.
+/// Those of [`simplify`], or the observer asked to stop; what there was by then comes with the error.
 pub fn simplify_observed(
     fine: &Mesh,
     features: &Features,
@@ -236,7 +242,7 @@ pub fn simplify_observed(
         .map(|bvh| Target::of_mesh(bvh, fine.topology()))
         .transpose()?;
     let mut watch = Watch::new(observer, Stage::Simplifying);
-    // Where their number alone stops the collapses nobody knows what is far from the limit.
+    // If the number alone stops the collapses, it is unknown which vertices are far from the limit.
     let sure = if goals.tolerance < f64::MAX {
         SURE * goals.tolerance
     } else {
@@ -254,7 +260,8 @@ pub fn simplify_observed(
         if outcome.is_err() {
             return Err(SimplifyError::Cancelled(Box::new(simplified)));
         }
-        // Where the fine mesh is so rough that far from the limit estimates are wrong, nothing is put off.
+        // Where the fine mesh is so rough that estimates are wrong far from the limit, no proof is
+        // put off.
         if simplified.bound.is_some() || !options.certify || sure == 0.0 {
             return Ok(simplified);
         }

@@ -1,12 +1,14 @@
 //! Proof that a change of the mesh keeps it within a distance of the fine mesh, taken before the change is made.
 //!
-//! Each direction is proven triangle by triangle, so that a change asks for proof of what it touches and of nothing else.
+//! Each direction is proven triangle by triangle, so that a change needs proofs only of the
+//! triangles that it touches.
 //!
-//! Proofs of changes that are far from the limit may be put off: most of what they leave is changed again.
+//! Proofs of changes that are far from the limit may be put off: most of their triangles are
+//! changed again.
 //!
 //! * *From the mesh to the fine one*: each new triangle, by the sheet of fine faces over it ([`Worker::within`]).
-//! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests* on the faces that serve
-//!   its pieces; while these stay as they are, so does its proof.
+//! * *From the fine mesh to the mesh*: each fine face, by pieces ([`super::fine_face`]). It *rests*
+//!   on the faces that serve its pieces; its proof holds while these do not change.
 
 use super::editable_mesh::EditableMesh;
 use super::fine_face::{Candidates, Corner, is_within};
@@ -18,20 +20,20 @@ use crate::measure::{Target, Worker};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, Watch};
 
-/// Fine faces in a sheet at most: as many as a triangle of a mesh made this coarse stands for.
+/// The most fine faces of a sheet: as many as a triangle of a mesh made this coarse replaces.
 const SHEET: usize = 4096;
 
 /// The observer is called at faces whose numbers are multiples of this.
 const OBSERVED: u32 = 256;
 
-/// Faces around a vertex that are looked at beyond those of a change.
+/// The most faces around a vertex that are tried beyond those of a change.
 const MOST_AROUND: usize = 16;
 
 /// Faces that go, and the triangles that take their place.
 pub(super) struct Change<'a> {
     /// The faces that go or get other corners.
     pub(super) old: &'a [u32],
-    /// Those across the border, which stay.
+    /// The faces across the border, which stay.
     pub(super) around: &'a [u32],
     /// The vertex that goes, or [`NONE`].
     pub(super) gone: u32,
@@ -39,7 +41,7 @@ pub(super) struct Change<'a> {
     pub(super) region: &'a StarRegion,
 }
 
-/// What a fine face rests on after a change.
+/// The triangles that the proof of a fine face uses after a change.
 struct Rest {
     fine: u32,
     /// Places among the candidates, as bits.
@@ -47,19 +49,20 @@ struct Rest {
     bound: f64,
 }
 
-/// What has been proven, and what it rests on.
+/// The proven distances, and the triangles that they use.
 pub(super) struct Prover<'t, 's, 'a> {
     worker: Worker<'t, 's, 'a>,
     fine: &'a Mesh,
-    /// What rounding may have made of a distance.
+    /// The rounding error of a distance.
     slack: f64,
     /// For each face of the mesh the fine faces that rest on it, perhaps among others.
     resting: Vec<Vec<u32>>,
-    /// What each face of the mesh is within of the fine mesh; infinite where no proof has been taken yet.
+    /// A bound of the distance of each face of the mesh from the fine mesh; infinite before the
+    /// first proof.
     forward: Vec<f64>,
-    /// What each fine face is within of the mesh; likewise.
+    /// A bound of the distance of each fine face from the mesh; infinite before the first proof.
     backward: Vec<f64>,
-    /// The fine faces that the change asks for, each once: `stamps` tells those met in this round.
+    /// The fine faces that the change affects, each once: `stamps` marks those met in this round.
     affected: Vec<u32>,
     stamps: Vec<u32>,
     round: u32,
@@ -67,7 +70,7 @@ pub(super) struct Prover<'t, 's, 'a> {
     /// Of the last [`Self::prove`].
     rests: Vec<Rest>,
     bounds: Vec<f64>,
-    /// For each sample that it asked for its place in the region.
+    /// For each requested sample its place in the region.
     places: Vec<u32>,
     /// Fine faces and faces without proof, perhaps among others, once the proofs that were put off are taken.
     open_fine: Vec<u32>,
@@ -183,7 +186,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         true
     }
 
-    /// A corner of a fine face, and what is known of the triangles near it.
+    /// A corner of a fine face, and the known distances of the triangles near it.
     fn corner(
         &mut self,
         v: u32,
@@ -275,7 +278,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         let new = change.region.faces();
         for &fine in &self.affected {
             self.backward[fine as usize] = f64::INFINITY;
-            // Any face near it will do: who looks for the fine faces that matter finds it there, most of the time.
+            // Any face near it is enough: the search for affected fine faces mostly finds it there.
             let corners = self.fine.topology().triangles()[fine as usize];
             let holder = corners.iter().find_map(|&v| {
                 let place = self.places[v as usize] as usize;
@@ -353,7 +356,8 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         Ok(None)
     }
 
-    /// The faces that care for the corners of a fine face; those that its last proof looked at where its corners are all there.
+    /// The faces assigned to the corners of a fine face; those of its last proof where its corners
+    /// all exist.
     fn below(&self, fine: u32, samples: &FineSamples) -> Vec<u32> {
         let corners = self.fine.topology().triangles()[fine as usize];
         let holders: Vec<u32> = corners
@@ -388,7 +392,7 @@ impl<'t, 's, 'a> Prover<'t, 's, 'a> {
         }
     }
 
-    /// Forgets what was proven of faces that have become what they were before.
+    /// Forgets the proofs of faces that were restored.
     pub(super) fn reopen(&mut self, faces: &mut dyn Iterator<Item = u32>) {
         for face in faces {
             for fine in self.resting[face as usize].drain(..) {

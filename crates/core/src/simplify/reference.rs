@@ -1,5 +1,5 @@
-//! What does not change while edges collapse: what kind each fine vertex is, the surface's normals there, and the
-//! conditions on a triangle that follow from them.
+//! The data that stay constant while edges collapse: the kind of each fine vertex, the surface's
+//! normals there, and the conditions on a triangle that follow from them.
 
 use super::kept_features::Kind;
 use super::triangle_plane::Plane;
@@ -11,26 +11,28 @@ use crate::vector::{DVec3, vector};
 /// stands steeper is about to fold over.
 pub(super) const LEAST_TURN: f64 = 0.2;
 
-/// The least shape of a triangle (see [`Plane::shape`]). Long triangles along directions of low curvature are wanted;
-/// thinner ones than this gain nothing more, and whoever works with the mesh suffers from them.
+/// The least shape of a triangle (see [`Plane::shape`]). Long triangles along directions of low
+/// curvature are wanted; thinner ones than this gain nothing more, and are a burden to users of the
+/// mesh.
 const LEAST_SHAPE: f64 = 0.01;
 
-/// The least cosine between the normal of a vertex and those of the fine faces around for it to speak for the surface
-/// there: beyond 18° there is an edge that nobody tagged, or the fine mesh is too coarse.
+/// The least cosine between the normal of a vertex and those of the fine faces around for it to be
+/// the surface's normal there: beyond 18° there is an untagged edge, or the fine mesh is too
+/// coarse.
 pub(super) const LEAST_AGREEMENT: f64 = 0.95;
 
 /// Kinds and normals of the fine mesh's vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Reference<'a> {
     pub(super) kinds: &'a [Kind],
-    /// Unit normals; not used at creases and boundaries, where one does not tell.
+    /// Unit normals; not used at creases and boundaries, where one is not enough.
     pub(super) normals: &'a [DVec3],
     /// Whether the faces around a vertex agree with its normal.
     pub(super) agreed: &'a [bool],
     pub(super) fine: &'a Mesh,
 }
 
-/// The worst among the triangles that are there already: what replaces them need not be better.
+/// The worst among the existing triangles: those that replace them need not be better.
 #[derive(Clone, Copy)]
 pub(super) struct Worst {
     pub(super) shape: f64,

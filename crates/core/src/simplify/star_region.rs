@@ -1,4 +1,5 @@
-//! A piece of the surface, by its samples, and triangles that would stand for it: how far they are from each other.
+//! A piece of the surface, by its samples, and triangles that would replace it: their distance from
+//! each other.
 //!
 //! The error is looked for in both directions: samples of the surface against the nearest triangle, and points of the
 //! triangles against the surface ([`super::backward_error`]).
@@ -114,7 +115,7 @@ impl StarRegion {
         (error < bound).then_some(error)
     }
 
-    /// Has [`Self::backward_error`] look at an edge of the triangles too, at its quarters.
+    /// Lets [`Self::backward_error`] sample an edge of the triangles too, at its quarters.
     #[inline]
     pub(super) fn probe_edge(&mut self, a: DVec3, b: DVec3) {
         for t in [0.25, 0.5, 0.75] {
@@ -150,8 +151,8 @@ impl StarRegion {
         }));
     }
 
-    /// For each sample the place of the nearest triangle and a distance that the sample is certainly within of it, but for
-    /// rounding, as [`Self::assign`] found them.
+    /// For each sample the place of the nearest triangle and an upper bound, within rounding, of
+    /// its distance, as found by [`Self::assign`].
     #[inline]
     pub(super) fn assigned(&self) -> &[(usize, f64)] {
         &self.assigned

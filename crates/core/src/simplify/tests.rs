@@ -26,7 +26,7 @@ fn within(tolerance: f64) -> SimplifyOptions {
     SimplifyOptions::default().tolerance(Some(tolerance))
 }
 
-/// What holds for any mesh and any goal.
+/// The invariants for any mesh and any goal.
 fn check_invariants(fine: &Mesh, coarse: &Simplified) {
     let mesh = &coarse.mesh;
     mesh.validate().unwrap();
@@ -73,7 +73,8 @@ fn square(n: usize, height: impl Fn(f64, f64) -> f64) -> Mesh {
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
-/// Each triangle cut in four, the new vertices in the middles of the edges: the same surface.
+/// Each triangle cut in four, the new vertices in the middles of the edges, which keeps the
+/// surface.
 fn split_flat(mesh: &Mesh, times: usize) -> Mesh {
     let mut mesh = mesh.clone();
     for _ in 0..times {
@@ -126,7 +127,7 @@ fn a_flat_square_keeps_its_corners_alone() {
         (corners.to_vec(), 2)
     );
     assert!(coarse.estimate < 1e-15);
-    // Untold that they are corners, it keeps them all the same: to lose one would leave the surface.
+    // Without tags the corners are kept as well: to lose one would leave the surface.
     assert_eq!(run(&fine, &within(1e-9)).vertices, corners);
 }
 
@@ -539,6 +540,6 @@ fn the_observer_is_called_often() {
     let options = within(0.001 * fine.diagonal());
     let coarse = simplify_observed(&fine, &Features::default(), &options, &mut observer).unwrap();
     assert!(least < 2 * coarse.mesh.face_count(), "{least}");
-    // Ten times what is promised: other programs may be running.
+    // Ten times the documented time: other programs may be running.
     assert!(longest.as_millis() < 1000, "{longest:?}");
 }

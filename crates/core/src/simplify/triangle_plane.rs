@@ -51,14 +51,14 @@ impl Plane {
         above.then(|| from.dot(self.normal).abs())
     }
 
-    /// The distance of `point` from a point of the triangle, the nearest but for rounding.
+    /// The distance of `point` from a point of the triangle, the nearest within rounding.
     pub(super) fn distance(&self, point: DVec3) -> f64 {
         let [a, b, c] = self.corners;
         let from = point - a;
         let (v, w) = (from.dot(self.along[0]), from.dot(self.along[1]));
         if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
-            let foot = a * (1.0 - v - w) + b * v + c * w;
-            return point.distance(foot);
+            let projection = a * (1.0 - v - w) + b * v + c * w;
+            return point.distance(projection);
         }
         self.squared_to_sides(point).sqrt()
     }
@@ -108,7 +108,7 @@ pub(super) fn nearest(planes: &[Plane], point: DVec3) -> (f64, usize) {
     }
 }
 
-/// The same for a point that is above none of them.
+/// The nearest side for a point that is above none of them.
 #[cold]
 fn nearest_side(planes: &[Plane], point: DVec3) -> (f64, usize) {
     let mut best = (f64::INFINITY, 0);

@@ -1,5 +1,5 @@
-//! The faces around a vertex, gathered into one place, and what they would become if the vertex were collapsed into one
-//! of its neighbours.
+//! The faces around a vertex, gathered into one place, and their state if the vertex were collapsed
+//! into one of its neighbours.
 
 use super::editable_mesh::{EditableMesh, next, previous};
 use super::fine_samples::FineSamples;
@@ -25,7 +25,7 @@ pub(super) struct VertexStar {
     /// For each pair of neighbours how far the surface bulges over their chord.
     sagittas: Vec<f64>,
     ways: Vec<Way>,
-    /// Of the faces that are there, taken when first asked for.
+    /// The worst of the existing faces, computed on first use.
     worst: Option<Worst>,
     normals: Vec<DVec3>,
     /// The fine vertices of the chain between the centre's two neighbours on it, the centre's own included.
@@ -109,7 +109,8 @@ impl VertexStar {
             .unwrap_or_else(|| previous(self.spokes[slot - 1]))
     }
 
-    /// The faces of the star as places in the ring: those of their two corners beside the centre.
+    /// The faces of the star as pairs of positions in the ring: their two corners other than the
+    /// centre.
     fn sectors(&self) -> impl Iterator<Item = [usize; 2]> + use<> {
         let neighbours = self.ring.len();
         (0..self.spokes.len()).map(move |i| [i, if i + 1 == neighbours { 0 } else { i + 1 }])
@@ -191,8 +192,8 @@ impl VertexStar {
             .fold(0.0, f64::max)
     }
 
-    /// Looks at the triangles of the star once the centre has gone to the neighbour at `slot`: whether all of them stand
-    /// well.
+    /// Tests the triangles of the star after a collapse of the centre to the neighbour at `slot`:
+    /// whether all of them are well oriented.
     pub(super) fn collapse_into(&mut self, slot: usize, reference: &Reference<'_>) -> bool {
         let worst = self.look_at_faces(reference);
         let (apex, at) = (self.ring[slot], self.ring_positions[slot]);
@@ -231,14 +232,14 @@ impl VertexStar {
         let error = self
             .region
             .forward_error(self.chain_error().max(way.bulge), bound)?;
-        // With few samples the normals at the corners tell as much.
+        // With few samples the normals at the corners are as good.
         if self.region.sample_count() <= 2 * self.spokes.len() {
             return Some(error);
         }
         let (slot, n) = (way.slot, self.ring.len());
         let at = self.ring_positions[slot];
         for (i, &to) in self.ring_positions.iter().enumerate() {
-            // The edges to the neighbours beside it are there already.
+            // The edges to the adjacent neighbours exist already.
             let apart = (i + n - slot) % n;
             if (2..n - 1).contains(&apart) {
                 self.region.probe_edge(at, to);

@@ -1,4 +1,5 @@
-//! Adaptive √3-subdivision: the worst triangle first, until all are good enough or there are as many as there may be.
+//! Adaptive √3-subdivision: the worst triangle first, until all are good enough or the cap is
+//! reached.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -14,7 +15,7 @@ use crate::refine::{ExactStop, Origin, RefineError, Traced};
 /// Divisions between two calls of the observer: some milliseconds.
 const POLLED: usize = 64;
 
-/// What adaptive √3-subdivision gave.
+/// The result of adaptive √3-subdivision.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Sqrt3 {
@@ -22,17 +23,17 @@ pub struct Sqrt3 {
     pub mesh: Mesh,
     /// Unit limit normals, one for each side of sharp edges.
     pub normals: SidedNormals,
-    /// Where each vertex came from, with coordinates that are multiples of a power of 1/3; empty unless
-    /// [`Sqrt3Options::origins`] asks for it.
+    /// The origin of each vertex, with coordinates that are multiples of a power of 1/3; empty
+    /// unless [`Sqrt3Options::origins`] is set.
     pub origins: Vec<Origin>,
     /// The control face of each triangle; one of the two where it lies across an edge.
     pub parents: Vec<u32>,
     /// Steps of the most divided part.
     pub levels: usize,
-    /// The greatest distance of samples of the limit surface from the triangles that stand for them: **estimated**, not proven. `None`
-    /// if angles alone were asked for.
+    /// The greatest distance of samples of the limit surface from the triangles that approximate
+    /// it: **estimated**, not proven. `None` if only angles were goals.
     pub estimated_distance: Option<f64>,
-    /// How many times over the worst triangle fails the goals on quality; 0 without any.
+    /// The greatest ratio of a triangle's error to the goals on quality; 0 without any.
     pub worst: f64,
     /// Why the refinement ended.
     pub stop: ExactStop,
@@ -52,23 +53,24 @@ impl Traced for Sqrt3 {
     }
 }
 
-/// Refines `control` by adaptive √3-subdivision until the goals are met: each triangle within the cone or the tolerance, or as many
-/// triangles as asked for, whichever comes first.
+/// Refines `control` by adaptive √3-subdivision until the goals are met: each triangle within the
+/// cone or the tolerance, or the requested number of triangles, whichever comes first.
 ///
 /// Every division leaves a mesh without cracks and without closing triangles: a triangle is divided by its centre, and the edge between two
 /// divided ones is flipped. Where goals are met the result is the least such mesh, whatever the order of the divisions.
 ///
 /// # Errors
-/// A goal that is no positive number, a mesh whose diagonal is not within 1e-70 to 1e70, a tag that fades ([`RefineError::FadingTag`]), a vertex without a limit, or more
-/// elements than can be numbered.
+/// A goal that is no positive number, a mesh whose diagonal is not within 1e-70 to 1e70, a
+/// semi-sharp tag ([`RefineError::FadingTag`]), a vertex without a limit, or more elements than can
+/// be numbered.
 pub fn adaptive(control: &Mesh, options: &Sqrt3Options) -> Result<Sqrt3, RefineError> {
     adaptive_observed(control, options, &mut unobserved)
 }
 
-/// [`adaptive`], telling an observer how it goes on.
+/// [`adaptive`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`adaptive`], or the observer asked to stop.
 pub fn adaptive_observed(
     control: &Mesh,
     options: &Sqrt3Options,
@@ -143,7 +145,7 @@ struct Run<'m> {
     goals: Goals,
     max_levels: usize,
     waiting: BinaryHeap<Waiting>,
-    /// Every triangle that there was, and what was found of it.
+    /// Every triangle so far, and its measured errors.
     seen: Vec<(Triangle, Found)>,
 }
 
@@ -214,7 +216,7 @@ impl Run<'_> {
     }
 
     fn look(&mut self, triangle: Triangle) {
-        // What came about on the way may be divided already.
+        // A triangle that arose on the way may be divided already.
         if !self.forest.is_there(triangle) {
             return;
         }

@@ -1,4 +1,5 @@
-//! How badly a triangle of the forest stands for the √3 limit surface: the paper's cone, and a distance that is estimated.
+//! The error of a triangle of the forest against the √3 limit surface: the paper's cone, and a
+//! distance that is estimated.
 //!
 //! The surface has no pieces that are polynomials, so distances are not proven: they are those of the limits of some vertices of
 //! later levels on and in a triangle, up to seven, from its plane part.
@@ -9,21 +10,22 @@ use crate::criterion::cone_ratio;
 use crate::geometry::closest_to_origin;
 use crate::vector::{DVec3, unit_normal};
 
-/// What is asked of triangles.
+/// The goals of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Goals {
     angle: Option<f64>,
     tolerance: Option<f64>,
-    /// Whether distances decide which triangles are divided first, though none is asked for.
+    /// Whether distances decide which triangles are divided first, though there is no goal for
+    /// them.
     by_distance: bool,
 }
 
-/// What was found of a triangle.
+/// The measured errors of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// How many times over it fails: at most 1 is good enough. Without a goal on quality, its distance.
     pub(super) ratio: f64,
-    /// Zero where nothing was asked of distances.
+    /// Zero without a goal for distances.
     pub(super) distance: f64,
 }
 
@@ -51,7 +53,7 @@ impl Goals {
         self.by_distance || self.tolerance.is_some()
     }
 
-    /// Looks at a triangle.
+    /// Measures a triangle.
     pub(super) fn look(&self, forest: &mut Forest<'_>, triangle: Triangle) -> Found {
         let vertices = forest.corners(triangle);
         let corners = vertices.map(|v| forest.limit(v));

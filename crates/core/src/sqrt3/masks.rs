@@ -1,8 +1,9 @@
 //! The masks of √3-subdivision (Kobbelt 2000): numbers alone, no meshes.
 //!
-//! A step gives each face its centre, smooths the old vertices and flips the old edges. Along a boundary, and along an edge
-//! that is sharp for ever, nothing happens in the first, third, … step, and in the second, fourth, … the curve is cut in
-//! three by the cubic B-spline's rule `(1 + z + z²)⁴ / 27`, so that two steps split a triangle in nine.
+//! A step gives each face its centre, smooths the old vertices and flips the old edges. Along a
+//! boundary, and along an infinitely sharp edge, nothing happens in the first, third, … step, and
+//! in the second, fourth, … the curve is cut in three by the cubic B-spline's rule
+//! `(1 + z + z²)⁴ / 27`, so that two steps split a triangle in nine.
 //!
 //! These two steps have the ordinary topology, and ring matrices that are their own mirror images. So the limits of
 //! [`crate::limit`] follow from them as from any other scheme's masks ([`DoubleStep`]), for a mesh of an even level.
@@ -19,8 +20,8 @@ pub(super) fn alpha(valence: u32) -> f64 {
     (4.0 - 2.0 * (TAU / f64::from(valence)).cos()) / 9.0
 }
 
-/// What an interior vertex's distance from its limit shrinks by in one step: 2/3 − α, the square of the ring's first
-/// eigenvalue.
+/// The factor of an interior vertex's distance from its limit in one step: 2/3 − α, the square of
+/// the ring's first eigenvalue.
 pub(super) fn shrinking(valence: u32) -> f64 {
     2.0 / 3.0 - alpha(valence)
 }
@@ -44,7 +45,7 @@ pub(super) fn on_curve(vertex: DVec3, [before, after]: [DVec3; 2]) -> DVec3 {
 
 /// The new point of the curve after two steps that is nearer to `near` on the edge to `far`. `beyond` is the other neighbour of
 /// `near`; where the curve ends there, `2 near − far`.
-pub(super) fn beside(beyond: DVec3, near: DVec3, far: DVec3) -> DVec3 {
+pub(super) fn crease_point(beyond: DVec3, near: DVec3, far: DVec3) -> DVec3 {
     (beyond + 16.0 * near + 10.0 * far) / 27.0
 }
 

@@ -1,4 +1,4 @@
-//! What adaptive √3-subdivision is asked for.
+//! The options of adaptive √3-subdivision.
 
 use crate::mesh::MeshError;
 use crate::options::options;
@@ -15,13 +15,13 @@ options! {
         pub angle: Option<f64> = None,
         /// The greatest distance of the limit surface from a triangle, **estimated** from vertices of later levels.
         pub tolerance: Option<f64> = None,
-        /// As many triangles as wanted: the worst are divided first.
+        /// The wanted number of triangles: the worst are divided first.
         pub triangles: Option<usize> = None,
         /// Give no more triangles.
         pub max_triangles: Option<usize> = None,
         /// Steps by which a control face is divided at most; two of them divide a triangle in nine.
         pub max_levels: usize = 20,
-        /// Tells where vertices came from ([`Sqrt3::origins`](super::Sqrt3::origins)).
+        /// Whether to report the origins of vertices ([`Sqrt3::origins`](super::Sqrt3::origins)).
         pub origins: bool = false,
     }
 }

@@ -9,15 +9,15 @@ use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Mesh;
 use crate::refine::Origin;
 
-/// How a vertex of a step came about.
+/// The origin of a vertex of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Made {
-    /// As the centre of a face.
+    /// The centre of a face.
     Centre(u32),
-    /// On a sharp edge of a face, beside the origin of its half-edge.
-    BesideOrigin(HalfEdgeId),
-    /// The same beside its target.
-    BesideTarget(HalfEdgeId),
+    /// On a sharp edge of a face, next to the origin of its half-edge.
+    NearOrigin(HalfEdgeId),
+    /// On a sharp edge of a face, next to the target of its half-edge.
+    NearTarget(HalfEdgeId),
 }
 
 /// Origins of vertices and control faces of triangles, from step to step.
@@ -55,7 +55,7 @@ impl<'m> Origins<'m> {
         for &made in made {
             let (face, ends) = match made {
                 Made::Centre(face) if straddles(face as usize) => {
-                    // (A, apex, apex) across what was the edge from A to B.
+                    // (A, apex, apex) across the former edge from A to B.
                     let between = HalfEdgeId(3 * face + 1);
                     let b = topology.twin(between).map_or(between, HalfEdgeId::previous);
                     (
@@ -74,8 +74,8 @@ impl<'m> Origins<'m> {
                     });
                     continue;
                 }
-                Made::BesideOrigin(h) => (h.face().0, topology.ends(h).map(|v| v.0)),
-                Made::BesideTarget(h) => (h.face().0, [topology.target(h).0, topology.origin(h).0]),
+                Made::NearOrigin(h) => (h.face().0, topology.ends(h).map(|v| v.0)),
+                Made::NearTarget(h) => (h.face().0, [topology.target(h).0, topology.origin(h).0]),
             };
             let origin = third(ends.map(|v| self.in_parent(v, face)));
             self.vertices.push(Origin {
@@ -84,7 +84,8 @@ impl<'m> Origins<'m> {
             });
         }
         let parent = |h: HalfEdgeId| {
-            // (A, apex, apex): the second is in the face across the edge, and so is what comes of the edges at it.
+            // (A, apex, apex): the second is in the face across the edge, and so are the children
+            // of its edges.
             let across = (h.corner() < 2 && straddles(h.face().index()))
                 .then(|| topology.twin(HalfEdgeId::of(h.face(), 1)))
                 .flatten();
@@ -93,7 +94,7 @@ impl<'m> Origins<'m> {
         self.parents = topology.half_edges().map(parent).collect();
     }
 
-    /// What is known in the end.
+    /// The origins at the end.
     pub(super) fn finish(self) -> (Vec<Origin>, Vec<u32>) {
         (self.vertices, self.parents)
     }

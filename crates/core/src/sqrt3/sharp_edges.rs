@@ -1,5 +1,5 @@
-//! What is sharp on a mesh, as √3-subdivision sees it: edges that are so for ever, boundaries among them, and the rules of
-//! the vertices on them.
+//! The sharp edges of a mesh for √3-subdivision: infinitely sharp ones, boundaries among them, and
+//! the rules of the vertices on them.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness, Topology};
@@ -15,11 +15,11 @@ pub(super) struct SharpEdges<'m> {
 
 impl<'m> SharpEdges<'m> {
     /// # Errors
-    /// A tag fades: that has no meaning here.
+    /// A semi-sharp tag, which has no meaning here.
     pub(super) fn of(mesh: &'m Mesh) -> Result<Self, RefineError> {
         let tags = mesh.tags();
-        let fades = |sharpness: f64| sharpness > 0.0 && sharpness < INFINITELY_SHARP;
-        if let Some(tag) = tags.creases.iter().find(|tag| fades(tag.sharpness)) {
+        let is_semi_sharp = |sharpness: f64| sharpness > 0.0 && sharpness < INFINITELY_SHARP;
+        if let Some(tag) = tags.creases.iter().find(|tag| is_semi_sharp(tag.sharpness)) {
             let [a, b] = tag.vertices;
             let (tag, sharpness) = (
                 format!("the edge from vertex {a} to vertex {b}"),
@@ -27,7 +27,7 @@ impl<'m> SharpEdges<'m> {
             );
             return Err(RefineError::FadingTag { tag, sharpness });
         }
-        if let Some(tag) = tags.corners.iter().find(|tag| fades(tag.sharpness)) {
+        if let Some(tag) = tags.corners.iter().find(|tag| is_semi_sharp(tag.sharpness)) {
             let (tag, sharpness) = (format!("vertex {}", tag.vertex), tag.sharpness);
             return Err(RefineError::FadingTag { tag, sharpness });
         }

@@ -5,7 +5,7 @@
 //! one it is cut by `l`, near A, and `r`, near B, there is no centre, and it gives `(l, r, c)` with the face's third corner c.
 //! Seen from its other edges, such a face's apex is `r` across from B → c and `l` across from c → A. So numbers and twins are arithmetic.
 
-use super::masks::{beside, centre, on_curve, smoothed};
+use super::masks::{centre, crease_point, on_curve, smoothed};
 use super::origins::{Made, Origins};
 use super::sharp_edges::SharpEdges;
 use crate::geometry::NONE;
@@ -45,7 +45,7 @@ struct Numbering<'m> {
 
 impl Level {
     /// # Errors
-    /// A tag fades.
+    /// A semi-sharp tag.
     pub(super) fn control(mesh: &Mesh) -> Result<Self, RefineError> {
         let sharp = SharpEdges::of(mesh)?;
         check_valences(mesh)?;
@@ -140,8 +140,8 @@ impl Level {
                     .mesh
                     .topology()
                     .ends(HalfEdgeId(3 * face as u32 + u32::from(cut)));
-                positions[apexes[0] as usize] = self.beside(new.sharp, a, b).to_array();
-                positions[apexes[1] as usize] = self.beside(new.sharp, b, a).to_array();
+                positions[apexes[0] as usize] = self.crease_point(new.sharp, a, b).to_array();
+                positions[apexes[1] as usize] = self.crease_point(new.sharp, b, a).to_array();
             }
         }
         Ok(positions)
@@ -176,8 +176,8 @@ impl Level {
         dart.map_or_else(|_| self.at(vertex), |place| self.darts[place].1)
     }
 
-    /// The new point beside `near` on the sharp edge to `far`.
-    fn beside(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
+    /// The new point next to `near` on the sharp edge to `far`.
+    fn crease_point(&self, sharp: &SharpEdges<'_>, near: VertexId, far: VertexId) -> DVec3 {
         let (here, there) = (self.on_even(near), self.on_even(far));
         let other = || {
             sharp
@@ -188,7 +188,7 @@ impl Level {
         let beyond = (sharp.rule(near) == VertexRule::Crease)
             .then(other)
             .flatten();
-        beside(beyond.unwrap_or(2.0 * here - there), here, there)
+        crease_point(beyond.unwrap_or(2.0 * here - there), here, there)
     }
 }
 
@@ -229,7 +229,7 @@ impl<'m> Numbering<'m> {
                 next += 1;
                 continue;
             }
-            // The other side of a crease has the same points, the other way round.
+            // The other side of a crease has these points in reverse order.
             let across = topology.twin(HalfEdgeId(3 * face as u32 + u32::from(cut[face])));
             match across
                 .map(|twin| apexes[twin.face().index()])
@@ -260,7 +260,7 @@ impl<'m> Numbering<'m> {
         })
     }
 
-    /// How each new vertex comes about.
+    /// The origin of each new vertex.
     fn made(&self) -> Vec<Made> {
         let mut next = self.topology.vertex_count() as u32;
         let mut made = Vec::with_capacity(self.vertex_count - next as usize);
@@ -270,7 +270,7 @@ impl<'m> Numbering<'m> {
                 let face = face as u32;
                 match self.cut_edge(HalfEdgeId(3 * face)) {
                     None => made.push(Made::Centre(face)),
-                    Some(h) => made.extend([Made::BesideOrigin(h), Made::BesideTarget(h)]),
+                    Some(h) => made.extend([Made::NearOrigin(h), Made::NearTarget(h)]),
                 }
                 next = apexes[1] + 1;
             }
@@ -304,7 +304,7 @@ impl<'m> Numbering<'m> {
         ]
     }
 
-    /// What is across part `part` of a sharp edge that is cut.
+    /// The face across part `part` of a sharp edge that is cut.
     fn across_part(&self, s: HalfEdgeId, part: usize) -> Option<u32> {
         self.parts(self.topology.twin(s)?)[2 - part]
     }
@@ -325,7 +325,7 @@ impl<'m> Numbering<'m> {
     /// The twins of the three half-edges of that face.
     fn twins(&self, h: HalfEdgeId) -> [Option<u32>; 3] {
         let before = h.previous();
-        // Child of the face across the edge before, or what that edge gives itself where it is sharp.
+        // Child of the face across the edge before, or that edge's own child where it is sharp.
         let last = || self.across(before).map_or(3 * before.0 + 1, |w| 3 * w.0);
         if let Some(twin) = self.across(h) {
             let first = match self.cut_edge(twin) {

@@ -1,4 +1,4 @@
-//! Uniform √3-subdivision: step after step, and the limits of what they give.
+//! Uniform √3-subdivision: step after step, and the limits of the result.
 
 use std::time::Instant;
 
@@ -14,19 +14,20 @@ use crate::refine::{RefineError, Refinement, StepReport, Stop, UniformOptions};
 
 /// Refines `mesh` by steps of √3-subdivision, each of which gives three times as many triangles.
 ///
-/// [`UniformOptions::levels`] counts single steps. Old vertices keep their numbers; the three triangles that a triangle's
-/// half-edges give stand together. Edges that are tagged to be sharp for ever are treated as boundaries of both sides.
+/// [`UniformOptions::levels`] counts single steps. Old vertices keep their numbers; the three
+/// triangles of a triangle's half-edges are adjacent in the order. Infinitely sharp edges are
+/// treated as boundaries of both sides.
 ///
 /// # Errors
-/// A tag that fades ([`RefineError::FadingTag`]), and as for [`crate::refine::uniform`].
+/// A semi-sharp tag ([`RefineError::FadingTag`]), or an error of [`crate::refine::uniform`].
 pub fn uniform(mesh: &Mesh, options: &UniformOptions) -> Result<Refinement, RefineError> {
     uniform_observed(mesh, options, &mut unobserved)
 }
 
-/// [`uniform`], telling an observer how it goes on.
+/// [`uniform`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`uniform`], or the observer asked to stop.
 pub fn uniform_observed(
     mesh: &Mesh,
     options: &UniformOptions,
@@ -82,7 +83,7 @@ pub fn uniform_observed(
 
 type Limits = (Option<Vec<[f64; 3]>>, Option<SidedNormals>);
 
-/// Limit positions and normals of the vertices of a level, of these what is asked for.
+/// Limit positions and normals of the vertices of a level, as far as requested.
 fn limits(
     level: &Level,
     (positions, normals): (bool, bool),
@@ -90,7 +91,8 @@ fn limits(
 ) -> Result<Limits, RefineError> {
     watch.stage(Stage::Limits, Some(level.mesh.vertex_count()))?;
     let table = LimitTable::new(&DoubleStep);
-    // The rings of two steps are those of an even level; where nothing is sharp, all levels have such rings.
+    // The rings of two steps are those of an even level; without sharp edges, all levels have such
+    // rings.
     let has_curves =
         level.mesh.topology().boundary_edge_count() > 0 || !level.mesh.tags().creases.is_empty();
     let even = if level.is_odd() && has_curves {
@@ -147,7 +149,7 @@ fn odd_normals(
 /// Limit position of every vertex of a control mesh under √3-subdivision.
 ///
 /// # Errors
-/// A tag that fades, or a vertex without a limit.
+/// A semi-sharp tag, or a vertex without a limit.
 pub fn limit_positions(mesh: &Mesh) -> Result<Vec<[f64; 3]>, RefineError> {
     SharpEdges::of(mesh)?;
     Ok(LimitTable::new(&DoubleStep).positions(mesh)?)
@@ -156,16 +158,17 @@ pub fn limit_positions(mesh: &Mesh) -> Result<Vec<[f64; 3]>, RefineError> {
 /// Unit limit normals of a control mesh under √3-subdivision, one for each side of its sharp edges.
 ///
 /// # Errors
-/// A tag that fades, or a vertex without a limit.
+/// A semi-sharp tag, or a vertex without a limit.
 pub fn limit_normals(mesh: &Mesh) -> Result<SidedNormals, RefineError> {
     SharpEdges::of(mesh)?;
     Ok(LimitTable::new(&DoubleStep).sided_normals(mesh)?)
 }
 
-/// What the limit tangents of a vertex span: the tangent plane of the surface, or less where it has none.
+/// The span of the limit tangents of a vertex: the tangent plane of the surface, or less where it
+/// has none.
 ///
 /// # Errors
-/// A tag that fades, or a ring without a limit.
+/// A semi-sharp tag, or a ring without a limit.
 pub fn tangent_plane(mesh: &Mesh, vertex: VertexId) -> Result<Vec<TangentPlane>, RefineError> {
     SharpEdges::of(mesh)?;
     let ring = Sharpness::of(mesh).ring(vertex);

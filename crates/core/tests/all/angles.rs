@@ -140,7 +140,7 @@ fn an_angle_alone_ends_where_no_cone_closes() {
     }
 }
 
-/// With a tolerance beside it, what ends the cone does not end the tolerance.
+/// With a tolerance, the end of the cone's goal does not end the tolerance's.
 #[test]
 fn a_tolerance_is_kept_where_cones_stay_open() {
     let control = model("head");
@@ -156,7 +156,8 @@ fn a_tolerance_is_kept_where_cones_stay_open() {
     );
 }
 
-/// By hand in every frame, whichever comes first: triangles are within the angle, or told as open, as many as there are in the worst frame.
+/// By hand in every frame, whichever comes first: triangles are within the angle, or reported as
+/// open, as many as in the worst frame.
 #[test]
 fn angles_hold_in_every_frame() {
     for (name, degrees, expected) in [

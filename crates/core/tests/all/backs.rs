@@ -1,5 +1,6 @@
-//! What certainly looks away is not divided for its own sake: counts against those where backs are seen, and control faces far from
-//! anything that shows, found by sampling the limit surface.
+//! Faces that certainly face away are not divided for their own error: counts against those where
+//! backs are seen, and control faces far from anything that shows, found by sampling the limit
+//! surface.
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
@@ -19,7 +20,7 @@ fn built_in(name: &str) -> Mesh {
     .0
 }
 
-/// Loop's refinement of the control mesh: the same surface, with four faces where there was one.
+/// Loop's refinement of the control mesh: its surface, with four faces for each one.
 fn refined(mesh: &Mesh) -> Mesh {
     let fine = crate::support::brute_force_loop(mesh.positions(), mesh.triangles());
     Mesh::from_triangles(fine.positions, fine.triangles).unwrap()
@@ -104,7 +105,7 @@ fn backs_save_triangles_and_never_cost_any() {
     }
 }
 
-/// What one of several cameras sees is refined for it.
+/// Parts that one of several cameras sees are refined for it.
 #[test]
 fn cameras_on_both_sides_see_all() {
     let mesh = crate::support::torus(8, 6);
@@ -124,7 +125,7 @@ fn cameras_on_both_sides_see_all() {
     assert!(4 * both > 5 * one, "{both} {one}");
 }
 
-/// What the mesh is said to be within, in space, holds for what is left coarse, too.
+/// The reported distance in space holds for invisible parts, too.
 #[test]
 fn distances_count_what_nobody_sees() {
     let mut random = Random::new(11);
@@ -204,8 +205,8 @@ fn rings(mesh: &Mesh, marked: &[bool]) -> Vec<usize> {
     rings
 }
 
-/// What is beside triangles that show is looked at as they are, and neighbouring leaves are at most one level apart. So faces farther than that
-/// from what shows are not divided, and not closed either.
+/// Neighbours of visible triangles are used as they are, and neighbouring leaves are at most one
+/// level apart. So faces farther than that from visible ones are neither divided nor closed.
 fn assert_untouched(name: &str, mesh: &Mesh, result: &Exact, viewpoint: &Viewpoint) -> usize {
     let mut counts = vec![0; mesh.face_count()];
     result

@@ -1,5 +1,6 @@
-//! What is called proven, against the true distance, which the certified measurement of meshes finds by other means: never
-//! below it; and where nothing was asked of distances not far above it either, or none is told.
+//! Proven bounds against the true distance, which the certified measurement of meshes finds by
+//! other means: never below it; and without a goal for distances not far above it either, or not
+//! reported.
 
 #![allow(clippy::unwrap_used)]
 
@@ -91,7 +92,7 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
                 "{name}, {goal}: {error:?}"
             );
             told += usize::from(error.upper.is_finite());
-            // A bound that is not worth much is not told.
+            // A loose bound is not reported.
             assert!(
                 error.upper <= 1.25 * most || error.upper == f64::INFINITY,
                 "{name}, {goal}: {error:?}, in truth {least} to {most}"
@@ -102,8 +103,9 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
     assert!(told >= 3, "{told}");
 }
 
-/// Whatever ended the refinement, the greatest distance that dense samples find to a mesh of uniform refinement, which knows nothing of
-/// the engine, is at most a quarter below what is proven, or a half where that is a tolerance, but for what that mesh and the samples miss.
+/// Whatever ended the refinement, the greatest distance that dense samples find to a mesh of
+/// uniform refinement, which knows nothing of the engine, is at most a quarter below what is
+/// proven, or a half where that is a tolerance, except for the errors of that mesh and the samples.
 #[test]
 fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
     let sharp = |name: &str, degrees: f64| {
@@ -175,8 +177,8 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
     }
 }
 
-/// Where levels end the division what is left undivided is bounded all the same: samples never find more than the upper bound, but
-/// for how far the mesh that stands for the limit surface is from it.
+/// Where levels end the division the undivided rest is bounded, too: samples never find more than
+/// the upper bound, except for the error of the mesh that approximates the limit surface.
 #[test]
 fn bounds_hold_where_levels_end_the_division() {
     for name in [
@@ -319,7 +321,7 @@ fn one_far_vertex_takes_no_finer_meshes() {
                 most <= 4 * count,
                 "{far}, {share}: {most} triangles for {count}"
             );
-            // What is proven holds all the same: dense samples of the true surface find no more.
+            // The proven bound holds: dense samples of the true surface find no more.
             let reference = limit_reference(&control, &Loop, 5).unwrap();
             let output = Bvh::new(found.mesh.as_triangles()).unwrap();
             let sampled = reference

@@ -40,8 +40,8 @@ const RULES: [(SeamRule, sdc::FVarLinearInterpolation); 5] = [
     ),
 ];
 
-/// A channel with seams: around some vertices the faces are parted in two or three fans that have values of their own, so that seams end
-/// in the vertices beside them or go on there.
+/// A channel with seams: around some vertices the faces are parted in two or three fans that have
+/// values of their own, so that seams end in adjacent vertices or go on there.
 fn with_seams(mesh: &Mesh, one_in: usize, seed: u64) -> Channel {
     let mut random = Random::new(seed);
     let mut number = || random.below(2000) as f64 * 1e-3 - 1.0;
@@ -305,7 +305,8 @@ fn linear_channels_are_exact() {
             });
             differ.map(|(h, _)| h).collect::<Vec<_>>()
         };
-        // A seam of the refined mesh lies along one of the control mesh: both its triangles are of the faces beside that.
+        // A seam of the refined mesh lies along one of the control mesh: both its triangles are of
+        // the faces adjacent to that.
         let before: HashSet<[u32; 2]> = seams(&mesh, &channel)
             .into_iter()
             .map(|h| [h.face().0, mesh.topology().twin(h).unwrap().face().0])
@@ -407,7 +408,8 @@ fn the_surface_between_vertices_is_near_a_certified_mesh() {
     }
 }
 
-/// Corners that a file tells apart and whose values are equal are joined; what repairs turn or cut keeps its values.
+/// Corners with distinct indices in a file and equal values are joined; faces that repairs turn or
+/// cut keep their values.
 #[test]
 fn channels_of_a_soup_reach_the_mesh() {
     // A square of two triangles whose second is turned over, with a texture that each corner names for itself.

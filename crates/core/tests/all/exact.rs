@@ -177,9 +177,9 @@ fn budgets_prove_what_tolerances_prove() {
     }
 }
 
-/// The same for meshes of many irregular faces and for numbers just above theirs, where few faces are divided and most conditions are
-/// looked at among neighbours: once a budget of 4,590 triangles came to 3,790, 1.6 times as far off as a tolerance with as many, and took
-/// hundreds of plans.
+/// Budgets of meshes of many irregular faces, with numbers just above theirs, where few faces are
+/// divided and most conditions depend on neighbours: once a budget of 4,590 triangles gave 3,790,
+/// 1.6 times as far off as a tolerance with as many, and took hundreds of plans.
 #[test]
 fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
     let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
@@ -490,8 +490,8 @@ fn balanced_budgets_conform() {
     }
 }
 
-/// Dividing a triangle moves its corners no nearer to where those beside it fail: else divisions go round a model one triangle a
-/// round.
+/// Dividing a triangle moves its corners no nearer to where its neighbours fail: else divisions go
+/// round a model one triangle a round.
 #[test]
 fn balancing_ends_after_a_few_rounds() {
     for (name, tolerance) in [
@@ -613,7 +613,7 @@ fn cut_sheets_stay_together() {
     assert!(edges.iter().all(|copies| copies.len() == 3));
 }
 
-/// Levels beyond what places can be told apart by, and tolerances that nothing meets.
+/// Levels beyond the resolution of places, and tolerances that cannot be met.
 #[test]
 fn depths_have_limits() {
     let control = model("tetrahedron");
@@ -632,7 +632,7 @@ fn depths_have_limits() {
     assert!(ExactOptions::default().max_triangles.is_some());
 }
 
-/// Budgets that no number of triangles comes to are not what ends the division.
+/// Budgets beyond any number of triangles do not end the division.
 #[test]
 fn budgets_beyond_all_numbers_end_at_other_caps() {
     let control = model("tetrahedron");

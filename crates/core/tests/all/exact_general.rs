@@ -1,4 +1,5 @@
-//! Exact refinement where pieces have no simple form: tags that fade, and schemes outside Loop's family.
+//! Exact refinement where pieces have no simple form: semi-sharp tags, and schemes outside Loop's
+//! family.
 
 #![allow(clippy::unwrap_used)]
 
@@ -22,7 +23,7 @@ fn model(name: &str) -> Mesh {
     .0
 }
 
-/// Tags on about a fifth of the edges and a tenth of the vertices, most of them fading.
+/// Tags on about a fifth of the edges and a tenth of the vertices, most of them semi-sharp.
 fn tagged(mesh: Mesh, seed: u64) -> Mesh {
     let mut random = Random::new(seed);
     let mut sharpness = |one_in| {
@@ -214,7 +215,8 @@ fn threads_change_nothing() {
     assert!(pool(1).install(run) == pool(3).install(run));
 }
 
-/// A triangle of 1e-29 whose sides fade over ten levels: a hundred times as long as it is wide.
+/// A triangle of 1e-29 whose sides are semi-sharp over ten levels: a hundred times as long as it is
+/// wide.
 const NEEDLE: &str = "
 v 9.881072525791189e-30 0.0 0.0
 v 1.4269167202302316e-31 -5.094112858583294e-31 0.0

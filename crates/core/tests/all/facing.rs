@@ -92,7 +92,7 @@ fn side(viewpoint: &Viewpoint, point: &SurfacePoint) -> f64 {
     }
 }
 
-/// What samples say; `None` where there are both sides.
+/// The facing by samples; `None` where there are both sides.
 fn by_samples(viewpoint: &Viewpoint, points: &[SurfacePoint]) -> Option<Facing> {
     let fronts = points
         .iter()
@@ -145,7 +145,7 @@ fn facing_is_never_wrong_and_seldom_undecided() {
             decided[0] > 20 && decided[1] > 20 && mixed > 5,
             "{name}: {decided:?} {mixed}"
         );
-        // Beside creases and boundaries irregular vertices stay undecided.
+        // At creases and boundaries irregular vertices stay undecided.
         let is_smooth = !["sheet", "creased"].contains(&name);
         assert!(
             !is_smooth || undecided <= mixed / 5,

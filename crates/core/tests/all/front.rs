@@ -1,4 +1,5 @@
-//! A front that refines and coarsens: the same bytes from wherever it comes, and the least forest, by brute force.
+//! A front that refines and coarsens: equal bytes from any previous demand, and the least forest,
+//! by brute force.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -13,7 +14,7 @@ use limitmesh::progress::Progress;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 
-/// Closed and open, regular and not, with sharp edges that stay and that fade.
+/// Closed and open, regular and not, with infinitely sharp and semi-sharp edges.
 fn models() -> Vec<(&'static str, Mesh)> {
     let creased = |mesh: Mesh| mesh.with_creases_above(0.9).unwrap();
     let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
@@ -78,7 +79,7 @@ fn camera(random: &mut Random, size: f64) -> Camera {
     }
 }
 
-/// What somebody has who copies only what is said to have changed.
+/// A client that copies only the reported changes.
 #[derive(Default)]
 struct Copy {
     positions: Vec<[f64; 3]>,
@@ -252,7 +253,8 @@ fn cameras_that_move_a_little() {
     }
 }
 
-/// What a camera sees does not depend on how far away its target is, nor on how long its upward direction.
+/// The visible region does not depend on the distance of a camera's target, nor on the length of
+/// its upward direction.
 #[test]
 fn lengths_of_a_cameras_directions_do_not_count() {
     let control = lumpy(9, 7);
@@ -478,7 +480,7 @@ fn demands_out_of_range_are_refused() {
         assert!(front.update(&demand).is_err(), "{demand:?}");
     }
     assert!(bytes(&front) == before);
-    // Without cameras nobody sees anything.
+    // Without cameras nothing is visible.
     front.update(&Demand::tolerance(0.01)).unwrap();
     front.update(&Demand::pixels(1.0, &[])).unwrap();
     assert!(bytes(&front) == before);

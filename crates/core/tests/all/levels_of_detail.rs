@@ -274,7 +274,7 @@ fn geomorphs_are_within_their_bound_at_every_moment() {
     }
 }
 
-/// What is claimed of the start is about what the coarser level itself is off.
+/// The documented distance at the start is about the error of the coarser level itself.
 #[test]
 fn a_geomorph_starts_about_as_far_off_as_the_coarser_level() {
     for (name, mesh) in all_samples() {
@@ -469,7 +469,7 @@ fn caps_end_the_levels() {
     assert_eq!(levels.len(), 2);
     assert_eq!(levels[1].exact.stop, ExactStop::TriangleCap);
     assert!(levels[1].exact.mesh.face_count() <= 200);
-    // What came of it is nested and certified all the same.
+    // The result is nested and certified as well.
     let mut random = Random::new(5);
     assert!(sampled(&mesh, &Loop, &levels[1], 0.25, &mut random) <= 1.0 + 1e-9);
 }

@@ -175,7 +175,7 @@ fn frame(mesh: &Mesh) -> [Vector; 3] {
     } else {
         (at(ring[0]), at(ring[1.max(ring.len() / 4)]))
     };
-    // The third of their size, so that heights shrink in it as they do beside them.
+    // The third of their size, so that heights shrink in it as they do next to them.
     let third = cross(first, second);
     [
         first,

@@ -325,7 +325,8 @@ fn volumes_and_areas() {
         .sqrt();
     let surface = LimitSurface::new(&mesh, &Loop).unwrap();
     near(surface.volume().unwrap() / size.powi(3), 1.45042605, 2e-8);
-    // Beside triangles between points of the surface, which are below it by a quarter with each level.
+    // Compared with triangles between points of the surface, which are below it by a quarter with
+    // each level.
     let area = |levels: u32| -> f64 {
         let n = 1u32 << levels;
         let at = |i: u32, j: u32| {
@@ -692,7 +693,7 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
                     along[j] * across[k] - along[k] * across[j]
                 });
                 assert!(dot(cross, at.normal) > 0.0, "{valence}");
-                // What is left of the next pattern falls by a constant factor a level.
+                // The rest of the next pattern falls by a constant factor a level.
                 let off = |levels: i32| 1.0 - dot(along, towards(0.5f64.powi(levels), 1));
                 assert!(
                     off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9,

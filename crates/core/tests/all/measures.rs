@@ -1,4 +1,5 @@
-//! The criteria of Zorin, Schröder and Sweldens and of Müller and Jaeschke: the same forest as a tower of uniform levels gives by brute force.
+//! The criteria of Zorin, Schröder and Sweldens and of Müller and Jaeschke: their forest is that of
+//! a tower of uniform levels, by brute force.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -36,8 +37,8 @@ fn models() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-/// A closed mesh with a crease of two edges that ends in darts. (Corners of four faces and more have no normal, only one that stands for
-/// it, which depends on the level.)
+/// A closed mesh with a crease of two edges that ends in darts. (Corners of four faces and more
+/// have no normal, only a substitute, which depends on the level.)
 fn creased() -> Mesh {
     let mesh = lumpy(6, 5);
     let h = HalfEdgeId(0);
@@ -91,7 +92,7 @@ fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
     length(cross(a, b)).atan2(dot(a, b))
 }
 
-/// What a measure is for a face of a level, by its definition.
+/// The value of a measure for a face of a level, by its definition.
 fn value(tower: &[Level], level: usize, face: usize, measure: Measure) -> f64 {
     let own = &tower[level];
     let triangle = own.mesh.triangles()[face];

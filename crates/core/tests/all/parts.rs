@@ -1,5 +1,5 @@
-//! What looks like a part, on shapes that are what they are by construction; and surfaces of parts that pass through their vertices
-//! without folding, whose triangles are looked at by themselves.
+//! Shapes that are parts by construction, or are not; and surfaces of parts that pass through their
+//! vertices without folding, whose triangles are tested alone.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 

@@ -22,7 +22,7 @@ fn unit(a: Point) -> Point {
     a.map(|x| x / dot(a, a).sqrt())
 }
 
-/// What a camera's description says, by hand.
+/// The picture of a camera's description, by hand.
 struct Picture {
     eye: Point,
     axes: [Point; 3],
@@ -336,7 +336,8 @@ fn what_looks_away_does_not_show() {
     }
 }
 
-/// Frames share their triangles: what is told is the most of all of them, also where the first, far smaller, is off by far less.
+/// Frames share their triangles: the reported value is the greatest of all of them, also where the
+/// first, far smaller, is off by far less.
 #[test]
 fn no_frame_shows_more_than_is_told() {
     let mut random = Random::new(60);
@@ -378,7 +379,7 @@ fn no_frame_shows_more_than_is_told() {
     }
 }
 
-/// The same for many more views: by hand, as it takes minutes.
+/// Many more views: by hand, as it takes minutes.
 #[test]
 #[ignore = "takes minutes"]
 fn no_view_of_many_shows_more_than_the_limit() {

@@ -1,5 +1,5 @@
-//! Every long function of the library tells an observer how it goes on, gives what it gives unobserved, and ends when the
-//! observer says so.
+//! Every long function of the library reports progress to an observer, gives the result that it
+//! gives unobserved, and ends when the observer breaks.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -20,7 +20,7 @@ use limitmesh::refine::{
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
 
-/// Runs a function to its end and looks at what it tells, then cancels it at the first, third, … call.
+/// Runs a function to its end and checks its reports, then cancels it at the first, third, … call.
 fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
     name: &str,
     unobserved: T,
@@ -174,7 +174,8 @@ fn watertightness_is_observed() {
 /// A stage, its rounds, and triangles.
 type Event = (Stage, usize, usize);
 
-/// What is told of a run but for how often, which depends on how threads share the work: stages, rounds, triangles.
+/// The reports of a run without their frequency, which depends on how threads share the work:
+/// stages, rounds, triangles.
 fn event(told: &Progress) -> Event {
     (
         told.stage,
@@ -187,7 +188,7 @@ fn event(told: &Progress) -> Event {
     )
 }
 
-/// A run, and how often each event was told, in order.
+/// A run, and how often each event was reported, in order.
 fn calls_by_event<T: std::fmt::Debug>(
     run: &mut impl FnMut(&mut Observer<'_>) -> Result<T, RefineError>,
 ) -> (T, Vec<(Event, usize)>) {
@@ -345,7 +346,8 @@ fn single_faces_that_take_long_are_observed() {
         });
 }
 
-/// So are flat faces with very many vertices inside, which are triangulated as one, and ends wherever in that it is told to.
+/// Flat faces with very many vertices inside are triangulated as one, which can be cancelled at any
+/// time.
 #[test]
 fn large_flat_regions_are_observed() {
     rayon::ThreadPoolBuilder::new()

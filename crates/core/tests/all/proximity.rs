@@ -33,7 +33,7 @@ fn spindle(valence: u32) -> Mesh {
     Mesh::from_triangles(positions, triangles).unwrap()
 }
 
-/// With a crease, one that fades, and a corner.
+/// With a crease, a semi-sharp one, and a corner.
 fn tagged(mesh: &Mesh) -> Mesh {
     let [a, b, c] = mesh.triangles()[0];
     let [d, e, _] = mesh.triangles()[mesh.face_count() - 1];
@@ -185,7 +185,8 @@ fn the_octahedron_is_as_far_as_it_is() {
     );
 }
 
-/// A surface in a plane: the foot of the perpendicular, or the rim, which is straight where the boundary is.
+/// A surface in a plane: the perpendicular projection, or the rim, which is straight where the
+/// boundary is.
 #[test]
 fn a_plane_is_as_far_as_it_is_high() {
     let mut positions = Vec::new();

@@ -134,7 +134,7 @@ fn stepwise_with_every_face_divisible_is_uniform() {
     }
 }
 
-/// The seam rules, told apart by which old vertices of a half-divided sheet moved.
+/// The seam rules, distinguished by the old vertices of a half-divided sheet that moved.
 #[test]
 fn seam_rules_move_the_vertices_they_name() {
     struct First;
@@ -219,7 +219,7 @@ fn the_report_counts_figure_5() {
 
 #[test]
 fn the_quadrilateral_of_two_split_edges_gets_its_shorter_diagonal() {
-    // One triangle beside two divisible ones.
+    // One triangle next to two divisible ones.
     let positions = vec![
         [0.0, 0.0, 0.0],
         [4.0, 0.0, 0.0],

@@ -355,7 +355,8 @@ fn frames(mesh: &Mesh) -> Vec<Vec<Point>> {
     ]
 }
 
-/// What is proven of every frame holds against certified distances to the frame's own limit surface, which another search finds.
+/// The proven bound of every frame holds against certified distances to the frame's own limit
+/// surface, which another search finds.
 #[test]
 fn what_is_proven_of_each_frame_holds() {
     let creased = tagged(sheet(3, 3, 5), 7, 3);

@@ -105,7 +105,7 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
     ] {
         let mut control = model(name);
         if name == "icosphere" {
-            // Beside edges that are sharp for a while hardly any can be collapsed.
+            // At semi-sharp edges hardly any can be collapsed.
             let topology = control.topology();
             let edges = topology
                 .half_edges()
@@ -190,7 +190,8 @@ fn parts_lose_triangles_too() {
     }
 }
 
-/// What collapses may take they take: points of the surface are nearly as far from the mesh as they may be.
+/// Collapses use the whole tolerance: points of the surface are nearly as far from the mesh as
+/// allowed.
 #[test]
 fn little_of_the_tolerance_is_left() {
     for (name, share, levels) in [("bunny", 2e-3, 3), ("cup", 1e-3, 4), ("head", 3e-3, 4)] {

@@ -106,7 +106,7 @@ fn pegs_follow_their_rims() {
             per_rim.push(along.len());
         }
         assert_eq!(per_rim[0], per_rim[1]);
-        // But for some where leaves are divided beside others of the same line that are not.
+        // Except for some where leaves are divided next to others of the same line that are not.
         assert!(
             positions.len() <= 2 * per_rim[0] + 8,
             "{} {per_rim:?}",
@@ -246,7 +246,8 @@ fn flat_sides_may_go_over_into_round_ones() {
             assert_eq!(result.mesh.topology().euler_characteristic(), 2);
             assert_eq!(result.inverted_triangles(), 0);
         }
-        // Hardly anything but the rims has vertices: where curvature changes some leaves are divided beside others that are not.
+        // Hardly anything but the rims has vertices: where curvature changes some leaves are
+        // divided next to others that are not.
         assert_eq!(merged.mesh.face_count(), 2 * merged.mesh.vertex_count() - 4);
         let inside = merged
             .mesh
@@ -342,7 +343,7 @@ fn sheets_may_touch_along_straight_lines() {
     assert!(saved > 1000, "{saved}");
 }
 
-/// The same bytes for any number of threads.
+/// Any number of threads gives equal bytes.
 #[test]
 fn threads_change_nothing() {
     let mesh = peg(16);
@@ -433,8 +434,9 @@ fn balanced_pegs_take_no_more_triangles() {
     }
 }
 
-/// A pentagon with a corner a billionth from the edge opposite, nearly flat: the mesh by which its bound was to be made tight had far too many
-/// triangles, which each of thousands of rounds put together to tell whether strips left fewer.
+/// A pentagon with a corner a billionth from the edge opposite, nearly flat: the mesh by which its
+/// bound was to be made tight had far too many triangles, which each of thousands of rounds
+/// assembled to find whether strips left fewer.
 #[test]
 fn nearer_meshes_with_too_many_triangles_are_given_up() {
     let at = [

@@ -147,7 +147,8 @@ fn check_distance(mesh: &Mesh, found: &Within, most: f64) {
         there <= most && back <= most,
         "{there} and {back} of {most}"
     );
-    // What is told is no more than what is sampled, give or take what lies between samples.
+    // The reported lower bound is no more than the sampled distance, up to the distances between
+    // samples.
     let sampled = there.max(back);
     assert!(
         found.distance.lower <= sampled * 1.02 + 1e-9,
@@ -340,7 +341,8 @@ fn looking_away(mesh: &Mesh, surface: Triangles<'_>, near: f64) -> usize {
         .count()
 }
 
-/// Parts, cages and needles, coarse beside the distance: what cannot be round stays as sharp as it was.
+/// Parts, cages and needles, coarse relative to the distance: edges that cannot be round stay as
+/// sharp as they were.
 #[test]
 fn parts_and_cages_stay_within_any_distance() {
     let meshes = [

@@ -1,8 +1,11 @@
-//! Triangles whose corners were moved off the surface, over parts that are known ([`BentFour`]), among the triangles beside them.
+//! Triangles whose corners were moved off the surface, over parts that are known ([`BentFour`]),
+//! among their neighbours.
 //!
-//! The bounds are those of [`super::super::quartic_cell`] and [`super::super::deviation`], written for four at once: heights over
-//! the triangle's own plane by the quadratic part, whose corners stand where the surface's do; what curves do beside their edges and whether the
-//! surface folds by the bends within that plane; chords and slopes among the neighbours as [`super::super::dihedral::around`] has them.
+//! The bounds are those of [`super::super::quartic_cell`] and [`super::super::deviation`], written
+//! for four at once: heights over the triangle's own plane by the quadratic part, whose corners
+//! stand where the surface's do; the distances of curves from their edges, and whether the surface
+//! folds, by the bends within that plane; chords and slopes among the neighbours as in
+//! [`super::super::dihedral::around`].
 
 use super::super::deviation::SHARPEST;
 use super::super::quartic_cell::{DIRECTIONS, NEARLY_ONE};
@@ -21,14 +24,15 @@ pub(crate) struct MovedFour {
     pub(crate) opposite: [[[f64; FOUR]; 3]; 3],
 }
 
-/// What triangles come to.
+/// The bounds of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundFour {
-    /// No less than the distance between each triangle and its part of the surface; infinite where nothing is known.
+    /// An upper bound of the distance between each triangle and its part of the surface; infinite
+    /// if unknown.
     pub(crate) bound: [f64; FOUR],
-    /// How high the surface stands over it on either side, about.
+    /// The approximate height of the surface over it on either side.
     pub(crate) height: [f64; FOUR],
-    /// Some point of it stands at least as high as this.
+    /// A height that some point of it reaches.
     pub(crate) least: [f64; FOUR],
 }
 
@@ -46,8 +50,8 @@ struct Triangle {
     has_plane: f64x4,
 }
 
-/// What parts of the surface do beside the edges of their triangles.
-struct Beside {
+/// The distances of parts of the surface from the edges of their triangles.
+struct EdgeDeviations {
     /// How far curves are from their edges, and how far they reach over them.
     side: f64x4,
     drift: f64x4,
@@ -57,7 +61,8 @@ struct Beside {
     is_plain: f64x4,
 }
 
-/// The greatest squared chord of the angles to the neighbours, the greatest slopes of drifts, and whether all have planes.
+/// The greatest squared chord of the angles to the neighbours, the greatest slopes of tangential
+/// displacements, and whether all have planes.
 struct Around {
     squared: f64x4,
     slopes: [f64x4; 3],
@@ -65,7 +70,8 @@ struct Around {
 }
 
 impl MovedFour {
-    /// What the triangles come to over their parts, which are kept in a unit that makes so much of lengths.
+    /// The bounds of the triangles over their parts, which are kept in a unit that multiplies
+    /// lengths by `scale`.
     #[inline(never)]
     pub(crate) fn bounds(&self, part: &BentFour, scale: f64) -> FoundFour {
         let [from, second, third] = self.corners.each_ref().map(vectors);
@@ -155,9 +161,9 @@ impl Triangle {
         (lifts, moved.sqrt(), aside.sqrt())
     }
 
-    /// As [`super::super::quartic_cell::QuarticJet::beside`] has it.
+    /// As in [`super::super::quartic_cell::QuarticJet::beside`].
     #[inline(always)]
-    fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> Beside {
+    fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
         let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
         let (mut side, mut drift, mut slopes) = (zero, zero, [zero; 3]);
@@ -176,7 +182,7 @@ impl Triangle {
             drift = drift.fast_max(0.125 * outward.fast_max(zero) + curve);
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
-        Beside {
+        EdgeDeviations {
             side,
             drift,
             slopes,
@@ -184,7 +190,7 @@ impl Triangle {
         }
     }
 
-    /// Whether no two points come to one place, by changes of barycentric coordinates times the area.
+    /// Whether the map is injective, by changes of barycentric coordinates times the area.
     #[inline(always)]
     fn is_unfolded(&self, bends: &[Vectors; 3], first: f64x4) -> f64x4 {
         let across = [&self.edges[0], &self.edges[2]].map(|edge| cross(edge, &self.normal));
@@ -196,7 +202,7 @@ impl Triangle {
         }
         let square = self.area * self.area;
         let [a, b, c] = self.lengths.map(|length| length * length);
-        // What the metric stretches lengths by at most, times the area.
+        // The greatest stretch of lengths by the metric, times the area.
         let half_trace = 0.25 * (a + b + c);
         let stretch = (half_trace
             + (half_trace * half_trace - 0.75 * square)
@@ -206,7 +212,7 @@ impl Triangle {
         (most.sqrt() + DIRECTIONS * first * stretch).simd_lt(NEARLY_ONE * self.area)
     }
 
-    /// As [`super::super::dihedral::around`] has it, of triangles with neighbours beyond all edges.
+    /// As in [`super::super::dihedral::around`], for triangles with neighbours beyond all edges.
     #[inline(always)]
     fn around(&self, corners: &[Vectors; 3], opposite: [Vectors; 3], scale: f64) -> Around {
         let share = 1.0 / self.area;

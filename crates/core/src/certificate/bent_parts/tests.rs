@@ -1,4 +1,5 @@
-//! Four triangles at once against each by itself by other code, and against dense samples of the surface.
+//! Four triangles together against each alone by other code, and against dense samples of the
+//! surface.
 
 use super::*;
 use crate::certificate::{Cell, TriangleFrame, around};
@@ -163,7 +164,7 @@ fn dense_samples_lie_within_the_bounds_of_moved_triangles() {
     let mut counted = 0;
     for round in 0..300 {
         let mut case = Case::random(&mut random, round);
-        // Beside triangles that are as slim as this nobody helps.
+        // Neighbours as slim as this do not count.
         for l in 0..FOUR {
             let [corners, ..] = case.triangle(l);
             for i in 0..3 {
@@ -199,7 +200,7 @@ fn dense_samples_lie_within_the_bounds_of_moved_triangles() {
     assert!(counted > 600, "{counted}");
 }
 
-/// What is not a number, or beyond single precision, is not known.
+/// NaN and values beyond single precision have no bound.
 #[test]
 fn what_is_no_number_has_no_bound() {
     let mut random = Random::new(2);

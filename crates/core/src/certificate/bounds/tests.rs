@@ -179,7 +179,7 @@ fn bounds_hold_for_every_part_and_valence() {
     }
 }
 
-/// What is not a number is within nothing, whichever point it is a coordinate of.
+/// A net with a NaN in any coordinate of any point has no finite bound.
 #[test]
 fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     let rules = Rules::of(&Loop);
@@ -256,8 +256,8 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
     }
 }
 
-/// What is given up before all of it was looked at would have missed the target with any angles and slopes that can count; what is not is
-/// what it would have been.
+/// A bound given up early would have missed the target with any valid angles and slopes; other
+/// bounds equal the complete ones.
 #[test]
 fn nothing_is_given_up_that_could_pass() {
     let rules = Rules::of(&Loop);

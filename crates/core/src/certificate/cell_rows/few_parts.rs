@@ -1,5 +1,5 @@
-//! Few parts of a regular piece, tested at once, one after the other instead of row by row: rows of so few would be mostly
-//! empty.
+//! Few parts of a regular piece, tested together, one after the other instead of row by row: short
+//! rows would be mostly empty.
 
 use core::array::from_fn;
 
@@ -23,15 +23,15 @@ type Few = [[f32; FEW]; 3];
 /// Numbers by axis and corner of few parts.
 type Corners = [[f64; FEW_CORNERS]; 3];
 
-/// Few parts, one after the other instead of row by row: all that stand upright, then those on their heads.
+/// Few parts, one after the other instead of row by row: all upright ones, then the inverted ones.
 #[derive(Default)]
 pub(super) struct FewParts {
     edges: [Few; 2],
     normals: [Few; 3],
     bends: [Few; 3],
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     size: f32,
-    /// Column, row, and whether on its head.
+    /// Column, row, and whether the part is inverted.
     pub(super) places: [(usize, usize, bool); FEW],
 }
 
@@ -86,8 +86,8 @@ impl FewParts {
                     [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)],
                     all,
                 );
-                let beside = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
-                for (bends, from) in self.bends.iter_mut().zip(beside) {
+                let adjacent = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
+                for (bends, from) in self.bends.iter_mut().zip(adjacent) {
                     bends
                         .iter_mut()
                         .for_each(|bends| bends[number] = bends[from]);
@@ -113,7 +113,7 @@ impl FewParts {
         }
     }
 
-    /// The second derivatives along the edges of the parts that stand upright, of which there are `number`.
+    /// The second derivatives along the edges of the upright parts, of which there are `number`.
     fn set_bends(
         &mut self,
         block: &RowBlock<'_>,

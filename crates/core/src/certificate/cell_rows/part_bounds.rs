@@ -1,22 +1,25 @@
-//! Bounds of many parts of a regular piece at once, in single precision: twice as many parts to a register, and all that it takes away is
-//! added again.
+//! Bounds of many parts of a regular piece at once, in single precision: a register holds twice as
+//! many parts, and the rounding errors are added to the bounds.
 //!
-//! **What rounding may do.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the square L and whose edges span the
-//! parallelogram A ≤ √(3/4) L, and w what the sums of the sizes of bends' coordinates are no greater than. Edges and limit normals come
-//! rounded once, bends are off by 10uw. Then
+//! **Rounding.** Let u = 2⁻²⁴, η = 16u L/A ([`UNSURE`]) for a part whose longest edge has the
+//! square L and whose edges span the parallelogram A ≤ √(3/4) L, and w a bound of the sums of the
+//! absolute coordinates of bends. Edges and limit normals come rounded once, bends are off by 10uw.
+//! Then
 //!
 //! * a × b is off by 8u|a||b| at most, so the unit normal by 8u|a||b|/A + 4u ≤ ¾η, products of bends with it by ¾ηw + 14uw ≤ 1.6ηw, and
 //!   the greatest height of the quadratic part, ½ Σ λᵢλⱼWᵢⱼ with Σ λᵢλⱼ ≤ 1/3, by 0.3ηw;
 //! * distances between the normal and limit normals are off by less than 2η;
 //! * A and the products of edges are off by 8u|a||b|: A by the part η of it, and the greatest product, at least L/4, by 3η;
-//! * products of bends with edges, or with what is at right angles to them, are off by 2ηw√L.
+//! * products of bends with edges, or with vectors perpendicular to them, are off by 2ηw√L.
 //!
-//! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point where both derivatives vanish, if it is
-//! inside. The point's barycentric coordinates are the three products of [`quadratic_height`] over their sum. Each of them is off by
-//! 12uW², the sum by 40uW²: where the sum is more than W²/256, coordinates are off by less than 2⁻¹⁰, and so is the height, relatively
-//! ([`NEARLY`]). Where it is less, the quadratic is nearly one of one direction. If there is a greatest height inside, then the ridge
-//! through the middle of the edge that bends most is concave and starts with the slope ¼(W₁ + W₂ − W), the other bends counted as W
-//! is: its height is W/8 and as much more as that comes to, and never more than W/6.
+//! **The quadratic's greatest height** is an eighth of the greatest bend W, or that of the point
+//! where both derivatives vanish, if it is inside. The point's barycentric coordinates are the
+//! three products of [`quadratic_height`] over their sum. Each of them is off by 12uW², the sum by
+//! 40uW²: where the sum is more than W²/256, coordinates are off by less than 2⁻¹⁰, and so is the
+//! height, relatively ([`NEARLY`]). Where it is less, the quadratic is nearly one of one direction.
+//! If there is a greatest height inside, then the ridge through the middle of the edge that bends
+//! most is concave and starts with the slope ¼(W₁ + W₂ − W), the other bends relative to the sign of W:
+//! its height is W/8 plus the rise by that slope, and never more than W/6.
 //!
 //! [`quadratic_height`]: super::super::quartic_cell::quadratic_height
 
@@ -31,16 +34,17 @@ pub(super) const LANES: usize = 4;
 /// By this times L/A a part is known less well than it is: 16 times 2⁻²⁴.
 const UNSURE: f32 = 1.0 / (1 << 20) as f32;
 
-/// What coordinates of the highest point are off by at most, and the part of its height.
+/// The error of coordinates of the highest point, and of the height as a part of it.
 const NEARLY: f32 = 1.0 / (1 << 10) as f32;
 
-/// Sums of products of bends below this part of the greatest bend's square tell nothing of the highest point.
+/// Sums of products of bends below this part of the greatest bend's square do not determine the
+/// highest point.
 const UNKNOWN: f32 = 1.0 / (1 << 8) as f32;
 
-/// The same for sums as such: products below vanish.
+/// The absolute bound for sums: products below vanish.
 const VANISHING: f32 = 1e-24;
 
-/// For what the last few operations do.
+/// A margin for the last few operations.
 const A_LITTLE_MORE: f32 = 1.0 + 1.0 / (1 << 18) as f32;
 
 /// The greatest squared chord of the angle between triangles that help each other, as in [`super::super::deviation`].
@@ -59,7 +63,7 @@ pub(super) struct Parts<'a> {
     pub(super) normals: [Slices<'a>; 3],
     /// The second derivatives along the edges from the first corner to the second, on to the third, and back.
     pub(super) bends: [Slices<'a>; 3],
-    /// What the sums of the sizes of their coordinates are no greater than.
+    /// A bound of the sums of the absolute coordinates.
     pub(super) size: f32,
 }
 
@@ -185,11 +189,11 @@ struct Triangle {
     unsure: f32x4,
 }
 
-/// What parts of the surface do beside the edges of their triangles.
-struct Beside {
+/// The distances of parts of the surface from the edges of their triangles.
+struct EdgeDeviations {
     /// How far they reach over them.
     drift: f32x4,
-    /// The greatest slope of that, or of what there is inside.
+    /// The greatest slope of that displacement, or of the inner part.
     slope: f32x4,
     /// Whether each curve stays within the angles at its edge.
     is_plain: f32x4,
@@ -245,7 +249,7 @@ impl Triangle {
         off: f32x4,
         rest: &Remainder,
         share: f32,
-    ) -> Beside {
+    ) -> EdgeDeviations {
         let Self {
             a,
             b,
@@ -281,14 +285,15 @@ impl Triangle {
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
             & (rb * larger([third, first, area])).simd_le(most);
-        Beside {
+        EdgeDeviations {
             drift,
             slope: larger([ra, rb, rc]) * A_LITTLE_MORE,
             is_plain: is_roomy & stays,
         }
     }
 
-    /// Whether no two points come to one place (see `quartic_cell`), by changes of barycentric coordinates times the area.
+    /// Whether the map is injective (see `quartic_cell`), by changes of barycentric coordinates
+    /// times the area.
     #[inline(always)]
     fn is_unfolded(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> f32x4 {
         let across = [self.a, self.b].map(|edge| cross(edge, self.normal));
@@ -304,8 +309,9 @@ impl Triangle {
     }
 }
 
-/// What the greatest height of a quadratic that is 0 at the corners is about, and no greater than, by its second derivatives along the
-/// edges from the first corner to the second, on to the third, and back.
+/// An approximation and an upper bound of the greatest height of a quadratic that is 0 at the
+/// corners, by its second derivatives along the edges from the first corner to the second, on to
+/// the third, and back.
 #[inline(always)]
 fn heights([p, q, s]: [f32x4; 3]) -> (f32x4, f32x4) {
     let most = larger([p, q, s].map(f32x4::abs));
@@ -345,7 +351,8 @@ fn by_fours([x, y, z]: Slices<'_>, count: usize) -> Fours<'_> {
 }
 
 impl Found {
-    /// Marks parts, and adds those that pass to an extent, `scale` being what their unit makes of lengths.
+    /// Marks parts, and adds those that pass to an extent, `scale` being the factor of lengths in
+    /// their unit.
     pub(super) fn mark(
         &self,
         (count, scale): (usize, f64),
@@ -353,7 +360,7 @@ impl Found {
         extent: &mut RowExtent,
         marks: &mut [Mark],
     ) {
-        // What has no bound, which is infinite, must not pass, however great the target is.
+        // A part without a bound, which is infinite, must not pass, however great the target is.
         let most = (target.distance * scale).smaller(f64::from(f32::MAX));
         let mut greatest = 0.0f64;
         for (i, mark) in marks.iter_mut().enumerate().take(count) {

@@ -1,4 +1,4 @@
-//! Rows against dense samples of each part by itself.
+//! Rows against dense samples of each part alone.
 
 use super::*;
 use crate::certificate::TriangleFrame;
@@ -25,7 +25,7 @@ fn samples_of_parts_that_pass_lie_within_the_target() {
     samples_lie_within(0.0);
 }
 
-/// The same where the range of heights counts beside the greatest.
+/// The ranges of heights, where these count in addition to the greatest.
 #[test]
 fn ranges_of_heights_of_parts_that_pass_lie_within_the_target() {
     samples_lie_within(0.95);
@@ -98,7 +98,7 @@ fn samples_lie_within(range_share: f64) {
                             let chord = tilt + target.tilt;
                             let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
                             assert!(value <= distance, "round {round}: {value} of {distance}");
-                            // Of ranges no more than the quadratic part is looked at.
+                            // Of ranges only the quadratic part is used.
                             let rest = 2.0 * block.rest(step.abs());
                             assert!(
                                 range <= 1.001 * distance + rest,
@@ -140,7 +140,8 @@ fn samples_lie_within(range_share: f64) {
     }
 }
 
-/// What is told of their rounding holds against the polynomial in double precision, at sizes from 1e-9 to 1e9.
+/// The bound of their rounding holds against the polynomial in double precision, at sizes from 1e-9
+/// to 1e9.
 #[test]
 fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
     let mut random = Random::new(11);

@@ -1,5 +1,6 @@
-//! The heights of a part of a regular piece over the plane of its corners: a quartic that is 0 at the corners, and what bounds
-//! its greatest size: the parts q, c and r of [`super`], or its coefficients in Bernstein's basis, halved as often as it takes.
+//! The heights of a part of a regular piece over the plane of its corners: a quartic that is 0 at
+//! the corners, and the bounds of its greatest size: by the parts q, c and r of [`super`], or by
+//! its coefficients in Bernstein's basis, halved as often as needed.
 
 use super::{CUBIC, Cell, Domain, Jet, QUARTIC, minus, quadratic};
 use crate::vector::Extremes;
@@ -59,7 +60,7 @@ impl Heights {
         ((quadratic - rest).larger(0.0), quadratic + rest)
     }
 
-    /// The range of heights from one side to the other is no less, as far as the edges tell.
+    /// A lower bound, by the edges, of the range of heights from one side to the other.
     pub(crate) fn least_range(&self) -> f64 {
         edge_range(self.bends())
     }
@@ -70,8 +71,8 @@ impl Heights {
         (low, high, self.rest())
     }
 
-    /// The greatest height on either side where the surface's corners stand at the given ones over the plane, and by how much that
-    /// may be off at most.
+    /// The greatest height on either side if the surface's corners have the given heights over the
+    /// plane, and its greatest error.
     pub(crate) fn lifted_range(&self, lifts: [f64; 3]) -> (f64, f64) {
         let (low, high) = quadratic_range(self.bends(), lifts);
         (high.larger(-low), self.rest())
@@ -99,7 +100,7 @@ impl Heights {
         [first, both, last]
     }
 
-    /// What the parts of third and fourth degree come to at most.
+    /// The bound of the parts of third and fourth degree.
     #[inline]
     fn rest(&self) -> f64 {
         let Self {
@@ -171,7 +172,7 @@ impl Heights {
         (low, high)
     }
 
-    /// [`Self::refined`] where the surface's corners stand at these heights over the plane.
+    /// [`Self::refined`] if the surface's corners have these heights over the plane.
     pub(crate) fn lifted(&self, [first, second, third]: [f64; 3], levels: u32, enough: f64) -> f64 {
         let mut coefficients = self.bernstein();
         let (along, across) = (0.25 * (second - first), 0.25 * (third - first));
@@ -246,7 +247,8 @@ const WEIGHTS: [[f64; 5]; 5] = [
 /// Where each row of a net starts.
 const ROWS: [usize; 5] = [0, 5, 9, 12, 14];
 
-/// The greatest size of a coefficient after so many halvings, but for parts with none above what is good enough.
+/// The greatest size of a coefficient after `halvings` halvings, except for parts with none above
+/// `enough`.
 pub(super) fn halved(net: &[f64; 15], halvings: u32, enough: f64) -> f64 {
     let most = net.iter().fold(0.0f64, |most, x| most.larger(x.abs()));
     if halvings == 0 || most <= enough {
@@ -269,7 +271,7 @@ fn halves(net: &[f64; 15]) -> [[f64; 15]; 2] {
     halves
 }
 
-/// What the K-th row of a net gives. (With K known no index needs a check.)
+/// The halves of the K-th row of a net. (With K known no index needs a check.)
 #[inline(always)]
 fn halved_row<const K: usize>(net: &[f64; 15], halves: &mut [[f64; 15]; 2]) {
     let degree = 4 - K;

@@ -139,7 +139,7 @@ fn parts_that_do_not_fold_keep_their_orientation() {
         let BezierTriangle(points) =
             stirred_triangle(&mut random, [0.0, 0.002, 0.01, 0.1][round % 4]);
         let slim = [1.0, 0.3, 0.05][round % 3];
-        // Bends that keep their size all over the piece, beside what is stirred.
+        // Bends that keep their size all over the piece, relative to the random part.
         let bend: [[f64; 3]; 3] =
             core::array::from_fn(|_| core::array::from_fn(|_| 0.6 * random.signed()));
         let points = points.map(|point| {
@@ -187,7 +187,7 @@ fn parts_that_do_not_fold_keep_their_orientation() {
         let even = (b - a).cross(c - a).length() / (s[0] * r[1] - s[1] * r[0]).abs();
         bent += usize::from(is_plain && least < 0.6 * even);
     }
-    // Many of each kind, and many that are told apart though they are far from even.
+    // Many of each kind, and many that are decided though they are far from even.
     assert!(
         plain > 800 && folding > 400 && bent > 40,
         "{plain} plain, {bent} of them bent, {folding} folding"
@@ -203,10 +203,10 @@ fn triangles_off_the_surface_are_bounded() {
     for round in 0..2000 {
         let piece = piece(&mut random, [0.002, 0.02, 0.1][round % 3]);
         let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
-        let feet = cell.0.map(|[u, v]| piece.point(u, v));
-        let size = 0.1 * feet[0].distance(feet[1]);
-        let steps = feet.map(|_| random.vector() * size);
-        let frame = TriangleFrame::new([0, 1, 2].map(|i| feet[i] + steps[i]));
+        let bases = cell.0.map(|[u, v]| piece.point(u, v));
+        let size = 0.1 * bases[0].distance(bases[1]);
+        let steps = bases.map(|_| random.vector() * size);
+        let frame = TriangleFrame::new([0, 1, 2].map(|i| bases[i] + steps[i]));
         if frame.is_flat() {
             continue;
         }
@@ -240,7 +240,7 @@ fn triangles_off_the_surface_are_bounded() {
     );
 }
 
-/// The range over a plane off the corners: nothing is farther off it than it says, and some point is as near to it.
+/// The range over a plane off the corners: no point is beyond it, and some point is near to it.
 #[test]
 fn ranges_over_planes_off_the_corners_hold() {
     let mut random = Random::new(11);
@@ -307,11 +307,11 @@ fn net(value: impl Fn([f64; 3]) -> f64) -> [f64; 15] {
 /// Divisions of nets, whose coefficients bound polynomials: they are within some thousandths of them then.
 const DIVISIONS: u32 = 5;
 
-/// What rounding may do to the sizes of coefficients here.
+/// The rounding error of the sizes of coefficients here.
 const SLACK: f64 = 1e-9;
 
-/// The cubic part's constant: where the coordinates are in order the sum is a polynomial, and it is the same in any order, so one
-/// sixth of the triangle tells all.
+/// The cubic part's constant: where the coordinates are in order the sum is a polynomial, and it is
+/// equal in any order, so one sixth of the triangle decides.
 #[test]
 fn the_cubic_constant_holds() {
     let sum = |[a, b, c]: [f64; 3]| {
@@ -365,8 +365,8 @@ fn the_quartic_constant_holds() {
         ];
         (heights, pairs)
     };
-    // r of a unit of each fourth derivative: what the quadratic and the cubic part leave of the polynomial, by the same
-    // formulas written for points.
+    // r of a unit of each fourth derivative: the polynomial without its quadratic and cubic part,
+    // by the same formulas written for points.
     let rest = |f: [f64; 5], [_, s, r]: [f64; 3]| remainder(&forms(f).0, s, r);
     let units: [[f64; 5]; 5] =
         core::array::from_fn(|i| core::array::from_fn(|j| f64::from(u8::from(i == j))));

@@ -1,5 +1,6 @@
-//! Pieces at irregular vertices as they are: by an affine image of the characteristic map, by the hull of their control points, or by
-//! what stands for them while tags fade (see [`super::super::bounds`]).
+//! Pieces at irregular vertices without refinement: by an affine image of the characteristic map,
+//! by the hull of their control points, or by their twins at semi-sharp tags (see
+//! [`super::super::bounds`]).
 
 use super::super::hull_points::HullPoint;
 use super::super::{exceeds, greater};
@@ -13,19 +14,19 @@ use smallvec::SmallVec;
 /// Levels that a piece at an irregular vertex is split at most: it has shrunk by 2⁻⁴⁰ then, below rounding.
 const DEEPEST: usize = 40;
 
-/// Where the lasting twin of a piece is farther away than the target by this many times what lies between the two, the piece is
-/// taken to be too far as well.
+/// Where the infinitely sharp twin of a piece is farther away than the target by this many times
+/// the distance between the two, the piece is taken to be too far as well.
 const CERTAIN: f64 = 3.0;
 
 /// Down to this level pieces must be good enough together with others.
 const TOGETHER: usize = 3;
 
-/// Lengths and squares that are so many times too great are too great, whatever rounding does.
+/// Lengths and squares this many times too great are too great, whatever the rounding.
 const CLEARLY: f64 = 1.0 + 1e-9;
 
 impl<P: HullPoint> Search<'_, P> {
-    /// Takes the lasting twin of a semi-sharp piece in its place if that is enough, or if it is clear that nothing will be; says
-    /// whether it did.
+    /// Replaces a semi-sharp piece by its infinitely sharp twin if that decides; returns whether it
+    /// did.
     fn by_twin(
         &mut self,
         patch: &Patch,
@@ -77,8 +78,8 @@ impl<P: HullPoint> Search<'_, P> {
         false
     }
 
-    /// Takes a piece at an irregular vertex that is none of [`Self::extraordinary`] as it is if that is enough, or if nothing will be; says
-    /// whether it did.
+    /// Bounds a piece at an irregular vertex, other than those of [`Self::extraordinary`], without
+    /// refinement if that is enough or if refinement cannot help; returns whether it did.
     pub(in super::super) fn is_settled(
         &mut self,
         patch: &Patch,
@@ -98,7 +99,8 @@ impl<P: HullPoint> Search<'_, P> {
         self.is_enough(held, depth)
     }
 
-    /// A piece at an irregular vertex inside the surface, all of whose ring is there: as it is if that is enough, else refined.
+    /// A piece at an irregular vertex inside the surface, with a complete ring: without refinement
+    /// if that is enough, else refined.
     pub(super) fn extraordinary(
         &mut self,
         piece: &ExtraordinaryPatch<P>,
@@ -116,7 +118,8 @@ impl<P: HullPoint> Search<'_, P> {
         }
     }
 
-    /// Takes such a piece as it is if that is enough, or if nothing will be; says whether it did.
+    /// Bounds such a piece without refinement if that is enough or if refinement cannot help;
+    /// returns whether it did.
     fn is_settled_at(
         &mut self,
         piece: &ExtraordinaryPatch<P>,
@@ -147,14 +150,14 @@ impl<P: HullPoint> Search<'_, P> {
         self.is_enough(held, depth)
     }
 
-    /// Takes what a piece is good for as it is, if that is enough; says whether it did.
+    /// Takes the bound of a piece as it is, if that is enough; returns whether it did.
     fn is_enough(&mut self, held: Option<Deviation>, depth: usize) -> bool {
         let held = held.filter(|held| depth >= DEEPEST || self.is_good(held, depth));
         held.inspect(|&held| self.add(held)).is_some()
     }
 
-    /// Whether what a piece is good for is enough: at first also together with what was found elsewhere, as heights here and drifts there
-    /// may be too much though neither is.
+    /// Whether the bound of a piece is enough: at first also together with bounds found elsewhere,
+    /// as heights here and tangential displacements there may be too much though neither is.
     fn is_good(&self, held: &Deviation, depth: usize) -> bool {
         let target = self.effort.target;
         let is_enough = self.value(held) <= self.aim();
@@ -162,7 +165,8 @@ impl<P: HullPoint> Search<'_, P> {
         is_enough && (is_alone || self.value(&self.with(*held)) <= target)
     }
 
-    /// The bound by an affine image of the characteristic map's sector, if what the piece differs from it is little.
+    /// The bound by an affine image of the characteristic map's sector, if the piece differs little
+    /// from it.
     fn affine(
         &self,
         piece: &ExtraordinaryPatch<P>,
@@ -186,7 +190,7 @@ impl<P: HullPoint> Search<'_, P> {
         let tangents = [1, 2].map(|i| sums[i] * (2.0 / valence as f64));
         let image = |at: DVec3| limit + tangents[0] * at.x + tangents[1] * at.y;
         let aim = self.aim();
-        // The greatest square of what points differ by, as long as that helps.
+        // The greatest square of the points' differences, as long as that helps.
         let farthest = |points: &mut dyn Iterator<Item = (&P, &DVec3)>, most: f64| {
             let (mut farthest, most) = (0.0, CLEARLY * most * most);
             for (&point, &at) in points {

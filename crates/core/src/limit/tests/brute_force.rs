@@ -144,8 +144,9 @@ fn iterated_normals(
     (0..shape.faces() as usize).map(face).collect()
 }
 
-/// Steps after which the other patterns have shrunk to nothing beside the tangents: the rings here shrink them by
-/// 0.95 a step at least (on a ribbon, where those that outlast one tangent do not enter the faces at its edges).
+/// Steps after which the other patterns have shrunk to nothing relative to the tangents: the rings
+/// here shrink them by 0.95 a step at least (on a ribbon, where those that shrink more slowly than
+/// one tangent do not enter the faces at its edges).
 const STEPS: usize = 500;
 
 #[test]
@@ -218,9 +219,9 @@ fn normals_at_valence_64() {
     }
 }
 
-/// The butterfly's boundary vertex with a single face: its second pattern belongs to a Jordan block of the
-/// four-point rule for 1/4 and grows like n/4^n, so that d_0 × d_1 · 8^n is linear in n; the difference of two
-/// steps is what it tends to.
+/// The butterfly's boundary vertex with a single face: its second pattern belongs to a Jordan block
+/// of the four-point rule for 1/4 and grows like n/4^n, so that d_0 × d_1 · 8^n is linear in n; the
+/// difference of two steps is its limit.
 #[test]
 fn jordan_block_at_a_tip() {
     let shape = RingShape::boundary(2);

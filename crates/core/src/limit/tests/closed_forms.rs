@@ -179,6 +179,6 @@ fn high_valences_are_quick() {
             .tangent_weights()
             .is_some()
     );
-    // 20 times what this takes unoptimised: it guards against a cubic cost in the valence.
+    // 20 times the time without optimisation: it guards against a cubic cost in the valence.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }

@@ -92,7 +92,8 @@ fn positions_of_a_sphere() {
     }
 }
 
-/// One vertex at a time gives the same as the whole mesh, with irregular neighbours, boundaries and corners.
+/// One vertex at a time gives the limits of the whole mesh, with irregular neighbours, boundaries
+/// and corners.
 #[test]
 fn single_vertices_agree_with_the_mesh() {
     for scheme in SCHEMES {

@@ -1,10 +1,11 @@
 //! Building the hierarchy: order the triangles by median cuts, then box them from the bottom up.
 //!
-//! A node of height k spans 4^(k+1) consecutive triangles. The triangles get their order by cutting ranges in
-//! two at these places, across the longest side of the box of their centres, which is a packed k-d tree: every
-//! node but the last of a level is full, no depth depends on the positions, and ranges are independent, so
-//! that they are cut in parallel. Centres equal in a coordinate are told apart by the triangle's index, so
-//! that the parts do not depend on the algorithm that selects the median.
+//! A node of height k spans 4^(k+1) consecutive triangles. The triangles get their order by cutting
+//! ranges in two at these places, across the longest side of the box of their centres, which is a
+//! packed k-d tree: every node but the last of a level is full, no depth depends on the positions,
+//! and ranges are independent, so that they are cut in parallel. Centres equal in a coordinate are
+//! ordered by the triangle's index, so that the parts do not depend on the algorithm that selects
+//! the median.
 
 use glam::{Vec3, Vec4};
 
@@ -78,7 +79,7 @@ fn bounds(surface: Triangles<'_>) -> [DVec3; 2] {
     boxes.into_iter().fold(nothing, join)
 }
 
-/// A triangle standing for its place in the order: the centre of its box.
+/// A triangle in the order: the centre of its box.
 #[derive(Clone, Copy, Default)]
 struct Centre {
     at: [f32; 3],

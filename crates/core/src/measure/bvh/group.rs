@@ -42,7 +42,7 @@ impl Bvh<'_> {
         }
     }
 
-    /// The same for one group; takes and gives a triangle near it.
+    /// The nearest triangle to a group of points. Takes and gives a triangle near it.
     fn group_nearest(
         &self,
         points: &[DVec3],
@@ -128,7 +128,7 @@ impl Bvh<'_> {
     #[inline]
     fn search_frontier(&self, frontier: &Frontier, at: &Located, guess: u32) -> Nearest {
         let mut nearest = Nearest {
-            squared: self.foot(guess, at).squared,
+            squared: self.projection(guess, at).squared,
             face: guess,
             visited: 0,
         };

@@ -1,9 +1,10 @@
 //! A bounding-volume hierarchy over triangles, for closest points.
 //!
-//! Takes the triangles of a surface, manifold or not; gives the closest point to any point, exact in double
-//! precision: single-precision boxes, rounded outwards, only decide which triangles are looked at. The
-//! answer is the triangle at the least computed distance, the one with the least index among equals, whatever
-//! the order of the search, the guess that it started from, or the number of threads that built the hierarchy.
+//! Takes the triangles of a surface, manifold or not; gives the closest point to any point, exact
+//! in double precision: single-precision boxes, rounded outwards, only decide which triangles are
+//! tested. The answer is the triangle at the least computed distance, the one with the least index
+//! among equals, whatever the order of the search, the guess that it started from, or the number of
+//! threads that built the hierarchy.
 //!
 //! The tree is four children wide and implicit: [`build`] orders the triangles so that every 4^k consecutive
 //! ones form a node, so that no child pointers are stored.
@@ -15,7 +16,7 @@ use glam::Vec4;
 
 use super::MeasureError;
 use super::frame::{Frame, Located, distance};
-use crate::geometry::{Foot, closest_to_origin};
+use crate::geometry::{Projection, closest_to_origin};
 use crate::mesh::Triangles;
 use crate::progress::{Observer, Stage, Watch, unobserved};
 use crate::vector::{DVec3, diagonal, vector};
@@ -63,7 +64,7 @@ pub struct Bvh<'a> {
     starts: Vec<usize>,
 }
 
-/// What a search has found so far.
+/// The best result of a search so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     /// Squared distance in the frame.
@@ -96,8 +97,8 @@ impl Nearest {
         better
     }
 
-    /// What a box may be away at most and still hold a triangle as near as this, with slack for the rounding of
-    /// the box test.
+    /// The greatest distance of a box that may hold a nearer triangle, with slack for the rounding
+    /// of the box test.
     ///
     /// The test's gaps are within 2^-23 of their size or within half the boxes' margin of the truth
     /// ([`build::MARGIN`]), their squares and sum add less than 2^-22; 2^-20 covers both and the conversion. Below
@@ -125,7 +126,7 @@ impl<'a> Bvh<'a> {
         Self::new_observed(surface, &mut unobserved)
     }
 
-    /// [`Self::new`], telling an observer how it goes on.
+    /// [`Self::new`] with an observer.
     ///
     /// # Errors
     /// No triangles, an index out of range, a coordinate that is not finite, or the observer asked to stop.
@@ -136,7 +137,7 @@ impl<'a> Bvh<'a> {
         Self::named(surface, "reference", observer)
     }
 
-    /// The same; `which` names the surface in errors.
+    /// Builds the hierarchy; `which` names the surface in errors.
     pub(super) fn named(
         surface: Triangles<'a>,
         which: &'static str,
@@ -164,7 +165,7 @@ impl<'a> Bvh<'a> {
         diagonal(self.bounds[0], self.bounds[1])
     }
 
-    /// Bytes that the hierarchy takes beside the surface it borrows.
+    /// Bytes of the hierarchy, without the surface it borrows.
     pub fn memory(&self) -> usize {
         size_of_val(self.slots.as_slice())
             + size_of_val(self.nodes.as_slice())
@@ -176,8 +177,9 @@ impl<'a> Bvh<'a> {
         self.closest_with_guess(point, None)
     }
 
-    /// The same, faster where `guess` is a triangle near the closest one, for example the answer for a
-    /// neighbouring point. The answer does not depend on the guess, and a guess out of range is ignored.
+    /// The closest point, found faster where `guess` is a triangle near it, for example the answer
+    /// for a neighbouring point. The answer does not depend on the guess, and a guess out of range
+    /// is ignored.
     pub(crate) fn closest_from(&self, point: [f64; 3], guess: u32) -> ClosestPoint {
         self.closest_with_guess(point, Some(guess))
     }
@@ -186,7 +188,7 @@ impl<'a> Bvh<'a> {
         self.closest_counted(point, guess).0
     }
 
-    /// The same, and how many nodes were visited for it.
+    /// The closest point, and the number of nodes visited for it.
     pub(super) fn closest_counted(
         &self,
         point: [f64; 3],
@@ -205,9 +207,10 @@ impl<'a> Bvh<'a> {
         let from = vector(point);
         let at = self.frame.locate(from);
         let nearest = self.search(&at, guess);
-        let foot = self.foot(nearest.face, &at);
+        let projection = self.projection(nearest.face, &at);
         let [a, b, c] = self.surface.corners(nearest.face as usize).map(vector);
-        let on_surface = a * foot.weights[0] + b * foot.weights[1] + c * foot.weights[2];
+        let on_surface =
+            a * projection.weights[0] + b * projection.weights[1] + c * projection.weights[2];
         let distance = if at.pulled_in {
             distance(from, on_surface)
         } else {
@@ -241,7 +244,7 @@ impl<'a> Bvh<'a> {
         vector(self.surface.positions[vertex as usize])
     }
 
-    /// The same, scaled so that squares and products neither overflow nor vanish.
+    /// The corners of a triangle, scaled so that squares and products neither overflow nor vanish.
     #[inline]
     pub(super) fn scaled_corners(&self, slot: usize) -> [DVec3; 3] {
         let [a, b, c] = self.corners(slot);
@@ -254,12 +257,12 @@ impl<'a> Bvh<'a> {
 
     /// The point of triangle `face` closest to a point.
     #[inline]
-    fn foot(&self, face: u32, at: &Located) -> Foot {
-        self.foot_on(self.surface.triangles[face as usize], at)
+    fn projection(&self, face: u32, at: &Located) -> Projection {
+        self.projection_on(self.surface.triangles[face as usize], at)
     }
 
     #[inline]
-    fn foot_on(&self, [a, b, c]: [u32; 3], at: &Located) -> Foot {
+    fn projection_on(&self, [a, b, c]: [u32; 3], at: &Located) -> Projection {
         let corner = |vertex: u32| self.frame.scale_point(self.position(vertex)) - at.scaled;
         closest_to_origin(corner(a), corner(b), corner(c))
     }
@@ -279,7 +282,7 @@ impl<'a> Bvh<'a> {
     fn search(&self, at: &Located, guess: Option<u32>) -> Nearest {
         let mut nearest = Nearest::NONE;
         if let Some(face) = guess.filter(|&face| (face as usize) < self.surface.triangles.len()) {
-            nearest.offer(self.foot(face, at).squared, face);
+            nearest.offer(self.projection(face, at).squared, face);
         }
         let mut bound = nearest.bound();
         let mut stack = [0; STACK];
@@ -333,7 +336,7 @@ impl<'a> Bvh<'a> {
     fn offer_slot(&self, slot: usize, at: &Located, nearest: &mut Nearest, bound: &mut f32) {
         let slot = &self.slots[slot];
         if slot.face != nearest.face
-            && nearest.offer(self.foot_on(slot.corners, at).squared, slot.face)
+            && nearest.offer(self.projection_on(slot.corners, at).squared, slot.face)
         {
             *bound = nearest.bound();
         }

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// The distance to a triangle by another way than the library's: to its plane, if the foot is inside by the signs
-/// of three areas, else to its three sides.
+/// The distance to a triangle by another way than the library's: to its plane, if the projection is
+/// inside by the signs of three areas, else to its three sides.
 fn distance_to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
     // Seen from the corner with the angle nearest 90°: from the tip of a needle rounding decides the plane.
     let sine = |first: usize| {
@@ -37,8 +37,8 @@ fn distance_to_triangle(p: DVec3, corners: [DVec3; 3]) -> f64 {
         return sides;
     };
     let height = (p - a).dot(normal);
-    let foot = p - normal * height;
-    let area = |a: DVec3, b: DVec3| (a - foot).cross(b - foot).dot(normal);
+    let projection = p - normal * height;
+    let area = |a: DVec3, b: DVec3| (a - projection).cross(b - projection).dot(normal);
     // Above the inside the height is the least; the normal of a needle far from the origin may be off by much.
     if area(a, b) > 0.0 && area(b, c) > 0.0 && area(c, a) > 0.0 {
         height.abs().min(sides)
@@ -167,7 +167,7 @@ fn sheets_of_every_size_of_tree() {
 
 #[test]
 fn ties_go_to_the_least_index() {
-    // The same triangle many times over, and a query with the same distance to all.
+    // One triangle many times over, and a query with an equal distance to all.
     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let triangles = [[0, 1, 2]; 100];
     let bvh = Bvh::new(Triangles {

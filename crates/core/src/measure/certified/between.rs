@@ -13,8 +13,8 @@
 use super::piece::Worker;
 use crate::vector::DVec3;
 
-/// Steps towards the point of a side that is as far from the one triangle as from the other: by false position, each makes
-/// what is left about a tenth of what it was.
+/// Steps towards the point of a side that is as far from the one triangle as from the other: by
+/// false position, each leaves about a tenth of the interval.
 const STEPS: usize = 40;
 
 /// A point, and its distances to both triangles.
@@ -107,7 +107,8 @@ impl Worker<'_, '_, '_> {
                 best = point;
             }
             let difference = point.difference();
-            // The end that stays counts half from then on (the Illinois rule), or it would stay for ever.
+            // The end that stays counts half from then on (the Illinois rule), or it would never
+            // move.
             if (difference > 0.0) == (at_low > 0.0) {
                 (low, at_low, at_high) = (share, difference, 0.5 * at_high);
             } else {

@@ -5,12 +5,13 @@
 //! the triangle of shadows λ₁ ≥ 0, λ₂ ≥ 0, λ₃ = 1 − λ₁ − λ₂ ≥ 0. A sheet D of the other surface is gathered from one
 //! of its triangles: wherever the shadow of a side meets t, the triangle across is added.
 //!
-//! **Cover.** Every side of D that an odd number of its triangles share then casts its shadow outside t. So the number
-//! of shadows of D's triangles that cover a point is odd at all points of t or at none (the degree modulo two of a
-//! map is constant off the image of the boundary; nothing is asked of orientation, folds or planarity). If it is odd at
-//! one point, then at each point of t a line along u meets D, and the distance from t to the surface is at most the
-//! greatest |h| of D over t. Heights are linear on a triangle, so that it is attained at a corner of D's triangles
-//! clipped to t.
+//! **Cover.** Every side of D that an odd number of its triangles share then casts its shadow
+//! outside t. So the number of shadows of D's triangles that cover a point is odd at all points of
+//! t or at none (the degree modulo two of a map is constant off the image of the boundary;
+//! orientation, folds and planarity do not matter). If it is odd at one point, then at each point
+//! of t a line along u meets D, and the distance from t to the surface is at most the greatest |h|
+//! of D over t. Heights are linear on a triangle, so that it is attained at a corner of D's
+//! triangles clipped to t.
 //!
 //! **Inset.** The surface may end inside t, at a boundary or where it turns down a ridge so steeply that heights say
 //! nothing. Such sides are not crossed. The argument then holds for the part s = {λᵢ ≥ mᵢ} of t that they do not reach,
@@ -55,7 +56,7 @@ const COUNTED_AT: [[f64; 2]; 4] = [
 struct View {
     base: DVec3,
     rows: [DVec3; 3],
-    /// How far the vertices that computed coordinates stand for may be from the true ones.
+    /// The greatest distance of the vertices at computed coordinates from the true ones.
     slack: f64,
     /// Sine of the angle between the direction and the triangle's normal, or a little more.
     tilt: f64,
@@ -75,7 +76,7 @@ pub(super) struct Cover {
     sheet: Vec<Patch>,
     ends: Vec<[DVec3; 2]>,
     seen: Seen,
-    /// Triangles looked at so far.
+    /// Triangles visited so far.
     pub(super) visited: u64,
 }
 
@@ -332,7 +333,8 @@ fn passes_by(a: DVec3, b: DVec3) -> bool {
     first != 0 && turn(a, b, 1.0, 0.0) == first && turn(a, b, 0.0, 1.0) == first
 }
 
-/// Whether a triangle's shadow holds the point; `None` if it is too near one of the sides to tell.
+/// Whether a triangle's shadow holds the point; `None` if it is too near one of the sides to
+/// decide.
 #[inline]
 fn holds(&[a, b, c]: &[DVec3; 3], x: f64, y: f64) -> Option<bool> {
     if (a.x < x && b.x < x && c.x < x)
@@ -400,7 +402,8 @@ fn sideways(t: [DVec3; 3], inset: [f64; 3]) -> f64 {
     step(0).max(step(1)).max(step(2))
 }
 
-/// The greatest height, up or down, of a triangle over the inset t: at the corners of what is left of it after clipping.
+/// The greatest height, up or down, of a triangle over the inset t: at the corners of its clipped
+/// part.
 ///
 /// Where the cuts fall is known to a few roundings of the weights. The points of t in the strip between the computed and
 /// the true cut are that far from others, which [`View::new`] has room for.

@@ -1,19 +1,20 @@
 //! The Hausdorff distance between two triangle meshes, bounded from both sides.
 //!
-//! Takes any two sets of triangles; gives for each direction an interval that the true greatest distance certainly
-//! lies in, and the place where its lower end is attained. Branch and bound: [`search`] keeps the farthest point
-//! found and splits triangles until none of their pieces can be farther away by more than the gap; [`piece`] and
-//! [`cover`] bound the distance of a piece from above.
+//! Takes any two sets of triangles; gives for each direction a proven interval of the greatest
+//! distance, and the place where its lower end is attained. Branch and bound: [`search`] keeps the
+//! farthest point found and splits triangles until none of their pieces can be farther away by more
+//! than the gap; [`piece`] and [`cover`] bound the distance of a piece from above.
 //!
-//! *Rounding.* Lower ends are distances of points as the hierarchy finds them, less what the search and the points may
-//! be off; upper ends never rest on a search, only on points that lie on the other surface, and are increased by what
-//! those may be off. [`scale`] says by how much: about 1.5e-11 of the surface's size below, 4e-14 of
-//! the greatest coordinate above.
+//! *Rounding.* Lower ends are distances of points by the hierarchy, less the errors of the search
+//! and the points; upper ends never rest on a search, only on points that lie on the other surface,
+//! and are increased by the errors of those. [`scale`] gives the errors: about 1.5e-11 of the
+//! surface's size below, 4e-14 of the greatest coordinate above.
 //!
-//! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces nearly coincide a triangle
-//! must be split until its pieces are as small as the distance. Clipping each triangle along the triangles of the other
-//! surface, piece by piece: as tight as the cover, but a nearest point and a clip for every piece, where the cover
-//! asks for one nearest point and three scalar products a triangle.
+//! *Rejected.* Steps and single triangles alone (Tang, Lee and Kim 2009; CGAL): where surfaces
+//! nearly coincide a triangle must be split until its pieces are as small as the distance. Clipping
+//! each triangle along the triangles of the other surface, piece by piece: as tight as the cover,
+//! but a nearest point and a clip for every piece, where the cover needs one nearest point and
+//! three scalar products a triangle.
 
 mod between;
 mod cover;
@@ -37,19 +38,22 @@ use search::Search;
 pub(crate) use target::Target;
 
 options! {
-    /// How narrow the interval is to be.
+    /// The requested width of the interval, and the most work.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct CertifiedOptions {
-        /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the default: a millionth of
-        /// the diagonal of the reference's bounding box. Negative numbers and NaN count as 0, and less than rounding
-        /// allows (about 1e-10 of the surfaces' size) as that.
+        /// An interval no wider than this is narrow enough, in the surfaces' unit. `None`, the
+        /// default: a millionth of the diagonal of the reference's bounding box. Negative numbers
+        /// and NaN count as 0, and values below the rounding error (about 1e-10 of the surfaces'
+        /// size) as that.
         pub gap: Option<f64> = None,
-        /// So is one no wider than this share of the lower bound; 0.01 by default. Negative numbers and NaN count as 0.
+        /// An interval is narrow enough if no wider than this share of the lower bound; 0.01 by
+        /// default. Negative numbers and NaN count as 0.
         pub relative_gap: f64 = 0.01,
-        /// Work after which the search ends in each direction, with the interval that it has reached by then, which is
-        /// wider than asked for but as certain. A unit is a piece bounded, or a triangle or box of triangles looked at for
-        /// that; the default, 10⁹, is about half a minute on one thread. A first bound of every triangle is always made, and
-        /// the search also ends where more than four million pieces wait to be split.
+        /// Work after which the search ends in each direction, with the interval reached by then,
+        /// which is wider than requested but as certain. A unit is a piece bounded, or a triangle
+        /// or box of triangles tested for that; the default, 10⁹, is about half a minute on one
+        /// thread. A first bound of every triangle is always made, and the search also ends where
+        /// more than four million pieces wait to be split.
         pub max_work: u64 = 1_000_000_000,
     }
 }
@@ -70,13 +74,13 @@ pub struct Bounds {
     pub at: [f64; 3],
     /// The other surface's closest point to it.
     pub to: [f64; 3],
-    /// Whether the interval is as narrow as was asked for.
+    /// Whether the interval is as narrow as requested.
     pub converged: bool,
 }
 
 impl Bounds {
-    /// The interval where one of the surfaces only stands for another, within `error` of it in both directions: that
-    /// much wider on both sides.
+    /// The interval for a surface that approximates another within `error` in both directions:
+    /// wider by `error` on both sides.
     ///
     /// The distances of two surfaces to a third differ by at most their own symmetric distance. Rounded outwards.
     pub fn widened(self, error: f64) -> Self {
@@ -123,7 +127,7 @@ impl CertifiedHausdorff {
         }
     }
 
-    /// Whether both intervals are as narrow as was asked for.
+    /// Whether both intervals are as narrow as requested.
     pub fn converged(&self) -> bool {
         self.forward.converged && self.backward.converged
     }
@@ -131,9 +135,10 @@ impl CertifiedHausdorff {
 
 /// Bounds the distance between two surfaces, in both directions and from both sides.
 ///
-/// Any triangles will do: open, non-manifold, intersecting, without area. The search is fast where the surfaces are near
-/// each other and the triangles of the one measured to are connected, as by [`Mesh::from_soup`](crate::Mesh::from_soup).
-/// The same surfaces and options give the same bytes for any number of threads.
+/// Any triangles will do: open, non-manifold, intersecting, without area. The search is fast where
+/// the surfaces are near each other and the triangles of the one measured to are connected, as by
+/// [`Mesh::from_soup`](crate::Mesh::from_soup). The bytes of the result do not depend on the number
+/// of threads.
 ///
 /// ```
 /// use limitmesh::Triangles;
@@ -162,10 +167,10 @@ pub fn certified_hausdorff(
     certified_hausdorff_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`certified_hausdorff`], telling an observer how it goes on.
+/// [`certified_hausdorff`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`certified_hausdorff`], or the observer asked to stop.
 pub fn certified_hausdorff_observed(
     surface: Triangles<'_>,
     reference: Triangles<'_>,
@@ -177,7 +182,8 @@ pub fn certified_hausdorff_observed(
     certified_hausdorff_between_observed(&surface, &reference, options, observer)
 }
 
-/// [`certified_hausdorff`] between surfaces whose hierarchies are at hand, for measuring several against one.
+/// [`certified_hausdorff`] between surfaces with given hierarchies, for measuring several against
+/// one.
 ///
 /// # Errors
 /// A surface with more than 2^32 / 3 triangles or with a coordinate beyond 1e300.
@@ -189,10 +195,10 @@ pub fn certified_hausdorff_between(
     certified_hausdorff_between_observed(surface, reference, options, &mut unobserved)
 }
 
-/// [`certified_hausdorff_between`], telling an observer how it goes on.
+/// [`certified_hausdorff_between`] with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`certified_hausdorff_between`], or the observer asked to stop.
 pub fn certified_hausdorff_between_observed(
     surface: &Bvh<'_>,
     reference: &Bvh<'_>,
@@ -202,8 +208,8 @@ pub fn certified_hausdorff_between_observed(
     between([surface, reference], None, options, observer)
 }
 
-/// Bounds a symmetric distance that is known to be at least so much, to within `gap`: little time is spent on what is below. Points are
-/// given where more was found than that.
+/// Bounds a symmetric distance with a known lower bound, to within `gap`: little time is spent
+/// below it. Points are given where a greater distance was found.
 pub(crate) fn certified_known(
     trees: [&Bvh<'_>; 2],
     known: f64,
@@ -231,7 +237,8 @@ pub(crate) fn certified_known(
     })
 }
 
-/// Work of a search with something known, for each triangle of both surfaces: it ends by itself after some five.
+/// Work of a search with something known, for each triangle of both surfaces: it usually ends after
+/// some five.
 const KNOWN_WORK: u64 = 20;
 
 fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
@@ -246,7 +253,7 @@ fn where_known(trees: [&Bvh<'_>; 2], gap: f64) -> CertifiedOptions {
     }
 }
 
-/// Both directions; what is known of the greater one counts for each.
+/// Both directions; the known lower bound of the greater one counts for each.
 fn between(
     [surface, reference]: [&Bvh<'_>; 2],
     known: Option<f64>,

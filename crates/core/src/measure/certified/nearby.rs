@@ -1,4 +1,4 @@
-//! Bounds of single triangles' distances to a mesh, for those who know where on it to begin.
+//! Bounds of single triangles' distances to a mesh, with a given starting point on it.
 
 use super::piece::{Piece, Sample, Worker};
 use super::scale::Scale;
@@ -38,7 +38,7 @@ impl<'s, 'a> Target<'s, 'a> {
         })
     }
 
-    /// How far rounding may have led astray whoever measures distances of points of triangles no larger than the surface,
+    /// The rounding error of measured distances of points of triangles no larger than the surface,
     /// in its unit.
     pub(crate) fn slack(&self) -> f64 {
         self.scale.length_back(self.scale.slack)

@@ -1,6 +1,6 @@
 //! A piece of a triangle and upper bounds of its distance to the other surface.
 //!
-//! Let t be a piece with corners cᵢ. In the order in which they are tried, each valid by itself:
+//! Let t be a piece with corners cᵢ. The bounds, each valid alone, in the order of trial:
 //!
 //! * **step**: for any point p of t, d(p) + max |cᵢ − p|, as the distance changes no faster than the point;
 //! * **one triangle**: for any triangle k of the other surface, max d(cᵢ, k), as the distance to a convex set is convex;
@@ -13,7 +13,7 @@ use super::scale::DEEPEST;
 use super::target::{Near, Target};
 use crate::vector::{DVec3, unit_or_zero};
 
-/// A side this many times longer than the shortest one is cut by itself: pieces then get rounder.
+/// A side this many times longer than the shortest one is cut alone: pieces then get rounder.
 const SLENDER: f64 = 2.0;
 
 /// A piece of a triangle of the surface that is measured.
@@ -53,13 +53,13 @@ impl Sample {
     }
 }
 
-/// What bounding pieces needs beside them; its memory is used again.
+/// The search state for bounding pieces; its memory is used again.
 pub(crate) struct Worker<'t, 's, 'a> {
     pub(super) target: &'t Target<'s, 'a>,
     pub(super) cover: Cover,
     /// Triangles in a sheet at most.
     pub(super) limit: usize,
-    /// Whether the middle of a piece is looked at before a sheet is gathered from a corner.
+    /// Whether the middle of a piece is tested before a sheet is gathered from a corner.
     middle_first: bool,
     /// The farthest point met.
     pub(super) farthest: Sample,
@@ -83,7 +83,7 @@ impl<'t, 's, 'a> Worker<'t, 's, 'a> {
         }
     }
 
-    /// Pieces bounded, and triangles and boxes looked at for that.
+    /// Pieces bounded, and triangles and boxes visited for that.
     pub(super) fn work(&self) -> u64 {
         self.steps + self.cover.visited
     }

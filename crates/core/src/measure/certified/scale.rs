@@ -1,8 +1,8 @@
 //! One scale for both surfaces, and how far rounding may lead astray.
 //!
-//! Coordinates are multiplied by a power of two so that the greatest is near 1: squares and products then neither
-//! overflow nor vanish, and rounding can be stated in units of that size. Scaling is exact but for numbers that become
-//! subnormal, for which [`Scale::new`] allows.
+//! Coordinates are multiplied by a power of two so that the greatest is near 1: squares and
+//! products then neither overflow nor vanish, and rounding can be stated in units of that size.
+//! Scaling is exact except for numbers that become subnormal, for which [`Scale::new`] allows.
 
 use crate::measure::frame::{exponent_above, power_of_two};
 use crate::vector::DVec3;
@@ -14,16 +14,16 @@ pub(super) const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 /// long before that many it is no larger than the rounding.
 pub(super) const DEEPEST: u32 = 64;
 
-/// What is allowed for in an upper bound, in roundings of the greatest coordinate: the corners of a piece (√3 for each
-/// of [`DEEPEST`] splits), a point of a triangle as a weighted sum (at most 11), the difference and length of two
-/// points (at most 16), and as much again.
+/// The allowance in an upper bound, in roundings of the greatest coordinate: the corners of a piece
+/// (√3 for each of [`DEEPEST`] splits), a point of a triangle as a weighted sum (at most 11), the
+/// difference and length of two points (at most 16), and as much again.
 const POINT_ROUNDINGS: f64 = 320.0;
 
-/// Relative to the size of the surface searched, how far the distance that a search returns may be from the truth.
-/// The worst are points above the inside of a sliver: with the least sine that
-/// [`closest_to_origin`](crate::geometry::closest_to_origin) trusts, 3e-4, the direction of its normal is known
-/// to 8 / 3e-4 roundings, and its plane at the foot of the point to that share of its size, 3e-12; 2^-36 is five times
-/// that.
+/// Relative to the size of the surface searched, how far the distance that a search returns may be
+/// from the truth. The worst are points above the inside of a sliver: with the least sine that
+/// [`closest_to_origin`](crate::geometry::closest_to_origin) trusts, 3e-4, the direction of its
+/// normal is known to 8 / 3e-4 roundings, and its plane at the projection of the point to that
+/// share of its size, 3e-12; 2^-36 is five times that.
 const SEARCH: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// The common scale.
@@ -44,7 +44,8 @@ pub(super) struct Scale {
 impl Scale {
     /// The scale of surfaces whose coordinates are at most `magnitude`; the surfaces' longest box side is `extent`.
     pub(super) fn new(magnitude: f64, extent: f64) -> Self {
-        // Both powers of two must be normal numbers; what remains to the ends of the range does no harm.
+        // Both powers of two must be normal numbers; the rest to the ends of the range does no
+        // harm.
         let exponent = if magnitude > 0.0 {
             exponent_above(magnitude).clamp(-1000, 1000)
         } else {

@@ -1,10 +1,11 @@
 //! Branch and bound over the pieces of a surface's triangles.
 //!
-//! Takes the surface that is measured and the one it is measured to; gives the interval of the greatest distance.
-//! First the vertices, and on large surfaces beside finer ones samples and a climb, give a lower bound, from which most
-//! triangles can be dropped at once; the pieces of the others are split, the worst first, until all that is left is
-//! within the gap of the lower bound. Pieces are treated in batches between which alone the lower bound changes, so that threads do not
-//! matter.
+//! Takes the surface that is measured and the one it is measured to; gives the interval of the
+//! greatest distance. First the vertices, and samples and a climb on a large surface measured to a
+//! finer one, give a lower bound, from which most triangles can be dropped at once; the pieces of
+//! the others are split, the worst first, until all that is left is within the gap of the lower
+//! bound. Pieces are treated in batches between which alone the lower bound changes, so that
+//! threads do not matter.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -19,23 +20,24 @@ use crate::parallel;
 use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
-/// Points that the first lower bound is sampled at, beside the vertices, where that pays: enough for the climb to start
-/// near the maximum on most surfaces, few beside the rest of the work.
+/// Points that the first lower bound is sampled at, in addition to the vertices, where that pays:
+/// enough for the climb to start near the maximum on most surfaces, few compared with the rest of
+/// the work.
 const SAMPLES: usize = 50_000;
 
-/// It pays on surfaces of so many triangles. Smaller ones are searched whole in about the time that samples and climb take,
-/// which spare a third of the work at most. They spare nothing where the surface itself is the finer one, whose triangles
-/// are hardly ever split.
+/// The least number of triangles for which sampling pays. Smaller ones are searched whole in about
+/// the time that samples and climb take, which spare a third of the work at most. They spare
+/// nothing where the surface itself is the finer one, whose triangles are hardly ever split.
 const LARGE: usize = 100_000;
 
 /// Samples measured, and triangles bounded, in one go.
 const RUN: usize = 1024;
 
-/// Pieces split before the lower bound is looked at again, and those of them in one go.
+/// Pieces split before the lower bound is updated, and those of one block.
 const BATCH: usize = 4096;
 const PIECES: usize = 32;
 
-/// Pieces waiting at most, beside the triangles themselves; each takes about 100 bytes.
+/// Pieces waiting at most, in addition to the triangles; each takes about 100 bytes.
 const WAITING: usize = 1 << 22;
 
 /// A sheet has at most this many triangles, and this many times as many as the surface searched has for one of the
@@ -72,10 +74,10 @@ impl PartialEq for Waiting {
 
 impl Eq for Waiting {}
 
-/// What a run over pieces found.
+/// The result of a run over pieces.
 struct Found {
     kept: Vec<Piece>,
-    /// Greatest bound of what was dropped.
+    /// The greatest bound of the dropped pieces.
     dropped: f64,
     farthest: Sample,
     work: u64,
@@ -89,7 +91,8 @@ pub(super) struct Search<'t, 's, 'a> {
     gap: f64,
     relative_gap: f64,
     most_work: u64,
-    /// What the distance counts as at least; where it is known nobody looks for more than pieces and vertices show.
+    /// The least value of the distance; where it is known, the search considers only pieces and
+    /// vertices.
     known: Option<f64>,
     farthest: Sample,
     waiting: BinaryHeap<Waiting>,
@@ -100,8 +103,8 @@ pub(super) struct Search<'t, 's, 'a> {
 }
 
 impl<'t, 's, 'a> Search<'t, 's, 'a> {
-    /// The greatest distance from `from` to the target, or what is `known`, if that is more. `gap` and `known` are in the
-    /// surfaces' unit.
+    /// The greatest distance from `from` to the target, or the `known` one, if that is more. `gap`
+    /// and `known` are in the surfaces' unit.
     pub(super) fn run(
         from: &'s Bvh<'a>,
         target: &'t Target<'s, 'a>,
@@ -109,7 +112,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         options: &CertifiedOptions,
         watch: &mut Watch<'_>,
     ) -> Result<(Bounds, u64), Cancelled> {
-        // No interval can be narrower than what rounding is allowed for.
+        // No interval can be narrower than the allowance for rounding.
         let least = 4.0 * (target.scale.slack + target.scale.search_slack);
         let mut search = Self {
             from,
@@ -141,7 +144,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         found.max(self.known.unwrap_or(0.0))
     }
 
-    /// What pieces need not exceed.
+    /// The bound that pieces need not exceed.
     fn goal(&self) -> f64 {
         let lower = self.lower();
         lower + self.gap.max(self.relative_gap * lower)
@@ -290,7 +293,7 @@ impl<'t, 's, 'a> Search<'t, 's, 'a> {
         Ok(())
     }
 
-    /// Takes in what the runs found, in order.
+    /// Takes in the results of the runs, in order.
     fn take(&mut self, runs: Vec<Found>) {
         for run in runs {
             self.dropped = self.dropped.max(run.dropped);

@@ -3,7 +3,7 @@
 /// Places at first: enough for the floods over a few triangles that are by far the most frequent.
 const FIRST: usize = 64;
 
-/// The set: open addressing, with stamps that tell this flood's entries from earlier ones'.
+/// The set: open addressing, with stamps that separate this flood's entries from earlier ones'.
 pub(super) struct Seen {
     entries: Vec<Entry>,
     stamp: u32,

@@ -58,8 +58,8 @@ impl Target<'_, '_> {
         }
     }
 
-    /// The distance of a point to some point of a triangle, the nearest but for rounding: within [`Scale::slack`] never
-    /// less than the distance to the triangle, whatever its shape.
+    /// The distance of a point to some point of a triangle, the nearest within rounding: within
+    /// [`Scale::slack`] never less than the distance to the triangle, whatever its shape.
     #[inline]
     pub(super) fn distance_to(&self, p: DVec3, face: u32) -> f64 {
         let [a, b, c] = self.triangle(face);

@@ -108,7 +108,8 @@ fn narrow() -> CertifiedOptions {
     CertifiedOptions::default().relative_gap(1e-4)
 }
 
-/// The interval holds the truth, is as narrow as asked, and its places are where it says.
+/// The interval holds the truth, is as narrow as requested, and its distance is attained at its
+/// points.
 fn holds(bounds: &Bounds, truth: f64, gap: f64) {
     assert!(
         bounds.lower <= truth && truth <= bounds.upper,
@@ -125,7 +126,7 @@ fn holds(bounds: &Bounds, truth: f64, gap: f64) {
     );
 }
 
-/// The distance of a point to a triangle: inside if its foot on the plane is, else that of a side.
+/// The distance of a point to a triangle: to the plane if its projection is inside, else to a side.
 fn point_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let side = |a: DVec3, b: DVec3| {
         let t = (p - a).dot(b - a) / (b - a).length_squared();
@@ -138,12 +139,12 @@ fn point_to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
         .distance(p)
     };
     let normal = (b - a).cross(c - a);
-    let foot = p - normal * ((p - a).dot(normal) / normal.length_squared());
+    let projection = p - normal * ((p - a).dot(normal) / normal.length_squared());
     let inside = [(a, b), (b, c), (c, a)]
         .iter()
-        .all(|&(a, b)| (b - a).cross(foot - a).dot(normal) >= 0.0);
+        .all(|&(a, b)| (b - a).cross(projection - a).dot(normal) >= 0.0);
     if inside {
-        foot.distance(p)
+        projection.distance(p)
     } else {
         side(a, b).min(side(b, c)).min(side(c, a))
     }
@@ -376,7 +377,7 @@ fn coordinates_of_any_size() {
         );
         assert!(near(found.upper(), plain.upper()), "{exponent} {found:?}");
     }
-    // A small surface beside a huge one, and far from the origin.
+    // A small surface next to a huge one, and far from the origin.
     let found = certify(&a, &b.scaled(1e200), &CertifiedOptions::default());
     assert!(
         found.lower() >= 1e199 && found.upper() <= 1.02e200 * 3f64.sqrt(),
@@ -465,13 +466,13 @@ fn strips(parts: u32, profiles: &[[[f64; 2]; 2]]) -> Shape {
     shape
 }
 
-/// Turned by some angles, so that nothing is along an axis.
+/// Turned by some angles, so that no edge is along an axis.
 fn turned(shape: &Shape) -> Shape {
     let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7);
     shape.mapped(|p| (turn * vector(p)).to_array())
 }
 
-/// What is farthest away lies on a whole line, or all over.
+/// The farthest points fill a whole line, or the whole surface.
 #[test]
 fn work_grows_with_the_logarithm_of_the_gap_where_the_maximum_is_not_one_point() {
     let wide = |height: f64| [[-1.0, height], [1.0, height]];
@@ -482,7 +483,7 @@ fn work_grows_with_the_logarithm_of_the_gap_where_the_maximum_is_not_one_point()
         .map(|i| [[0.25 * f64::from(i), 0.0], [0.25 * f64::from(i + 1), 0.0]])
         .collect();
     let cases = [
-        // Between two sheets beside it, and over the slot between them.
+        // Between two sheets next to it, and over the slot between them.
         (
             "ridge",
             vec![wide(0.0)],
@@ -599,7 +600,8 @@ fn sampled_distances_lie_within() {
     }
 }
 
-/// A flat sheet under a ridge whose top lies over no vertex of it: the farthest points are on its foot, and c / √(1 + s²) away.
+/// A flat sheet under a ridge whose top lies over no vertex of it: the farthest points are on its
+/// base line, and c / √(1 + s²) away.
 fn sheet_and_ridge() -> (Shape, Shape, f64) {
     let (height, slope) = (0.1, 0.25f64);
     let ridge = square(230, |x, _| height - slope * (x - 0.5).abs());

@@ -131,7 +131,8 @@ fn parallel_squares() {
 
 #[test]
 fn a_larger_square_is_farther_one_way() {
-    // From the large square [-1, 2]² to the unit square: the corners are √2 away; the other way round all is 0.
+    // From the large square [-1, 2]² to the unit square: the corners are √2 away; in the other
+    // direction all is 0.
     let (small, large) = (square(4), square(4).moved([-1.0, -1.0, 0.0], 3.0));
     let distance = measure(&large, &small, 200_000);
     assert!((distance.forward.max - 2f64.sqrt()).abs() < 1e-15);
@@ -162,8 +163,8 @@ fn a_larger_square_is_farther_one_way() {
 fn nested_spheres() {
     let (inner, outer) = (sphere(4), sphere(5).moved([0.0; 3], 1.5));
     let distance = measure(&inner, &outer, 100_000);
-    // A point of a facet is at most its longest edge / √3 from a corner, and so no deeper below the sphere than
-    // the foot of a chord of twice that.
+    // A point of a facet is at most its longest edge / √3 from a corner, and so no deeper below the
+    // sphere than the middle of a chord of twice that.
     let depth = |shape: &Shape, radius: f64| {
         let sides = (0..shape.triangles.len()).flat_map(|face| {
             let [a, b, c] = shape.as_triangles().corners(face).map(vector);

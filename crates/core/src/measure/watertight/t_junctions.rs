@@ -1,8 +1,9 @@
 //! How many vertices lie inside of boundary edges.
 //!
-//! Vertices at one place are looked up once and edges between the same two places are kept once, so that soups of
-//! unconnected triangles, where many meet in a point, take no longer than others. Each edge goes through a tree of the places
-//! and meets those near to it, so that it does not matter how many edges run side by side, or lead to the same vertex.
+//! Vertices at one place are looked up once and edges between the same two places are kept once, so
+//! that soups of unconnected triangles, where many meet in a point, take no longer than others.
+//! Each edge goes through a tree of the places and meets those near to it, so that many parallel
+//! edges, or many edges at one vertex, take no more time.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
@@ -13,21 +14,22 @@ use crate::parallel;
 use crate::progress::{Cancelled, Stage, Watch};
 use crate::vector::{DVec3, vector};
 
-/// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how far from its ends
-/// it must be to lie inside. Wide enough for midpoints rounded to single precision in edges down to about a hundredth
-/// of the model; a gap this narrow cannot be told from a crack.
+/// How near to a boundary edge, as a share of its length, a vertex counts as lying on it, and how
+/// far from its ends it must be to lie inside. Wide enough for midpoints rounded to single
+/// precision in edges down to about a hundredth of the model; a gap this narrow cannot be
+/// distinguished from a crack.
 const ON_EDGE: f64 = 1e-5;
 
-/// The reach of an edge is taken so many times as wide where places are passed over unseen, for rounding.
+/// The factor of an edge's reach where places are skipped, for rounding.
 const WITH_ROUNDING: f64 = 1.001;
 
 /// Edges looked up in one go.
 const EDGES: usize = 1 << 12;
 
-/// Up to so many places are looked at one by one.
+/// Up to this many places are tested one by one.
 const FEW: usize = 8;
 
-/// While the tree is built, subtrees of so many places are polled for.
+/// While the tree is built, subtrees of this many places are polled for.
 const POLLED: usize = 1 << 12;
 
 /// Number of `vertices` that lie inside an edge of `boundary`.
@@ -94,7 +96,7 @@ struct Node {
     left: AtomicUsize,
 }
 
-/// Places in a tree: the root first, each node followed by its first child and what is below that.
+/// Places in a tree: the root first, each node followed by the subtree of its first child.
 struct Places {
     places: Vec<Place>,
     nodes: Vec<Node>,
@@ -157,7 +159,7 @@ impl Places {
         }
     }
 
-    /// Marks a place, and takes it from what is left of the nodes that hold it.
+    /// Marks a place, and removes it from the counts of the nodes that hold it.
     fn mark(&self, place: usize) {
         if self.is_met[place].swap(true, Relaxed) {
             return;
@@ -177,7 +179,7 @@ impl Places {
     }
 }
 
-/// Appends the node over some places, which stand at `first` among all, and what is below it; orders them.
+/// Appends the subtree over some places, which begin at `first` among all; orders them.
 fn append(
     nodes: &mut Vec<Node>,
     places: &mut [Place],

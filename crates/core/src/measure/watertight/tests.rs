@@ -74,8 +74,8 @@ fn two_parts_and_an_unused_vertex() {
     assert_eq!(counts(&examine(&positions, &triangles)), (0, 0, 0, 0, 2, 4));
 }
 
-/// A square whose left half is one triangle pair and whose right half is cut in two along the shared side, so that
-/// vertex 6 stands in the middle of the left half's edge.
+/// A square whose left half is one triangle pair and whose right half is cut in two along the
+/// shared side, so that vertex 6 is in the middle of the left half's edge.
 fn cut_square(middle: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let positions = vec![
         [0.0, 0.0, 0.0],
@@ -97,7 +97,7 @@ fn a_square_cut_on_one_side_only() {
     assert_eq!(w.t_junctions, 1);
     assert_eq!(w.boundary_edges, 1 + 2 + 6);
 
-    // The same at other scales and places: the tolerance goes with the edge.
+    // At other scales and positions, too: the tolerance is relative to the edge.
     for (scale, offset) in [(1e-200, 0.0), (1e-6, 3.0), (1e6, -1e7), (1e150, 0.0)] {
         let moved: Vec<_> = positions
             .iter()
@@ -232,14 +232,15 @@ fn scattered(i: usize) -> [f64; 3] {
     [0.618_033_988_7, 0.754_877_666_2, 0.569_840_290_9].map(|step| (0.3 + step * i as f64).fract())
 }
 
-/// Vertices on edges that lead to two vertices from everywhere, and on edges of a line that hold one another, found one by one.
+/// Vertices on many edges to two common vertices, and on overlapping edges of a line, found one by
+/// one.
 #[test]
 fn t_junctions_are_those_that_looking_at_all_finds() {
     for count in [5usize, 40, 300] {
         let mut positions = vec![[0.0; 3], [0.0, 0.0, 1.0]];
         positions.extend((0..count).map(scattered));
         let mut triangles: Vec<[u32; 3]> = (0..count as u32).map(|i| [0, 1, i + 2]).collect();
-        // Some in the middle of an edge, some beside one.
+        // Some in the middle of an edge, some next to one.
         for i in (0..count).step_by(3) {
             let shift = if i % 2 == 0 { 0.0 } else { 1e-3 };
             let on_edge = scattered(i).map(|x| 0.4 * x);

@@ -18,7 +18,7 @@ pub(super) struct Sheets {
     pub(super) topology: Topology,
     /// Which input face each face is from.
     pub(super) inputs: Vec<u32>,
-    /// The vertex before cutting that each added vertex stands for.
+    /// The original vertex of each copy.
     pub(super) copied: Vec<u32>,
     /// Ends of cut edges between which a vertex was added in the middle.
     pub(super) middles: Vec<Middle>,
@@ -31,7 +31,7 @@ pub(super) struct Sheets {
 pub(super) struct Middle {
     /// The edge's ends before cutting.
     pub(super) ends: [u32; 2],
-    /// The first of them, which stands for all.
+    /// The first of them, which represents all.
     pub(super) vertex: u32,
 }
 
@@ -147,7 +147,7 @@ impl Cutting {
         }
     }
 
-    /// Vertices whose fans do not hang together through cut edges.
+    /// Vertices whose fans are not connected through cut edges.
     fn bow_ties(&self, cuts: &Groups) -> Vec<u32> {
         let mut sets = DisjointSets::new(self.vertex_count + self.copied.len());
         for edge in cuts.iter() {
@@ -173,9 +173,10 @@ impl Cutting {
         found
     }
 
-    /// A cut edge both of whose ends lie inside a sheet leaves a slit there with two lips between the same two
-    /// vertices, which indices cannot tell from an uncut edge. Such an edge gets a vertex in its middle, one
-    /// for each face. Gives the groups of half-edges along cut edges.
+    /// A cut edge both of whose ends lie inside a sheet leaves a slit there with two lips between
+    /// the same two vertices, which indices cannot distinguish from an uncut edge. Such an edge
+    /// gets a vertex in its middle, one for each face. Gives the groups of half-edges along cut
+    /// edges.
     fn open_slits(&mut self, cuts: Groups) -> Groups {
         let mut moved = HashMap::new();
         let mut edges: Vec<Vec<u32>> = Vec::with_capacity(cuts.len());

@@ -1,8 +1,9 @@
 //! Closed components whose normals point inwards, turned round.
 //!
-//! Takes triangles that agree on an orientation within each component. A component is inside out if its volume is negative and
-//! no other component is around it whose cavity it could bound. What lies inside it is turned along with it: a file that was
-//! mirrored has all of it inside out, and a cavity in it stays a cavity.
+//! Takes triangles that agree on an orientation within each component. A component is inside out if
+//! its volume is negative and no other component is around it whose cavity it could bound. All
+//! components inside it are turned with it: a file that was mirrored has all of it inside out, and
+//! a cavity in it stays a cavity.
 
 use super::orient::{Components, Neighbours, turn};
 use super::triangulate::Faces;
@@ -16,7 +17,7 @@ const ROUNDING: f64 = 1e-12;
 /// A component without boundary.
 struct Closed<'a> {
     faces: &'a [u32],
-    /// Half of what it takes up along the axis of which that is most.
+    /// Half of its greatest extent along an axis.
     size: f64,
     /// By the cube of its size: negative where its normals point inwards, 0 where that is not certain.
     volume: f64,
@@ -104,7 +105,7 @@ impl<F: Fn(u32) -> [DVec3; 3]> InsideOut<'_, F> {
         if !self.closed.iter().any(|own| own.volume < 0.0) {
             return Vec::new();
         }
-        // What lies inside another is smaller.
+        // A component inside another is smaller.
         let mut order: Vec<usize> = (0..self.closed.len()).collect();
         order.sort_by(|&a, &b| self.closed[b].size.total_cmp(&self.closed[a].size));
         let mut signs = vec![1.0; self.closed.len()];

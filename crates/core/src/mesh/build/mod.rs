@@ -1,9 +1,10 @@
 //! From a polygon soup to a manifold, oriented triangle mesh.
 //!
-//! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero area,
-//! connect and orient the faces, turn what is inside out, cut where more than a manifold meets, carry the tags over. Each step counts
-//! what it found in the [`Diagnosis`]. All of them take time proportional to the input, or n log n,
-//! but for polygons of tens of thousands of corners, which may take n^1.5.
+//! In this order: weld vertices, cut polygons into triangles, drop repeated faces and those of zero
+//! area, connect and orient the faces, turn components that are inside out, cut where the surface
+//! is not a manifold, carry the tags over. Each step counts its findings in the [`Diagnosis`]. All
+//! of them take time proportional to the input, or n log n, except for polygons of tens of
+//! thousands of corners, which may take n^1.5.
 
 mod cut;
 mod inside_out;
@@ -26,36 +27,37 @@ use retag::VertexMaps;
 use triangulate::{Faces, Flatness};
 pub use weld::weld_within;
 
-/// Which vertices are merged before connecting the faces.
+/// The vertices that are merged before connecting the faces.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Weld {
     /// None: the file's indices alone connect faces.
     Never,
-    /// Those at exactly equal positions.
+    /// Vertices at exactly equal positions.
     #[default]
     Exact,
-    /// Those within this distance of each other, in the mesh's units. A chain of vertices, each within the
-    /// distance of the next, becomes one vertex however long the chain; it stands where the first of them in
-    /// the input's order stood.
+    /// Vertices within this distance of each other, in the mesh's units. A chain of vertices, each
+    /// within the distance of the next, becomes one vertex however long the chain; it has the
+    /// position of the first of them in the input's order.
     Within(f64),
 }
 
 options! {
-    /// How a mesh is built from a soup.
+    /// The options of building a mesh from a soup.
     #[derive(Clone, Copy, Debug)]
     pub struct BuildOptions {
-        /// Which vertices are merged.
+        /// The vertices that are merged.
         pub weld: Weld = Weld::Exact,
-        /// Refuse instead of repairing.
+        /// Whether to refuse instead of repairing.
         pub strict: bool = false,
-        /// Leave all faces the way round that they are, where that says which side is seen: neighbours that disagree are cut apart instead of
-        /// turned, and closed components whose normals point inwards are left so.
+        /// Whether to keep the orientation of all faces, for surfaces whose visible side depends on
+        /// it: neighbours that disagree are cut apart instead of turned, and closed components
+        /// whose normals point inwards stay so.
         pub keep_windings: bool = false,
     }
 }
 
-/// The mesh, what was found, and from which faces and corners of the input those of the mesh are.
+/// The mesh, the findings, and the faces and corners of the input for those of the mesh.
 pub(super) fn build(
     soup: &PolygonSoup,
     options: &BuildOptions,
@@ -86,7 +88,7 @@ pub(super) fn build(
     Ok((mesh, diagnosis, trace))
 }
 
-/// Refuses coordinates and indices that mean nothing; tells which vertices have a face.
+/// Refuses invalid coordinates and indices; reports which vertices have a face.
 fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
     check_finite(&soup.positions)?;
     let count = soup.positions.len();
@@ -115,7 +117,8 @@ fn check(soup: &PolygonSoup) -> Result<Vec<bool>, MeshError> {
     Ok(used)
 }
 
-/// For each vertex the one that stands for it: itself or an earlier one. Vertices without faces take no part.
+/// For each vertex its representative: itself or an earlier one. Vertices without faces take no
+/// part.
 fn weld(soup: &PolygonSoup, used: &[bool], weld: Weld) -> Result<Vec<u32>, MeshError> {
     match weld {
         Weld::Never => Ok((0..soup.positions.len() as u32).collect()),

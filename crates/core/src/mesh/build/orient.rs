@@ -1,17 +1,17 @@
 //! Neighbours across edges, and an orientation that all of them agree on.
 //!
-//! Takes triangles in any orientation; gives twins, and the edges along which faces had to be cut apart: those
-//! with more than two faces, and those where neighbours run against each other all the same: in a one-sided component, or because none is
-//! to be turned.
+//! Takes triangles in any orientation; gives twins, and the edges along which faces had to be cut
+//! apart: those with more than two faces, and those where neighbours run against each other: in a
+//! one-sided component, or because none is to be turned.
 
 use super::triangulate::Faces;
 use crate::geometry::{NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Diagnosis, Groups};
 
-/// Who lies across each half-edge, and who was cut apart.
+/// The face across each half-edge, and the edges that were cut apart.
 pub(super) struct Neighbours {
-    /// The half-edge of the one other face at the same edge, or [`NONE`].
+    /// The half-edge of the one other face at the edge, or [`NONE`].
     pub(super) twins: Vec<u32>,
     /// The half-edges along each cut edge.
     pub(super) cuts: Groups,
@@ -157,7 +157,7 @@ pub(super) fn turn(triangles: &mut [[u32; 3]], neighbours: &mut Neighbours, turn
     neighbours.cuts.rename(renamed);
 }
 
-/// Cuts apart the neighbours that still run the same way along their edge.
+/// Cuts apart the neighbours that still run in one direction along their edge.
 pub(super) fn cut_opposed(faces: &Faces, neighbours: &mut Neighbours, diagnosis: &mut Diagnosis) {
     let origins = faces.triangles.as_flattened();
     let mut named = Vec::new();

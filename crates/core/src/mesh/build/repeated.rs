@@ -4,7 +4,7 @@
 use super::triangulate::{Faces, Flatness};
 use crate::mesh::Diagnosis;
 
-/// Drops faces that repeat an earlier one, whichever corner they start at and whichever way round they are.
+/// Drops faces that repeat an earlier one, from any first corner and in either orientation.
 pub(super) fn drop_repeated(faces: &mut Faces, flatness: Flatness<'_>, diagnosis: &mut Diagnosis) {
     let mut marked = Vec::new();
     for_each_repetition(&faces.triangles, flatness.positions.len(), |group| {

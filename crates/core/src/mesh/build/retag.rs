@@ -11,7 +11,7 @@ pub(super) struct VertexMaps<'a> {
     pub(super) from_input: &'a [u32],
     /// Vertices before cutting.
     pub(super) vertex_count: usize,
-    /// The vertex before cutting that each added vertex stands for.
+    /// The original vertex of each copy.
     pub(super) copied: &'a [u32],
     /// Edges that were split in the middle.
     pub(super) middles: &'a [Middle],

@@ -1,4 +1,5 @@
-//! Which corner of the soup each corner of the mesh is from: the one of its face's polygon at the same vertex.
+//! The corner of the soup for each corner of the mesh: the one of its face's polygon at that
+//! vertex.
 
 use super::retag::VertexMaps;
 use crate::geometry::NONE;
@@ -26,8 +27,10 @@ pub(super) fn corners(
         let first = soup.faces.first_corner(input as usize);
         let vertices = triangle.map(|v| before_cutting(maps, v));
         for (corner, &vertex) in vertices.iter().enumerate() {
-            let beside = [1, 2].map(|step| vertices[(corner + step) % 3]);
-            let own = places.of(vertex, beside).map(|place| first + place as u32);
+            let adjacent = [1, 2].map(|step| vertices[(corner + step) % 3]);
+            let own = places
+                .of(vertex, adjacent)
+                .map(|place| first + place as u32);
             corners.push(own.unwrap_or_else(|| {
                 let all = elsewhere.get_or_insert_with(|| first_corners(soup, maps));
                 all.get(vertex as usize)
@@ -51,7 +54,7 @@ fn before_cutting(maps: &VertexMaps<'_>, v: u32) -> u32 {
     }
 }
 
-/// Where a polygon comes to which vertex.
+/// The corners of a polygon at each vertex.
 #[derive(Default)]
 struct Places {
     /// Its vertices, where they are still there.
@@ -72,7 +75,7 @@ impl Places {
         self.by_vertex.sort_unstable();
     }
 
-    /// Where the polygon comes to a vertex; where it does several times, between these two if it can be told.
+    /// The polygon's corner at a vertex; with several, the one between these two if it is unique.
     fn of(&self, vertex: u32, [next, previous]: [u32; 2]) -> Option<usize> {
         let start = self.by_vertex.partition_point(|&(other, _)| other < vertex);
         let places = self.by_vertex[start..]
@@ -81,14 +84,14 @@ impl Places {
         let mut places = places.map(|&(_, place)| place);
         let first = places.next()?;
         let count = self.vertices.len();
-        let beside = |place: &usize| {
+        let adjacent = |place: &usize| {
             let around = [1, count - 1].map(|step| self.vertices[(place + step) % count]);
             around.contains(&Some(next)) || around.contains(&Some(previous))
         };
-        if beside(&first) {
+        if adjacent(&first) {
             Some(first)
         } else {
-            places.find(beside).or(Some(first))
+            places.find(adjacent).or(Some(first))
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Polygons into triangles.
 //!
-//! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A quad is cut
-//! along a diagonal that lies inside it, the shorter one if both do. More corners are cut by ears in the
-//! polygon's best-fit plane (through Newell's normal), with the diagonals then flipped until they are Delaunay; hundreds
-//! of corners get the constrained Delaunay triangulation at once, which takes n log n. Corners in the middle of a straight side are kept, because the neighbouring face
-//! may have them too. A polygon that crosses itself seen along its normal is twisted in space, or worse: it gets
-//! the triangulation of least area.
+//! Takes the soup's polygons over welded vertices; gives triangles and the input face of each. A
+//! quad is cut along a diagonal that lies inside it, the shorter one if both do. More corners are
+//! cut by ears in the polygon's best-fit plane (through Newell's normal), with the diagonals then
+//! flipped until they are Delaunay; hundreds of corners get the constrained Delaunay triangulation,
+//! which takes n log n. Corners in the middle of a straight side are kept, because the neighbouring
+//! face may have them too. A polygon whose projection along its normal crosses itself is twisted in
+//! space, or worse: it gets the triangulation of least area.
 
 use earcut::{Earcut, Refiner};
 
@@ -51,7 +52,7 @@ impl Faces {
     }
 }
 
-/// Cuts all polygons into triangles; `kept[v]` stands for vertex `v`.
+/// Cuts all polygons into triangles; `kept[v]` represents vertex `v`.
 ///
 /// # Errors
 /// There would be more triangles than can be indexed.
@@ -111,7 +112,7 @@ fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
         }
         polygon.push(v);
     }
-    // The same across the seam between the last corner and the first.
+    // Across the seam between the last corner and the first as well.
     let mut start = 0;
     while polygon.len() - start >= 2 {
         let (first, last) = (polygon[start], polygon[polygon.len() - 1]);
@@ -197,8 +198,9 @@ impl Cutter {
         false
     }
 
-    /// The constrained Delaunay triangulation of what the polygon encloses; nothing where it crosses itself, goes round anything
-    /// twice, or has a corner inside of a side. It may come to a vertex or along an edge twice, as at slits to holes.
+    /// The constrained Delaunay triangulation of the polygon's inside; nothing where it crosses
+    /// itself, goes round anything twice, or has a corner inside of a side. It may visit a vertex
+    /// or an edge twice, as at slits to holes.
     fn cut_delaunay(&mut self, polygon: &[u32]) -> Option<()> {
         // By vertex, the first corner there; by corner, the number of its vertex.
         let mut firsts: Vec<(u32, u32)> = polygon.iter().copied().zip(0..).collect();
@@ -440,7 +442,7 @@ pub(super) fn is_flat(positions: &[[f64; 3]], triangle: [u32; 3]) -> bool {
     are_on_one_line(triangle.map(|v| positions[v as usize]))
 }
 
-/// Which triangles have no area wherever their vertices are moved.
+/// The triangles without area under any movement of their vertices.
 #[derive(Clone, Copy)]
 pub(super) struct Flatness<'a> {
     pub(super) positions: &'a [[f64; 3]],

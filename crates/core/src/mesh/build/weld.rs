@@ -1,4 +1,4 @@
-//! Welding: which vertices stand for one.
+//! Welding: merging vertices at one position.
 //!
 //! Takes positions, gives for each vertex the lowest index of the vertices it is merged with (those in
 //! no face take no part). Equal positions
@@ -173,7 +173,7 @@ impl SelfJoin<'_> {
         }
     }
 
-    /// Joins what lies near each other in two nodes.
+    /// Joins near vertices of two nodes.
     fn join(&mut self, a: usize, b: usize) {
         let (first, second) = (&self.tree.nodes[a], &self.tree.nodes[b]);
         let gap = (second.low - first.high)

@@ -11,12 +11,12 @@ use super::triangulate::{Faces, Flatness};
 use crate::mesh::Diagnosis;
 use crate::vector::vector;
 
-/// Splits allowed for each face of zero area. One is enough for a single face, and a row of n along one line
-/// needs few each; coincident vertices that were not welded can ask for ever more.
+/// Splits allowed for each face of zero area. One is enough for a single face, and a row of n along
+/// one line needs few each; coincident vertices that were not welded can need ever more.
 const SPLITS_A_FACE: usize = 64;
 
-/// Removes faces of zero area; `polygon_sizes` tells which input faces are polygons, whose own straight
-/// corners are no defect.
+/// Removes faces of zero area; by `polygon_sizes` input faces that are polygons are known, whose
+/// own straight corners are no defect.
 pub(super) fn remove_zero_area(
     faces: &mut Faces,
     flatness: Flatness<'_>,
@@ -176,7 +176,7 @@ impl<'a> Removal<'a> {
     fn run(&mut self, flat: usize) {
         let mut left = flat.saturating_mul(SPLITS_A_FACE);
         while let Some(Candidate { length, face }) = self.queue.pop() {
-            // A face may have changed since it was queued; what it is now was queued as well.
+            // A face may have changed since it was queued; its new state was queued as well.
             if self.dropped[face as usize]
                 || self.longest_side(face).1 != length
                 || !self.flatness.is_flat(self.faces, face)
@@ -229,8 +229,8 @@ impl<'a> Removal<'a> {
     }
 }
 
-/// Splitting a neighbour that was folded over a third face leaves two faces back to back: both go, so that
-/// what was closed stays closed.
+/// Splitting a neighbour that was folded over a third face leaves two faces back to back: both are
+/// dropped, so that a closed surface stays closed.
 fn cancel_folds(
     faces: &Faces,
     vertex_count: usize,

@@ -1,4 +1,4 @@
-//! Rings, twins and counts of known surfaces, and what validation must notice.
+//! Rings, twins and counts of known surfaces, and the errors that validation must find.
 
 use proptest::prelude::*;
 
@@ -178,7 +178,8 @@ fn validate_notices_broken_arrays() {
     }
 }
 
-/// A slit whose lips run between the same two vertices cannot be told from an uncut edge by indices.
+/// A slit whose lips run between the same two vertices cannot be distinguished from an uncut edge
+/// by indices.
 #[test]
 fn validate_refuses_an_edge_torn_open() {
     let mut torn = Topology::from_triangles(tetrahedron(), 4).unwrap();

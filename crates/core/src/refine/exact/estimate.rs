@@ -1,4 +1,4 @@
-//! Predicts what an exact refinement would give, from how a coarser one grows.
+//! Predicts the size of an exact refinement from the growth of coarser ones.
 
 use super::scale;
 use crate::index::{FaceId, HalfEdgeId};
@@ -26,24 +26,27 @@ const MOST_HALVINGS: f64 = 1000.0;
 /// Triangles that are counted before the rest is extrapolated.
 const COUNTED: usize = 60_000;
 
-/// Of meshes of so many faces about so many are looked at, at even steps through their order: they are cut out with the faces around them.
+/// Of meshes with more faces than this about this many are sampled, at even steps through their
+/// order: they are cut out with the faces around them.
 const SAMPLED_FROM: usize = 20_000;
 const SAMPLES: usize = 1000;
 
-/// Triangles of a refinement, without collapses, that is made to see what part of it collapses leave: some tenths of a second.
+/// Triangles of a refinement, without collapses, that measures the share left by collapses: some
+/// tenths of a second.
 const COLLAPSED: usize = 15_000;
 
 /// Halving a distance at most doubles the triangles in the long run, halving an angle makes them four times as many.
 const MOST_GROWTH: f64 = 4.0;
 
-/// The triangles and the memory that [`super::exact`] would come to with the same options.
+/// Estimates the triangles and the memory of [`super::exact`] with these options.
 ///
-/// Numbers of triangles follow a power of the tolerance once the triangles are small against the surface's features; they
-/// are extrapolated from the last two halvings that could be counted quickly. What collapses leave of them is seen at a tolerance
-/// that takes few; it hardly depends on it. Of large meshes a sample of faces is looked at.
+/// Numbers of triangles follow a power of the tolerance once the triangles are small against the
+/// surface's features; they are extrapolated from the last two halvings that could be counted
+/// quickly. The share that collapses leave is measured at a tolerance that needs few; it hardly
+/// depends on the tolerance. Of large meshes a sample of faces is used.
 ///
 /// # Errors
-/// As for [`super::exact`].
+/// Those of [`super::exact`].
 pub fn exact_estimate(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -52,10 +55,10 @@ pub fn exact_estimate(
     exact_estimate_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`exact_estimate`], telling an observer how it goes on.
+/// [`exact_estimate`], with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`exact_estimate`], or the observer asked to stop.
 pub fn exact_estimate_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -138,7 +141,7 @@ fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
     times.log2().ceil().min(MOST_HALVINGS).exp2()
 }
 
-/// The same where edges are collapsed.
+/// The estimate where edges are collapsed.
 fn optimised(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -183,7 +186,8 @@ fn optimised(
     })
 }
 
-/// Counts triangles for goals that are so many times too coarse until they are many or the goals the right ones.
+/// Counts triangles for goals that are too coarse by a factor until they are many or the goals the
+/// right ones.
 fn approached(
     faces: usize,
     coarsest: f64,

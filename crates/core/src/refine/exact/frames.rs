@@ -1,4 +1,5 @@
-//! Exact refinement of an animation: the same triangles for all frames, each frame within the goals.
+//! Exact refinement of an animation: one set of triangles for all frames, each frame within the
+//! goals.
 
 use super::{met, scale, tighter};
 use crate::mesh::{Mesh, MeshError, Triangles};
@@ -10,25 +11,28 @@ use crate::refine::exact_result::{ErrorBounds, Exact};
 use crate::refine::replay::{Frame, Replay};
 use crate::scheme::Scheme;
 
-/// A refinement that serves several frames.
+/// A refinement for several frames.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Frames {
-    /// The refined mesh, with the vertices of the first frame as [`Self::replay`] gives them. [`Exact::worst`], [`Exact::pixels`]
-    /// and [`Exact::open_cones`] are the greatest of any frame, and [`Exact::stop`] is about all of them.
+    /// The refined mesh, with the vertices of the first frame by [`Self::replay`].
+    /// [`Exact::worst`], [`Exact::pixels`] and [`Exact::open_cones`] are the greatest of any frame,
+    /// and [`Exact::stop`] holds for all of them.
     pub refined: Exact,
-    /// Gives the vertices of all frames.
+    /// Computes the vertices of all frames.
     pub replay: Replay,
-    /// By frame, how far the triangles, with the vertices that the replay gives, can be from the frame's limit surface.
+    /// By frame, bounds of the distance between the triangles, with the vertices of the replay, and
+    /// the frame's limit surface.
     pub errors: Vec<ErrorBounds>,
 }
 
-/// Refines `control` so that the goals are met for all frames, with the same triangles: a part is divided if it has to be in any
-/// frame. A frame is the positions of the control vertices; those of `control` itself mean nothing, its tags hold for all. What
-/// the mesh carries beside positions does not change with frames, nor do the places of vertices: channels are carried once, from the control mesh to
+/// Refines `control` so that the goals are met for all frames, with one set of triangles: a part is
+/// divided if it has to be in any frame. A frame is the positions of the control vertices; those of
+/// `control` itself are ignored, its tags hold for all. Channels do not change with frames, nor do
+/// the origins of vertices: channels are carried once, from the control mesh to
 /// [`Frames::refined`].
 ///
-/// Of the goals a tolerance, an angle and pixels are followed. Flat regions are divided like others.
+/// Supported goals are a tolerance, an angle and pixels. Flat regions are divided like others.
 ///
 /// ```
 /// use limitmesh::refine::{ExactOptions, Frame, exact_frames};
@@ -51,8 +55,9 @@ pub struct Frames {
 /// ```
 ///
 /// # Errors
-/// Goals that are none, other goals and options than those, a frame that is none of the mesh's, a scheme outside the Loop family, a cap
-/// that any frame passes, or what [`exact`](super::exact) refuses.
+/// Goals out of range, goals and options that frames do not support, a frame that is none of the
+/// mesh's, a scheme outside the Loop family, a cap that any frame exceeds, or an error of
+/// [`exact`](super::exact).
 pub fn exact_frames(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -62,10 +67,10 @@ pub fn exact_frames(
     exact_frames_observed(control, scheme, frames, options, &mut unobserved)
 }
 
-/// [`exact_frames`], telling an observer how it goes on.
+/// [`exact_frames`], with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`exact_frames`], or the observer asked to stop.
 pub fn exact_frames_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -107,7 +112,7 @@ pub fn exact_frames_observed(
     })
 }
 
-/// The same for models of a middling size.
+/// Exact refinement of frames scaled to a middling size.
 fn middling(
     (control, scheme): (&Mesh, &dyn Scheme),
     all: &[Vec<[f64; 3]>],
@@ -152,7 +157,7 @@ fn middling(
     })
 }
 
-/// Refuses what has no meaning for frames.
+/// Refuses options that have no meaning for frames.
 fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineError> {
     let refused = [
         (

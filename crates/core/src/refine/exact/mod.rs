@@ -1,6 +1,6 @@
-//! Exact refinement: triangles within a tolerance of the true limit surface. What is asked is checked here, brought to a
-//! middling size, and handed to the engine ([`super::adaptive`]) or to the collapse of a finer mesh
-//! ([`super::simplified`]).
+//! Exact refinement: triangles within a tolerance of the true limit surface. Options are checked
+//! here, the mesh is scaled to a middling size, and both are handed to the engine
+//! ([`super::adaptive`]) or to the collapse of a finer mesh ([`super::simplified`]).
 
 mod estimate;
 mod frames;
@@ -19,8 +19,8 @@ use crate::mesh::Mesh;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 
-/// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or as many triangles as
-/// allowed, whichever comes first.
+/// Refines `control` until the goals are met: each distance, angle or pixel goal everywhere, or the
+/// number of triangles, whichever comes first.
 ///
 /// # Errors
 /// A goal that is no positive number, a vertex without a limit, or more elements than can be numbered.
@@ -32,11 +32,11 @@ pub fn exact(
     exact_observed(control, scheme, options, &mut unobserved)
 }
 
-/// [`exact`], telling an observer how it goes on.
+/// [`exact`], with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop. Nothing comes with that: as long as faces are being divided there is no mesh,
-/// and to close and measure what there is would take as long as the rest.
+/// Those of [`exact`], or the observer asked to stop. The latter comes without a mesh: to close and measure
+/// an unfinished one would take as long as the rest.
 pub fn exact_observed(
     control: &Mesh,
     scheme: &dyn Scheme,
@@ -59,7 +59,8 @@ pub fn exact_observed(
     Ok(met(found, upper, options))
 }
 
-/// The same, met where a tolerance is all that is asked and `upper` shows that it is: what triangles come to one by one can be more.
+/// The result, marked as met where a tolerance is the only goal and `upper` shows that it is met:
+/// the sum of the bounds of single triangles can be greater.
 fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     match options.tolerance {
         Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => Exact {
@@ -71,8 +72,8 @@ fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     }
 }
 
-/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family are
-/// ([`Scheme::loop_family`]), others are estimated from samples.
+/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family
+/// are ([`Scheme::loop_family`]), for others they are estimated from samples.
 pub fn is_certified(scheme: &dyn Scheme) -> bool {
     scheme.loop_family().is_some()
 }

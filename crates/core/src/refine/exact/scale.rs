@@ -8,7 +8,7 @@ use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact};
 
-/// Sizes with binary exponents up to this are left as they are: their eighth powers are finite.
+/// Sizes with binary exponents up to this are unchanged: their eighth powers are finite.
 const MIDDLING: i32 = 100;
 
 /// A mesh and goals of a middling size and the factor that brings them there; `None` where they are middling already.
@@ -81,7 +81,7 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
     }
 }
 
-/// The result at the size that was asked for.
+/// The result at the original size.
 pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let error = bounds(result.error, factor);
     let off_planes = result.off_planes / factor;
@@ -93,7 +93,7 @@ pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, Ref
     })
 }
 
-/// A distance at the size that was asked for.
+/// A distance at the original size.
 pub(super) fn bounds(error: ErrorBounds, factor: f64) -> ErrorBounds {
     let ErrorBounds {
         lower,

@@ -1,9 +1,11 @@
-//! Bounds that are far above what was found, measured anew.
+//! Measures bounds anew that are far above the distance found.
 //!
-//! What refinement proves adds up from bounds of each triangle against its own part of the surface, as far as the neighbours leave
-//! room. Where triangles are small for another reason than their distance, edges were collapsed or the surface is folded, the
-//! mesh can be much nearer to the whole surface than that says. Then it is measured against a mesh that is nearer still, within e of
-//! the surface: a distance to that mesh and one to the surface differ by e at most (the triangle inequality, in either direction).
+//! The proven bound of refinement adds up from bounds of each triangle against its own part of the
+//! surface, as far as the neighbours leave room. Where triangles are small for another reason than
+//! their distance, edges were collapsed or the surface is folded, the mesh can be much nearer to
+//! the whole surface than that. Then it is measured against a mesh that is nearer still, within e
+//! of the surface: a distance to that mesh and one to the surface differ by e at most (the triangle
+//! inequality, in either direction).
 
 use crate::measure::{Bvh, certified_known};
 use crate::mesh::{Mesh, Triangles};
@@ -18,40 +20,43 @@ use crate::scheme::Scheme;
 /// less to end with.
 const SHARE: f64 = 0.06;
 
-/// The first nearer mesh is off by this part of the bound that there is at least, the next ones by so many times less: meshes
-/// that would be far too fine are not begun with.
+/// The first nearer mesh has an error of this part of the existing bound, the next ones have errors
+/// smaller by a constant factor: meshes that would be far too fine are not begun.
 const FIRST: f64 = 1.0 / 32.0;
 const FINER: f64 = 8.0;
 
 /// Where that is too fine, this part is tried.
 const COARSE: f64 = 1.0 / 8.0;
 
-/// It is of use if what is proven may get smaller than this part of what it was.
+/// It is of use if the proven bound may get smaller than this part of itself.
 const WORTH_WHILE: f64 = 0.8;
 
-/// Places of distances that were found there count where the distances are at least so many times what it is off by.
+/// Points of found distances count where the distances are at least this many times the error.
 const PLACED: f64 = 8.0;
 
-/// Triangles of the nearer mesh at most: so many in any case, and for each of the other one.
+/// The most triangles of the nearer mesh: this many in any case, and for each of the other one.
 const IN_ANY_CASE: usize = 200_000;
 const FOR_EACH: usize = 3;
 
-/// Where nothing but a tolerance was asked for, which is proven already, so many triangles are measured at most, against meshes of so
-/// few that it takes about as long as the refinement.
+/// If the only goal is a tolerance, which is proven already, at most this many triangles are
+/// measured, against meshes so small that it takes about as long as the refinement.
 const MET_MOST: usize = 20_000;
 const MET_IN_ANY_CASE: usize = 5_000;
 const MET_FOR_EACH: usize = 3;
 
-/// Meshes that are [`FINER`] times nearer have so many times the triangles at least: the square root of that where rims alone are curved.
+/// Meshes that are [`FINER`] times nearer have at least this many times the triangles: the square
+/// root of that where only rims are curved.
 const GROWTH: f64 = 2.0;
 
-/// Whether there may be tighter bounds for triangles that stand for the limit surface of `control`.
+/// Whether there may be tighter bounds for triangles that approximate the limit surface of
+/// `control`.
 pub(super) fn is_loose(error: &ErrorBounds, control: &Mesh) -> bool {
     let known = Known::new(*error, control);
     error.certified && known.distance().is_normal() && !known.is_tight()
 }
 
-/// The bounds of a surface of which some [regions](Exact::within_rims) are what their rims enclose, as tight as it is worth while to make them.
+/// The bounds of a surface of which some [regions](Exact::within_rims) are the planes inside their
+/// rims, as tight as is worth the time.
 pub(super) fn tighter(
     error: ErrorBounds,
     (surface, within_rims): (Triangles<'_>, &[u32]),
@@ -142,7 +147,7 @@ fn triangles_at(near: f64, count: usize, far: f64) -> f64 {
     count as f64 * GROWTH.powf((far / near).log(FINER))
 }
 
-/// What is known of a distance.
+/// The known interval of a distance.
 struct Known {
     bounds: ErrorBounds,
     /// Distances below count as that.
@@ -166,7 +171,7 @@ impl Known {
         self.bounds.upper <= ErrorBounds::TIGHT * self.distance()
     }
 
-    /// As far as a nearer mesh may be off.
+    /// The least useful error of a nearer mesh.
     fn finest(&self) -> f64 {
         SHARE * self.distance()
     }
@@ -179,7 +184,7 @@ impl Known {
         observer: &mut Observer<'_>,
     ) -> Result<bool, RefineError> {
         let lower = self.bounds.lower;
-        // What is found is at most that much above what was, or what turns out to be the distance.
+        // The result is at most that much above the known bound, or above the distance.
         let gap = (ErrorBounds::TIGHT * self.distance() - lower - 2.0 * off).max(2.0 * off);
         let found = certified_known(trees, lower - off, gap, observer)?.widened(off);
         self.bounds.upper = self.bounds.upper.min(found.upper);

@@ -1,13 +1,13 @@
 //! Makes the table of a replay.
 //!
-//! Takes what stands on the surface; gives the jobs in the order of their faces' shapes, so that weights that are shared are at hand,
-//! and the slots of what was asked for.
+//! Takes the points on the surface; gives the jobs in the order of their faces' shapes, so that
+//! shared weights are near, and the slots of the points.
 
 use std::collections::HashMap;
 
 use super::ReplayError;
 use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE, groups};
-use super::wanted::{Spot, Wants};
+use super::wanted::{EvalPoint, Wants};
 use super::weights::{Place, Probe, Standing, Wanted};
 use crate::index::{FaceId, VertexId};
 use crate::limit::{VertexStencil, VertexStencils};
@@ -41,15 +41,15 @@ pub(super) struct Control<'a> {
 struct Group {
     /// The face or the vertex.
     of: u32,
-    /// Each with the number of its spot.
-    spots: Vec<u32>,
+    /// Each with the number of its point.
+    points: Vec<u32>,
 }
 
 /// A face of a shape.
 struct Member {
     group: usize,
     support: Support,
-    /// Its places, by their numbers among those of the shape, in the order of its spots.
+    /// Its places, by their numbers among those of the shape, in the order of its points.
     places: Vec<u32>,
 }
 
@@ -60,16 +60,16 @@ struct Shape {
     places: Vec<Place>,
 }
 
-/// Weights of a shape, and what its members take of them.
+/// Weights of a shape, and the rows that its members use.
 struct Weighed {
     weights: Vec<[f64; LANES]>,
     members: Vec<MemberRows>,
 }
 
-/// What a face takes of the weights of its shape.
+/// The rows that a face uses of the weights of its shape.
 #[derive(Default)]
 struct MemberRows {
-    /// Where rows start, with their spots.
+    /// Where rows start, with their points.
     rows: Vec<(u32, u32)>,
     pieces: Vec<MemberPiece>,
 }
@@ -78,26 +78,27 @@ struct MemberRows {
 struct MemberPiece {
     /// Where the weights of its coefficients start.
     weights: u32,
-    /// With their spots.
+    /// With their points.
     places: Vec<([u16; 2], u32)>,
 }
 
-/// The table, but for vertices' slots, and the slots of all spots.
+/// The table without vertices' slots, and the slots of all points.
 pub(super) fn build(
     control: &Control<'_>,
     wants: &Wants,
     watch: &mut Watch<'_>,
 ) -> Result<(Table, Vec<u32>), ReplayError> {
-    let (mut corners, faces) = groups_of(&wants.spots);
-    // Those of the same stencil follow each other: the same weights, the same number of points.
+    let (mut corners, faces) = groups_of(&wants.points);
+    // Corners with one stencil follow each other: they have equal weights and an equal number of
+    // points.
     corners.sort_by_key(|corner| control.stencils.by_vertex[corner.of as usize]);
     let mut building = Building {
         table: Table::default(),
-        slots: vec![0; wants.spots.len()],
+        slots: vec![0; wants.points.len()],
         next: 0,
     };
-    building.corners(control, &corners, &wants.spots)?;
-    let shapes = shapes(control, &faces, &wants.spots, watch)?;
+    building.corners(control, &corners, &wants.points)?;
+    let shapes = shapes(control, &faces, &wants.points, watch)?;
     watch.stage(Stage::Weighing, Some(shapes.len()))?;
     let length = shapes.len().div_ceil(MOST_BLOCKS).max(SHAPES);
     let weighed = parallel::long_pieces_polled(
@@ -137,13 +138,13 @@ pub(super) fn build(
     Ok((building.table, building.slots))
 }
 
-/// The spots at control vertices and those over faces, by vertex and face.
-fn groups_of(spots: &[Spot]) -> (Vec<Group>, Vec<Group>) {
+/// The points at control vertices and those over faces, by vertex and face.
+fn groups_of(points: &[EvalPoint]) -> (Vec<Group>, Vec<Group>) {
     let (mut corners, mut faces) = (Vec::new(), Vec::new());
-    for (number, spot) in (0u32..).zip(spots) {
-        match *spot {
-            Spot::Corner(vertex, _) => corners.push((vertex, number)),
-            Spot::Over(face, _) => faces.push((face, number)),
+    for (number, point) in (0u32..).zip(points) {
+        match *point {
+            EvalPoint::Corner(vertex, _) => corners.push((vertex, number)),
+            EvalPoint::Over(face, _) => faces.push((face, number)),
         }
     }
     let grouped = |mut all: Vec<(u32, u32)>| {
@@ -151,18 +152,18 @@ fn groups_of(spots: &[Spot]) -> (Vec<Group>, Vec<Group>) {
         let own = all.chunk_by(|a, b| a.0 == b.0);
         own.map(|own| Group {
             of: own[0].0,
-            spots: own.iter().map(|&(_, spot)| spot).collect(),
+            points: own.iter().map(|&(_, point)| point).collect(),
         })
         .collect()
     };
     (grouped(corners), grouped(faces))
 }
 
-/// The faces by the shape of what their surface depends on, shapes in the order in which they come first.
+/// The faces by the shape of their surface's support, shapes in the order of their first faces.
 fn shapes(
     control: &Control<'_>,
     faces: &[Group],
-    spots: &[Spot],
+    points: &[EvalPoint],
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Shape>, Cancelled> {
     let supports = parallel::pieces_polled(faces.len(), FACES, &mut |_| watch.poll(), |block| {
@@ -191,11 +192,11 @@ fn shapes(
                 shapes.len() - 1
             });
         let shape = &mut shapes[at];
-        let places = faces[group].spots.iter().map(|&spot| {
-            let Spot::Over(_, bits) = spots[spot as usize] else {
+        let places = faces[group].points.iter().map(|&point| {
+            let EvalPoint::Over(_, bits) = points[point as usize] else {
                 return 0;
             };
-            let [u, v] = Spot::place(bits);
+            let [u, v] = EvalPoint::place(bits);
             let weights = [1.0 - u - v, u, v];
             let place = [
                 weights[(support.turn + 1) % 3],
@@ -218,7 +219,7 @@ fn shapes(
     Ok(shapes)
 }
 
-/// The weights of a shape; `None` where a place comes to no polynomial.
+/// The weights of a shape; `None` where a place is on no polynomial.
 fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighed> {
     let first = shape.members.first()?;
     let face = FaceId(faces[first.group].of);
@@ -231,15 +232,15 @@ fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighe
         let mut own: Vec<(Standing, u32, u32)> = member
             .places
             .iter()
-            .zip(&faces[member.group].spots)
-            .map(|(&place, &spot)| (standing[place as usize], place, spot))
+            .zip(&faces[member.group].points)
+            .map(|(&place, &point)| (standing[place as usize], place, point))
             .collect();
         own.sort_by_key(|(standing, ..)| standing.piece);
         let mut taken = MemberRows::default();
         for on_piece in own.chunk_by(|a, b| a.0.piece == b.0.piece) {
             let coded = on_piece
                 .iter()
-                .map(|(standing, _, spot)| Some((coded(standing.at)?, *spot)));
+                .map(|(standing, _, point)| Some((coded(standing.at)?, *point)));
             let coded = if on_piece.len() < MANY {
                 None
             } else {
@@ -251,10 +252,10 @@ fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighe
                     let weights = *block.get_or_insert_with(|| next(&mut block_count));
                     taken.pieces.push(MemberPiece { weights, places });
                 }
-                None => taken.rows.extend(on_piece.iter().map(|&(_, place, spot)| {
+                None => taken.rows.extend(on_piece.iter().map(|&(_, place, point)| {
                     (
                         *rows[place as usize].get_or_insert_with(|| next(&mut row_count)),
-                        spot,
+                        point,
                     )
                 })),
             }
@@ -301,7 +302,7 @@ fn coded(at: Place) -> Option<[u16; 2]> {
 /// A table that is being made.
 struct Building {
     table: Table,
-    /// By spot.
+    /// By point.
     slots: Vec<u32>,
     /// The next slot.
     next: u32,
@@ -337,8 +338,8 @@ impl Building {
         }
     }
 
-    fn take_slot(&mut self, spot: u32) {
-        self.slots[spot as usize] = self.next;
+    fn take_slot(&mut self, point: u32) {
+        self.slots[point as usize] = self.next;
         self.next += 1;
     }
 
@@ -347,7 +348,7 @@ impl Building {
         &mut self,
         control: &Control<'_>,
         corners: &[Group],
-        spots: &[Spot],
+        eval_points: &[EvalPoint],
     ) -> Result<(), ReplayError> {
         // Where the weights of each side of each stencil start.
         let mut starts: Vec<Option<Vec<u32>>> = vec![None; control.stencils.list.len()];
@@ -363,14 +364,14 @@ impl Building {
                 .map(|v| v.0);
             let points: Vec<u32> = [corner.of].into_iter().chain(ring).collect();
             let points = self.points(&points)?;
-            // Spots of one side share its slot.
+            // Points of one side share its slot.
             let mut slots: Vec<(u32, u32)> = Vec::new();
-            for &spot in &corner.spots {
-                let Spot::Corner(_, side) = spots[spot as usize] else {
+            for &point in &corner.points {
+                let EvalPoint::Corner(_, side) = eval_points[point as usize] else {
                     continue;
                 };
                 if let Some(&(_, slot)) = slots.iter().find(|&&(known, _)| known == side) {
-                    self.slots[spot as usize] = slot;
+                    self.slots[point as usize] = slot;
                     continue;
                 }
                 let start = starts[number]
@@ -378,7 +379,7 @@ impl Building {
                     .and_then(|starts| starts.get(side as usize));
                 self.table.rows.push(start.copied().unwrap_or(0));
                 slots.push((side, self.next));
-                self.take_slot(spot);
+                self.take_slot(point);
             }
             self.table.jobs.push(Job {
                 points,
@@ -429,18 +430,18 @@ impl Building {
                 rows,
                 pieces,
             });
-            for (row, spot) in taken.rows {
+            for (row, point) in taken.rows {
                 self.table.rows.push(start + row);
-                self.take_slot(spot);
+                self.take_slot(point);
             }
             for MemberPiece { weights, places } in taken.pieces {
                 self.table.pieces.push(Piece {
                     weights: start + weights,
                     places: places.len() as u32,
                 });
-                for (place, spot) in places {
+                for (place, point) in places {
                     self.table.places.push(place);
-                    self.take_slot(spot);
+                    self.take_slot(point);
                 }
             }
         }

@@ -1,9 +1,11 @@
 //! The table of a replay, and its evaluation.
 //!
-//! A *job* gathers the control points that the surface over a control face depends on, once, and evaluates the face's vertices from
-//! their differences to the first: each by three weighted sums, its position and two tangents, whose weights faces of the same shape
-//! share; or, where many stand on one polynomial, all of them by its coefficients, which are weighted sums, too. Control vertices are
-//! jobs of one place. What a job gives fills consecutive *slots*; each vertex knows its own.
+//! A *job* gathers the control points that the surface over a control face depends on, once, and
+//! evaluates the face's vertices from their differences to the first: each by three weighted sums,
+//! its position and two tangents, whose weights faces of the same shape share; or, where many are
+//! on one polynomial, all of them by its coefficients, which are weighted sums, too. Control
+//! vertices are jobs of one place. The results of a job fill consecutive *slots*; each vertex has
+//! the number of its slot.
 
 use crate::limit::area_weighted_normal;
 use crate::parallel;
@@ -39,7 +41,7 @@ const CROSS_ROUNDING: f64 = 1e-13;
 /// Sizes of jobs whose fourth powers neither vanish nor overflow.
 const SAFE_SIZES: core::ops::Range<f64> = 1e-60..1e60;
 
-/// What is evaluated together.
+/// The places that are evaluated together.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Job {
     /// Control points.
@@ -79,7 +81,7 @@ struct At {
 /// All that does not change from frame to frame.
 #[derive(Debug, Default)]
 pub(super) struct Table {
-    /// Those of control vertices first.
+    /// The jobs, those of control vertices first.
     pub(super) jobs: Vec<Job>,
     pub(super) corner_jobs: usize,
     /// The control points of jobs, each but the first in groups that are filled up with the first, where weights are zero; from the
@@ -109,7 +111,7 @@ fn input(inputs: &Inputs, point: u32) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
-/// Groups of weights that points take, but for the first.
+/// Groups of the weights of points, except for the first.
 pub(super) fn groups(points: usize) -> usize {
     points.saturating_sub(1).div_ceil(LANES)
 }
@@ -152,7 +154,8 @@ impl Gathered {
         }
     }
 
-    /// What tangents are multiplied by, and when they span no plane, by the greatest differences and what they are differences to.
+    /// The factor of tangents, and the bound below which they span no plane, by the greatest
+    /// differences and their common point.
     #[inline]
     fn measure(&mut self, differences: f64x4, first: f64x4) {
         let [size, first] = [differences, first].map(|of| {
@@ -202,7 +205,8 @@ impl Row<'_> {
         [a + x, b + y, c + z]
     }
 
-    /// That of the tangents, with the square of its length; `None` where they span no plane.
+    /// The cross product of the tangents, with the square of its length; `None` where they span no
+    /// plane.
     #[inline]
     fn cross_product(&self) -> Option<([f64; 3], f64)> {
         let scale = self.gathered.scale;
@@ -431,7 +435,8 @@ impl Table {
         }
     }
 
-    /// What stands for the normal at a control vertex without a tangent plane: the average of the faces' on its side.
+    /// The normal at a control vertex without a tangent plane: the average of the faces' on its
+    /// side.
     #[cold]
     fn average(&self, row: u32, points: &[u32], inputs: &Inputs) -> DVec3 {
         let Ok(at) = self.sides.binary_search_by_key(&row, |&(row, _)| row) else {

@@ -1,5 +1,5 @@
-//! Where the vertices of a refined mesh and its normals on sides of sharp edges stand on the limit surface: at control vertices, or
-//! at places over control faces.
+//! The places on the limit surface of a refined mesh's vertices and of its normals on sides of
+//! sharp edges: at control vertices, or at places over control faces.
 
 use std::collections::HashMap;
 
@@ -11,33 +11,33 @@ use crate::mesh::Mesh;
 use crate::refine::Traced;
 use crate::refine::exact_result::{Exact, Origin};
 
-/// Something that stands on the surface.
+/// A point on the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Spot {
+pub(super) enum EvalPoint {
     /// At a control vertex, on the side of that number.
     Corner(u32, u32),
     /// Over a control face, by the bits of both weights.
     Over(u32, [u64; 2]),
 }
 
-/// All that is asked for.
+/// All requested points.
 #[derive(Debug, Default)]
 pub(super) struct Wants {
-    /// Those of the vertices, by their numbers, then others.
-    pub(super) spots: Vec<Spot>,
-    /// The half-edges of [`Exact::sides`], and the spots of their normals.
+    /// The places of the vertices, by their numbers, then others.
+    pub(super) points: Vec<EvalPoint>,
+    /// The half-edges of [`Exact::sides`], and the points of their normals.
     pub(super) sides: Vec<(u32, u32)>,
-    /// Vertices with several sides, and the spots of these.
+    /// Vertices with several sides, and the points of these.
     pub(super) averages: Vec<(u32, Vec<u32>)>,
 }
 
-impl Spot {
+impl EvalPoint {
     /// The weights of the second and the third corner.
     pub(super) fn place(bits: [u64; 2]) -> Place {
         bits.map(f64::from_bits)
     }
 
-    /// That of a point of the control mesh.
+    /// The place of a point of the control mesh.
     fn of(control: &Mesh, stencils: &VertexStencils, origin: &Origin) -> Option<Self> {
         let corners = control.triangles().get(origin.face as usize)?;
         let [_, u, v] = origin.barycentric;
@@ -71,7 +71,7 @@ fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
 }
 
 impl Wants {
-    /// What the vertices and sides of `refined` ask for, a refinement of `control`.
+    /// The values needed by the vertices and sides of `refined`, a refinement of `control`.
     pub(super) fn of(
         control: &Mesh,
         stencils: &VertexStencils,
@@ -84,15 +84,15 @@ impl Wants {
                 vertices: count,
             });
         }
-        let spot = |(vertex, origin): (u32, &Origin)| {
-            Spot::of(control, stencils, origin).ok_or(ReplayError::Elsewhere { vertex })
+        let point = |(vertex, origin): (u32, &Origin)| {
+            EvalPoint::of(control, stencils, origin).ok_or(ReplayError::Elsewhere { vertex })
         };
-        let spots = (0..)
+        let points = (0..)
             .zip(&refined.origins)
-            .map(spot)
+            .map(point)
             .collect::<Result<Vec<_>, _>>()?;
         let mut wants = Self {
-            spots,
+            points,
             ..Self::default()
         };
         wants.add_sides(control, stencils, refined)?;
@@ -106,22 +106,22 @@ impl Wants {
         refined: &Exact,
     ) -> Result<(), ReplayError> {
         let topology = refined.mesh.topology();
-        let mut known: HashMap<(u32, Spot), u32> = HashMap::new();
-        // By vertex with sides, the spots on its sides.
+        let mut known: HashMap<(u32, EvalPoint), u32> = HashMap::new();
+        // By vertex with sides, the points on its sides.
         let mut around: Vec<(u32, u32)> = Vec::new();
         for &(h, _) in &refined.sides {
             let vertex = topology.origin(HalfEdgeId(h)).0;
             let origin = refined.corner_origin(control.triangles(), HalfEdgeId(h));
-            let spot = origin.and_then(|origin| Spot::of(control, stencils, &origin));
-            let spot = spot.ok_or(ReplayError::Elsewhere { vertex })?;
-            let own = self.spots[vertex as usize];
-            let spots = &mut self.spots;
-            let number = *known.entry((vertex, spot)).or_insert_with(|| {
-                if own == spot {
+            let point = origin.and_then(|origin| EvalPoint::of(control, stencils, &origin));
+            let point = point.ok_or(ReplayError::Elsewhere { vertex })?;
+            let own = self.points[vertex as usize];
+            let points = &mut self.points;
+            let number = *known.entry((vertex, point)).or_insert_with(|| {
+                if own == point {
                     return vertex;
                 }
-                spots.push(spot);
-                spots.len() as u32 - 1
+                points.push(point);
+                points.len() as u32 - 1
             });
             self.sides.push((h, number));
             around.push((vertex, number));
@@ -131,8 +131,8 @@ impl Wants {
         let several = around
             .chunk_by(|a, b| a.0 == b.0)
             .filter(|own| own.len() > 1);
-        let spots = |own: &[(u32, u32)]| own.iter().map(|&(_, spot)| spot).collect();
-        self.averages = several.map(|own| (own[0].0, spots(own))).collect();
+        let points = |own: &[(u32, u32)]| own.iter().map(|&(_, point)| point).collect();
+        self.averages = several.map(|own| (own[0].0, points(own))).collect();
         Ok(())
     }
 }

@@ -11,7 +11,8 @@ use crate::patch::large_rings::LargeRings;
 use crate::patch::{Patch, Quartic, Rules, Support, root_patch};
 use crate::vector::DVec3;
 
-/// Levels at which all places must have come to a regular piece: more than places are apart, or tags take to fade.
+/// Levels at which all places must be on a regular piece: more than the resolution of places and
+/// the levels of semi-sharp tags.
 const DEEPEST: u32 = 64;
 
 /// A place over the face, by its weights of the second and the third corner; in the order of a support's corners.
@@ -26,7 +27,7 @@ pub(super) struct Standing {
     pub(super) at: Place,
 }
 
-/// A mesh whose control points are moved to see what that changes.
+/// A mesh whose control points are moved to measure the effect.
 pub(super) struct Probe<'a> {
     mesh: Mesh,
     sharpness: &'a Sharpness<'a>,
@@ -34,7 +35,7 @@ pub(super) struct Probe<'a> {
     rules: &'a Rules<'a>,
 }
 
-/// What the weights are wanted of.
+/// The places and values whose weights are wanted.
 pub(super) struct Wanted<'a> {
     pub(super) support: &'a Support,
     pub(super) face: FaceId,
@@ -78,7 +79,7 @@ impl<'a> Probe<'a> {
         root_patch(&self.mesh, self.sharpness, &self.large, face, self.rules)
     }
 
-    /// Where places stand, and how many regular pieces that are; `None` where a place comes to none.
+    /// The pieces of the places, and the number of regular pieces; `None` where a place is on none.
     pub(super) fn standing(
         &self,
         (support, face): (&Support, FaceId),
@@ -179,7 +180,7 @@ impl<'a> Probe<'a> {
         } else if levels > 0 {
             let refined = patch.refined(self.rules);
             places.iter_mut().for_each(Standpoint::enter_part);
-            // Stable: what is found does not depend on how this sorts.
+            // Stable: the result does not depend on how this sorts.
             places.sort_by_key(|place| place.part);
             for own in places.chunk_by_mut(|a, b| a.part == b.part) {
                 self.descend(&refined.part(own[0].part), own, levels - 1, visit);

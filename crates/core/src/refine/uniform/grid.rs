@@ -1,9 +1,11 @@
-//! One triangle refined a few times: what all faces of a mesh that are refined as often have in common.
+//! One triangle refined a few times: the common numbering of all faces of a mesh refined by equal
+//! levels.
 //!
-//! The tables are those of the steps themselves, taken on a mesh of one triangle, so that a mesh whose faces are filled in
-//! by them is the one that the steps give: the triangles of a face stand together and new vertices follow level by level,
-//! in the order of their first half-edges. Of two faces at an edge the one with the lower number owns its vertices; which
-//! sides of a face are its own decides how its vertices are counted, and there are eight cases of that.
+//! The tables are those of the steps themselves, taken on a mesh of one triangle, so that a mesh
+//! whose faces are filled in by them is the one that the steps give: the triangles of a face are
+//! consecutive and new vertices follow level by level, in the order of their first half-edges. Of
+//! two faces at an edge the one with the lower number owns its vertices; which sides of a face are
+//! its own decides how its vertices are counted, and there are eight cases of that.
 
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Junctions, Mesh, NONE, Tags, Topology};
@@ -11,7 +13,8 @@ use crate::progress::{Stage, Watch, unobserved};
 use crate::refine::RefineError;
 use crate::refine::split::{SplitEdges, SplitTopology};
 
-/// A triangle after some levels. Its vertices are numbered as the steps number them when it stands alone.
+/// A triangle after some levels. Its vertices are numbered as the steps number them when it is
+/// alone.
 pub(super) struct Grid {
     pub(super) levels: usize,
     /// Segments along each side.

@@ -1,9 +1,11 @@
-//! Several levels at once, with all vertices on the limit surface: the mesh that the steps give, by arithmetic.
+//! Several levels together, with all vertices on the limit surface: the mesh of the steps, by
+//! arithmetic.
 //!
-//! Takes a mesh whose tags no longer fade and a number of levels; gives the refined mesh with its vertices at their limits
-//! and, if asked for, their limit normals and what connects the triangles. Numbers of vertices and triangles follow from prefix sums over the faces
-//! (`grid.rs`), positions and normals from the exact surface over each face (`pieces.rs`), and each face fills
-//! slots of its own, so that the result does not depend on threads.
+//! Takes a mesh without semi-sharp tags and a number of levels; gives the refined mesh with its
+//! vertices at their limits and, if requested, their limit normals and the triangles' connections.
+//! Numbers of vertices and triangles follow from prefix sums over the faces (`grid.rs`), positions
+//! and normals from the exact surface over each face (`pieces.rs`), and each face fills slots of
+//! its own, so that the result does not depend on threads.
 
 use core::ops::Range;
 
@@ -25,7 +27,7 @@ use crate::vector::{unit_or_zero, vector};
 /// Triangles that one block of work gives, about.
 const BLOCK: usize = 1 << 14;
 
-/// What is the same for all faces.
+/// The data common to all faces.
 struct Work<'a> {
     mesh: &'a Mesh,
     sharpness: &'a Sharpness<'a>,
@@ -37,7 +39,7 @@ struct Work<'a> {
     wanted: Wanted,
 }
 
-/// What somebody asked for, beside positions and triangles.
+/// The requested results, in addition to positions and triangles.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted {
     pub(super) normals: bool,
@@ -47,17 +49,17 @@ pub(super) struct Wanted {
 /// A mesh with its vertices on the limit surface.
 pub(super) struct AtLimit {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Of half-edges; empty where nobody asked for connections.
+    /// The twins of half-edges; empty if connections are not requested.
     pub(super) twins: Vec<u32>,
     /// The half-edge that each vertex keeps; empty likewise.
     pub(super) outgoing: Vec<u32>,
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) normals: Option<SidedNormals>,
-    /// Those of the mesh; none where nobody asked for connections.
+    /// The tags of the mesh; none if connections are not requested.
     pub(super) tags: Tags,
 }
 
-/// The slots that a run of faces fills. What nobody asked for is empty, here and in [`LevelSlots`].
+/// The slots that a run of faces fills. Slots not requested are empty, here and in [`LevelSlots`].
 struct Slots<'s> {
     faces: Range<usize>,
     triangles: &'s mut [[u32; 3]],
@@ -65,15 +67,15 @@ struct Slots<'s> {
     levels: Vec<LevelSlots<'s>>,
 }
 
-/// Those of the new vertices of one level.
+/// The slots of the new vertices of one level.
 struct LevelSlots<'s> {
     outgoing: &'s mut [u32],
     points: &'s mut [[f64; 3]],
     normals: &'s mut [[f64; 3]],
 }
 
-/// Refines a mesh of Loop's family without junctions, whose tags do not fade, by `levels` levels, and takes its vertices to
-/// the limit surface.
+/// Refines a mesh of Loop's family without junctions, without semi-sharp tags, by `levels` levels,
+/// and takes its vertices to the limit surface.
 pub(super) fn refined_at_limit(
     mesh: &Mesh,
     rules: &Rules<'_>,
@@ -250,8 +252,8 @@ impl<'a> Work<'a> {
         self.numbering.first(h.face().index()) + self.grid.borders[h.corner()][0]
     }
 
-    /// The normals with those of old vertices, both sides of sharp edges, and what stands where there is no tangent plane.
-    /// `flat` are faces on which that is so.
+    /// The normals with those of old vertices, both sides of sharp edges, and the replacements
+    /// where there is no tangent plane. `flat` are faces with such corners.
     fn finished_normals(
         &self,
         mut by_vertex: Vec<[f64; 3]>,

@@ -1,9 +1,10 @@
 //! The limit surface over one face at the places of a [`Grid`].
 //!
-//! A face far from boundaries and creases with one irregular corner at most depends on the corner, its ring and five points
-//! more, and every place on it is a fixed combination of these: the weights are tabulated for each valence. Where no corner is irregular
-//! and rows are long, those of the face's polynomial take less. Any other face is refined towards what is irregular, and its regular parts are
-//! evaluated as polynomials.
+//! A face far from boundaries and creases with one irregular corner at most depends on the corner,
+//! its ring and five points more, and every place on it is a fixed combination of these: the
+//! weights are tabulated for each valence. Where no corner is irregular and rows are long, those of
+//! the face's polynomial take less time. Any other face is refined towards its irregular parts, and
+//! its regular parts are evaluated as polynomials.
 
 use core::ops::Range;
 use std::sync::OnceLock;
@@ -28,8 +29,8 @@ const LANES: usize = 4;
 /// Rounding leaves no more of a cross product of tangents that is zero than this, by the square of the piece's size.
 const CROSS_ROUNDING: f64 = 1e-13;
 
-/// Regular faces of at least so many segments a side are evaluated by rows, which take a third of the products; short ones cost as much
-/// to begin.
+/// Regular faces of at least this many segments a side are evaluated by rows, which take a third of
+/// the products; short rows cost as much to begin.
 const ROWS_FROM: usize = 16;
 
 /// Sizes of pieces whose fourth powers neither vanish nor overflow.
@@ -126,10 +127,10 @@ pub(super) struct Pieces<'a> {
     weights: [OnceLock<Weights>; TABULATED + 1],
 }
 
-/// What evaluating a face gives, by slot.
+/// The values of a face, by slot.
 pub(super) struct Values {
     pub(super) points: Vec<[f64; 3]>,
-    /// Unit normals on the face's side, zero where there is none; empty where nobody asked for them.
+    /// Unit normals on the face's side, zero where there is none; empty if not requested.
     pub(super) normals: Vec<[f64; 3]>,
     controls: Vec<DVec3>,
 }
@@ -171,8 +172,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Evaluates a face inside and on the given sides; what stands in other slots means nothing. Gives the corner of the
-    /// face that counts as the first in the slots.
+    /// Evaluates a face inside and on the given sides; other slots have no meaning. Gives the
+    /// corner of the face that counts as the first in the slots.
     pub(super) fn evaluate(&self, face: usize, sides: u8, values: &mut Values) -> usize {
         if let Some((turn, valence)) = self.gather(face, &mut values.controls) {
             if valence == 6 && self.segments >= ROWS_FROM {
@@ -249,9 +250,10 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// The control points of a face by differences to the first, but for the first itself: the irregular corner, its
-    /// ring from the next corner on, and those that complete the other corners' rings (see [`ExtraordinaryPatch`]). With
-    /// the corner's number and valence; `None` where there is more than that or something sharp.
+    /// The control points of a face by differences to the first, except for the first itself: the
+    /// irregular corner, its ring from the next corner on, and those that complete the other
+    /// corners' rings (see [`ExtraordinaryPatch`]). With the corner's number and valence; `None`
+    /// where there is more than that or something sharp.
     fn gather(&self, face: usize, controls: &mut Vec<DVec3>) -> Option<(usize, usize)> {
         let topology = self.mesh.topology();
         let valences = topology.triangles()[face].map(|v| self.valences[v as usize]);
@@ -343,14 +345,14 @@ impl<'a> Pieces<'a> {
                 .into_iter()
                 .enumerate()
             {
-                // The middle part stands on its head; it is regular, so that none of its own does.
+                // The middle part is inverted; it is regular, so that no part of it is.
                 self.for_each_regular(&refined.part(part), half, origin, part == 3, visit);
             }
         }
     }
 }
 
-/// A regular part of a face, and where it stands in the grid.
+/// A regular part of a face, and its position in the grid.
 struct Part {
     net: BezierTriangle,
     segments: usize,

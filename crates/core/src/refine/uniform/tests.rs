@@ -3,7 +3,7 @@ use crate::limit::LimitTable;
 use crate::mesh::{CornerTag, CreaseTag, Tags};
 use crate::scheme::{Loop, LoopWarren};
 
-/// The same by steps, one after another, and stencils at every vertex.
+/// The result by steps, one after another, and stencils at every vertex.
 fn by_steps(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -35,7 +35,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         .sqrt()
 }
 
-/// What is given without connections is what stands in the mesh.
+/// The result without connections equals the mesh.
 fn check_triangles(name: &str, control: &Mesh, scheme: &dyn Scheme, options: &UniformOptions) {
     let found = uniform_triangles(control, scheme, options).unwrap();
     let Refinement {
@@ -181,7 +181,7 @@ fn sharp_edges_and_corners_keep_both_their_sides() {
     let sheet = sheet();
     let inside: Vec<CreaseTag> = (15..20).map(|v| crease(v + 1, v, f64::INFINITY)).collect();
     let ends: Vec<CreaseTag> = inside[1..3].to_vec();
-    let fading: Vec<CreaseTag> = inside
+    let semi_sharp: Vec<CreaseTag> = inside
         .iter()
         .map(|tag| CreaseTag {
             sharpness: 1.6,
@@ -206,7 +206,7 @@ fn sharp_edges_and_corners_keep_both_their_sides() {
             cross,
             vec![corner(0, f64::INFINITY), corner(41, 2.5)],
         ),
-        ("fading", fading, vec![corner(12, 0.5)]),
+        ("semi_sharp", semi_sharp, vec![corner(12, 0.5)]),
     ] {
         let sheet = sheet.clone().with_tags(Tags { creases, corners }).unwrap();
         for levels in 2..=5 {
@@ -311,7 +311,7 @@ fn whoever_needs_no_connections_gets_the_same_whatever_is_asked_for() {
     }
 }
 
-/// Coordinates so large that sums of a few of them overflow are told of, by whichever way.
+/// Coordinates so large that sums of a few of them overflow are reported, by either way.
 #[test]
 fn what_overflows_is_an_error() {
     let huge = |scale: f64| {

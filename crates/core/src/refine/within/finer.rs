@@ -1,4 +1,5 @@
-//! The mesh that was given, its faces divided in four where they lie: the same surface, with more points that can be moved.
+//! The given mesh, its faces divided in four in their planes: the surface is unchanged, with more
+//! points that can be moved.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{CornerTag, FaceParts, Mesh, Sharpness, VertexRule};
@@ -27,7 +28,7 @@ impl Finer {
                 parts: FaceParts::default(),
             });
         }
-        // Only how faces hang together is taken from the scheme, and what becomes of tags.
+        // The scheme gives only the connections of faces, and the tags.
         let options = UniformOptions::default().levels(levels).origins(true);
         let divided = uniform_observed(mesh, &Loop, &options, observer)?;
         let positions = divided

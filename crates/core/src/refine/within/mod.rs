@@ -1,25 +1,31 @@
-//! Meshes that are certainly within a distance of the mesh that was given, and as smooth as that allows.
+//! Meshes that are proven to be within a distance of the given mesh, and as smooth as that allows.
 //!
-//! Vertices are taken for measured points that are off by so much at most, as those of scans and of voxels are. The surface is the fairest
-//! whose limits stay within a reach of the vertices ([`mod@crate::interpolate`]), shifted along its normals so that closed parts keep their
-//! volume (`volume.rs`). What comes between the vertices is found by refining it: where a triangle is farther from its partner on the given
-//! mesh ([`InputDistance`]) than it may be, or turned over, the reach of the vertices around is made smaller, and all is solved again from
-//! there. So the bound costs smoothness where it has to, and nowhere else.
+//! Vertices are taken for measured points within this distance of the truth, as those of scans and
+//! of voxels are. The surface is the fairest whose limits stay within a reach of the vertices
+//! ([`mod@crate::interpolate`]), shifted along its normals so that closed parts keep their volume
+//! (`volume.rs`). The surface between the vertices is found by refinement: where a triangle is
+//! farther from its partner on the given mesh ([`InputDistance`]) than it may be, or turned over,
+//! the reach of the vertices around is made smaller, and all is solved again from there. So the
+//! bound costs smoothness only where it must.
 //!
-//! A surface through all vertices leaves large faces by some part of their size. Where that is more than it may be, faces are divided in four
-//! where they lie (`finer.rs`), which halves it. Where that would have to be done too often, or does not help, edges become sharp
-//! (`sharper.rs`), and at worst faces stay the flat triangles that they are: the mesh itself is within any distance. So a box of twelve triangles
-//! gets round edges within a tenth of its size, and stays a box within a hundredth.
+//! A surface through all vertices leaves large faces by some part of their size. Where that is too
+//! much, faces are divided in four in their planes (`finer.rs`), which halves it. Where that would
+//! be needed too often, or does not help, edges become sharp (`sharper.rs`), and at worst faces
+//! stay flat triangles: the mesh itself is within any distance. So a box of twelve triangles gets
+//! round edges within a tenth of its size, and stays a box within a hundredth.
 //!
-//! **Coarse first.** What is far too far off shows on a coarse result as well. Results get finer as long as nothing is too far off, so that
-//! a tiny distance does not take millions of triangles before it is given up.
+//! **Coarse first.** A part that is far too far off shows on a coarse result as well. Results get
+//! finer as long as no part is too far off, so that a tiny distance does not take millions of
+//! triangles before it is given up.
 //!
-//! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would take the whole reach, close thin tubes and
-//! swell thick ones. So how far limits are from their vertices counts, too, ε|y|² beside |Bx|² on edges of the length h. Waves of the length ℓ
-//! are bent by (πh/ℓ)², so that with ε = (πh/ℓ)⁴ those of less than ℓ are smoothed and longer ones kept. ℓ is 20 times the
-//! distance, as far as steps of its height reach on slopes that are hardly inclined, and at least 18 edges. On a ball of voxels of the radius
-//! 10, within 0.87, the radius has a standard deviation of 0.05; with ε near 0 it has 0.055, and within 3 it has 0.15, where the bound does
-//! not hold the surface any more.
+//! **Near and fair.** A plate's energy alone is least where a surface is least curved: it would use
+//! the whole reach, close thin tubes and swell thick ones. So the distance of limits from their
+//! vertices counts, too, as ε|y|² in addition to |Bx|² on edges of the length h. Waves of the
+//! length ℓ are bent by (πh/ℓ)², so that with ε = (πh/ℓ)⁴ those of less than ℓ are smoothed and
+//! longer ones kept. ℓ is 20 times the distance, as far as steps of its height reach on slopes that
+//! are hardly inclined, and at least 18 edges. On a ball of voxels of the radius 10, within 0.87,
+//! the radius has a standard deviation of 0.05; with ε near 0 it has 0.055, and within 3 it has
+//! 0.15, where the bound does not hold the surface any more.
 //!
 //! ```
 //! use limitmesh::refine::{WithinOptions, within};
@@ -59,7 +65,7 @@ use volume::Shift;
 const OF_DISTANCE: f64 = 0.1;
 const OF_DIAGONAL: f64 = 1e-3;
 
-/// Waves that are longer than so many times the distance, and than so many edges, are kept.
+/// Waves that are longer than this many times the distance, and than this many edges, are kept.
 const DISTANCES: f64 = 20.0;
 const EDGES: f64 = 18.0;
 
@@ -69,7 +75,8 @@ const LEAST_NEARNESS: f64 = 1e-6;
 /// How many times the surface is solved for at most.
 const MOST_ROUNDS: usize = 12;
 
-/// How much the limits around a triangle are brought nearer, beside what it is too far off: what is left over would take further rounds.
+/// The factor by which the limits around a triangle are brought nearer than its excess requires: a
+/// rest would take further rounds.
 const NEARER: f64 = 1.5;
 
 /// How far limits are left where they turn triangles over, from one time to the next, and the part of the room below which they are left at
@@ -89,59 +96,61 @@ const FINER: f64 = 8.0;
 const MOST_UNFOLDING: usize = 2;
 
 options! {
-    /// What is asked of a mesh near another.
+    /// The options of a mesh near another.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WithinOptions {
-        /// The greatest distance between the result and the mesh that is given, either way, as a length above 0. Default: 0, which is none.
+        /// The greatest distance between the result and the given mesh, either way, as a length
+        /// above 0. Default: 0, which is refused.
         pub within: f64 = 0.0,
-        /// The part of it that refining takes: how far the result may be from its own limit surface, as a length. Default:
-        /// [`Self::usual_tolerance`].
+        /// The part of it for refinement: the greatest distance of the result from its own limit
+        /// surface, as a length. Default: [`Self::usual_tolerance`].
         pub tolerance: Option<f64> = None,
-        /// Triangles at most, as a cap. Default: 50 million.
+        /// The most triangles, as a cap. Default: 50 million.
         pub max_triangles: Option<usize> = Some(50_000_000),
     }
 }
 
 impl WithinOptions {
-    /// How far a result may be from its own limit surface where nothing else is said, for a distance and a mesh with that diagonal: a tenth of
-    /// the distance, and a thousandth of the diagonal at most.
+    /// The default distance of a result from its own limit surface, for a distance and a mesh with
+    /// this diagonal: a tenth of the distance, and at most a thousandth of the diagonal.
     pub fn usual_tolerance(within: f64, diagonal: f64) -> f64 {
         (OF_DISTANCE * within).min(OF_DIAGONAL * diagonal)
     }
 }
 
-/// A smooth mesh near the one that was given.
+/// A smooth mesh near the given one.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Within {
-    /// The control mesh. Refined to [`WithinOptions::tolerance`] in another way, it stays about as near.
+    /// The control mesh. Another refinement of it to [`WithinOptions::tolerance`] is about as near.
     pub control: Mesh,
-    /// Where its faces are on those of the mesh that was given; empty where they are the same.
+    /// Its faces as parts of the given mesh's; empty where they are those.
     pub parts: FaceParts,
     /// The result: the control mesh refined.
     pub refined: Exact,
-    /// How far the result is from the mesh that was given.
+    /// The distance of the result from the given mesh.
     pub distance: InputDistance,
-    /// What was asked for.
+    /// The requested distance.
     pub within: f64,
     /// Triangles of the result that are turned over ([`turned_over_triangles`]).
     pub inverted: usize,
-    /// Edges of the mesh that was given that became sharp, because no smooth surface stays near there.
+    /// Edges of the given mesh that became sharp, because no smooth surface stays near there.
     pub sharpened: usize,
 }
 
 impl Within {
-    /// Whether the result is proven to be as near as was asked for: unless triangles are capped, or rounding is more than the distance.
+    /// Whether the result is proven to be within the requested distance: unless triangles are
+    /// capped, or rounding is more than the distance.
     pub fn is_kept(&self) -> bool {
         self.distance.upper <= self.within
     }
 }
 
-/// The smoothest mesh that is certainly within a distance of `mesh`, in both directions; closed parts keep their volume as far as the
-/// distance allows.
+/// The smoothest mesh that is proven to be within a distance of `mesh`, in both directions; closed
+/// parts keep their volume as far as the distance allows.
 ///
 /// # Errors
-/// The distance is not a length above 0, the scheme lets vertices stay where they are, or one of refinement's own.
+/// A distance that is not above 0, an interpolating scheme, or an error of refinement.
 pub fn within(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -150,10 +159,10 @@ pub fn within(
     within_observed(mesh, scheme, options, &mut unobserved)
 }
 
-/// [`within`], telling an observer how it goes on.
+/// [`within`], with an observer.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// Those of [`within`], or the observer asked to stop.
 pub fn within_observed(
     mesh: &Mesh,
     scheme: &dyn Scheme,
@@ -262,7 +271,7 @@ impl Bound {
         })
     }
 
-    /// How far limits may be from vertices: what refining takes is left to it.
+    /// The greatest distance of limits from vertices: the rest is left to refinement.
     fn room(&self) -> f64 {
         self.within - self.tolerance
     }
@@ -281,7 +290,8 @@ impl Smoothed {
         self.faults.iter().map(distance).fold(0.0, f64::max)
     }
 
-    /// Whether something is turned over, or farther from its face than it may be: not only beside its partner.
+    /// Whether a triangle is turned over, or farther from its face than allowed: not only from its
+    /// partner.
     fn is_wrong(&self, bound: &Bound) -> bool {
         self.farthest(|fault| fault.off) > bound.within
             || self.faults.iter().any(|fault| fault.is_inverted)
@@ -390,7 +400,7 @@ fn smoothed(
     }
 }
 
-/// What being near counts beside being fair.
+/// The weight of nearness relative to fairness.
 fn nearness(mesh: &Mesh, within: f64) -> f64 {
     let sum: f64 = (0..mesh.face_count())
         .map(|face| perimeter(mesh, face))
@@ -405,7 +415,7 @@ fn perimeter(mesh: &Mesh, face: usize) -> f64 {
     a.distance(b) + b.distance(c) + c.distance(a)
 }
 
-/// What may be wrong with the triangles over a face.
+/// The fault of the triangles over a face.
 #[derive(Clone, Copy, Default)]
 struct Fault {
     /// How far they are from their partners, and from the face itself.
@@ -414,7 +424,7 @@ struct Fault {
     is_inverted: bool,
 }
 
-/// By face, what is wrong with the refined mesh.
+/// By face, the faults of the refined mesh.
 fn faults(mesh: &Mesh, refined: &Exact, poll: &mut Poll<'_>) -> Result<Vec<Fault>, Cancelled> {
     let (input, positions) = (mesh.as_triangles(), refined.mesh.positions());
     let partners =
@@ -448,7 +458,8 @@ fn reduced(
     faults: &[Fault],
     bound: &Bound,
 ) -> bool {
-    // Half of what refining may take is for what another refinement of the same surface differs by.
+    // Half of the refinement's tolerance is for the difference to another refinement of the
+    // surface.
     let most = bound.room() + 0.5 * bound.tolerance;
     let mut is_reduced = false;
     for (triangle, fault) in mesh.triangles().iter().zip(faults) {

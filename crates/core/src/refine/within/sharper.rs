@@ -1,9 +1,11 @@
 //! Edges that are made sharp where no smooth surface stays near.
 //!
-//! A surface that is smooth across an edge leaves the faces there by some part of their size times the angle. So the edges around a fault
-//! that bend most become sharp first: those of a part, with round faces left round between them. What is too far off then, or turned over,
-//! are faces that a surface folds on, such as slivers: all their edges become sharp and their vertices corners, which makes each the flat
-//! triangle that it was, and at last so the faces around them, too.
+//! A surface that is smooth across an edge leaves the faces there by some part of their size times
+//! the angle. So the edges around a fault that bend most become sharp first: those of a part, with
+//! round faces left round between them. Faces that are still too far off, or turned over, are those
+//! on which a surface folds, such as slivers: all their edges become sharp and their vertices
+//! corners, which makes each the flat triangle that it was; at last this is done to the faces
+//! around them, too.
 
 use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};
@@ -125,7 +127,7 @@ impl Sharper {
         }
     }
 
-    /// Faulty faces and so many rings of faces around them, or all faces of their components.
+    /// Faulty faces and `rings` rings of faces around them, or all faces of their components.
     fn around(&self, is_faulty: &[bool], rings: Option<usize>) -> Vec<bool> {
         let triangles = self.mesh.triangles();
         let Some(rings) = rings else {
@@ -165,7 +167,7 @@ impl Sharper {
         corners_of(&self.mesh, &self.is_flat)
             .flatten()
             .for_each(|v| is_corner[v as usize] = true);
-        // Boundaries are sharp as they are.
+        // Boundaries are sharp already.
         let is_new = |&h: &HalfEdgeId| {
             let is_first = topology.twin(h).is_some_and(|twin| h < twin);
             let ends = topology.ends(h);

@@ -1,7 +1,7 @@
 //! The volume of closed parts of a mesh, and the shift along normals that gives it back to a surface that was smoothed.
 //!
-//! Where a closed surface of area A is moved by s along its normals, its volume grows by A·s about: a few corrections by what is missing
-//! find s, unless limits may not go as far.
+//! Where a closed surface of area A is moved by s along its normals, its volume grows by A·s about:
+//! a few corrections by the missing volume find s, unless limits may not go as far.
 
 use std::collections::BTreeSet;
 
@@ -16,10 +16,10 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// Volumes that differ by less than this part are the same.
 const SAME: f64 = 1e-3;
 
-/// The least part of what a shift of all vertices would change that it is taken to change where some may not follow.
+/// The least assumed part of the full effect of a shift where some vertices may not follow.
 const LEAST_EFFECT: f64 = 0.25;
 
-/// Faces that are looked at between two calls of the observer.
+/// Faces between two calls of the observer.
 const PIECE: usize = 1 << 12;
 
 /// How far the vertices of each part of a mesh are shifted along normals.
@@ -30,7 +30,7 @@ pub(super) struct Shift {
     parts: Vec<Part>,
 }
 
-/// What hangs together by vertices, and by the copies of these where sheets were cut apart.
+/// A component connected by vertices, and by their copies where sheets were cut apart.
 struct Part {
     is_closed: bool,
     volume: f64,
@@ -148,7 +148,7 @@ impl Shift {
 }
 
 impl Part {
-    /// How much volume a shift gives for its length, by what the last one gave.
+    /// The volume for a unit of shift, by the effect of the last one.
     fn effect(&self, now: Size) -> f64 {
         match self.before {
             Some((by, volume)) if by != self.by => {
@@ -190,7 +190,7 @@ fn sizes(
     poll: &mut Poll<'_>,
 ) -> Result<Vec<Size>, Cancelled> {
     let mut sizes = vec![Size::default(); parts];
-    // Seen from there, volumes keep their digits wherever the mesh is.
+    // Seen from there, volumes keep their digits at any position of the mesh.
     let middle = mesh
         .as_triangles()
         .bounding_box()

@@ -21,7 +21,7 @@ impl<'m> Forest<'m> {
     /// The control faces alone.
     ///
     /// # Errors
-    /// A tag fades, an interior vertex has two edges, or a vertex has no limit.
+    /// A semi-sharp tag, an interior vertex of two edges, or a vertex without a limit.
     pub(in crate::sqrt3) fn new(
         control: &'m Mesh,
         origins: bool,

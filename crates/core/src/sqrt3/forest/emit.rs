@@ -1,4 +1,4 @@
-//! The result: nodes that are not split, and thirds of split nodes beside such.
+//! The result: nodes that are not split, and thirds of split nodes next to such.
 //!
 //! At every moment these are a conforming mesh. Its vertices are at their limits; those of the control mesh keep their numbers.
 
@@ -11,7 +11,7 @@ use crate::mesh::{CreaseTag, Groups, Junctions, Mesh, Tags, Topology};
 use crate::refine::{Origin, RefineError};
 use crate::vector::{DVec3, unit_or_zero};
 
-/// A mesh, and what is known of it.
+/// A mesh and its bounds.
 pub(in crate::sqrt3) struct Emitted {
     pub(in crate::sqrt3) mesh: Mesh,
     pub(in crate::sqrt3) normals: SidedNormals,
@@ -46,7 +46,7 @@ impl Forest<'_> {
         parent == NONE || is_split(parent) && self.across(parent).is_none_or(is_split)
     }
 
-    /// The mesh as it is now.
+    /// The present mesh.
     ///
     /// # Errors
     /// More elements than can be numbered, or coordinates that overflow.
@@ -193,8 +193,8 @@ impl Forest<'_> {
     }
 }
 
-/// The normals of a mesh from those of its corners, by what is one vertex on one side of sharp edges; where there is none, the
-/// average of the faces'.
+/// The normals of a mesh from those of its corners, one for each vertex and side of sharp edges;
+/// where there is none, the average of the faces'.
 fn sided(mesh: &Mesh, corners: &[[u32; 3]], mut normals: Vec<DVec3>) -> SidedNormals {
     let mut averages = vec![DVec3::ZERO; normals.len()];
     for (face, own) in corners.iter().enumerate() {

@@ -64,7 +64,7 @@ struct Node {
 /// How positions and limits of a vertex go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// Inside, with what the distance to the limit shrinks by in a step.
+    /// Inside, with the factor by which the distance to the limit shrinks in a step.
     Smooth(f64),
     /// The centre of a control face, or of one of a later even level, with sharp edges: regular after one more step.
     BesideSharp,
@@ -79,7 +79,7 @@ enum Kind {
 #[derive(Clone, Debug)]
 struct Vertex {
     kind: Kind,
-    /// The level at which it came about, and its position there.
+    /// The level of its creation, and its position there.
     level: u8,
     at: DVec3,
     /// The node that it is the centre of, or the half-edge that it lies on.
@@ -109,7 +109,7 @@ pub(super) struct Forest<'m> {
     /// Triangles of the result.
     triangles: usize,
     max_triangles: usize,
-    /// Triangles of the result that came about since they were asked for.
+    /// Triangles of the result that arose since the last query.
     fresh: Vec<Triangle>,
 }
 
@@ -131,7 +131,7 @@ impl Node {
         (self.is_odd() && self.sharp != 0).then(|| self.sharp.trailing_zeros() as usize)
     }
 
-    /// The apex as it is seen from across an edge.
+    /// The apex seen from across an edge.
     fn apex(&self, edge: usize) -> u32 {
         self.apexes[usize::from(self.cut_edge().is_some_and(|cut| (cut + 1) % 3 == edge % 3))]
     }
@@ -147,7 +147,7 @@ impl Forest<'_> {
         Some(self.node(side).across[edge_of(side)]).filter(|&across| across != NONE)
     }
 
-    /// What a half-edge gave.
+    /// The child of a half-edge.
     fn child(&self, side: Side) -> Option<usize> {
         Some(self.node(side).children[edge_of(side)])
             .filter(|&child| child != NONE)
@@ -169,7 +169,7 @@ impl Forest<'_> {
             Some(edge) => self.cut(side(t, edge)),
             None => [self.make_centre(t); 2],
         };
-        // What it needed may have grown it.
+        // A split of a neighbour may have grown it.
         if self.nodes[t].is_grown() {
             return;
         }
@@ -178,7 +178,7 @@ impl Forest<'_> {
         for edge in 0..3 {
             let own = side(t, edge);
             if self.nodes[t].is_sharp(edge) {
-                new.push(self.make_beside_sharp(own));
+                new.push(self.make_next_to_sharp(own));
             } else if let Some(other) = self
                 .across(own)
                 .filter(|&other| self.node(other).is_grown())
@@ -191,10 +191,11 @@ impl Forest<'_> {
         }
     }
 
-    /// The control face that what a half-edge gives is counted to.
+    /// The control face of the children of a half-edge.
     fn root(&self, own: Side) -> u32 {
         let node = self.node(own);
-        // (A, apex, apex): the second is in the face across the edge, and so is what comes of the edges at it.
+        // (A, apex, apex): the second is in the face across the edge, and so are the children of
+        // its edges.
         let across = (node.is_odd() && node.cut_edge().is_none() && edge_of(own) < 2)
             .then(|| self.across(side(node_of(own), 1)))
             .flatten();
@@ -227,7 +228,7 @@ impl Forest<'_> {
             self.node(own).apex(edge_of(own)),
         ];
         let corners = [self.ends(own)[0], apexes[0], apexes[1]];
-        // Beside an edge that was cut, it has one of the outer parts.
+        // Next to a cut edge, it has one of the outer parts.
         let first = self
             .node(other)
             .cut_edge()
@@ -248,7 +249,7 @@ impl Forest<'_> {
     }
 
     /// The child of a half-edge with a sharp edge.
-    fn make_beside_sharp(&mut self, own: Side) -> usize {
+    fn make_next_to_sharp(&mut self, own: Side) -> usize {
         let node = self.node(own);
         let ([a, b], third) = (self.ends(own), node.corners[(edge_of(own) + 2) % 3]);
         if node.is_odd() {
@@ -265,7 +266,7 @@ impl Forest<'_> {
         child
     }
 
-    /// Connects a node with its neighbours, as far as they are there.
+    /// Connects a node with its neighbours, as far as they exist.
     fn link(&mut self, node: usize) {
         for edge in 0..3 {
             let across = match self.neighbour(node, edge) {
@@ -283,7 +284,7 @@ impl Forest<'_> {
         }
     }
 
-    /// What is across an edge of a node, by its parents.
+    /// The neighbour across an edge of a node, by its parents.
     fn neighbour(&self, node: usize, edge: usize) -> Neighbour {
         let Node { parent, sharp, .. } = self.nodes[node];
         if parent == NONE || sharp >> edge & 1 != 0 {
@@ -346,9 +347,9 @@ impl Forest<'_> {
 /// Where a node's neighbour comes from.
 #[derive(Clone, Copy, Debug)]
 enum Neighbour {
-    /// It is what a half-edge gives; this edge of it.
+    /// The child of a half-edge; this edge of it.
     Child(Side, usize),
-    /// It is what the half-edge across this one gives; its first edge.
+    /// The child of the half-edge across this one; its first edge.
     ChildAcross(Side),
     /// There is none.
     None,

@@ -1,5 +1,6 @@
-//! Positions of the forest's vertices at any level, their limits and normals: in closed form where there is one, else from the
-//! neighbourhood at the level at which a vertex came about, which is grown for.
+//! Positions of the forest's vertices at any level, their limits and normals: in closed form where
+//! there is one, else from the neighbourhood at the level of a vertex's creation, which is grown
+//! for this.
 //!
 //! Inside, `v` and the mean of its ring form a system of their own, so that m steps on it is at `v∞ + (2/3 − α)^m (v − v∞)`
 //! (Kobbelt); on curves two steps shrink the distance from the limit to 1/9.
@@ -10,14 +11,14 @@ use super::{Forest, Kind, Side, Vertex, edge_of, node_of, side};
 use crate::refine::Origin;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::Scheme;
-use crate::sqrt3::masks::{DoubleStep, alpha, beside, centre, shrinking, smoothed};
+use crate::sqrt3::masks::{DoubleStep, alpha, centre, crease_point, shrinking, smoothed};
 use crate::sqrt3::origins::third;
 use crate::vector::{DVec3, unit_or_zero};
 
 /// A sine below which two tangents span no plane, as in [`crate::limit`].
 const LEAST_SINE: f64 = 1e-12;
 
-/// A vertex at which a crease ends, with its ring from the crease on, at each level that was asked for.
+/// A vertex at which a crease ends, with its ring from the crease on, at each requested level.
 #[derive(Clone, Debug)]
 pub(super) struct Dart {
     /// Of each even level: the vertex, and its ring.
@@ -46,7 +47,7 @@ impl Dart {
             .fold(mask.centre * vertex, |sum, (&p, &weight)| sum + weight * p);
         let edge = DoubleStep.edge_mask(EdgeShape::between(shape, RingShape::interior(6)));
         let point = |j: usize| match j {
-            0 => beside(2.0 * vertex - ring[0], vertex, ring[0]),
+            0 => crease_point(2.0 * vertex - ring[0], vertex, ring[0]),
             _ => (0..ring.len()).fold(edge.origin * vertex + edge.target * ring[j], |sum, slot| {
                 sum + edge.origin_ring[slot] * ring[(j + slot) % ring.len()]
             }),
@@ -125,8 +126,8 @@ impl Forest<'_> {
         let (t, level) = (node_of(on), self.node(on).level);
         let places = [a, b].map(|v| self.at_even(v, level));
         let new = [
-            self.beside(a, places),
-            self.beside(b, [places[1], places[0]]),
+            self.crease_point(a, places),
+            self.crease_point(b, [places[1], places[0]]),
         ];
         let after = [a, b].map(|v| self.at_even(v, level + 1));
         [0, 1].map(|end| {
@@ -144,7 +145,7 @@ impl Forest<'_> {
     }
 
     /// The new point of a curve near a vertex, from the places of both ends.
-    fn beside(&mut self, near: u32, [here, there]: [DVec3; 2]) -> DVec3 {
+    fn crease_point(&mut self, near: u32, [here, there]: [DVec3; 2]) -> DVec3 {
         let beyond = match (
             self.vertices[near as usize].kind,
             self.vertices[near as usize].limit,
@@ -153,7 +154,7 @@ impl Forest<'_> {
             (Kind::Curve, Some(limit)) => 6.0 * limit - 4.0 * here - there,
             _ => 2.0 * here - there,
         };
-        beside(beyond, here, there)
+        crease_point(beyond, here, there)
     }
 
     fn push_vertex(&mut self, kind: Kind, level: u8, at: DVec3, maker: Side) -> u32 {
@@ -200,8 +201,8 @@ impl Forest<'_> {
         }
     }
 
-    /// The points around the centre of a node without sharp edges, at the level at which it came about: corners and, between them,
-    /// apexes across.
+    /// The points around the centre of a node without sharp edges, at the level of its creation:
+    /// corners and, between them, apexes across.
     fn first_ring(&mut self, t: usize) -> [DVec3; 6] {
         let (corners, level) = (self.nodes[t].corners, self.nodes[t].level + 1);
         let mut ring = [DVec3::ZERO; 6];
@@ -221,7 +222,7 @@ impl Forest<'_> {
         Some(self.node(across).apex(edge_of(across)))
     }
 
-    /// The points around the centre of a node with sharp edges, one step after it came about.
+    /// The points around the centre of a node with sharp edges, one step after its creation.
     fn second_ring(&mut self, t: usize) -> [DVec3; 6] {
         let mut ring = [DVec3::ZERO; 6];
         self.grow(t);
@@ -338,7 +339,7 @@ impl Forest<'_> {
             let corners = node.corners.map(|v| self.origin_in(v, t));
             return [0, 1, 2].map(|i| corners.iter().map(|corner| corner[i]).sum::<f64>() / 3.0);
         }
-        // (A, apex, apex) across what was the edge from A to B.
+        // (A, apex, apex) across the former edge from A to B.
         third(self.ends(node.parent).map(|v| self.origin_in(v, t)))
     }
 

@@ -1,7 +1,8 @@
 //! Sharp edges of all levels: boundaries, creases, and edges along which sheets were cut apart.
 //!
-//! The forest is cut open along sharp edges, so that each side has vertices of its own. What is one edge is one *rim* with
-//! several sides, which are cut together in three; sides of a crease become one again in the result.
+//! The forest is cut open along sharp edges, so that each side has vertices of its own. One edge is
+//! one *rim* with several sides, which are cut together in three; sides of a crease become one
+//! again in the result.
 
 use super::{Forest, Side, edge_of, node_of, side};
 use crate::geometry::NONE;
@@ -72,7 +73,7 @@ impl Rims {
         self.rims[rim as usize].parts
     }
 
-    /// Those that are edges of the result.
+    /// The rims that are edges of the result.
     pub(super) fn result(&self) -> impl Iterator<Item = &Rim> {
         let is_there = |rim: &Rim| {
             rim.parent
@@ -83,7 +84,7 @@ impl Rims {
             .filter(move |rim| !rim.is_cut && is_there(rim))
     }
 
-    /// Those that are cut in the result.
+    /// The rims that are cut in the result.
     pub(super) fn cut(&self) -> impl Iterator<Item = &Rim> {
         self.rims.iter().filter(|rim| rim.is_cut)
     }

@@ -1,4 +1,4 @@
-//! Vertices of later levels on and in a triangle: what a distance is estimated by.
+//! Vertices of later levels on and in a triangle, by which a distance is estimated.
 
 use super::{Forest, Side, Triangle, edge_of, node_of, side};
 

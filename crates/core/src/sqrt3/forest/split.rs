@@ -1,4 +1,5 @@
-//! Splits that count for the result, and what they need: both parents of a node, and all sides of a sharp edge together.
+//! Splits that count for the result, and the splits that they need: both parents of a node, and all
+//! sides of a sharp edge together.
 
 use super::{Forest, Side, edge_of, node_of, side};
 use crate::geometry::NONE;
@@ -35,7 +36,7 @@ impl Forest<'_> {
         (0..self.control.face_count() as u32).map(Triangle::Leaf)
     }
 
-    /// The triangles that came about since this was asked.
+    /// The triangles that arose since the last query.
     pub(in crate::sqrt3) fn take_fresh(&mut self) -> Vec<Triangle> {
         core::mem::take(&mut self.fresh)
     }
@@ -53,7 +54,7 @@ impl Forest<'_> {
     /// Divides a triangle: splits its node, or the one across its old edge.
     ///
     /// # Errors
-    /// There would be too many triangles. What was split by then is a result, too.
+    /// There would be too many triangles. The splits done by then are a valid result.
     pub(in crate::sqrt3) fn divide(&mut self, triangle: Triangle) -> Result<(), Full> {
         match triangle {
             Triangle::Leaf(node) => self.split(node as usize),
@@ -64,7 +65,7 @@ impl Forest<'_> {
         }
     }
 
-    /// Splits a node, and before it what it needs.
+    /// Splits a node, and before it the nodes that this needs.
     fn split(&mut self, t: usize) -> Result<(), Full> {
         if self.nodes[t].is_split {
             return Ok(());
@@ -79,7 +80,7 @@ impl Forest<'_> {
             .into_iter()
             .filter(|&other| !self.nodes[other].is_split)
             .collect();
-        // Each split gives three triangles for one, or two more where the thirds beside it become nodes.
+        // Each split gives three triangles for one, or two more where adjacent thirds become nodes.
         if self.triangles + 2 * new.len() > self.max_triangles {
             return Err(Full);
         }

@@ -1,6 +1,6 @@
-//! Random control meshes that are hard on a certificate: any valence, boundaries, sharp edges, tags that fade, sheets that
-//! are cut apart where more than two meet, slivers, folds, thin sheets with holes, flat ones, tiny, huge and far from the
-//! origin.
+//! Random control meshes that are hard on a certificate: any valence, boundaries, sharp edges,
+//! semi-sharp tags, sheets that are cut apart where more than two meet, slivers, folds, thin sheets
+//! with holes, flat ones, tiny, huge and far from the origin.
 
 use limitmesh::mesh::MeshError;
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};

@@ -24,7 +24,7 @@ enum Lie {
 
 struct Liar {
     lie: Lie,
-    /// What it says it is.
+    /// The member that it claims to be.
     says: Option<LoopFamily>,
 }
 

@@ -29,13 +29,13 @@ const MOST_REFERENCE_TRIANGLES: usize = 40_000;
 /// Triangles of a result at most.
 const MOST_TRIANGLES: usize = 3_000;
 
-/// The same where edges of a mesh sixteen times as fine are collapsed.
+/// The most faces where edges of a mesh sixteen times as fine are collapsed.
 const MOST_OPTIMISED: usize = 300;
 
 /// Vertices of the reference and points of the result that are measured.
 const MOST_SAMPLES: usize = 5_000;
 
-/// What one cage is refined to.
+/// The goals of one cage.
 struct Goal {
     options: ExactOptions,
     what: String,
@@ -148,7 +148,7 @@ fn ensure(holds: bool, why: impl FnOnce() -> String) -> Result<(), String> {
     if holds { Ok(()) } else { Err(why()) }
 }
 
-/// What must hold without any measurement.
+/// The invariants that need no measurement.
 fn check_form(control: &Mesh, result: &Exact, options: &ExactOptions) -> Result<(), String> {
     result.mesh.validate().map_err(|error| error.to_string())?;
     let [before, after] =
@@ -200,7 +200,7 @@ fn check_samples(
 ) -> Result<(), String> {
     let upper = result.error.upper;
     let (fine, level) = reference(control, scheme, result.levels);
-    // What rounding does to the reference itself and to distances to it.
+    // The rounding errors of the reference itself and of distances to it.
     let rounding = 1e-14 * largest(control);
     let output = Bvh::new(result.mesh.as_triangles()).unwrap();
     let points = fine.positions();
@@ -274,7 +274,7 @@ fn weights(random: &mut Random) -> [[f64; 3]; 6] {
     ]
 }
 
-/// The same bytes for any number of threads.
+/// Any number of threads gives equal bytes.
 fn check_threads(
     control: &Mesh,
     scheme: &dyn Scheme,

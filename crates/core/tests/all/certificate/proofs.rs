@@ -63,7 +63,8 @@ pub(crate) fn check(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> Resu
     {
         return Err(format!("confirmed at {below:e}, although {error:?}"));
     }
-    // Bounds that a search has tightened are not proven by the triangles one by one, which may drift along the surface; as far as the mesh is large they do not.
+    // Bounds that a search has tightened are not proven by the triangles one by one, which may move
+    // along the surface; in large meshes they do not.
     let mut within = error.upper;
     while let Some(refused) = refused(control, scheme, result, within)? {
         let [first, ..] = refused[..] else {

@@ -278,7 +278,7 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
                 .unwrap()
                 .mesh;
             mesh.validate().unwrap();
-            // Nothing had to be joined: each copy alone comes to the same limit.
+            // Nothing had to be joined: each copy alone has the common limit.
             let limits = limitmesh::limit::LimitTable::new(scheme)
                 .positions(&mesh)
                 .unwrap();

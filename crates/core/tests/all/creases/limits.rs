@@ -382,7 +382,8 @@ fn what_fades_has_the_limits_of_iteration() {
 
 #[test]
 fn two_ring_schemes_have_the_limits_of_iteration_at_tags() {
-    // Two faces a side at least: beside a single one the scheme converges like 1/n, too slowly to be iterated.
+    // Two faces a side at least: with a single one the scheme converges like 1/n, too slowly to be
+    // iterated.
     for k in 4..=8 {
         let half = k / 2;
         let name = |kind: &str| format!("butterfly {kind} {k}");

@@ -97,7 +97,7 @@ impl Plain {
             };
             let now = rule(own, &|s| s);
             let after = rule(less(own), &less);
-            // Those that fade in this step: above 0 and not above 1.
+            // The sharpness of tags that end in this step: above 0 and not above 1.
             let fading: Vec<f64> = edges
                 .iter()
                 .map(|&(_, s)| s)

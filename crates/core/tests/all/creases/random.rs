@@ -1,4 +1,4 @@
-//! What must hold for any mesh with any tags.
+//! The invariants for any mesh with any tags.
 
 use limitmesh::Mesh;
 use limitmesh::limit::LimitTable;
@@ -50,7 +50,7 @@ proptest! {
 
     #[test]
     fn crease_curves_depend_on_their_points_alone(mesh in any_mesh(), scheme in 0..3usize, seed in any::<u64>()) {
-        // Whatever never fades keeps its curve when all other vertices are moved.
+        // An infinitely sharp curve does not change when all other vertices are moved.
         let sharpness = Sharpness::of(&mesh);
         let topology = mesh.topology();
         let is_fixed = |v| {

@@ -52,7 +52,7 @@ fn plate_of_slivers(facets: u32) -> Mesh {
         .unwrap()
 }
 
-/// What is handed out covers what the rims enclose, once.
+/// The triangles cover the inside of the rims, once.
 #[test]
 fn plates_with_holes_do_not_fold() {
     let facets = 24;
@@ -97,7 +97,7 @@ fn plates_with_holes_do_not_fold() {
         (area - (outside - inside)).abs() < TAU * 0.5 * 1e-4,
         "{area} {inside}"
     );
-    // What folds over has the rim divided as well.
+    // A region that folds over has its rim divided as well.
     assert!(
         whole.mesh.topology().boundary_edge_count() < folded.mesh.topology().boundary_edge_count()
     );
@@ -122,8 +122,9 @@ fn to_segments(point: [f64; 3], segments: &[[[f64; 3]; 2]]) -> f64 {
     segments.iter().map(distance).fold(f64::INFINITY, f64::min)
 }
 
-/// A thin ring whose rims' chords cross while the curves do not, beside a plate that the rules fold over: the ring's rims are divided until it
-/// can be triangulated, and the plate is measured as what its rim encloses all the same.
+/// A thin ring whose rims' chords cross while the curves do not, adjacent to a plate that the rules
+/// fold over: the ring's rims are divided until it can be triangulated, and the plate is measured
+/// as the inside of its rim.
 #[test]
 fn rims_whose_chords_cross_are_divided() {
     let plate = plate_of_slivers(24);
@@ -219,8 +220,8 @@ fn balanced_angles_of_folding_sides_come_to_an_end() {
     );
 }
 
-/// The same plate in the middle of a tent: where the surface goes on smoothly, what a rim encloses is not all that triangles which fold are near to,
-/// so they stay, and what is proven holds.
+/// The plate in the middle of a tent: where the surface goes on smoothly, triangles that fold are
+/// near to more than the inside of a rim, so they stay, and the proven bound holds.
 #[test]
 fn what_folds_beside_smooth_surfaces_stays() {
     let plate = plate_of_slivers(24);
@@ -353,7 +354,8 @@ fn estimates_count_regions_that_stay() {
     assert!(kept > 3, "{kept}");
 }
 
-/// One mesh is as near as told to another of a much smaller distance, which stands for the same surface.
+/// One mesh is as near as reported to another of a much smaller distance, which approximates the
+/// same surface.
 fn assert_as_near_as_told(found: &Exact, fine: &Exact, what: &str) {
     assert!(
         fine.error.lower <= fine.error.upper,
@@ -387,7 +389,7 @@ fn assert_as_near_as_told(found: &Exact, fine: &Exact, what: &str) {
     );
 }
 
-/// What grids, plates and strips that fold stand for is the same at each tolerance.
+/// Grids, plates and strips that fold approximate one surface at all tolerances.
 #[test]
 fn what_folds_is_the_same_at_each_tolerance() {
     let mut numbers = Random::new(12);
@@ -434,8 +436,9 @@ fn what_folds_is_the_same_at_each_tolerance() {
     assert!(unfolded > 2 && folded > 2, "{unfolded} {folded}");
 }
 
-/// Budgets as well, balanced or not. What strips stood for had been told from their triangles where vertices are balanced, and where rims that are
-/// divided again took much more than there was room for.
+/// Budgets as well, balanced or not. The surface of strips had been derived from their triangles
+/// where vertices are balanced, and where rims that are divided again needed far more triangles
+/// than the budget.
 #[test]
 fn what_folds_is_the_same_under_budgets() {
     for seed in [12, 40, 69, 121, 140, 170, 172] {

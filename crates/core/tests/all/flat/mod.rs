@@ -72,7 +72,8 @@ fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
     (count, area)
 }
 
-/// Without the option and with it: the same points everywhere but inside the flat regions and on rims that are divided less.
+/// Without the option and with it: equal points everywhere except inside the flat regions and on
+/// rims that are divided less.
 fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
     let options = within(tolerance);
     let merged = exact(mesh, &Loop, &options).unwrap();
@@ -92,7 +93,8 @@ fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
             mesh.topology().euler_characteristic()
         );
     }
-    // What is flat here is flat to rounding, and costs no more; rims are divided as they need it themselves.
+    // Flat regions here are flat to rounding, and cost no more; rims are divided as they need it
+    // themselves.
     for result in [&merged, &kept] {
         let error = &result.error;
         assert!(
@@ -201,7 +203,8 @@ fn boundaries_are_rims_too() {
     assert_eq!(merged.mesh.vertex_count(), on_rim + 1);
 }
 
-/// Two flat sheets that share a rim: no edge comes to have four faces, and caps hold though a region keeps its triangles.
+/// Two flat sheets that share a rim: no edge has four faces, and caps hold though a region keeps
+/// its triangles.
 #[test]
 fn sheets_that_share_their_rims_stay_apart() {
     for stretch in [1.0, 0.05] {

@@ -35,7 +35,8 @@ pub(crate) fn model(name: &str) -> Mesh {
     .0
 }
 
-/// The greatest distance of the library's limits from the vertices of a mesh, but for those that are passed by.
+/// The greatest distance of the library's limits from the vertices of a mesh, except for the
+/// relaxed ones.
 pub(crate) fn from_limits(found: &Interpolated, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
     let may_be = beside_long_edges(vertices);
     assert!(
@@ -167,7 +168,7 @@ pub(crate) fn refinement_tends_to(
     );
 }
 
-/// Tags on some edges and vertices, many of them fading, some single ones that end in darts.
+/// Tags on some edges and vertices, many of them semi-sharp, some single ones that end in darts.
 pub(crate) fn tagged(mesh: Mesh, seed: u64, lasting_only: bool) -> Mesh {
     let mut random = Random::new(seed);
     let mut sharpness = |one_in| {

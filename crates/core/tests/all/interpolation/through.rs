@@ -68,7 +68,7 @@ fn control_points_are_those_of_a_dense_system() {
     }
 }
 
-/// What the documentation claims of the symmetric system: its eigenvalues after scaling by the diagonal.
+/// The documented property of the symmetric system: its eigenvalues after scaling by the diagonal.
 #[test]
 fn systems_are_as_well_conditioned_as_claimed() {
     for mesh in [
@@ -167,7 +167,7 @@ fn corners_keep_their_place_and_lines_know_nothing_of_their_sides() {
         (&flat, InterpolationMethod::Unchanged)
     );
 
-    // A crease round a torus is the same whatever the points beside it.
+    // A crease round a torus does not depend on the adjacent points.
     let (m, n) = (12, 8);
     let line: Vec<u32> = (0..m).map(|i| i * n).collect();
     let crease = |i: usize| CreaseTag {

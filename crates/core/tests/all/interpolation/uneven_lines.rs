@@ -16,7 +16,7 @@ fn extruded(profile: &[[f64; 2]], height: f64) -> Mesh {
     extruded_around(profile, middle, height)
 }
 
-/// The same with fans around vertices elsewhere.
+/// An extrusion with fans around vertices elsewhere.
 fn extruded_around(profile: &[[f64; 2]], middle: [f64; 2], height: f64) -> Mesh {
     let n = profile.len() as u32;
     let at = |z: f64| profile.iter().map(move |&[x, y]| [x, y, z]);
@@ -31,7 +31,8 @@ fn extruded_around(profile: &[[f64; 2]], middle: [f64; 2], height: f64) -> Mesh 
     creased(positions, triangles)
 }
 
-/// How far what comes of leading the surface through the vertices is from the mesh, at least and at most, and vertices passed by.
+/// The least and greatest distance from the mesh of the surface through the vertices, and the
+/// number of relaxed vertices.
 fn apart(mesh: &Mesh) -> ([f64; 2], usize) {
     let found = interpolate(mesh, &Loop).unwrap();
     assert!(
@@ -109,7 +110,7 @@ fn edges_up_to_three_times_as_long_count_as_they_are() {
     assert_eq!(apart(&extruded(&circle, 1.0)).1, 0);
 }
 
-/// Led through a vertex near the corner of a flat face, its control point came to lie beyond that corner.
+/// Led through a vertex near the corner of a flat face, its control point lay beyond that corner.
 #[test]
 fn a_vertex_near_the_corner_of_a_flat_face_stays() {
     let mesh = extruded_around(

@@ -32,7 +32,7 @@ fn solids() -> [(&'static str, Mesh); 4] {
     ]
 }
 
-/// As a prototype in another language counted them, which had no code in common: the least set is unique.
+/// As a prototype in another language counted them, without common code: the least set is unique.
 #[test]
 fn cones_give_the_known_numbers_of_triangles() {
     let known = [
@@ -72,7 +72,8 @@ fn everything_divided_is_uniform() {
             let expected = uniform(&mesh, &options).unwrap();
             let [found_faces, all] = [&found.mesh, &expected.mesh].map(|mesh| unnumbered(mesh, 9));
             if ["single", "one edge"].contains(&name) && level > 0 {
-                // What lies in a plane needs no division; what is divided is where uniform refinement has it.
+                // Planar regions need no division; the vertices of divided regions are those of
+                // uniform refinement.
                 let all: Vec<_> = all.as_flattened().to_vec();
                 assert!(
                     found_faces.as_flattened().iter().all(|at| all.contains(at)),
@@ -185,8 +186,8 @@ fn no_triangle_leaves_its_cone() {
     }
 }
 
-/// What a criterion asks for is the least mesh that meets it: a tolerance that is always met adds nothing to an angle, and a mesh with
-/// its faces in another order gives the same.
+/// The result of a criterion is the least mesh that meets it: a tolerance that is always met adds
+/// nothing to an angle, and a mesh with its faces in another order gives an equal result.
 #[test]
 fn results_do_not_depend_on_the_order() {
     for (name, mesh) in [
@@ -297,7 +298,7 @@ fn options_that_mean_nothing_are_errors() {
     assert!(matches!(error, RefineError::FadingTag { .. }));
 }
 
-/// Whoever watches can stop it, and is told the truth about it.
+/// Observers can stop it, and get true reports.
 #[test]
 fn observers_can_stop_it() {
     use core::ops::ControlFlow;

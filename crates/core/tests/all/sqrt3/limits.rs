@@ -137,7 +137,7 @@ fn limits_do_not_change_with_the_level() {
                 assert!(off < 1e-13, "{name}, level {level}, vertex {v}: {off}");
             }
         }
-        // What the steps themselves come to.
+        // The positions of the steps themselves.
         let deep = levels(&mesh, 6).mesh;
         for (v, &limit) in expected.iter().enumerate() {
             let (near, far) = (

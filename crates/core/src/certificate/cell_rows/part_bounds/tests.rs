@@ -1,4 +1,5 @@
-//! Single precision against the same quantities of each part by itself in double precision, by other code.
+//! Single precision against the same quantities of each part alone in double precision, by other
+//! code.
 
 use super::*;
 use crate::certificate::TriangleFrame;
@@ -191,7 +192,8 @@ fn single_precision_is_on_the_safe_side() {
     );
 }
 
-/// The greatest height of a quadratic, by the places where it can be and none other, is never above what is told.
+/// The greatest height of a quadratic, by all places where it can be, is never above the reported
+/// one.
 #[test]
 fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
     let mut random = Random::new(7);
@@ -212,7 +214,7 @@ fn heights_of_nearly_cylindrical_quadratics_are_no_less_than_they_are() {
     }
 }
 
-/// Nor is what is no number.
+/// Nor is NaN.
 #[test]
 fn what_has_no_bound_is_within_nothing() {
     for distance in [1.0, f64::MAX, f64::INFINITY] {

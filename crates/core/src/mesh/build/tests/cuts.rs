@@ -38,7 +38,7 @@ fn three_pages_on_one_edge() {
 /// The inner vertices of the line along which the fin stands move with the cut; its ends stay.
 #[test]
 fn a_fin_on_a_sheet() {
-    // A sheet of 7 by 3 vertices; the fin stands on the middle row from column 1 to column 5.
+    // A sheet of 7 by 3 vertices; the fin is on the middle row from column 1 to column 5.
     let (columns, rows) = (7u32, 3u32);
     let mut p: Vec<[f64; 3]> = Vec::new();
     for y in 0..rows {
@@ -185,7 +185,8 @@ fn a_moebius_strip_is_cut_once() {
     assert_eq!(groups(&mesh.junctions().edges).len(), 1);
 }
 
-/// A square of two triangles, one of which shows its other side, beside a third that agrees with the first.
+/// A square of two triangles, one of which shows its other side, next to a third that agrees with
+/// the first.
 #[test]
 fn windings_that_count_are_kept_and_cut_apart() {
     let p = [
@@ -247,7 +248,7 @@ fn tags_go_to_all_copies() {
     let (mesh, diagnosis) = build_soup(&pages);
     assert!(diagnosis.dropped_tags.is_empty());
     assert_eq!(mesh.tags().creases.len(), 3);
-    // The copies are held for ever, which outlasts the tag; vertex 2 has only its own.
+    // The copies are held at all levels, more than those of the tag; vertex 2 has only its own.
     assert_eq!(fixed(&mesh).len(), 6);
     let own: Vec<_> = mesh
         .tags()

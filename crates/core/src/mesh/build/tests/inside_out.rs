@@ -65,7 +65,7 @@ fn components_are_turned_with_what_is_in_them_but_cavities_stay() {
             &[false, true, false],
             &[12],
         ),
-        // Two bodies, one in the other, are nobody's fault.
+        // Two bodies, one in the other, are no defect.
         (
             &[(0.0, 9.0, false), (1.0, 8.0, false)],
             &[false, false],

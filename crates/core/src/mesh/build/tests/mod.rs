@@ -1,4 +1,4 @@
-//! What the tests of the building share: small soups, and a count of what a mesh is made of.
+//! Helpers of the tests of building: small soups, and a count of the elements of a mesh.
 
 mod cuts;
 mod inside_out;
@@ -46,13 +46,13 @@ fn found(diagnosis: &Diagnosis) -> Vec<(&'static str, Finding)> {
 fn check_mesh(mesh: &Mesh) {
     mesh.validate().unwrap();
     let topology = mesh.topology();
-    // Indices alone tell which half-edges are twins.
+    // Indices alone decide which half-edges are twins.
     let rebuilt = Topology::from_triangles(mesh.triangles().to_vec(), mesh.vertex_count()).unwrap();
     assert_eq!(&rebuilt, topology);
     check_junctions_hold(mesh);
 }
 
-/// Computes what one step of refinement by boundary and corner rules does to the copies, from the definition:
+/// Computes one step of refinement of the copies by boundary and corner rules, from the definition:
 /// the members of a vertex group must end at one place, and so must the midpoints of an edge group.
 fn check_junctions_hold(mesh: &Mesh) {
     let topology = mesh.topology();

@@ -287,7 +287,7 @@ proptest! {
     }
 }
 
-/// Seen in its tilted plane, corners that stand on one line do so only but for rounding.
+/// Seen in its tilted plane, corners on one line are so only within rounding.
 #[test]
 fn corners_on_one_line_in_a_tilted_plane_are_no_twist() {
     let points = [
@@ -346,7 +346,8 @@ fn many_corners_take_little_time() {
     assert_tiles(&points, mesh.triangles());
 }
 
-/// A polygon that goes round three vertices thousands of times bounds nothing, and is not looked at corner by corner.
+/// A polygon that goes round three vertices thousands of times bounds nothing, and is not processed
+/// corner by corner.
 #[test]
 fn going_round_and_round_is_a_twist() {
     let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
@@ -383,7 +384,8 @@ fn polygons_with_slits_are_no_twists() {
     assert_eq!(mesh.triangles().len(), face.len() - 2);
 }
 
-/// Thousands of holes, each joined to the same corner by a slit: the triangles cover what is between them.
+/// Thousands of holes, each joined to the same corner by a slit: the triangles cover the region
+/// between them.
 #[test]
 fn thousands_of_slits_to_one_corner_are_no_twist() {
     let (mut points, mut face) = (vec![[0.0, 0.0]], vec![0u32]);

@@ -1,4 +1,4 @@
-//! Random soups in which everything collides: whatever comes in, a valid mesh comes out, and nothing is lost.
+//! Random soups in which everything collides: any input gives a valid mesh, and nothing is lost.
 
 use proptest::prelude::*;
 
@@ -121,7 +121,7 @@ proptest! {
         if grouped.is_empty() && diagnosis.bow_tie_vertices.is_empty() {
             prop_assert!(mesh.junctions().is_empty());
         }
-        // The same for vertices: all at one place are one group.
+        // For vertices too: all at one position are one group.
         let mut places: HashMap<_, Vec<u32>> = HashMap::new();
         for (v, p) in mesh.positions().iter().enumerate() {
             places.entry(p.map(f64::to_bits)).or_default().push(v as u32);
