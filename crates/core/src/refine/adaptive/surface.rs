@@ -290,19 +290,20 @@ impl<'a> Surface<'a> {
         places: &[f64],
         found: &mut impl FnMut(usize, LimitPoint),
     ) {
-        self.part_along(edge, 0.0, 1.0, 0, places.len(), places, found);
+        self.part_along(edge, 0.0, 1.0, 0..places.len(), places, found);
     }
 
+    /// Evaluates those of the points that lie on the part of the edge from one place on, of some length.
     fn part_along(
         self,
         edge: usize,
         from: f64,
         length: f64,
-        first: usize,
-        last: usize,
+        own: core::ops::Range<usize>,
         places: &[f64],
         found: &mut impl FnMut(usize, LimitPoint),
     ) {
+        let (first, last) = (own.start, own.end);
         if first == last {
             return;
         }
@@ -336,12 +337,12 @@ impl<'a> Surface<'a> {
                     found(middle, piece.middles(rules)[edge]);
                     next += 1;
                 }
-                for (child, from, first, last) in [
-                    (edge, from, first, middle),
-                    ((edge + 1) % 3, from + half, next, last),
+                for (child, from, own) in [
+                    (edge, from, first..middle),
+                    ((edge + 1) % 3, from + half, next..last),
                 ] {
                     self.child(child)
-                        .part_along(edge, from, half, first, last, places, found);
+                        .part_along(edge, from, half, own, places, found);
                 }
             }
         }
