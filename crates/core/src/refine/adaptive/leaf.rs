@@ -21,7 +21,7 @@ impl LeafTriangle {
         let part = match (corner, labels.iter().filter(|&&label| label > 2).count()) {
             (Some(_), 0) => SubTriangle::Whole,
             (Some(_), 1) => {
-                // The middle of an edge, one end of that, and the corner opposite.
+                // The middle of an edge (3, 4 or 5), one end of that, and the corner opposite.
                 let edge = usize::from(!has(3)) + usize::from(has(5));
                 let second = !has(edge);
                 SubTriangle::Half { edge, second }

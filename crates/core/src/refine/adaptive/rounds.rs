@@ -29,10 +29,10 @@ const SURELY: f64 = 1.5;
 /// Distances at irregular vertices fall by this part each time at least.
 const HALVED: f64 = 0.5;
 
-/// The split of a leaf that fails leaves this part of its distance, where not all of that is due to the corner.
+/// The first split there is counted on for this part: what is left of the distance is then mostly due to the corner.
 const FIRST: f64 = 0.25;
 
-/// Edges at a vertex around which distances fall by a quarter each time.
+/// Around vertices of so many edges at most each division leaves a quarter of the distance, unless triangles are balanced.
 const REGULAR: u32 = 6;
 
 /// What fails by more times than this says nothing of those below it.
@@ -66,7 +66,7 @@ impl Engine<'_> {
         Ok(Some(state))
     }
 
-    /// The same from a state on.
+    /// Splits leaves of a divided state until all triangles are within its goal; `None` if there are more than `most`.
     pub(super) fn verified(
         &self,
         mut state: State,
@@ -88,7 +88,13 @@ impl Engine<'_> {
             }
             let failing = self.verify(&mut state, &mut emission, &is_changed)?;
             dirty = Dirty::none(faces);
-            if !self.split_failing(&mut state, &failing, &mut dirty)? {
+            let mut is_split = self.split_failing(&mut state, &failing, &mut dirty)?;
+            // Triangles that fail may be why others keep less than is assumed of them; they are divided first.
+            if !is_split && self.trusts() {
+                let failing = self.distrust(&mut state, &emission)?;
+                is_split = self.split_failing(&mut state, &failing, &mut dirty)?;
+            }
+            if !is_split {
                 if has_strips {
                     state.triangles -= self.saved(&emission)?;
                 }
@@ -183,13 +189,7 @@ impl Engine<'_> {
             is_balanced: self.is_balanced,
         };
         let mut emission = emitter.emit(before, self.watch)?;
-        let junctions = sides::junctions(
-            self.control,
-            self.watch,
-            &self.control.edges,
-            &state.chains,
-            &emission,
-        )?;
+        let junctions = sides::junctions(self.control, self.watch, &state.chains, &emission)?;
         join_copies(&mut emission.positions, &junctions.vertices);
         emission.junctions = junctions;
         Ok(emission)
@@ -284,11 +284,6 @@ impl Engine<'_> {
         };
         state.bulges = bulges;
         state.take_failing(&mut failing, watch)?;
-        // Triangles that fail may be why others keep less than is assumed of them; they are divided first.
-        if failing.is_empty() && self.trusts() {
-            self.distrust(state, emission)?;
-            state.take_failing(&mut failing, watch)?;
-        }
         Ok(failing)
     }
 
@@ -297,8 +292,12 @@ impl Engine<'_> {
         !self.is_balanced && self.control.criteria.is_none()
     }
 
-    /// Measures the proven leaves of control faces that assume more of the triangles around them than these keep.
-    fn distrust(&self, state: &mut State, emission: &Emission) -> Result<(), Cancelled> {
+    /// Measures the proven leaves of control faces that assume more of the triangles around them than these keep; gives those that fail.
+    fn distrust(
+        &self,
+        state: &mut State,
+        emission: &Emission,
+    ) -> Result<Vec<Failing>, RefineError> {
         let faces = state.covers.len();
         let (control, shared) = (self.control, &*state);
         let found = self.watch.pieces(faces, parallel::share(faces), |block| {
@@ -310,8 +309,9 @@ impl Engine<'_> {
                 .collect::<Vec<u32>>()
         })?;
         let faces = found.concat();
+        let mut failing = Vec::new();
         if faces.is_empty() {
-            return Ok(());
+            return Ok(failing);
         }
         faces
             .iter()
@@ -326,7 +326,9 @@ impl Engine<'_> {
         let found = measure(&self.sources(state, emission), self.watch, &faces, &look)?;
         self.watch.each(faces.iter().zip(found), |(&face, found)| {
             state.measured[face as usize].replace(found, true);
-        })
+        })?;
+        state.take_failing(&mut failing, self.watch)?;
+        Ok(failing)
     }
 
     /// Splits the leaves that fail; says whether there are any that may be.

@@ -3,7 +3,6 @@
 use super::chains::Chains;
 use super::control::Control;
 use super::emit::Emission;
-use super::quadtree::Edges;
 use crate::index::HalfEdgeId;
 use crate::mesh::{CreaseTag, Groups, INFINITELY_SHARP, Junctions, NONE, Tags};
 use crate::parallel;
@@ -101,7 +100,6 @@ pub(super) fn tags(
 pub(super) fn junctions(
     control: &Control<'_>,
     watch: &SharedWatch<'_>,
-    edges: &Edges<'_>,
     chains: &Chains,
     emission: &Emission,
 ) -> Result<Junctions, Cancelled> {
@@ -109,6 +107,7 @@ pub(super) fn junctions(
         vertices: control.mesh.junctions().vertices.clone(),
         edges: Groups::default(),
     };
+    let edges = &control.edges;
     watch.each(0..edges.group_count(), |group| {
         let members = edges.members(group);
         let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());

@@ -102,3 +102,31 @@ fn rounds_end_with_what_is_found_anew() {
         }
     }
 }
+
+/// Where levels end the division, leaves fail for good. Nobody counts on proven leaves around which the triangles do not keep what these assume.
+#[test]
+fn proven_leaves_are_checked_where_levels_end() {
+    let mut failed = 0;
+    for (name, seed) in [("spike", 2), ("head", 2), ("shoe", 1), ("cup", 3)] {
+        let mesh = stirred(name, seed);
+        for (levels, share) in [(1, 3e-3), (2, 1e-3), (3, 3e-4)] {
+            let options = ExactOptions::default()
+                .tolerance(share * mesh.diagonal())
+                .max_levels(levels);
+            with_engine(&mesh, &options, |engine| {
+                let goal = Goal::Within(engine.floor(options.tolerance));
+                let Verified { state, .. } = engine.refined(goal, usize::MAX)?.unwrap();
+                failed += usize::from(state.has_failed);
+                for face in 0..state.faces() {
+                    assert!(
+                        !state.is_trusted[face as usize] || is_kept(engine.control, &state, face),
+                        "{name}, {levels} levels, face {face}"
+                    );
+                }
+                Ok(())
+            })
+            .unwrap();
+        }
+    }
+    assert!(failed > 6, "{failed}");
+}
