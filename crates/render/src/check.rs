@@ -23,9 +23,8 @@ pub(crate) fn check_size(width: u64, height: u64) -> Result<(), RenderError> {
 pub(crate) fn check_count(
     what: &'static str,
     met: usize,
-    surface: Triangles<'_>,
+    expected: usize,
 ) -> Result<(), RenderError> {
-    let expected = surface.positions.len();
     if met == expected {
         Ok(())
     } else {
@@ -37,7 +36,10 @@ pub(crate) fn check_count(
     }
 }
 
-pub(crate) fn check_finite(what: &'static str, values: &[[f64; 3]]) -> Result<(), RenderError> {
+pub(crate) fn check_finite<const N: usize>(
+    what: &'static str,
+    values: &[[f64; N]],
+) -> Result<(), RenderError> {
     for (index, value) in values.iter().enumerate() {
         if let Some(&value) = value.iter().find(|x| !x.is_finite()) {
             return Err(RenderError::NotFinite { what, index, value });

@@ -3,6 +3,7 @@
 use limitmesh::Triangles;
 
 use crate::RenderError;
+use crate::check::{check_count, check_finite};
 use crate::colour::Linear;
 use crate::texture::Texture;
 
@@ -28,37 +29,14 @@ pub struct Covering<'a> {
 
 impl Covering<'_> {
     pub(crate) fn check(&self, surface: Triangles<'_>) -> Result<(), RenderError> {
-        let count = |what, met: usize, expected: usize| {
-            if met == expected {
-                Ok(())
-            } else {
-                Err(RenderError::Count {
-                    what,
-                    met,
-                    expected,
-                })
-            }
-        };
-        count(
-            "materials of triangles",
-            self.of_triangle.len(),
-            surface.triangles.len(),
-        )?;
-        count(
+        let faces = surface.triangles.len();
+        check_count("materials of triangles", self.of_triangle.len(), faces)?;
+        check_count(
             "texture coordinates of corners",
             self.corners.len(),
-            3 * surface.triangles.len(),
+            3 * faces,
         )?;
-        for (index, place) in self.corners.iter().enumerate() {
-            if let Some(&value) = place.iter().find(|x| !x.is_finite()) {
-                return Err(RenderError::NotFinite {
-                    what: "texture coordinate",
-                    index,
-                    value,
-                });
-            }
-        }
-        Ok(())
+        check_finite("texture coordinate", self.corners)
     }
 
     /// The colour at a point of a triangle; `steps` is how its barycentric coordinates change from pixel to pixel. `None` without a

@@ -33,7 +33,7 @@ pub fn render_scalar(
     (width, height): (u32, u32),
 ) -> Result<Image, RenderError> {
     scale.check()?;
-    check_count("values", values.len(), surface)?;
+    check_count("values", values.len(), surface.positions.len())?;
     if let Some((index, &value)) = values.iter().enumerate().find(|(_, v)| !v.is_finite()) {
         return Err(RenderError::NotFinite {
             what: "value",

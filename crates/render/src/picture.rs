@@ -38,7 +38,7 @@ pub fn render(
 ) -> Result<Image, RenderError> {
     let paint = match vertex_colours {
         Some(colours) => {
-            check_count("vertex colours", colours.len(), surface)?;
+            check_count("vertex colours", colours.len(), surface.positions.len())?;
             Paint::Vertex(colours)
         }
         None => Paint::Sides(
@@ -82,7 +82,7 @@ pub(crate) fn draw(
     style.check()?;
     check_surface(surface)?;
     if let Some(normals) = normals {
-        check_count("normals", normals.len(), surface)?;
+        check_count("normals", normals.len(), surface.positions.len())?;
         check_finite("normal", normals)?;
     }
     let projected = project(surface, camera, width, height);
