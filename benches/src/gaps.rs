@@ -14,7 +14,7 @@ use limitmesh::measure::{
 };
 use limitmesh::progress::{Observer, Progress};
 use limitmesh::refine::{
-    ExactOptions, StepwiseOptions, UniformOptions, exact_estimate_observed, exact_observed,
+    ExactOptions, Finish, StepwiseOptions, UniformOptions, exact_estimate_observed, exact_observed,
     stepwise_observed, uniform_observed,
 };
 use limitmesh::scheme::Loop;
@@ -48,7 +48,7 @@ pub(crate) fn gaps(folder: &Path) -> Result<()> {
         (
             "bunny within 0.01 %, balanced",
             &bunny,
-            within(&bunny, 0.01).balance(true),
+            within(&bunny, 0.01).finish(Finish::Balanced),
         ),
         (
             "bunny with 200,000 triangles",
@@ -63,7 +63,7 @@ pub(crate) fn gaps(folder: &Path) -> Result<()> {
         (
             "bunny within 0.05 %, optimised",
             &bunny,
-            within(&bunny, 0.05).optimize(true),
+            within(&bunny, 0.05).finish(Finish::Collapsed),
         ),
         (
             "bunny at 1 degree",
@@ -81,7 +81,7 @@ pub(crate) fn gaps(folder: &Path) -> Result<()> {
             Ok(exact_observed(control, &Loop, options, observer).map(|_| ())?)
         })?;
     }
-    let options = within(&bunny, 0.01).optimize(true);
+    let options = within(&bunny, 0.01).finish(Finish::Collapsed);
     gap("bunny, an estimate", &|observer| {
         Ok(exact_estimate_observed(&bunny, &Loop, &options, observer).map(|_| ())?)
     })?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use limitmesh::Mesh;
-use limitmesh::refine::{Exact, ExactOptions, RefineError, exact};
+use limitmesh::refine::{Exact, ExactOptions, Finish, RefineError, exact};
 use limitmesh::scheme::Loop;
 
 use crate::best_of;
@@ -18,10 +18,10 @@ const RUNS: usize = 4;
 /// MODEL is a file or built in. `--balance` moves vertices off the surface, `--runs K` takes the least of K runs. With `--threads N`
 /// it prints seconds by the clock on the wall instead, of one thread and of N in turn, and how many times as fast these are.
 pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<()> {
-    let (mut is_balanced, mut runs, mut threads, mut jobs) = (false, RUNS, None, Vec::new());
+    let (mut finish, mut runs, mut threads, mut jobs) = (Finish::OnSurface, RUNS, None, Vec::new());
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
-            "--balance" => is_balanced = true,
+            "--balance" => finish = Finish::Balanced,
             "--runs" => runs = arguments.next().context("--runs needs a number")?.parse()?,
             "--threads" => {
                 threads = Some(
@@ -52,7 +52,7 @@ pub(crate) fn tolerances(mut arguments: impl Iterator<Item = String>) -> Result<
             .rsplit_once('@')
             .with_context(|| format!("no goal in {job}"))?;
         let control = model(name)?;
-        let options = ExactOptions::default().balance(is_balanced);
+        let options = ExactOptions::default().finish(finish);
         let options = match goal.strip_prefix("n:") {
             Some(count) => options.triangles(count.parse()?),
             None => options.tolerance(0.01 * goal.parse::<f64>()? * control.diagonal()),

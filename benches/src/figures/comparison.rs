@@ -5,7 +5,7 @@
 use anyhow::Result;
 use limitmesh::Mesh;
 use limitmesh::measure::distances_to;
-use limitmesh::refine::SeamRule;
+use limitmesh::refine::{Finish, SeamRule};
 use limitmesh_paper::{match_angle, methods};
 use limitmesh_render::{
     Camera, ColourBar, GridStyle, Image, Lighting, Panel, Scale, Shading, Style, TextStyle,
@@ -83,7 +83,7 @@ pub(super) fn picture() -> Result<Vec<u8>> {
             &judge,
         )?,
         column(
-            best(&control, triangles, false)?,
+            best(&control, triangles, Finish::OnSurface)?,
             "exact".to_owned(),
             &judge,
         )?,

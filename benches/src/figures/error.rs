@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::refine::SeamRule;
 use limitmesh::refine::limit_reference;
+use limitmesh::refine::{Finish, SeamRule};
 use limitmesh::scheme::Loop;
 use limitmesh_paper::methods;
 use limitmesh_render::plot::{Axis, Plot, Series};
@@ -73,12 +73,12 @@ pub(super) fn plot() -> Result<String> {
         ))
         .with(named(
             "exact",
-            counted(&|n| best(&control, n, false))?,
+            counted(&|n| best(&control, n, Finish::OnSurface))?,
             [20, 92, 158],
         ))
         .with(named(
             "exact, balanced",
-            counted(&|n| best(&control, n, true))?,
+            counted(&|n| best(&control, n, Finish::Balanced))?,
             [26, 138, 104],
         ))
         .with(named(

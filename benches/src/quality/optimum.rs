@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use glam::DVec3;
 use limitmesh::Mesh;
-use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::refine::{ExactOptions, Finish, exact};
 use limitmesh::scheme::Loop;
 use limitmesh::simplify::{Features, SimplifyOptions, simplify};
 
@@ -46,8 +46,8 @@ pub(crate) fn against_optimum(folder: &Path) -> Result<()> {
         ];
         for (at, triangles) in TRIANGLES.into_iter().enumerate() {
             let meshes = [
-                best(&model.mesh, triangles, false)?,
-                best(&model.mesh, triangles, true)?,
+                best(&model.mesh, triangles, Finish::OnSurface)?,
+                best(&model.mesh, triangles, Finish::Balanced)?,
                 optimized(&model.mesh, triangles)?,
             ];
             for (which, mesh) in meshes.iter().enumerate() {

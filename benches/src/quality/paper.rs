@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::Result;
 use limitmesh::Mesh;
 use limitmesh::criterion::LimitNormal;
-use limitmesh::refine::{ExactOptions, StepwiseOptions, exact, stepwise};
+use limitmesh::refine::{ExactOptions, Finish, StepwiseOptions, exact, stepwise};
 use limitmesh::scheme::Loop;
 
 use super::cast::{Model, gather};
@@ -75,8 +75,8 @@ fn row(
     let triangles = paper.face_count();
     let theirs = judge.distance(&paper)?;
     drop(paper);
-    let ours = |balance| -> Result<f64> { judge.distance(&best(&model.mesh, triangles, balance)?) };
-    let (plain, balanced) = (ours(false)?, ours(true)?);
+    let ours = |finish| -> Result<f64> { judge.distance(&best(&model.mesh, triangles, finish)?) };
+    let (plain, balanced) = (ours(Finish::OnSurface)?, ours(Finish::Balanced)?);
     ratios[0].push(theirs / plain);
     ratios[1].push(theirs / balanced);
     let mut row = vec![model.name.clone(), steps.to_string(), count(triangles)];
@@ -86,9 +86,7 @@ fn row(
 }
 
 /// The best mesh with at most so many triangles.
-pub(crate) fn best(control: &Mesh, triangles: usize, balance: bool) -> Result<Mesh> {
-    let options = ExactOptions::default()
-        .triangles(triangles)
-        .balance(balance);
+pub(crate) fn best(control: &Mesh, triangles: usize, finish: Finish) -> Result<Mesh> {
+    let options = ExactOptions::default().triangles(triangles).finish(finish);
     Ok(exact(control, &Loop, &options)?.mesh)
 }

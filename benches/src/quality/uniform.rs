@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use limitmesh::Mesh;
-use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::refine::{ExactOptions, Finish, exact};
 use limitmesh::scheme::Loop;
 
 use super::cast::{Model, gather};
@@ -88,7 +88,7 @@ fn compare(model: &Model, judge: &Judge<'_>, level: usize) -> Result<Compared> {
     let theirs = judge.distance(&uniform)?;
     let triangles = uniform.face_count();
     drop(uniform);
-    let as_many = best(&model.mesh, triangles, false)?;
+    let as_many = best(&model.mesh, triangles, Finish::OnSurface)?;
     let ours = judge.distance(&as_many)?;
     let mut needed = as_near(&model.mesh, judge, theirs)?;
     if ours <= theirs * (1.0 + SAME) {

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use limitmesh::carry::carried;
-use limitmesh::refine::{Geomorph, LodOptions, levels_of_detail_observed};
+use limitmesh::refine::{Caps, Geomorph, LodOptions, levels_of_detail_observed};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -44,13 +44,12 @@ impl Detail {
                 "tolerances[{row}] is {own}, expected less than the coarser one before it, which is {before}"
             )));
         }
-        let options = LodOptions::new(lengths)
-            .geomorphs(self.morph)
-            .max_memory(self.max_memory);
-        Ok(match self.max_triangles {
-            None => options,
-            cap => options.max_triangles(cap),
-        })
+        let usual = Caps::default();
+        Ok(LodOptions::new(lengths).geomorphs(self.morph).caps(Caps {
+            triangles: self.max_triangles.or(usual.triangles),
+            memory: self.max_memory,
+            ..usual
+        }))
     }
 }
 

@@ -3,7 +3,7 @@
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::front::MOST_LEVELS;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
-use limitmesh::refine::ExactOptions;
+use limitmesh::refine::{AngleGoal, ExactOptions, Finish};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use pyo3::prelude::*;
 
@@ -175,10 +175,14 @@ impl Goals {
         tells_faces_apart: bool,
         unfolds: bool,
     ) -> ExactOptions {
+        let finish = match (self.optimize, self.balance) {
+            (true, _) => Finish::Collapsed,
+            (false, true) => Finish::Balanced,
+            (false, false) => Finish::OnSurface,
+        };
         let mut options = ExactOptions::default()
             .max_memory(self.max_memory)
-            .balance(self.balance)
-            .optimize(self.optimize)
+            .finish(finish)
             .flat_regions(self.flat_regions && !tells_faces_apart)
             .unfold(unfolds)
             .origins(self.origins || tells_faces_apart);
@@ -192,10 +196,10 @@ impl Goals {
             options = options.tolerance(tolerance.of(diagonal));
         }
         if let Some(degrees) = self.angle {
-            options = options.angle(degrees.to_radians());
-        }
-        if let Some(view) = self.viewer() {
-            options = options.view(view);
+            options.goals.angle = Some(AngleGoal {
+                radians: degrees.to_radians(),
+                view: self.viewer(),
+            });
         }
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.iter().map(camera).collect());

@@ -1,6 +1,7 @@
 //! Options of `limitmesh refine --method exact`: its goals and its caps, some of which other methods have, too.
 
 use clap::Args;
+use limitmesh::refine::Finish;
 
 use super::values::{self, Extent};
 
@@ -80,4 +81,15 @@ pub(crate) struct ExactArguments {
     /// polygon in the input, as the diagnosis counts them. Also with --method planarity and vertex-error and with --scheme sqrt3.
     #[arg(long)]
     pub(crate) provenance: bool,
+}
+
+impl ExactArguments {
+    /// What is done to reach the goals with fewer triangles; both at once are refused before.
+    pub(crate) fn finish(&self) -> Finish {
+        match (self.optimize, self.balance) {
+            (true, _) => Finish::Collapsed,
+            (false, true) => Finish::Balanced,
+            (false, false) => Finish::OnSurface,
+        }
+    }
 }

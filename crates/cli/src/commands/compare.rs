@@ -7,7 +7,7 @@ use limitmesh::criterion::{LimitNormal, NeighbourNormal};
 use limitmesh::front::{Demand, Front, Measure};
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between, triangle_quality};
 use limitmesh::refine::{
-    ExactOptions, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
+    ExactOptions, Finish, StepwiseOptions, Stop, UniformOptions, exact, stepwise, uniform,
 };
 use limitmesh::sqrt3::{self, Sqrt3Options};
 use limitmesh_paper::{match_angle, methods, nearest_level};
@@ -88,10 +88,10 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
     let plain = ExactOptions::default().triangles(count).unfold(unfolds);
     let mut kinds = vec![
         ("exact", plain.clone()),
-        ("exact-balance", plain.clone().balance(true)),
+        ("exact-balance", plain.clone().finish(Finish::Balanced)),
     ];
     if count <= MOST_OPTIMISED {
-        kinds.push(("exact-optimize", plain.optimize(true)));
+        kinds.push(("exact-optimize", plain.finish(Finish::Collapsed)));
     }
     for (name, options) in kinds {
         progress.stage(name);
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::
         let error = &found.error;
         methods.push(judge.judge(Given {
             certified: error.certified.then_some([error.lower, error.upper]),
-            ..Given::new(name, &found.mesh, found.levels, took)
+            ..Given::new(name, &found.mesh, found.statistics.levels, took)
         })?);
     }
     let mut others: Vec<(&str, anyhow::Result<ComparedMethod>)> = Vec::new();

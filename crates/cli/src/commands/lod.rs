@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{
-    ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance,
+    Caps, ExactStop, Level, LodOptions, levels_of_detail_observed, switching_distance,
 };
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, Triangles};
@@ -115,7 +115,10 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
 
     let asked = LodOptions::new(tolerances(arguments, diagonal)?)
         .geomorphs(arguments.morph)
-        .max_triangles(Some(arguments.max_triangles.unwrap_or(MOST_EXACT)));
+        .caps(Caps {
+            triangles: Some(arguments.max_triangles.unwrap_or(MOST_EXACT)),
+            ..Caps::default()
+        });
     let scheme = arguments.limit.scheme().scheme();
     let mut levels = levels_of_detail_observed(mesh, scheme, &asked, &mut progress.observer())?;
     let found = levels.len();
@@ -161,7 +164,7 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
 /// Why the last level is not as near as it should be: the one with that number, counted from 1, of those asked for.
 fn in_short(last: &Level, which: usize, asked: &LodOptions) -> String {
     let stop = last.exact.stop;
-    let cap = match (stop, asked.max_triangles) {
+    let cap = match (stop, asked.caps.triangles) {
         (ExactStop::TriangleCap, Some(most)) => format!("--max-triangles {}", thousands(most)),
         (ExactStop::LevelCap, _) => "the most that a face is divided".to_owned(),
         _ => exact_stop_name(stop).to_owned(),

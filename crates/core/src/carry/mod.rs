@@ -133,7 +133,7 @@ fn one(
 
 /// The goal that the triangles' values of a channel, linear between their corners, are within a
 /// tolerance of it everywhere
-/// ([`ExactOptions::attributes`](crate::refine::ExactOptions::attributes)); `None` for channels
+/// ([`Goals::attributes`](crate::refine::Goals::attributes)); `None` for channels
 /// that are not smooth: linear ones are met by any triangles, and names have no distance.
 ///
 /// # Errors

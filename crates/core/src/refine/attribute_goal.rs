@@ -14,7 +14,7 @@ pub(crate) enum GoalKind {
 
 /// A goal for a function on the control mesh's faces, which triangles store at their corners and
 /// interpolate linearly: it must be within a tolerance of the original, everywhere
-/// ([`ExactOptions::attributes`](super::ExactOptions::attributes)).
+/// ([`Goals::attributes`](super::Goals::attributes)).
 ///
 /// The function is the limit surface of a mesh with the control mesh's faces in the same order,
 /// whose positions are the values. Its vertices may differ: where one is repeated, values have a

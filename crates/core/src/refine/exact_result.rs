@@ -22,7 +22,7 @@ pub enum ExactStop {
     LevelCap,
     /// The tolerance is within rounding.
     Rounding,
-    /// Every goal is met, except for [`Exact::open_cones`]: triangles outside their cones where no
+    /// Every goal is met, except for [`Statistics::open_cones`]: triangles outside their cones where no
     /// division brings their normals nearer to the limit normals, such as at cusps and where the
     /// surface is not regular.
     Cones,
@@ -92,62 +92,77 @@ impl Origin {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Exact {
-    /// The mesh; all vertices lie on the limit surface. Control vertices keep their numbers.
+    /// The mesh; all vertices lie on the limit surface, but with
+    /// [`Finish::Balanced`](super::Finish::Balanced). Control vertices keep their numbers.
     pub mesh: Mesh,
-    /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides at sharp edges.
+    /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides
+    /// at sharp edges.
     pub normals: Vec<[f64; 3]>,
-    /// The limit normals of triangles' corners at sharp edges, each of its own side, by the half-edge that leaves the corner,
-    /// ascending; see [`Self::corner_normal`]. Empty without sharp edges.
+    /// The limit normals of triangles' corners at sharp edges, each of its own side, by the
+    /// half-edge that leaves the corner, ascending; see [`Self::corner_normal`]. Empty without
+    /// sharp edges.
     pub sides: Vec<(u32, [f64; 3])>,
     /// The origin of each vertex; empty unless
     /// [`ExactOptions::origins`](super::ExactOptions::origins) is set.
     pub origins: Vec<Origin>,
-    /// The greatest distance of the limit surface, and of its triangles, from the planes of the
-    /// regions that were triangulated from their rims
-    /// ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
-    pub off_planes: f64,
-    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do
-    /// where a fan of slivers meets a hole: the plane inside the rim replaces them, and
-    /// [`Self::error`] is the distance from this surface.
-    pub unfolded: usize,
-    /// Flat regions, by their first control faces, whose surface is taken to be the plane inside
-    /// their rims, whether the rules fold it or not; ascending.
-    pub(crate) within_rims: Vec<u32>,
-    /// The control face of each triangle; after optimisation, when triangles cover parts of
-    /// several, one of these.
+    /// The control face of each triangle; after collapses, when triangles cover parts of several,
+    /// one of these.
     pub parents: Vec<u32>,
-    /// Whether edges were collapsed ([`ExactOptions::optimize`](super::ExactOptions::optimize)):
-    /// triangles then cover parts of several control faces.
-    pub is_optimized: bool,
-    /// After optimisation, the origins of triangles' corners on sharp and
+    /// Where edges were collapsed, the origins of triangles' corners on sharp and
     /// [kept](super::ExactOptions::kept_edges) edges, each on its own side, by the half-edge that
     /// leaves the corner, ascending; see [`Traced::corner_origin`].
-    pub side_origins: Vec<(u32, Origin)>,
+    pub side_origins: Option<Vec<(u32, Origin)>>,
     /// The distance between mesh and limit surface.
     pub error: ErrorBounds,
     /// The greatest distance between mesh and limit surface as the cameras see it, in pixels: each
     /// point of one that is in a picture, and on closed surfaces faces the camera, has a point of
     /// the other within this. `None` without cameras; infinite where it is not bounded.
     pub pixels: Option<f64>,
-    /// By goal of [`ExactOptions::attributes`](super::ExactOptions::attributes), the greatest
-    /// distance of values or surfaces from those of the triangles: proven where
-    /// [`ErrorBounds::certified`] says so of the distance.
+    /// By goal of [`Goals::attributes`](super::Goals::attributes), the greatest distance of values
+    /// or surfaces from those of the triangles: proven where [`ErrorBounds::certified`] says so of
+    /// the distance.
     pub attribute_bounds: Vec<f64>,
-    /// Triangles whose normals leave the cone of [`ExactOptions::angle`](super::ExactOptions::angle); 0 without that goal, or where it is met.
-    pub open_cones: usize,
+    /// The reason why the refinement ended.
+    pub stop: ExactStop,
+    /// What else is known of the result.
+    pub statistics: Statistics,
+    /// Flat regions, by their first control faces, whose surface is taken to be the plane inside
+    /// their rims, whether the rules fold it or not; ascending.
+    pub(crate) within_rims: Vec<u32>,
+}
+
+/// What is known of an exact refinement besides its mesh and its error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Statistics {
+    /// Levels of the deepest part of the hierarchy.
+    pub levels: usize,
     /// The greatest ratio of a triangle's error to the goals on quality: at most 1 where all are
     /// met; 0 without any.
     pub worst: f64,
-    /// The reason why the refinement ended.
-    pub stop: ExactStop,
-    /// Levels of the deepest part of the hierarchy.
-    pub levels: usize,
-    /// After optimisation, the number of vertices that stayed only because a proof failed there:
+    /// Triangles whose normals leave the cone of [`Goals::angle`](super::Goals::angle); 0 without
+    /// that goal, or where it is met.
+    pub open_cones: usize,
+    /// The greatest distance of the limit surface, and of its triangles, from the planes of the
+    /// regions that were triangulated from their rims
+    /// ([`ExactOptions::flat_regions`](super::ExactOptions::flat_regions)); 0 where there are none.
+    pub off_planes: f64,
+    /// Flat regions that the scheme's rules fold over, inside or beyond their rims, as they do
+    /// where a fan of slivers meets a hole: the plane inside the rim replaces them, and
+    /// [`Exact::error`] is the distance from this surface.
+    pub unfolded: usize,
+    /// After collapses, the number of vertices that stayed only because a proof failed there:
     /// around them the fine triangles were not collapsed any further.
     pub refused: usize,
 }
 
 impl Exact {
+    /// Whether edges were collapsed ([`Finish::Collapsed`](super::Finish::Collapsed)): triangles
+    /// then cover parts of several control faces.
+    pub fn is_collapsed(&self) -> bool {
+        self.side_origins.is_some()
+    }
+
     /// The unit limit normal at the corner that a half-edge leaves, on the side of its triangle.
     pub fn corner_normal(&self, corner: HalfEdgeId) -> [f64; 3] {
         match self.sides.binary_search_by_key(&corner.0, |&(h, _)| h) {
@@ -187,7 +202,7 @@ impl Exact {
     }
 }
 
-/// Corners are known in their own control faces, and after optimisation in one on the same side of sharp and kept edges; not where a
+/// Corners are known in their own control faces, and after collapses in one on the same side of sharp and kept edges; not where a
 /// [flat region](super::ExactOptions::flat_regions) was triangulated from its rim.
 impl Traced for Exact {
     fn mesh(&self) -> &Mesh {
@@ -206,14 +221,11 @@ impl Traced for Exact {
         let origin = self
             .origins
             .get(self.mesh.topology().origin(corner).index())?;
-        if !self.is_optimized {
+        let Some(corners) = &self.side_origins else {
             return origin.in_face(control, *self.parents.get(corner.face().index())?);
-        }
-        match self
-            .side_origins
-            .binary_search_by_key(&corner.0, |&(h, _)| h)
-        {
-            Ok(place) => Some(self.side_origins[place].1),
+        };
+        match corners.binary_search_by_key(&corner.0, |&(h, _)| h) {
+            Ok(place) => Some(corners[place].1),
             Err(_) => Some(*origin),
         }
     }

@@ -67,14 +67,14 @@ impl InputDistance {
         residual: f64,
     ) -> Result<Option<Self>, MeasureError> {
         let is_known = origins.len() == found.mesh.vertex_count();
-        if !is_known || found.is_optimized {
+        if !is_known || found.is_collapsed() {
             return Ok(None);
         }
         let moved = Moves::of(input, found, origins);
         let rounding = ROUNDING * greatest(input);
         let lower = lower(input, (found, origins), &moved)? - rounding;
-        let off_planes = if found.off_planes > 0.0 {
-            2.0 * found.off_planes + residual
+        let off_planes = if found.statistics.off_planes > 0.0 {
+            2.0 * found.statistics.off_planes + residual
         } else {
             0.0
         };

@@ -31,7 +31,7 @@
 use super::RefineError;
 use super::adaptive::nested;
 use super::exact::scale;
-use super::exact_options::ExactOptions;
+use super::exact_options::{Caps, ExactOptions};
 use super::level::{Geomorph, Level};
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Mesh, MeshError};
@@ -48,29 +48,17 @@ pub struct LodOptions {
     /// Whether to compute how each level grows out of the coarser one ([`Level::geomorph`]), within
     /// the coarser one's tolerance at every moment. Default: yes.
     pub geomorphs: bool,
-    /// The most levels of the hierarchy; see [`ExactOptions::max_levels`].
-    pub max_levels: usize,
-    /// The most triangles of a level; see [`ExactOptions::max_triangles`].
-    pub max_triangles: Option<usize>,
-    /// The most bytes for a level, approximately; see [`ExactOptions::max_memory`].
-    pub max_memory: Option<usize>,
+    /// Where a level ends though its tolerance is not met.
+    pub caps: Caps,
 }
 
 impl LodOptions {
     /// Levels within these distances, coarse to fine.
     pub fn new(tolerances: Vec<f64>) -> Self {
-        let ExactOptions {
-            max_levels,
-            max_triangles,
-            max_memory,
-            ..
-        } = ExactOptions::default();
         Self {
             tolerances,
             geomorphs: true,
-            max_levels,
-            max_triangles,
-            max_memory,
+            caps: Caps::default(),
         }
     }
 
@@ -80,15 +68,9 @@ impl LodOptions {
         self
     }
 
-    /// Sets [`Self::max_triangles`].
-    pub fn max_triangles(mut self, cap: Option<usize>) -> Self {
-        self.max_triangles = cap;
-        self
-    }
-
-    /// Sets [`Self::max_memory`].
-    pub fn max_memory(mut self, bytes: Option<usize>) -> Self {
-        self.max_memory = bytes;
+    /// Sets [`Self::caps`].
+    pub fn caps(mut self, caps: Caps) -> Self {
+        self.caps = caps;
         self
     }
 
@@ -113,9 +95,7 @@ impl LodOptions {
     /// The options of the engine.
     fn exact(&self, tolerance: f64) -> ExactOptions {
         ExactOptions {
-            max_levels: self.max_levels,
-            max_triangles: self.max_triangles,
-            max_memory: self.max_memory,
+            caps: self.caps,
             ..ExactOptions::default()
                 .tolerance(tolerance)
                 .flat_regions(false)

@@ -147,7 +147,7 @@ pub fn limit_distance_observed(
         let was_capped = stands.stop != ExactStop::Met;
         // A given gap has its one mesh; a search that was cut short would only take longer with a finer one.
         if distance.converged() || was_capped || asked.is_some() || !between.converged() {
-            let (reference, levels) = (stands.mesh, stands.levels);
+            let (reference, levels) = (stands.mesh, stands.statistics.levels);
             let is_capped = was_capped && between.converged();
             return Ok(LimitDistance {
                 distance,

@@ -32,8 +32,8 @@ pub use exact::{
     Frames, exact, exact_estimate, exact_estimate_observed, exact_frames, exact_frames_observed,
     exact_observed, is_certified,
 };
-pub use exact_options::ExactOptions;
-pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin};
+pub use exact_options::{AngleGoal, Caps, ExactOptions, Finish, Goals, PixelGoal};
+pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin, Statistics};
 pub use input_distance::InputDistance;
 pub use level::{Geomorph, Level, switching_distance};
 pub use levels_of_detail::{LodOptions, levels_of_detail, levels_of_detail_observed};

@@ -143,7 +143,7 @@ impl Replay {
     /// [origins](super::ExactOptions::origins), and without
     /// [flat regions](super::ExactOptions::flat_regions), which bend when the control mesh does.
     /// The positions of `control` are ignored. Vertices that were moved off the surface, to
-    /// [balance](super::ExactOptions::balance) its distance, are on it in every frame.
+    /// [balance](super::Finish::Balanced) its distance, are on it in every frame.
     ///
     /// # Errors
     /// A scheme outside the Loop family, a refinement whose vertices have no origins in the control

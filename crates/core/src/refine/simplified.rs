@@ -6,7 +6,10 @@
 use super::adaptive::adaptive;
 use super::corner_sources::{SharpLines, corner_sources, features};
 use super::kept_faces::KeptFaces;
-use super::{ErrorBounds, Exact, ExactOptions, ExactStop, Origin, RefineError, Traced};
+use super::{
+    Caps, ErrorBounds, Exact, ExactOptions, ExactStop, Finish, Goals, Origin, RefineError,
+    Statistics, Traced,
+};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::measure::{MeasureError, distances_to_observed};
 use crate::mesh::{Mesh, MeshError};
@@ -33,30 +36,37 @@ pub(super) fn simplified(
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
     let times = |count: Option<usize>| count.map(|count| count.saturating_mul(FINE_TIMES));
+    let ExactOptions { goals, caps, .. } = options;
     let fine_options = ExactOptions {
-        optimize: false,
+        finish: Finish::OnSurface,
         // Edges that are kept are edges of the fine mesh.
         flat_regions: options.flat_regions && options.kept_edges.is_empty(),
-        tolerance: options.tolerance.map(|tolerance| FINE_SHARE * tolerance),
-        triangles: times(options.triangles),
-        // The cap is on the result.
-        max_triangles: options
-            .max_triangles
-            .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
+        goals: Goals {
+            tolerance: goals.tolerance.map(|tolerance| FINE_SHARE * tolerance),
+            triangles: times(goals.triangles),
+            ..Goals::default()
+        },
+        caps: Caps {
+            // The cap is on the result.
+            triangles: caps
+                .triangles
+                .map(|cap| cap.saturating_mul(FINE_TIMES).min(AFFORDABLE).max(cap)),
+            ..*caps
+        },
         ..options.clone()
     };
     let kept = KeptFaces::of(control, &options.kept_edges)?;
     let fine = adaptive(control, scheme, &fine_options, observer)?;
     let features = features(kept.edges(&fine));
-    let allowance = options
+    let allowance = goals
         .tolerance
         .map(|tolerance| tolerance - fine.error.upper)
         .filter(|&left| left > 0.0);
-    let fewest = [options.triangles, options.max_triangles]
+    let fewest = [goals.triangles, caps.triangles]
         .into_iter()
         .flatten()
         .min();
-    let mut collapsed = match (allowance, options.tolerance, fewest) {
+    let mut collapsed = match (allowance, goals.tolerance, fewest) {
         (Some(_), ..) => collapse((&fine.mesh, &features), allowance, None, observer)?,
         // A cap ended the refinement before the tolerance left anything to collapse.
         (None, Some(_), None) => return Ok(fine),
@@ -68,7 +78,7 @@ pub(super) fn simplified(
         collapsed = collapse((&fine.mesh, &features), None, fewest, observer)?;
     }
     let unoptimised = ExactOptions {
-        optimize: false,
+        finish: Finish::OnSurface,
         ..options.clone()
     };
     // Where no more edges can go, refinement alone keeps the number of triangles; where there is no
@@ -81,12 +91,12 @@ pub(super) fn simplified(
         }
     }
     let error = error_bounds(&fine, &collapsed, observer)?;
-    let is_met = options
+    let is_met = goals
         .tolerance
         .is_some_and(|tolerance| error.upper <= tolerance);
     // Refinement alone may need fewer, as at semi-sharp edges, and takes little time compared with
     // this.
-    if options.tolerance.is_some() {
+    if goals.tolerance.is_some() {
         let plain = adaptive(control, scheme, &unoptimised, observer)?;
         if plain.stop == ExactStop::Met
             && (!is_met || plain.mesh.face_count() <= collapsed.mesh.face_count())
@@ -100,9 +110,9 @@ pub(super) fn simplified(
         parents,
     } = Inherited::new(control, &fine, &features, &collapsed);
     let count = collapsed.mesh.face_count();
-    let stop = match options.triangles {
+    let stop = match goals.triangles {
         _ if is_met => ExactStop::Met,
-        Some(goal) if options.max_triangles.is_some_and(|cap| cap < goal) => ExactStop::TriangleCap,
+        Some(goal) if caps.triangles.is_some_and(|cap| cap < goal) => ExactStop::TriangleCap,
         Some(goal) if count <= goal => ExactStop::Triangles,
         _ if fine.stop == ExactStop::Met => ExactStop::TriangleCap,
         _ => fine.stop,
@@ -122,22 +132,20 @@ pub(super) fn simplified(
                 .collect(),
         },
         sides,
-        off_planes: fine.off_planes,
-        unfolded: fine.unfolded,
         within_rims: fine.within_rims,
         parents,
-        is_optimized: true,
-        side_origins,
+        side_origins: Some(side_origins),
         error,
         pixels: None,
         attribute_bounds: Vec::new(),
-        open_cones: 0,
-        worst: options
-            .tolerance
-            .map_or(0.0, |tolerance| error.upper / tolerance),
         stop,
-        levels: fine.levels,
-        refused: collapsed.refused,
+        statistics: Statistics {
+            worst: goals
+                .tolerance
+                .map_or(0.0, |tolerance| error.upper / tolerance),
+            refused: collapsed.refused,
+            ..fine.statistics
+        },
         mesh: collapsed.mesh,
     })
 }
@@ -179,7 +187,7 @@ impl Inherited {
                 fine.corner_origin(control.triangles(), HalfEdgeId(own))?,
             ))
         };
-        let side_origins: Vec<(u32, Origin)> = sources.iter().filter_map(origin).collect();
+        let side_origins = sources.iter().filter_map(origin).collect();
         // Where sides need not be distinguished, any triangle around a corner will do.
         let topology = fine.mesh.topology();
         let any = |triangle: &[u32; 3]| {

@@ -44,7 +44,7 @@ fn a_view_never_costs_triangles() {
         let control = model(name);
         let plain = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
         assert_eq!(
-            (plain.stop, plain.open_cones),
+            (plain.stop, plain.statistics.open_cones),
             (ExactStop::Met, 0),
             "{name}"
         );
@@ -64,7 +64,7 @@ fn a_view_never_costs_triangles() {
                 let seen = exact(
                     &control,
                     &Loop,
-                    &ExactOptions::default().angle(angle).view(view),
+                    &ExactOptions::default().angle_seen(angle, view),
                 )
                 .unwrap();
                 assert_eq!(seen.stop, ExactStop::Met, "{name}, {view:?}");
@@ -106,10 +106,10 @@ fn an_angle_alone_ends_where_no_cone_closes() {
         result.mesh.validate().unwrap();
         assert_eq!(result.stop, ExactStop::Cones);
         assert!(
-            result.worst <= 1.0 && result.levels <= 13,
+            result.statistics.worst <= 1.0 && result.statistics.levels <= 13,
             "{} at level {}",
-            result.worst,
-            result.levels
+            result.statistics.worst,
+            result.statistics.levels
         );
         let open: Vec<usize> = angles(&result)
             .into_iter()
@@ -117,7 +117,7 @@ fn an_angle_alone_ends_where_no_cone_closes() {
             .filter(|(_, (_, found))| *found > angle * (1.0 + 1e-6))
             .map(|(face, _)| face)
             .collect();
-        assert_eq!(open.len(), result.open_cones);
+        assert_eq!(open.len(), result.statistics.open_cones);
         assert!(
             !open.is_empty() && open.len() < result.mesh.face_count() / 20,
             "{}",
@@ -185,10 +185,14 @@ fn angles_hold_in_every_frame() {
                     .filter(|(_, found)| *found > angle * (1.0 + 1e-6))
                     .count()
             });
-            assert_eq!(found.refined.open_cones, open.max().unwrap(), "{name}");
+            assert_eq!(
+                found.refined.statistics.open_cones,
+                open.max().unwrap(),
+                "{name}"
+            );
             assert_eq!(found.refined.stop, expected, "{name}");
             assert!(
-                (found.refined.open_cones > 0) == (expected == ExactStop::Cones),
+                (found.refined.statistics.open_cones > 0) == (expected == ExactStop::Cones),
                 "{name}"
             );
             assert_eq!(found.refined.pixels, None);

@@ -7,7 +7,7 @@ use limitmesh::carry::{carried, goal};
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
 use limitmesh::refine::{
-    AttributeGoal, Exact, ExactOptions, ExactStop, Origin, Traced, UniformOptions, exact,
+    AttributeGoal, Exact, ExactOptions, ExactStop, Finish, Origin, Traced, UniformOptions, exact,
     exact_estimate, uniform,
 };
 use limitmesh::scheme::{Loop, ModifiedButterfly};
@@ -310,8 +310,8 @@ fn goals_that_make_no_sense_are_refused() {
     refused(coarse(&mesh).attributes(values(&other, 1.0)), "but is 40");
     for options in [
         coarse(&mesh).triangles(100),
-        coarse(&mesh).balance(true),
-        coarse(&mesh).optimize(true),
+        coarse(&mesh).finish(Finish::Balanced),
+        coarse(&mesh).finish(Finish::Collapsed),
     ] {
         refused(
             options.attributes(values(&mesh, 1.0)),

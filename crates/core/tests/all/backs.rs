@@ -7,7 +7,7 @@
 use crate::support::{Point, Random, cross, dot, exact, minus};
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::measure::distances_to;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, limit_reference};
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 
@@ -84,18 +84,18 @@ fn backs_save_triangles_and_never_cost_any() {
     for (name, mesh) in models() {
         let (mut closed, mut open) = (0, 0);
         for limit in [0.3, 1.0, 4.0] {
-            for balance in [false, true] {
+            for finish in [Finish::OnSurface, Finish::Balanced] {
                 let camera = camera(&mesh, &mut random);
                 let options = ExactOptions::default()
                     .pixels(limit, vec![camera])
-                    .balance(balance);
+                    .finish(finish);
                 let seen = exact(&mesh, &Loop, &options).unwrap();
                 let all = exact(&with_a_stray_triangle(&mesh, &camera), &Loop, &options).unwrap();
                 assert_eq!((seen.stop, all.stop), (ExactStop::Met, ExactStop::Met));
                 let [own, other] = [seen, all].map(|result| result.mesh.face_count());
                 assert!(
                     own < other,
-                    "{name}, {limit}, {balance}: {own} of {other}, {camera:?}"
+                    "{name}, {limit}, {finish:?}: {own} of {other}, {camera:?}"
                 );
                 (closed, open) = (closed + own, open + other);
             }
@@ -134,7 +134,7 @@ fn distances_count_what_nobody_sees() {
         let limit = limit_reference(&mesh, &Loop, 4).unwrap();
         for tolerance in [None, Some(1e-3 * mesh.diagonal())] {
             let mut options = ExactOptions::default().pixels(2.0, vec![camera]);
-            options.tolerance = tolerance;
+            options.goals.tolerance = tolerance;
             let result = exact(&mesh, &Loop, &options).unwrap();
             let found = distances_to(limit.positions(), result.mesh.as_triangles()).unwrap();
             let found = found.into_iter().fold(0.0, f64::max);
@@ -216,7 +216,7 @@ fn assert_untouched(name: &str, mesh: &Mesh, result: &Exact, viewpoint: &Viewpoi
     let away = looking_away(mesh, viewpoint);
     let mut untouched = 0;
     for (face, ring) in rings(mesh, &away).into_iter().enumerate() {
-        if away[face] && ring > result.levels + 1 {
+        if away[face] && ring > result.statistics.levels + 1 {
             assert_eq!(
                 counts[face], 1,
                 "{name}: face {face}, {ring} from what shows, {viewpoint:?}"
@@ -250,7 +250,7 @@ fn what_looks_away_is_divided_for_its_neighbours_only() {
             let camera = camera(&mesh, &mut random);
             let options = ExactOptions::default().pixels(limit, vec![camera]);
             let result = exact(&mesh, &Loop, &options).unwrap();
-            assert!(result.levels > 0 && result.pixels.unwrap() <= limit);
+            assert!(result.statistics.levels > 0 && result.pixels.unwrap() <= limit);
             untouched += assert_untouched(name, &mesh, &result, &Viewpoint::Eye(camera.eye));
             for viewpoint in [
                 Viewpoint::Eye(camera.eye),
@@ -260,10 +260,10 @@ fn what_looks_away_is_divided_for_its_neighbours_only() {
                     viewpoint,
                     dilatation: 1.0,
                 };
-                let options = ExactOptions::default().angle(12f64.to_radians()).view(view);
+                let options = ExactOptions::default().angle_seen(12f64.to_radians(), view);
                 let result = exact(&mesh, &Loop, &options).unwrap();
                 assert_eq!(
-                    (result.stop, result.open_cones),
+                    (result.stop, result.statistics.open_cones),
                     (ExactStop::Met, 0),
                     "{name}"
                 );

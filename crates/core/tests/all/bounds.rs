@@ -11,7 +11,7 @@ use limitmesh::measure::{
 };
 use limitmesh::progress::Progress;
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_observed};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_observed};
 use limitmesh::scheme::Loop;
 
 use crate::support::{exact, torus};
@@ -66,7 +66,7 @@ fn goals(control: &Mesh) -> Vec<(&'static str, ExactStop, ExactOptions)> {
         (
             "angle in a view",
             ExactStop::Met,
-            none().angle(10f64.to_radians()).view(view),
+            none().angle_seen(10f64.to_radians(), view),
         ),
         ("pixels", ExactStop::Met, none().pixels(0.5, vec![camera])),
         (
@@ -141,15 +141,15 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
                 "a tolerance and an angle",
                 within(2e-2).angle(8f64.to_radians()),
             ),
-            ("balance", within(5e-3).balance(true)),
-            ("collapses", within(5e-3).optimize(true)),
+            ("balance", within(5e-3).finish(Finish::Balanced)),
+            ("collapses", within(5e-3).finish(Finish::Collapsed)),
             (
                 "hierarchies in flat regions",
                 within(5e-3).flat_regions(false),
             ),
             ("a number", budget.clone()),
-            ("a balanced number", budget.clone().balance(true)),
-            ("a collapsed number", budget.optimize(true)),
+            ("a balanced number", budget.clone().finish(Finish::Balanced)),
+            ("a collapsed number", budget.finish(Finish::Collapsed)),
         ];
         for (goal, options) in goals {
             let result = exact(&control, &Loop, &options).unwrap();
@@ -160,8 +160,9 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
             // The reference's chords leave the surface by 4/3 of the next level's distance in the end.
             let chords = 4.0 / 3.0 * chords;
             // A tolerance that is met is proven already.
-            let is_met =
-                options.tolerance.is_some() && options.angle.is_none() && !options.optimize;
+            let is_met = options.goals.tolerance.is_some()
+                && options.goals.angle.is_none()
+                && options.finish != Finish::Collapsed;
             let times = if is_met { 2.0 } else { 1.25 };
             assert!(
                 found <= error.upper + chords
@@ -282,10 +283,10 @@ fn tolerances_that_are_proven_are_met_whatever_ended_the_division() {
                     found.error
                 );
                 assert_eq!(
-                    found.worst <= 1.0,
+                    found.statistics.worst <= 1.0,
                     is_proven,
                     "{name} {share}: {}",
-                    found.worst
+                    found.statistics.worst
                 );
                 if is_proven {
                     let (least, _) = true_distance(&control, &found);

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use crate::support::*;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
-use limitmesh::refine::{Exact, ExactOptions};
+use limitmesh::refine::{Exact, ExactOptions, Finish};
 
 use crate::support::exact;
 use limitmesh::scheme::Loop;
@@ -55,10 +55,10 @@ fn collapsed(mesh: &Mesh, channels: &[Channel], tolerance: f64) -> Exact {
         .flat_regions(false);
     let options = plain
         .clone()
-        .optimize(true)
+        .finish(Finish::Collapsed)
         .kept_edges(borders(channels, mesh));
     let found = exact(mesh, &Loop, &options).unwrap();
-    assert!(found.is_optimized);
+    assert!(found.is_collapsed());
     let plain = exact(mesh, &Loop, &plain).unwrap();
     assert!(found.mesh.face_count() < plain.mesh.face_count());
     found

@@ -10,7 +10,7 @@ use limitmesh::criterion::Camera;
 use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between};
 use limitmesh::progress::{Progress, Stage};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{ExactOptions, ExactStop, exact_estimate, exact_observed};
+use limitmesh::refine::{ExactOptions, ExactStop, Finish, exact_estimate, exact_observed};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
 fn model(name: &str) -> Mesh {
@@ -29,8 +29,8 @@ fn origins_are_only_told_to_those_who_ask() {
     let within = ExactOptions::default().tolerance(1e-3 * mesh.diagonal());
     for options in [
         within.clone(),
-        within.clone().balance(true),
-        within.optimize(true),
+        within.clone().finish(Finish::Balanced),
+        within.finish(Finish::Collapsed),
     ] {
         let told = exact(&mesh, &Loop, &options.clone()).unwrap();
         let untold = exact(&mesh, &Loop, &options.origins(false)).unwrap();
@@ -229,7 +229,10 @@ fn caps_end_in_a_conforming_mesh_that_says_so() {
     assert!(capped.mesh.face_count() <= 5000);
     capped.mesh.validate().unwrap();
     let shallow = exact(&control, &Loop, &fine.max_levels(2)).unwrap();
-    assert_eq!((shallow.stop, shallow.levels), (ExactStop::LevelCap, 2));
+    assert_eq!(
+        (shallow.stop, shallow.statistics.levels),
+        (ExactStop::LevelCap, 2)
+    );
     assert!(shallow.error.upper > 1e-9 * control.diagonal());
     shallow.mesh.validate().unwrap();
 }
@@ -264,7 +267,7 @@ fn cameras_spare_what_they_do_not_see() {
     )
     .unwrap();
     assert_eq!(seen.stop, ExactStop::Met);
-    assert!(seen.worst <= 1.0 && seen.mesh.face_count() < plain.mesh.face_count());
+    assert!(seen.statistics.worst <= 1.0 && seen.mesh.face_count() < plain.mesh.face_count());
     let faces = |front: bool| {
         let positions = seen.mesh.positions();
         let centre_z = |t: &&[u32; 3]| t.iter().map(|&v| positions[v as usize][2]).sum::<f64>();
@@ -437,7 +440,7 @@ fn balanced_meshes_need_fewer_triangles() {
         let control = model(name);
         let options = ExactOptions::default().tolerance(0.001 * control.diagonal());
         let plain = exact(&control, &Loop, &options).unwrap();
-        let balanced = exact(&control, &Loop, &options.balance(true)).unwrap();
+        let balanced = exact(&control, &Loop, &options.finish(Finish::Balanced)).unwrap();
         balanced.mesh.validate().unwrap();
         assert_eq!(balanced.stop, ExactStop::Met);
         assert!(balanced.error.upper <= 0.001 * control.diagonal());
@@ -470,7 +473,7 @@ fn balanced_angles_take_no_more_triangles() {
             .tolerance(0.005 * control.diagonal())
             .angle(angle.to_radians());
         let plain = exact(&control, &Loop, &options).unwrap();
-        let balanced = exact(&control, &Loop, &options.balance(true)).unwrap();
+        let balanced = exact(&control, &Loop, &options.finish(Finish::Balanced)).unwrap();
         assert_eq!(balanced.stop, plain.stop, "{name}");
         let counts = [&balanced, &plain].map(|found| found.mesh.face_count());
         assert!(counts[0] <= counts[1], "{name}: {counts:?}");
@@ -482,7 +485,9 @@ fn balanced_angles_take_no_more_triangles() {
 fn balanced_budgets_conform() {
     for (name, budget) in [("shoe", 18_550), ("teddy", 9_000), ("bunny", 7_000)] {
         let control = model(name);
-        let options = ExactOptions::default().triangles(budget).balance(true);
+        let options = ExactOptions::default()
+            .triangles(budget)
+            .finish(Finish::Balanced);
         let balanced = exact(&control, &Loop, &options).unwrap();
         balanced.mesh.validate().unwrap();
         assert!(balanced.mesh.face_count() <= budget, "{name}");
@@ -514,7 +519,12 @@ fn balancing_ends_after_a_few_rounds() {
                 ControlFlow::Continue(())
             }
         };
-        let balanced = exact_observed(&control, &Loop, &options.clone().balance(true), &mut count);
+        let balanced = exact_observed(
+            &control,
+            &Loop,
+            &options.clone().finish(Finish::Balanced),
+            &mut count,
+        );
         let balanced = balanced.unwrap_or_else(|why| panic!("{name} within {tolerance}: {why}"));
         assert_eq!(balanced.stop, ExactStop::Met);
         let plain = exact(&control, &Loop, &options).unwrap();
@@ -629,7 +639,7 @@ fn depths_have_limits() {
     let result = exact(&control, &Loop, &options).unwrap();
     result.mesh.validate().unwrap();
     assert!(result.stop != ExactStop::Met && result.mesh.face_count() <= 3_000);
-    assert!(ExactOptions::default().max_triangles.is_some());
+    assert!(ExactOptions::default().caps.triangles.is_some());
 }
 
 /// Budgets beyond any number of triangles do not end the division.

@@ -8,7 +8,7 @@ use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{ExactOptions, ExactStop};
+use limitmesh::refine::{ExactOptions, ExactStop, Finish};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 
 fn model(name: &str) -> Mesh {
@@ -237,7 +237,9 @@ fn schemes_without_proofs_come_to_an_end() {
     let found = exact(
         &control,
         &ModifiedButterfly,
-        &ExactOptions::default().triangles(40).optimize(true),
+        &ExactOptions::default()
+            .triangles(40)
+            .finish(Finish::Collapsed),
     )
     .unwrap();
     found.mesh.validate().unwrap();

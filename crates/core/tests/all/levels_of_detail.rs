@@ -11,7 +11,7 @@ use limitmesh::measure::Bvh;
 use limitmesh::mesh::{PolygonFaces, PolygonSoup, Triangles};
 use limitmesh::progress::Progress;
 use limitmesh::refine::{
-    Exact, ExactOptions, ExactStop, Level, LodOptions, RefineError, Traced, exact,
+    Caps, Exact, ExactOptions, ExactStop, Level, LodOptions, RefineError, Traced, exact,
     levels_of_detail, levels_of_detail_observed, switching_distance,
 };
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
@@ -464,7 +464,10 @@ fn bad_tolerances_are_refused() {
 #[test]
 fn caps_end_the_levels() {
     let mesh = octahedron();
-    let asked = options(&mesh, &[0.05, 0.001, 0.0001]).max_triangles(Some(200));
+    let asked = options(&mesh, &[0.05, 0.001, 0.0001]).caps(Caps {
+        triangles: Some(200),
+        ..Caps::default()
+    });
     let levels = levels_of_detail(&mesh, &Loop, &asked).unwrap();
     assert_eq!(levels.len(), 2);
     assert_eq!(levels[1].exact.stop, ExactStop::TriangleCap);

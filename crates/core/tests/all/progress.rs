@@ -13,9 +13,9 @@ use limitmesh::interpolate::{
 use limitmesh::measure::*;
 use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
-    ExactOptions, Frame, RefineError, Replay, ReplayError, StepwiseOptions, UniformOptions, exact,
-    exact_estimate, exact_estimate_observed, exact_observed, stepwise, stepwise_observed, uniform,
-    uniform_observed,
+    ExactOptions, Finish, Frame, RefineError, Replay, ReplayError, StepwiseOptions, UniformOptions,
+    exact, exact_estimate, exact_estimate_observed, exact_observed, stepwise, stepwise_observed,
+    uniform, uniform_observed,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
@@ -263,8 +263,8 @@ fn exact_refinement_is_observed_and_cancelled_everywhere() {
         let within = options().tolerance(3e-3 * control.diagonal());
         let goals = [
             ("tolerance", within.clone()),
-            ("balance", within.clone().balance(true)),
-            ("optimise", within.optimize(true)),
+            ("balance", within.clone().finish(Finish::Balanced)),
+            ("optimise", within.finish(Finish::Collapsed)),
             (
                 "triangles",
                 options().triangles(4 * control.face_count() + 100),
@@ -312,8 +312,8 @@ fn single_faces_that_take_long_are_observed() {
             let control = model("tetrahedron");
             let balanced = ExactOptions::default()
                 .tolerance(3e-6 * control.diagonal())
-                .balance(true);
-            for options in [balanced.clone().balance(false), balanced] {
+                .finish(Finish::Balanced);
+            for options in [balanced.clone().finish(Finish::OnSurface), balanced] {
                 let mut run = |observer: &mut Observer<'_>| {
                     exact_observed(&control, &Loop, &options, observer)
                 };
@@ -321,7 +321,7 @@ fn single_faces_that_take_long_are_observed() {
                 let triangles = result.mesh.face_count();
                 assert!(triangles > 100_000);
                 // Only what is balanced is bounded all over again.
-                let bounded = options.balance.then_some(Stage::Bounding);
+                let bounded = (options.finish == Finish::Balanced).then_some(Stage::Bounding);
                 for stage in [Stage::Refining, Stage::Assembling]
                     .into_iter()
                     .chain(bounded)
@@ -397,7 +397,7 @@ fn estimates_are_observed() {
         .install(|| {
             let control = model("cup");
             let tolerance = ExactOptions::default().tolerance(5e-4 * control.diagonal());
-            for options in [tolerance.clone(), tolerance.optimize(true)] {
+            for options in [tolerance.clone(), tolerance.finish(Finish::Collapsed)] {
                 let plain = exact_estimate(&control, &Loop, &options).unwrap();
                 let mut run = |observer: &mut Observer<'_>| {
                     exact_estimate_observed(&control, &Loop, &options, observer)

@@ -6,8 +6,8 @@
 use crate::support::*;
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Tags};
 use limitmesh::refine::{
-    Exact, ExactOptions, Frame, Frames, LimitDistanceOptions, RefineError, Replay, ReplayError,
-    Traced, exact, exact_frames, limit_distance,
+    Exact, ExactOptions, Finish, Frame, Frames, LimitDistanceOptions, RefineError, Replay,
+    ReplayError, Traced, exact, exact_frames, limit_distance,
 };
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
@@ -453,7 +453,13 @@ fn frames_that_are_none_are_refused() {
     ));
     assert!(of(&[], &options).is_err());
     assert!(of(core::slice::from_ref(&own), &options.clone().triangles(500)).is_err());
-    assert!(of(core::slice::from_ref(&own), &options.clone().balance(true)).is_err());
+    assert!(
+        of(
+            core::slice::from_ref(&own),
+            &options.clone().finish(Finish::Balanced)
+        )
+        .is_err()
+    );
     let capped = of(&[own.clone(), own], &options.max_triangles(Some(20)));
     assert!(matches!(
         capped,

@@ -7,7 +7,7 @@ use crate::support::{exact, tagged_obj};
 use limitmesh::Mesh;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CreaseTag, Tags};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn model(name: &str) -> Mesh {
@@ -20,7 +20,7 @@ fn model(name: &str) -> Mesh {
 }
 
 fn simplified(control: &Mesh, options: ExactOptions) -> Exact {
-    exact(control, &Loop, &options.optimize(true)).unwrap()
+    exact(control, &Loop, &options.finish(Finish::Collapsed)).unwrap()
 }
 
 fn within(tolerance: f64) -> ExactOptions {
@@ -59,7 +59,7 @@ fn a_cap_holds_for_the_result() {
     let capped = simplified(&control, within(tolerance).max_triangles(Some(count / 2)));
     assert_eq!(capped.stop, ExactStop::TriangleCap);
     let below = ExactOptions::default()
-        .optimize(true)
+        .finish(Finish::Collapsed)
         .triangles(count)
         .max_triangles(Some(count / 2));
     let below = exact(&control, &Loop, &below).unwrap();
@@ -144,7 +144,7 @@ fn estimates_come_near() {
     ] {
         let control = model(name);
         for share in shares {
-            let options = within(share * control.diagonal()).optimize(true);
+            let options = within(share * control.diagonal()).finish(Finish::Collapsed);
             let expected = exact_estimate(&control, &Loop, &options).unwrap();
             let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
             let ratio = expected.triangles as f64 / found as f64;

@@ -7,7 +7,7 @@ use crate::support::{Point, Random, creased, cross, distance, dot, exact, minus,
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{BoundaryRule, PolygonSoup};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn within(tolerance: f64) -> ExactOptions {
@@ -413,7 +413,7 @@ fn balanced_pegs_take_no_more_triangles() {
             ExactOptions::default().tolerance(tolerance),
         ] {
             let plain = exact(&mesh, &Loop, &options).unwrap();
-            let balanced = exact(&mesh, &Loop, &options.clone().balance(true)).unwrap();
+            let balanced = exact(&mesh, &Loop, &options.clone().finish(Finish::Balanced)).unwrap();
             assert_eq!(
                 (plain.stop, balanced.stop),
                 (ExactStop::Met, ExactStop::Met)
@@ -423,7 +423,7 @@ fn balanced_pegs_take_no_more_triangles() {
                 count <= plain,
                 "{facets}, {tolerance}: {count} balanced, {plain}"
             );
-            let told = exact_estimate(&mesh, &Loop, &options.balance(true))
+            let told = exact_estimate(&mesh, &Loop, &options.finish(Finish::Balanced))
                 .unwrap()
                 .triangles;
             assert!(

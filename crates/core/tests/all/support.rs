@@ -316,7 +316,7 @@ pub fn vertices_are_of_uniform_refinement(
     result: &Exact,
     name: &str,
 ) {
-    let levels = result.levels.min(5);
+    let levels = result.statistics.levels.min(5);
     let reference = limit_reference(control, scheme, levels).unwrap();
     let scale = 1e-9 * control.diagonal();
     let key = |p: &Point| p.map(|x| (x / scale / 1000.0).round() as i64);

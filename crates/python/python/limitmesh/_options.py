@@ -488,6 +488,8 @@ def goals_of(
         "eye": eye is not None,
     }
     _refuse(method, sqrt3, given)
+    if optimize and balance:
+        raise OptionError("balance does not go with optimize, whose vertices stay on the limit surface")
     if within is not None:
         if sqrt3 or method != "exact":
             raise OptionError("within is a goal of method='exact' and the schemes that divide triangles in four")

@@ -69,10 +69,10 @@ impl Refined {
             input_distance: None,
             error: Some((error.lower, error.upper, error.certified, error.at.into())),
             stop,
-            levels: found.levels,
+            levels: found.statistics.levels,
             pixels: found.pixels,
-            open_cones: found.open_cones,
-            unfolded: found.unfolded,
+            open_cones: found.statistics.open_cones,
+            unfolded: found.statistics.unfolded,
             inverted: Some(inverted),
             seconds: 0.0,
         }

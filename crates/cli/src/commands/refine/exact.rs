@@ -68,20 +68,20 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
         error: Some(error),
         input_distance: moved,
         pixels: found.pixels.filter(|pixels| pixels.is_finite()),
-        open_cones: arguments.angle.map(|_| found.open_cones),
+        open_cones: arguments.angle.map(|_| found.statistics.open_cones),
         attributes,
-        ..MethodReport::new(found.levels, exact_stop_name(found.stop))
+        ..MethodReport::new(found.statistics.levels, exact_stop_name(found.stop))
     };
     let provenance = task.provenance(&found.origins, &found.parents);
     let trail = match task.is_traced || arguments.proof.is_some() {
         true => Trail {
             origins: found.origins,
             parents: found.parents,
-            sides: found.is_optimized.then_some(found.side_origins),
+            sides: found.side_origins,
         },
         false => Trail::default(),
     };
-    let how = counted(found.levels, "level", "levels");
+    let how = counted(found.statistics.levels, "level", "levels");
     Ok(Refined {
         normals,
         channels,
@@ -152,8 +152,8 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) 
         ));
     }
     let is_exact = |upper: f64| upper <= EXACT * task.control.diagonal;
-    if found.levels == 0
-        && !found.is_optimized
+    if found.statistics.levels == 0
+        && !found.is_collapsed()
         && found.stop == ExactStop::Met
         && goals.length.is_some()
         && goals.near.is_none()
@@ -171,18 +171,22 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) 
         ),
         false => "not bounded as the cameras see it".to_owned(),
     }));
-    if found.unfolded > 0 {
-        let regions = counted(found.unfolded, "flat region", "flat regions");
+    if found.statistics.unfolded > 0 {
+        let regions = counted(found.statistics.unfolded, "flat region", "flat regions");
         lines.push(format!(
             "{regions} would fold by the scheme's rules: what the rim encloses takes their place"
         ));
     }
     let is_reached = matches!(found.stop, ExactStop::Met | ExactStop::Triangles);
-    if arguments.exact.optimize && !found.is_optimized && is_reached && found.levels > 0 {
+    if arguments.exact.optimize
+        && !found.is_collapsed()
+        && is_reached
+        && found.statistics.levels > 0
+    {
         lines.push("no edges collapsed: refinement alone takes no more triangles".to_owned());
     }
-    if found.refused > 0 {
-        let vertices = counted(found.refused, "vertex", "vertices");
+    if found.statistics.refused > 0 {
+        let vertices = counted(found.statistics.refused, "vertex", "vertices");
         lines.push(format!("{vertices} kept where a collapse was not proven"));
     }
     lines.extend(open_cones(found));
@@ -191,7 +195,11 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) 
 
 /// How many triangles stay outside the angle, where that is all that was not reached.
 pub(super) fn open_cones(found: &Exact) -> Option<String> {
-    let triangles = counted(found.open_cones, "triangle stays", "triangles stay");
+    let triangles = counted(
+        found.statistics.open_cones,
+        "triangle stays",
+        "triangles stay",
+    );
     (found.stop == ExactStop::Cones).then(|| {
         format!("{triangles} outside the angle, where the surface has no tangent plane or as good as none")
     })
@@ -212,11 +220,11 @@ pub(super) fn parameters(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Param
         exact: Some(ExactParametersReport {
             pixels: goals.pixels,
             cameras: goals.cameras.iter().map(CameraReport::from).collect(),
-            balance: options.balance,
-            optimize: options.optimize,
+            balance: own.balance,
+            optimize: own.optimize,
             divide_flat: arguments.divides_flat(),
-            max_memory: options.max_memory,
-            ..ExactParametersReport::new(length, diagonal, options.max_levels, own)
+            max_memory: options.caps.memory,
+            ..ExactParametersReport::new(length, diagonal, options.caps.levels, own)
         }),
         ..ParametersReport::common(arguments)?
     })
@@ -230,7 +238,7 @@ fn outcome(found: &Exact, goals: &Goals, task: &Task<'_>) -> Outcome {
     let missed = || goals.in_words(found, arguments);
     let cap = match (found.stop, exact.max_memory) {
         (ExactStop::MemoryCap, Some(most)) => format!("--max-memory {}", bytes(most)),
-        (ExactStop::LevelCap, _) => format!("--levels {}", goals.options(task).max_levels),
+        (ExactStop::LevelCap, _) => format!("--levels {}", goals.options(task).caps.levels),
         _ => format!("--max-triangles {}", thousands(most)),
     };
     let why = match found.stop {

@@ -112,10 +112,10 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             parameters: exact::parameters(&task, &goals)?,
             triangles: refined.mesh.face_count(),
             vertices: refined.mesh.vertex_count(),
-            levels: refined.levels,
+            levels: refined.statistics.levels,
             stop: exact_stop_name(stop),
             pixels: refined.pixels.filter(|pixels| pixels.is_finite()),
-            open_cones: arguments.angle.map(|_| refined.open_cones),
+            open_cones: arguments.angle.map(|_| refined.statistics.open_cones),
             table_bytes: found.replay.table_bytes(),
             seconds: FramesSeconds {
                 refine: refining.as_secs_f64(),
@@ -134,7 +134,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
         // Caps on triangles and memory are errors: there would be no mesh for all frames.
         _ => Outcome::StoppedShort(format!(
             "--levels {} was reached before the goals were met for every frame",
-            options.max_levels
+            options.caps.levels
         )),
     })
 }
@@ -147,7 +147,7 @@ fn in_words(found: &Frames, worst: f64, diagonal: f64, name: &str, refining: Dur
         counted(found.errors.len(), "frame", "frames"),
         counted(refined.mesh.face_count(), "triangle", "triangles"),
         counted(refined.mesh.vertex_count(), "vertex", "vertices"),
-        counted(refined.levels, "level", "levels"),
+        counted(refined.statistics.levels, "level", "levels"),
         bytes(found.replay.table_bytes()),
         seconds(refining.as_secs_f64()),
     );
@@ -330,7 +330,7 @@ fn write_all(
     progress: &Progress,
 ) -> anyhow::Result<Vec<ErrorBounds>> {
     let exact = &found.refined;
-    let report = MethodReport::new(exact.levels, exact_stop_name(exact.stop));
+    let report = MethodReport::new(exact.statistics.levels, exact_stop_name(exact.stop));
     let mut frame = Frame::default();
     let mut refined = Refined {
         channels,

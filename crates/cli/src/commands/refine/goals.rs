@@ -5,7 +5,7 @@ use limitmesh::Mesh;
 use limitmesh::carry::borders;
 use limitmesh::criterion::Camera;
 use limitmesh::limit::LimitTable;
-use limitmesh::refine::{Exact, ExactOptions};
+use limitmesh::refine::{AngleGoal, Exact, ExactOptions};
 
 use super::attribute_goals::AttributeGoals;
 use super::nearness::Nearness;
@@ -94,8 +94,7 @@ impl Goals {
         let mut options = ExactOptions::default()
             .max_triangles(Some(arguments.max_triangles()))
             .max_memory(exact.max_memory)
-            .balance(exact.balance)
-            .optimize(exact.optimize)
+            .finish(exact.finish())
             .kept_edges(self.kept_edges.clone())
             .attributes(self.attributes.options())
             .flat_regions(has_flat_regions)
@@ -104,14 +103,14 @@ impl Goals {
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
         }
-        if let Some(view) = arguments.viewer() {
-            options = options.view(view);
-        }
         if let Some(length) = self.length {
             options = options.tolerance(with_room(length, self.rounding));
         }
         if let Some(degrees) = arguments.angle {
-            options = options.angle(degrees.to_radians());
+            options.goals.angle = Some(AngleGoal {
+                radians: degrees.to_radians(),
+                view: arguments.viewer(),
+            });
         }
         if let Some(count) = exact.triangles {
             options = options.triangles(count);

@@ -10,7 +10,7 @@ use super::{Engine, Task, budget};
 use crate::mesh::Mesh;
 use crate::progress::Observer;
 use crate::refine::RefineError;
-use crate::refine::exact_options::ExactOptions;
+use crate::refine::exact_options::{ExactOptions, Finish};
 use crate::refine::exact_result::{Exact, ExactStop};
 use crate::scheme::Scheme;
 
@@ -42,15 +42,15 @@ const NEAR: f64 = 0.98;
 /// Refines with some nodes divided in any case.
 pub(super) fn once(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, RefineError> {
     let options = task.options;
-    if !options.balance {
+    if !options.is_balanced() {
         return within_caps(task, observer);
     }
-    let plain_options = options.clone().balance(false);
+    let plain_options = options.clone().finish(Finish::OnSurface);
     let plain_task = Task {
         options: &plain_options,
         ..task
     };
-    if options.angle.is_some() && options.triangles.is_none() {
+    if options.goals.angle.is_some() && options.goals.triangles.is_none() {
         // Angles that vertices off the surface meet late, if at all, must not take more than those on it.
         let plain = within_caps(plain_task, observer)?;
         if matches!(plain.stop, ExactStop::Met | ExactStop::Cones) {
@@ -84,7 +84,10 @@ fn better(plain: Exact, balanced: Exact) -> Exact {
         }
         (ExactStop::Met, _) => true,
         (_, ExactStop::Met) => false,
-        _ => plain.worst <= balanced.worst && plain.error.upper <= balanced.error.upper,
+        _ => {
+            plain.statistics.worst <= balanced.statistics.worst
+                && plain.error.upper <= balanced.error.upper
+        }
     };
     if is_better { plain } else { balanced }
 }
@@ -97,7 +100,7 @@ fn balanced_within(
 ) -> Result<Option<Exact>, RefineError> {
     task.with_engine(observer, |engine| {
         let (options, mut gaps) = (task.options, RimGaps::default());
-        let goal = Goal::Balanced(engine.floor(options.tolerance));
+        let goal = Goal::Balanced(engine.floor(options.goals.tolerance));
         let found = engine.refined(goal, most)?;
         found
             .map(|found| found.finish(engine, ExactStop::Met, options, &mut gaps))
@@ -122,7 +125,7 @@ pub(in crate::refine) fn within(
     };
     task.with_engine(observer, |engine| {
         let mut gaps = RimGaps::default();
-        let goal = Goal::Within(engine.floor(options.tolerance));
+        let goal = Goal::Within(engine.floor(options.goals.tolerance));
         let found = engine.refined(goal, most)?;
         let found = found
             .map(|found| found.finish(engine, ExactStop::Met, options, &mut gaps))
@@ -148,7 +151,7 @@ pub(super) fn may_do_with_fewer(
 
 /// Whether it takes little to tell, or normals decide.
 fn is_soon_told(plain: Task<'_>, count: usize) -> bool {
-    plain.options.angle.is_some() || count < FEW_BALANCED.max(2 * plain.mesh.face_count())
+    plain.options.goals.angle.is_some() || count < FEW_BALANCED.max(2 * plain.mesh.face_count())
 }
 
 /// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are
@@ -159,7 +162,7 @@ fn needs_more(
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
     task.with_engine(observer, |engine| {
-        let floor = engine.floor(task.options.tolerance);
+        let floor = engine.floor(task.options.goals.tolerance);
         let is_told = floor > 0.0 && engine.control.flat.merged_faces() == 0;
         Ok(is_told && engine.refined(Goal::Within(floor), count)?.is_none())
     })
@@ -198,8 +201,8 @@ fn within_room(
     let options = task.options;
     let (_, cap) = options.budget();
     without_gaps(task, most, observer, |engine, gaps| {
-        let floor = engine.floor(options.tolerance);
-        if options.balance
+        let floor = engine.floor(options.goals.tolerance);
+        if options.is_balanced()
             && floor > 0.0
             && let Some(found) = engine.refined(Goal::Balanced(floor), most)?
         {
@@ -221,7 +224,7 @@ fn within_room(
                 found = even;
             }
         }
-        if !options.balance {
+        if !options.is_balanced() {
             return Ok(found);
         }
         engine.least_balanced(found, floor, most, cap, options, gaps)
@@ -242,7 +245,7 @@ impl Engine<'_> {
     ) -> Result<Exact, RefineError> {
         let has_criteria = self.control.criteria.is_some();
         let mut high = if has_criteria {
-            plain.worst
+            plain.statistics.worst
         } else {
             plain.error.upper
         };

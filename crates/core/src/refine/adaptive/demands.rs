@@ -43,7 +43,7 @@ impl Room {
     pub(super) fn of(mesh: &Mesh, options: &ExactOptions, nodes: usize) -> Self {
         Self {
             faces: mesh.face_count(),
-            max_levels: options.max_levels as u32,
+            max_levels: options.caps.levels as u32,
             nodes,
         }
     }

@@ -79,6 +79,7 @@ impl FlatRegions {
             .iter()
             .fold(0.0f64, |size, x| size.max(x.abs()));
         let share = options
+            .goals
             .tolerance
             .map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
         let most = share.min(IN_PLANE * size);
@@ -162,12 +163,12 @@ impl FlatRegions {
             regions.push((faces, plane));
             off_planes = off_planes.max(off_plane + HEIGHT_ROUNDING * size);
         }
-        let weight = if options.max_memory.is_some() {
+        let weight = if options.caps.memory.is_some() {
             1
         } else {
             WEIGHT
         };
-        let straight = match options.strips && !options.balance {
+        let straight = match options.strips && !options.is_balanced() {
             true => strips::straight_faces(control, &normals, &of_face, most, watch)?,
             false => Vec::new(),
         };
@@ -199,7 +200,7 @@ impl FlatRegions {
             true => found.enclosed(control, IN_PLANE * size, watch)?,
             false => vec![false; found.regions.len()],
         };
-        if options.balance {
+        if options.is_balanced() {
             found.keep_enclosed(watch)?;
             if found.regions.is_empty() {
                 return Ok(Self::default());
@@ -242,7 +243,7 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
         let mut by_rim = vec![false; self.regions.len()];
-        if !options.asks_for_distances_alone() || !control.rules.is_certified() {
+        if !options.goals.are_distances() || !control.rules.is_certified() {
             return Ok(by_rim);
         }
         watch.each((0..).zip(&mut by_rim), |(region, by_rim)| {

@@ -15,7 +15,7 @@ use super::{Engine, Task};
 use crate::mesh::Mesh;
 use crate::progress::{Observer, Stage};
 use crate::refine::exact_options::ExactOptions;
-use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop};
+use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop, Statistics};
 use crate::refine::replay::{Frame, Replay, ReplayError};
 use crate::refine::{RefineError, adaptive::probe};
 use crate::scheme::Scheme;
@@ -59,11 +59,9 @@ pub(in crate::refine) fn frames(
         let emission = engine.emit_all(&state)?;
         engine.check(&emission)?;
         // Options for frames have no flat regions.
-        engine.assemble(
-            emission,
-            state.levels(engine.watch)?,
-            &mut RimGaps::default(),
-        )
+        let mut found = engine.assemble(emission, &mut RimGaps::default())?;
+        found.statistics.levels = state.levels(engine.watch)?;
+        Ok(found)
     })?;
     let replay = Replay::new_observed(control, scheme, &refined, observer)?;
     let (mut frame, mut all) = (Frame::default(), Vec::with_capacity(frames.len()));
@@ -85,14 +83,21 @@ pub(in crate::refine) fn frames(
         () if open_cones > 0 => ExactStop::Cones,
         () => ExactStop::Met,
     };
-    let pixels = options.pixels.map(|_| greatest(|own| own.pixels));
+    let pixels = options
+        .goals
+        .pixels
+        .as_ref()
+        .map(|_| greatest(|own| own.pixels));
     let error = all[0].error;
     let refined = Exact {
         error,
         pixels,
-        open_cones,
-        worst,
         stop,
+        statistics: Statistics {
+            worst,
+            open_cones,
+            ..refined.statistics
+        },
         ..refined.moved_to(&frame)?
     };
     Ok(Found {
@@ -105,7 +110,7 @@ pub(in crate::refine) fn frames(
 /// The state of the first frame, of which nothing is taken for granted.
 fn first(engine: &Engine<'_>, options: &ExactOptions) -> Result<State, RefineError> {
     let (most, _) = options.budget();
-    let goal = Goal::Within(engine.floor(options.tolerance));
+    let goal = Goal::Within(engine.floor(options.goals.tolerance));
     let found = engine
         .refined(goal, most)?
         .ok_or(ReplayError::TooMany { frame: 0, most })?;
@@ -131,7 +136,7 @@ fn united(
         state = Task { mesh, ..task }.with_engine(observer, |engine| {
             state.forget();
             state.has_fixed_diagonals = true;
-            state.goal = Goal::Within(engine.floor(task.options.tolerance));
+            state.goal = Goal::Within(engine.floor(task.options.goals.tolerance));
             let found = engine.verified(state, most)?;
             Ok(found.ok_or(ReplayError::TooMany { frame, most })?.state)
         })?;
@@ -165,7 +170,7 @@ fn proven(
     let mut emission = engine.emit_all(state)?;
     emission.positions.copy_from_slice(&frame.positions);
     engine.watch.stage(Stage::Bounding, None)?;
-    let floor = engine.floor(options.tolerance);
+    let floor = engine.floor(options.goals.tolerance);
     let all: Vec<u32> = (0..state.faces()).collect();
     let goal = Goal::Within(floor);
     let look = Look {
@@ -179,14 +184,15 @@ fn proven(
     state.is_trusted.fill(false);
     let greatest = |of: fn(&Measured) -> f64| state.measured.iter().map(of).fold(0.0, f64::max);
     let (value, pixels) = (greatest(|face| face.value), greatest(|face| face.pixels));
-    let is_met = options.tolerance.is_some() && value <= floor;
+    let is_met = options.goals.tolerance.is_some() && value <= floor;
     let error = probe::probe(engine, state, &emission, is_met)?;
     engine.check(&emission)?;
     let beyond = options
+        .goals
         .tolerance
         .map_or(0.0, |tolerance| error.upper / tolerance);
     let criteria = engine.control.criteria.as_ref();
-    let open_cones = match criteria.filter(|_| options.angle.is_some()) {
+    let open_cones = match criteria.filter(|_| options.goals.angle.is_some()) {
         Some(criteria) => open_cones(&refined.clone().moved_to(frame)?, criteria, engine.watch)?,
         None => 0,
     };

@@ -54,7 +54,7 @@ pub(super) use frames::frames;
 pub(super) use nested::nested;
 
 use super::RefineError;
-use super::exact_options::ExactOptions;
+use super::exact_options::{ExactOptions, Finish};
 use super::exact_result::{Exact, ExactStop};
 use super::junctions::join_copies;
 use super::kept_faces::KeptFaces;
@@ -86,8 +86,8 @@ pub(super) fn adaptive(
     options: &ExactOptions,
     observer: &mut Observer<'_>,
 ) -> Result<Exact, RefineError> {
-    let surfaces = surfaces_of(&options.attributes, scheme)?;
-    let functions = Functions::of(&options.attributes, &surfaces);
+    let surfaces = surfaces_of(&options.goals.attributes, scheme)?;
+    let functions = Functions::of(&options.goals.attributes, &surfaces);
     let task = Task {
         mesh,
         scheme,
@@ -123,7 +123,7 @@ pub(super) fn adaptive(
         if found.stop != ExactStop::Met || is_met {
             return Ok(found);
         }
-        let deepest = |place: &Place| place.level as usize >= options.max_levels;
+        let deepest = |place: &Place| place.level as usize >= options.caps.levels;
         let mut is_new = false;
         for place in held.failing.into_iter().filter(|place| !deepest(place)) {
             is_new |= demands.add(place);
@@ -166,14 +166,14 @@ pub(super) fn count(
     times: f64,
     observer: &mut Observer<'_>,
 ) -> Result<usize, RefineError> {
-    let surfaces = surfaces_of(&options.attributes, scheme)?;
-    let functions = Functions::of(&options.attributes, &surfaces).coarser(times);
+    let surfaces = surfaces_of(&options.goals.attributes, scheme)?;
+    let functions = Functions::of(&options.goals.attributes, &surfaces).coarser(times);
     let room = Room::of(mesh, options, usize::MAX);
     let demands = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
     let demands = demands.unwrap_or_default();
-    let plain = options.clone().balance(false);
+    let plain = options.clone().finish(Finish::OnSurface);
     // As in [`once`], angles that balanced vertices meet late are met with plain ones.
-    let fewest = match options.balance && options.angle.is_some() {
+    let fewest = match options.is_balanced() && options.goals.angle.is_some() {
         true => Some(count(mesh, scheme, &plain, times, observer)?),
         false => None,
     };
@@ -185,7 +185,7 @@ pub(super) fn count(
         demands: &demands,
     };
     let found = without_gaps(task, most, observer, |engine, gaps| {
-        let limit = engine.floor(options.tolerance.map(|tolerance| times * tolerance));
+        let limit = engine.floor(options.goals.tolerance.map(|tolerance| times * tolerance));
         let limit = if engine.control.criteria.is_some() {
             times
         } else {
@@ -208,13 +208,9 @@ pub(super) fn count(
             return Ok(found.state.triangles);
         }
         // Which regions cannot be triangulated from their rims nobody knows before.
-        let levels = found.state.levels(engine.watch)?;
-        Ok(engine
-            .assemble(found.emission, levels, gaps)?
-            .mesh
-            .face_count())
+        Ok(engine.assemble(found.emission, gaps)?.mesh.face_count())
     })?;
-    let may_be_fewer = fewest.is_none() && options.balance;
+    let may_be_fewer = fewest.is_none() && options.is_balanced();
     if may_be_fewer
         && may_do_with_fewer(
             Task {
@@ -326,20 +322,20 @@ impl Task<'_> {
             demands,
         };
         if options.flat_regions
-            && (!options.balance || options.unfold)
-            && options.attributes.is_empty()
+            && (!options.is_balanced() || options.unfold)
+            && options.goals.attributes.is_empty()
         {
             control.flat = FlatRegions::of(&control, options, &watch)?;
         }
         let rounding =
-            probe::rounding(mesh, options.max_levels, &watch)? + control.flat.allowance();
+            probe::rounding(mesh, options.caps.levels, &watch)? + control.flat.allowance();
         control.criteria = criteria(mesh, options, rounding)?;
-        control.back_faces = BackFaces::of(&control, options.balance, &watch)?;
+        control.back_faces = BackFaces::of(&control, options.is_balanced(), &watch)?;
         let engine = Engine {
             control: &control,
-            max_levels: options.max_levels as u32,
+            max_levels: options.caps.levels as u32,
             watch: &watch,
-            is_balanced: options.balance,
+            is_balanced: options.is_balanced(),
             has_origins: options.origins,
             rounding,
         };
@@ -370,20 +366,22 @@ fn criteria(
     options: &ExactOptions,
     rounding: f64,
 ) -> Result<Option<Criteria>, RefineError> {
-    if options.angle.is_none() && options.pixels.is_none() {
+    if options.goals.angle.is_none() && options.goals.pixels.is_none() {
         return Ok(None);
     }
-    let distance = options
+    let goals = &options.goals;
+    let distance = goals
         .tolerance
         .map(|tolerance| Distance::new(tolerance, rounding));
-    let cone = options.angle.map(|angle| LimitNormal {
-        view: options.view,
-        ..LimitNormal::new(angle)
+    let cone = goals.angle.map(|goal| LimitNormal {
+        view: goal.view,
+        ..LimitNormal::new(goal.radians)
     });
     let is_closed = mesh.topology().boundary_edge_count() == 0;
-    let pixels = options
+    let pixels = goals
         .pixels
-        .map(|limit| Pixels::new(limit, &options.cameras, is_closed))
+        .as_ref()
+        .map(|goal| Pixels::new(goal.pixels, &goal.cameras, is_closed))
         .transpose()?;
     Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
 }

@@ -69,7 +69,7 @@ pub(in crate::refine) fn nested(
         let mut exact = once(task, observer)?;
         let watch = SharedWatch::new(observer, Stage::Bounding);
         watch.triangles(exact.mesh.face_count());
-        let rounding = probe::rounding(mesh, options.max_levels, &watch)?;
+        let rounding = probe::rounding(mesh, options.caps.levels, &watch)?;
         let morph = coarser.filter(|_| with_geomorph).map(|coarser| {
             on_coarser(mesh, &coarser.exact, &exact, &watch).map(|morph| (morph, coarser.tolerance))
         });
@@ -103,7 +103,7 @@ pub(in crate::refine) fn nested(
         if !with_geomorph || off.failing.is_empty() || level.exact.stop != ExactStop::Met {
             return Ok(level);
         }
-        let deepest = |place: &Place| place.level as usize >= options.max_levels;
+        let deepest = |place: &Place| place.level as usize >= options.caps.levels;
         let mut is_new = false;
         for place in off.failing.into_iter().filter(|place| !deepest(place)) {
             is_new |= demands.add(place);

@@ -14,7 +14,7 @@ use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch, Stage};
 use crate::refine::RefineError;
 use crate::refine::exact_options::ExactOptions;
-use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop};
+use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop, Statistics};
 use crate::vector::vector;
 
 /// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
@@ -38,16 +38,17 @@ impl Verified {
             stop
         };
         engine.check(&emission)?;
-        let is_met = stop == ExactStop::Met && options.tolerance.is_some();
+        let is_met = stop == ExactStop::Met && options.goals.tolerance.is_some();
         let mut error = probe::probe(engine, &state, &emission, is_met)?;
         // Where nothing was asked of distances, a bound far from the truth says nothing.
-        if options.tolerance.is_none()
-            && options.triangles.is_none()
+        if options.goals.tolerance.is_none()
+            && options.goals.triangles.is_none()
             && error.upper > ErrorBounds::TIGHT * error.lower
         {
             error.upper = f64::INFINITY;
         }
         let failed = options
+            .goals
             .tolerance
             .filter(|&tolerance| exceeds(error.upper, tolerance));
         let stop = if stop == ExactStop::Met && failed.is_some() {
@@ -57,12 +58,12 @@ impl Verified {
         };
         let beyond = failed.map_or(0.0, |tolerance| error.upper / tolerance);
         let value = state.worst();
-        let worst = match (&control.criteria, options.tolerance) {
+        let worst = match (&control.criteria, options.goals.tolerance) {
             (Some(_), _) => value.max(beyond),
             (None, Some(tolerance)) => (value / tolerance).max(beyond),
             (None, None) => 0.0,
         };
-        let pixels = options.pixels.map(|_| {
+        let pixels = options.goals.pixels.as_ref().map(|_| {
             state
                 .measured
                 .iter()
@@ -74,16 +75,16 @@ impl Verified {
         let mut exact = Exact {
             error,
             pixels,
-            worst,
             stop,
-            ..engine.assemble(emission, levels, gaps)?
+            ..engine.assemble(emission, gaps)?
         };
-        if options.angle.is_some()
+        (exact.statistics.worst, exact.statistics.levels) = (worst, levels);
+        if options.goals.angle.is_some()
             && let Some(criteria) = &control.criteria
         {
-            exact.open_cones = open_cones(&exact, criteria, watch)?;
+            exact.statistics.open_cones = open_cones(&exact, criteria, watch)?;
         }
-        if exact.open_cones > 0 && exact.stop == ExactStop::Met {
+        if exact.statistics.open_cones > 0 && exact.stop == ExactStop::Met {
             exact.stop = ExactStop::Cones;
         }
         Ok(exact)
@@ -104,7 +105,6 @@ impl Engine<'_> {
     pub(super) fn assemble(
         &self,
         emission: Emission,
-        levels: usize,
         gaps: &mut RimGaps,
     ) -> Result<Exact, RefineError> {
         let (control, watch) = (self.control, self.watch);
@@ -158,12 +158,14 @@ impl Engine<'_> {
             normals,
             sides,
             origins,
-            off_planes: control.flat.off_planes(),
-            unfolded,
+            statistics: Statistics {
+                off_planes: control.flat.off_planes(),
+                unfolded,
+                ..Statistics::default()
+            },
             within_rims: control.flat.within_rims(control.demands),
             parents,
-            is_optimized: false,
-            side_origins: Vec::new(),
+            side_origins: None,
             error: ErrorBounds {
                 lower: 0.0,
                 upper: f64::INFINITY,
@@ -172,11 +174,7 @@ impl Engine<'_> {
             },
             pixels: None,
             attribute_bounds: Vec::new(),
-            open_cones: 0,
-            refused: 0,
-            worst: 0.0,
             stop: ExactStop::Met,
-            levels,
         })
     }
 }

@@ -5,7 +5,7 @@ use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::submesh::submesh;
 use crate::progress::{Observer, unobserved};
-use crate::refine::exact_options::{BYTES_PER_TRIANGLE, ExactOptions};
+use crate::refine::exact_options::{BYTES_PER_TRIANGLE, Caps, ExactOptions, Finish, Goals};
 use crate::refine::exact_result::Estimate;
 use crate::refine::simplified::simplified;
 use crate::refine::{RefineError, adaptive};
@@ -69,7 +69,7 @@ pub fn exact_estimate_observed(
     if let Some((scaled, options, _)) = scale::scaled(control, options)? {
         return exact_estimate_observed(&scaled, scheme, &options, observer);
     }
-    if let Some(tolerance) = options.tolerance.filter(|_| options.optimize) {
+    if let Some(tolerance) = options.goals.tolerance.filter(|_| options.is_collapsed()) {
         return optimised(control, scheme, options, tolerance, observer);
     }
     let of = |triangles: usize, is_counted| {
@@ -80,11 +80,12 @@ pub fn exact_estimate_observed(
             is_counted,
         }
     };
-    if !options.has_quality_goal() {
+    if !options.goals.has_quality() {
         return Ok(of(options.budget().0, false));
     }
     let (faces, coarsest) = (control.face_count(), coarsest(control, options));
     if let Some(tolerance) = options
+        .goals
         .tolerance
         .filter(|_| faces >= SAMPLED_FROM && is_distance_alone(options))
     {
@@ -124,15 +125,16 @@ pub fn exact_estimate_observed(
 
 /// Whether each face takes triangles by how far they are from its surface and by nothing else.
 fn is_distance_alone(options: &ExactOptions) -> bool {
-    options.asks_for_distances_alone() && !options.balance && options.kept_edges.is_empty()
+    options.goals.are_distances() && !options.is_balanced() && options.kept_edges.is_empty()
 }
 
 /// The power of two that makes goals coarse enough to take few triangles.
 fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
+    let goals = &options.goals;
     let goals = [
-        (options.tolerance, COARSE_SHARE * control.diagonal()),
-        (options.angle, COARSE_ANGLE),
-        (options.pixels, COARSE_PIXELS),
+        (goals.tolerance, COARSE_SHARE * control.diagonal()),
+        (goals.angle.map(|goal| goal.radians), COARSE_ANGLE),
+        (goals.pixels.as_ref().map(|goal| goal.pixels), COARSE_PIXELS),
     ];
     let times = goals
         .into_iter()
@@ -150,12 +152,18 @@ fn optimised(
     observer: &mut Observer<'_>,
 ) -> Result<Estimate, RefineError> {
     let free = ExactOptions {
-        triangles: None,
-        max_triangles: None,
+        goals: Goals {
+            triangles: None,
+            ..options.goals.clone()
+        },
+        caps: Caps {
+            triangles: None,
+            ..options.caps
+        },
         ..options.clone()
     };
     let plain = ExactOptions {
-        optimize: false,
+        finish: Finish::OnSurface,
         ..free.clone()
     };
     let mut times = coarsest(control, options);

@@ -16,7 +16,8 @@ use crate::scheme::Scheme;
 #[non_exhaustive]
 pub struct Frames {
     /// The refined mesh, with the vertices of the first frame by [`Self::replay`].
-    /// [`Exact::worst`], [`Exact::pixels`] and [`Exact::open_cones`] are the greatest of any frame,
+    /// [`Statistics::worst`](super::Statistics::worst), [`Exact::pixels`] and
+    /// [`Statistics::open_cones`](super::Statistics::open_cones) are the greatest of any frame,
     /// and [`Exact::stop`] holds for all of them.
     pub refined: Exact,
     /// Computes the vertices of all frames.
@@ -168,16 +169,21 @@ fn check(frames: &[Vec<[f64; 3]>], options: &ExactOptions) -> Result<(), RefineE
         ),
         (
             "number of triangles",
-            options.triangles.unwrap_or(0),
-            options.triangles.is_some(),
+            options.goals.triangles.unwrap_or(0),
+            options.goals.triangles.is_some(),
             "none, for frames",
         ),
-        ("balance", 1, options.balance, "none, for frames"),
-        ("optimisation", 1, options.optimize, "none, for frames"),
+        ("balance", 1, options.is_balanced(), "none, for frames"),
+        (
+            "optimisation",
+            1,
+            options.is_collapsed(),
+            "none, for frames",
+        ),
         (
             "number of goals for attributes",
-            options.attributes.len(),
-            !options.attributes.is_empty(),
+            options.goals.attributes.len(),
+            !options.goals.attributes.is_empty(),
             "none, for frames",
         ),
     ];

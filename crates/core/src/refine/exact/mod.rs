@@ -13,7 +13,7 @@ pub use frames::{Frames, exact_frames, exact_frames_observed};
 use super::RefineError;
 use super::adaptive::adaptive;
 use super::exact_options::ExactOptions;
-use super::exact_result::{Exact, ExactStop};
+use super::exact_result::{Exact, ExactStop, Statistics};
 use super::simplified::simplified;
 use crate::mesh::Mesh;
 use crate::progress::{Observer, unobserved};
@@ -47,7 +47,7 @@ pub fn exact_observed(
     if let Some((scaled, options, factor)) = scale::scaled(control, options)? {
         return scale::result(exact_observed(&scaled, scheme, &options, observer)?, factor);
     }
-    let mut found = match options.optimize {
+    let mut found = match options.is_collapsed() {
         true => simplified(control, scheme, options, observer)?,
         false => adaptive(control, scheme, options, observer)?,
     };
@@ -62,10 +62,13 @@ pub fn exact_observed(
 /// The result, marked as met where a tolerance is the only goal and `upper` shows that it is met:
 /// the sum of the bounds of single triangles can be greater.
 fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
-    match options.tolerance {
-        Some(tolerance) if upper <= tolerance && options.asks_for_distances_alone() => Exact {
+    match options.goals.tolerance {
+        Some(tolerance) if upper <= tolerance && options.goals.are_distances() => Exact {
             stop: ExactStop::Met,
-            worst: found.worst.min(upper / tolerance),
+            statistics: Statistics {
+                worst: found.statistics.worst.min(upper / tolerance),
+                ..found.statistics
+            },
             ..found
         },
         _ => found,

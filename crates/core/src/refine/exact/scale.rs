@@ -5,8 +5,8 @@
 use crate::criterion::{Camera, View, Viewpoint};
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
-use crate::refine::exact_options::ExactOptions;
-use crate::refine::exact_result::{ErrorBounds, Exact};
+use crate::refine::exact_options::{AngleGoal, ExactOptions, Goals, PixelGoal};
+use crate::refine::exact_result::{ErrorBounds, Exact, Statistics};
 
 /// Sizes with binary exponents up to this are unchanged: their eighth powers are finite.
 const MIDDLING: i32 = 100;
@@ -73,10 +73,20 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
         },
         Viewpoint::Direction(_) => view,
     };
+    let goals = &options.goals;
     ExactOptions {
-        tolerance: options.tolerance.map(|tolerance| length(tolerance, factor)),
-        cameras: options.cameras.iter().map(camera).collect(),
-        view: options.view.map(view),
+        goals: Goals {
+            tolerance: goals.tolerance.map(|tolerance| length(tolerance, factor)),
+            angle: goals.angle.map(|goal| AngleGoal {
+                view: goal.view.map(view),
+                ..goal
+            }),
+            pixels: goals.pixels.as_ref().map(|goal| PixelGoal {
+                pixels: goal.pixels,
+                cameras: goal.cameras.iter().map(camera).collect(),
+            }),
+            ..goals.clone()
+        },
         ..options.clone()
     }
 }
@@ -84,11 +94,14 @@ fn options(options: &ExactOptions, factor: f64) -> ExactOptions {
 /// The result at the original size.
 pub(in crate::refine) fn result(result: Exact, factor: f64) -> Result<Exact, RefineError> {
     let error = bounds(result.error, factor);
-    let off_planes = result.off_planes / factor;
+    let statistics = Statistics {
+        off_planes: result.statistics.off_planes / factor,
+        ..result.statistics
+    };
     Ok(Exact {
         mesh: mesh(&result.mesh, 1.0 / factor)?,
         error,
-        off_planes,
+        statistics,
         ..result
     })
 }

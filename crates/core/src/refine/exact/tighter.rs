@@ -69,8 +69,11 @@ pub(super) fn tighter(
     }
     let mut known = Known::new(error, control);
     let count = surface.triangles.len();
-    let is_proven = options.tolerance.is_some_and(|most| error.upper <= most);
-    let is_met = is_proven && options.asks_for_distances_alone() && !options.optimize;
+    let is_proven = options
+        .goals
+        .tolerance
+        .is_some_and(|most| error.upper <= most);
+    let is_met = is_proven && options.goals.are_distances() && !options.is_collapsed();
     if is_met && count > MET_MOST {
         return Ok(error);
     }

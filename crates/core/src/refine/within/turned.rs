@@ -16,7 +16,7 @@ pub fn turned_over_triangles(input: Triangles<'_>, found: &Exact, parts: &FacePa
 /// These triangles, ascending.
 pub(super) fn turned_over(input: Triangles<'_>, found: &Exact, parts: &FaceParts) -> Vec<u32> {
     let mut all = found.turned_over();
-    if found.is_optimized {
+    if found.is_collapsed() {
         return all;
     }
     let normal_of = |face: u32| normal(input, face as usize);

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use limitmesh::mesh::Mesh;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish};
 use limitmesh::scheme::Loop;
 
 use crate::support::{Point, exact, octahedron, sheet};
@@ -30,7 +30,7 @@ fn refined(control: &Mesh, options: &ExactOptions) -> Exact {
         result.error,
         control.as_triangles().bounding_box()
     );
-    if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.tolerance) {
+    if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.goals.tolerance) {
         assert!(
             result.error.upper <= tolerance,
             "{:?} of {tolerance:e}",
@@ -71,9 +71,9 @@ fn scaled(control: &Mesh, factor: f64) -> Mesh {
 }
 
 fn both_balances(mut check: impl FnMut(ExactOptions)) {
-    [false, true]
+    [Finish::OnSurface, Finish::Balanced]
         .into_iter()
-        .for_each(|balance| check(ExactOptions::default().balance(balance)));
+        .for_each(|finish| check(ExactOptions::default().finish(finish)));
 }
 
 #[test]
@@ -103,12 +103,12 @@ fn tolerances_no_number_can_meet_end_honestly() {
             let options = options.tolerance(1e-300);
             let shallow = refined(&control, &options.clone().max_levels(levels));
             assert_eq!(
-                (shallow.stop, shallow.levels),
+                (shallow.stop, shallow.statistics.levels),
                 (ExactStop::LevelCap, levels)
             );
             let capped = refined(&control, &options.max_triangles(Some(3000)));
             assert_eq!(capped.stop, ExactStop::TriangleCap);
-            assert!(capped.worst > 1.0);
+            assert!(capped.statistics.worst > 1.0);
         });
     }
 }
@@ -228,7 +228,7 @@ fn flat_meshes_are_divided_only_along_their_outlines() {
         "{} triangles",
         result.mesh.face_count()
     );
-    assert!(result.worst > 1.0);
+    assert!(result.statistics.worst > 1.0);
 }
 
 /// Both sides of a star, one on the other: at the dents the triangles reach beyond the surface, and no height shows it.

@@ -12,7 +12,7 @@ pub(crate) mod proofs;
 use limitmesh::Mesh;
 use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
 use crate::support::{Point, Random};
@@ -67,13 +67,13 @@ fn goal(control: &Mesh, random: &mut Random) -> Goal {
     }
     match random.below(6) {
         0..3 => {
-            options = options.balance(true);
+            options = options.finish(Finish::Balanced);
             what += ", balanced";
         }
         3 => {
             let most = MOST_OPTIMISED.max(faces);
-            options.triangles = options.triangles.map(|count| count.min(most));
-            options = options.optimize(true).max_triangles(Some(most));
+            options.goals.triangles = options.goals.triangles.map(|count| count.min(most));
+            options = options.finish(Finish::Collapsed).max_triangles(Some(most));
             what += ", optimised";
         }
         _ => {}
@@ -161,16 +161,17 @@ fn check_form(control: &Mesh, result: &Exact, options: &ExactOptions) -> Result<
         error.lower >= 0.0 && error.lower <= error.upper && error.upper.is_finite(),
         || format!("{error:?}"),
     )?;
-    if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.tolerance) {
+    if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.goals.tolerance) {
         ensure(error.upper <= tolerance, || {
             format!("met, but {error:?} beyond {tolerance:e}")
         })?;
     }
     let count = result.mesh.face_count();
     let most = options
+        .goals
         .triangles
         .unwrap_or(usize::MAX)
-        .min(options.max_triangles.unwrap_or(usize::MAX));
+        .min(options.caps.triangles.unwrap_or(usize::MAX));
     ensure(count <= most.max(control.face_count()), || {
         format!("{count} triangles, at most {most}")
     })
@@ -199,7 +200,7 @@ fn check_samples(
     random: &mut Random,
 ) -> Result<(), String> {
     let upper = result.error.upper;
-    let (fine, level) = reference(control, scheme, result.levels);
+    let (fine, level) = reference(control, scheme, result.statistics.levels);
     // The rounding errors of the reference itself and of distances to it.
     let rounding = 1e-14 * largest(control);
     let output = Bvh::new(result.mesh.as_triangles()).unwrap();

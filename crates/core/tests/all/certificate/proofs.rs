@@ -26,7 +26,7 @@ pub(crate) fn refused(
     within: f64,
 ) -> Result<Option<Vec<Refusal>>, String> {
     // Triangles that came of collapses are over several control faces.
-    let (Some(scheme), false) = (scheme.loop_family(), result.is_optimized) else {
+    let (Some(scheme), false) = (scheme.loop_family(), result.is_collapsed()) else {
         return Ok(None);
     };
     let proof = Proof {

@@ -7,7 +7,7 @@ use limitmesh::Mesh;
 use limitmesh::index::FaceId;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 use super::within;
@@ -60,9 +60,13 @@ fn plates_with_holes_do_not_fold() {
     let hole = |i: u32| 6 + i % facets;
     let [whole, folded] =
         [true, false].map(|flat| exact(&plate, &Loop, &within(1e-4).unfold(flat)).unwrap());
-    assert!(folded.inverted_triangles() > 0 && folded.unfolded == 0);
+    assert!(folded.inverted_triangles() > 0 && folded.statistics.unfolded == 0);
     assert_eq!(
-        (whole.inverted_triangles(), whole.unfolded, whole.stop),
+        (
+            whole.inverted_triangles(),
+            whole.statistics.unfolded,
+            whole.stop
+        ),
         (0, 1, ExactStop::Met)
     );
     let areas: Vec<f64> = (0..whole.mesh.face_count() as u32)
@@ -154,7 +158,7 @@ fn rims_whose_chords_cross_are_divided() {
         let options = budget.map_or(options.clone(), |most| options.triangles(most));
         let found = exact(&mesh, &Loop, &options).unwrap();
         assert!(
-            found.inverted_triangles() == 0 && found.unfolded > 0,
+            found.inverted_triangles() == 0 && found.statistics.unfolded > 0,
             "{tolerance} {budget:?}"
         );
         assert!(found.error.upper <= tolerance);
@@ -210,7 +214,7 @@ fn balanced_angles_of_folding_sides_come_to_an_end() {
         (most, found)
     };
     let (plain_most, plain) = most_triangles(&options);
-    let options = options.balance(true);
+    let options = options.finish(Finish::Balanced);
     let (most, found) = most_triangles(&options);
     assert!(found.mesh.face_count() <= plain.mesh.face_count());
     assert!(most <= plain_most, "{most} {plain_most}");
@@ -242,7 +246,7 @@ fn what_folds_beside_smooth_surfaces_stays() {
     for tolerance in [0.1, 0.02, 2e-3] {
         let found = exact(&tent, &Loop, &within(tolerance).unfold(true)).unwrap();
         assert!(
-            found.unfolded == 0 && found.inverted_triangles() > 0,
+            found.statistics.unfolded == 0 && found.inverted_triangles() > 0,
             "{tolerance}"
         );
         let sampled = hausdorff(
@@ -422,14 +426,14 @@ fn what_folds_is_the_same_at_each_tolerance() {
         }
         let balanced = super::within(0.01 * mesh.diagonal())
             .unfold(true)
-            .balance(true);
+            .finish(Finish::Balanced);
         assert_as_near_as_told(
             &exact(&mesh, &Loop, &balanced).unwrap(),
             &fine,
             &format!("{case} balanced"),
         );
         (unfolded, folded) = (
-            unfolded + fine.unfolded,
+            unfolded + fine.statistics.unfolded,
             folded + usize::from(fine.inverted_triangles() > 0),
         );
     }
@@ -446,18 +450,14 @@ fn what_folds_is_the_same_under_budgets() {
         let fine = exact(&mesh, &Loop, &within(1e-3 * mesh.diagonal()).unfold(true)).unwrap();
         for times in [1.2, 2.0, 3.0] {
             let most = (times * mesh.face_count() as f64) as usize;
-            for is_balanced in [false, true] {
+            for finish in [Finish::OnSurface, Finish::Balanced] {
                 let options = ExactOptions::default()
                     .triangles(most)
                     .unfold(true)
-                    .balance(is_balanced);
+                    .finish(finish);
                 let found = exact(&mesh, &Loop, &options).unwrap();
                 assert!(found.mesh.face_count() <= most);
-                assert_as_near_as_told(
-                    &found,
-                    &fine,
-                    &format!("{seed} with {most}, balanced {is_balanced}"),
-                );
+                assert_as_near_as_told(&found, &fine, &format!("{seed} with {most}, {finish:?}"));
             }
         }
     }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use crate::support::{creased, cross, dot, exact, peg};
 use limitmesh::Mesh;
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 /// A slab with a hole through it, both round, and with vertices inside its flat sides where `has_inner`.
@@ -256,7 +256,7 @@ fn budgets_and_estimates_count_what_is_left() {
 fn what_is_flat_is_optimised_with_proof() {
     let mesh = peg(16);
     let plain = exact(&mesh, &Loop, &within(2e-3)).unwrap();
-    let optimised = exact(&mesh, &Loop, &within(2e-3).optimize(true)).unwrap();
+    let optimised = exact(&mesh, &Loop, &within(2e-3).finish(Finish::Collapsed)).unwrap();
     optimised.mesh.validate().unwrap();
     assert!(
         optimised.mesh.face_count() <= plain.mesh.face_count(),
@@ -296,9 +296,10 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     assert!(single.error.upper <= 1e-3);
     // Half a unit in the last place of single precision, in each coordinate of what spans a plane and is off it.
     assert!(
-        exactly.off_planes < 1e-12 && (1e-9..1e-6).contains(&single.off_planes),
+        exactly.statistics.off_planes < 1e-12
+            && (1e-9..1e-6).contains(&single.statistics.off_planes),
         "{}",
-        single.off_planes
+        single.statistics.off_planes
     );
     // One vertex of an end off its plane by less than a thousandth: it is in the ring of all that meet at the fan's tip.
     let axis = [0, 1, 2].map(|i| (mesh.positions()[16][i] - mesh.positions()[0][i]) / 3.0);

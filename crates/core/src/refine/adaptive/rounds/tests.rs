@@ -4,7 +4,7 @@ use super::super::measured::Measured;
 use super::super::with_engine;
 use super::*;
 use crate::models::{book, stirred};
-use crate::refine::ExactOptions;
+use crate::refine::{ExactOptions, Finish};
 
 /// A leaf by its path below its control face.
 fn leaf(path: &[usize]) -> Place {
@@ -76,9 +76,13 @@ fn rounds_end_with_what_is_found_anew() {
     ] {
         let limit = 1e-3 * mesh.diagonal();
         let plain = ExactOptions::default().tolerance(limit);
-        for options in [plain.clone(), plain.clone().balance(true), plain.angle(0.2)] {
+        for options in [
+            plain.clone(),
+            plain.clone().finish(Finish::Balanced),
+            plain.angle(0.2),
+        ] {
             with_engine(&mesh, &options, |engine| {
-                let value = engine.floor(options.tolerance);
+                let value = engine.floor(options.goals.tolerance);
                 let goal = if engine.is_balanced {
                     Goal::Balanced(value)
                 } else {
@@ -114,7 +118,7 @@ fn proven_leaves_are_checked_where_levels_end() {
                 .tolerance(share * mesh.diagonal())
                 .max_levels(levels);
             with_engine(&mesh, &options, |engine| {
-                let goal = Goal::Within(engine.floor(options.tolerance));
+                let goal = Goal::Within(engine.floor(options.goals.tolerance));
                 let Verified { state, .. } = engine.refined(goal, usize::MAX)?.unwrap();
                 failed += usize::from(state.has_failed);
                 for face in 0..state.faces() {
