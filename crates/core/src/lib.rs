@@ -32,6 +32,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`guide`] shows the ten things people do, each with an example.
+//!
 //! | module | what it is for |
 //! |---|---|
 //! | [`mesh`] | control meshes: building from any soup, repair, half-edge topology |
@@ -56,6 +58,7 @@ pub mod criterion;
 mod facing;
 pub mod front;
 mod geometry;
+pub mod guide;
 pub mod index;
 pub mod interpolate;
 pub mod limit;
