@@ -60,47 +60,47 @@ pub(crate) struct RowTarget {
     /// does not count.
     pub(crate) range_share: f64,
     /// The greatest normal deviation of the adjacent triangles, as a chord.
-    pub(crate) tilt: f64,
+    pub(crate) normal_deviation: f64,
     /// The least tangent of the angles of the adjacent triangles.
     pub(crate) slope: f64,
     /// The share of the least of 1 and the tangents of a part's own angles that tangential
     /// displacements over an edge may have ([`TriangleFrame::slope_at`]).
     ///
     /// [`TriangleFrame::slope_at`]: super::triangle_frame::TriangleFrame::slope_at
-    pub(crate) drift_share: f64,
+    pub(crate) displacement_share: f64,
 }
 
 /// The greatest bounds of the parts that passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowExtent {
-    pub(crate) tilt: f64,
+    pub(crate) normal_deviation: f64,
     pub(crate) slope: f64,
-    pub(crate) drift_slope: f64,
+    pub(crate) displacement_slope: f64,
     pub(crate) bound: f64,
 }
 
 impl RowExtent {
     pub(crate) const NONE: Self = Self {
-        tilt: 0.0,
+        normal_deviation: 0.0,
         slope: f64::INFINITY,
-        drift_slope: 0.0,
+        displacement_slope: 0.0,
         bound: 0.0,
     };
 }
 
-/// Marks of the parts of a level: upright ones and those on their heads, by row and column.
+/// Marks of the parts of a level: upright ones and inverted ones, by row and column.
 #[derive(Default)]
 pub(crate) struct Marks {
     n: usize,
     upright: Vec<Mark>,
-    headlong: Vec<Mark>,
+    inverted: Vec<Mark>,
 }
 
 impl Marks {
     /// The mark of the part in column i and row j.
-    pub(crate) fn at(&self, i: usize, j: usize, is_headlong: bool) -> Mark {
-        let list = if is_headlong {
-            &self.headlong
+    pub(crate) fn at(&self, i: usize, j: usize, is_inverted: bool) -> Mark {
+        let list = if is_inverted {
+            &self.inverted
         } else {
             &self.upright
         };
@@ -112,10 +112,10 @@ impl Marks {
         (0..self.n).all(|j| {
             let count = self.n - j;
             let upright = &self.upright[j * self.n..j * self.n + count];
-            let headlong = &self.headlong[j * self.n..j * self.n + count - 1];
+            let inverted = &self.inverted[j * self.n..j * self.n + count - 1];
             upright
                 .iter()
-                .chain(headlong)
+                .chain(inverted)
                 .all(|&mark| mark == Mark::Passes)
         })
     }
@@ -195,7 +195,7 @@ pub(crate) struct RowBlock<'a> {
 }
 
 impl<'a> RowBlock<'a> {
-    /// The node whose first corner is given, with edges of this length in the domain, negative for nodes on their heads.
+    /// The node whose first corner is given, with edges of this length in the domain, negative for inverted nodes.
     pub(crate) fn of(piece: &'a Quartic, jet: &'a QuarticJet, at: Domain, size: f64) -> Self {
         // Third derivatives along edges and of the bubble are linear: greatest in a corner.
         let corners = [at, [at[0] + size, at[1]], [at[0], at[1] + size]];
@@ -330,7 +330,7 @@ impl CellRows {
     ) {
         let n = 1usize << divisions;
         marks.n = n;
-        for list in [&mut marks.upright, &mut marks.headlong] {
+        for list in [&mut marks.upright, &mut marks.inverted] {
             list.clear();
             list.resize(n * n, Mark::Passes);
         }
@@ -342,9 +342,9 @@ impl CellRows {
             measure(n * n, &few.parts(), &rest, target, &mut self.found);
             let mut found = [Mark::Passes; FEW];
             self.found.mark((n * n, scale), target, extent, &mut found);
-            for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
-                let list = if is_headlong {
-                    &mut marks.headlong
+            for (number, &(i, j, is_inverted)) in few.places[..n * n].iter().enumerate() {
+                let list = if is_inverted {
+                    &mut marks.inverted
                 } else {
                     &mut marks.upright
                 };
@@ -366,12 +366,12 @@ impl CellRows {
             self.between
                 .fill(block, steps, (j, count), [&lower.points, &upper.points]);
             let rows =
-                [false, true].map(|is_headlong| self.between.parts(lower, upper, is_headlong));
-            let lists = [&mut marks.upright, &mut marks.headlong];
-            for (is_headlong, (parts, list)) in
+                [false, true].map(|is_inverted| self.between.parts(lower, upper, is_inverted));
+            let lists = [&mut marks.upright, &mut marks.inverted];
+            for (is_inverted, (parts, list)) in
                 [false, true].into_iter().zip(rows.iter().zip(lists))
             {
-                let count = count - usize::from(is_headlong);
+                let count = count - usize::from(is_inverted);
                 if count == 0 {
                     continue;
                 }
@@ -445,16 +445,16 @@ impl Between {
         &'r self,
         lower: &'r CornerRow,
         upper: &'r CornerRow,
-        is_headlong: bool,
+        is_inverted: bool,
     ) -> Parts<'r> {
-        // Those on their heads have their edge along a row in the upper one, and the others turned.
-        let (own, turned) = if is_headlong { (upper, 1) } else { (lower, 0) };
+        // Inverted ones have their edge along a row in the upper one, and the others turned.
+        let (own, turned) = if is_inverted { (upper, 1) } else { (lower, 0) };
         let size = self
             .across
             .size
             .larger(self.upward.size)
             .larger(own.bends.size);
-        let normals = match is_headlong {
+        let normals = match is_inverted {
             false => [
                 at(&lower.normals, 0),
                 at(&lower.normals, 1),
@@ -468,7 +468,7 @@ impl Between {
         };
         Parts {
             edges: [at(&own.edges, 0), at(&self.edges, turned)],
-            is_turned: is_headlong,
+            is_turned: is_inverted,
             normals,
             bends: [
                 at(&own.bends.along, 0),

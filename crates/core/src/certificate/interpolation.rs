@@ -27,12 +27,12 @@ const NEGLIGIBLE: f64 = 0.125;
 
 /// A function over a piece of the control mesh, and its values at the corners.
 #[derive(Clone, Debug)]
-pub(crate) struct Sheet {
+pub(crate) struct ParamPatch {
     pub(crate) patch: Patch,
     pub(crate) corners: [DVec3; 3],
 }
 
-impl Sheet {
+impl ParamPatch {
     /// The bounds over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);

@@ -52,7 +52,7 @@ pub enum UnfoldedError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Unfolded {
-    /// The control mesh; vertices that keep their place are among those [passed by](Interpolated::passed_by).
+    /// The control mesh; vertices that keep their place are among those [passed by](Interpolated::relaxed).
     pub interpolated: Interpolated,
     /// Regions that would fold if the surface passed through all vertices, the one with most faces first.
     pub folded: Vec<FoldedRegion>,

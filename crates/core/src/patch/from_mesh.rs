@@ -28,7 +28,7 @@ pub(crate) fn root_patch(
     if let Some(points) = regular(mesh, sharpness, corners) {
         return Patch::Regular(points);
     }
-    match fades(mesh, sharpness, large, corners) {
+    match is_semi_sharp(mesh, sharpness, large, corners) {
         true => SemiSharpPatch::of(
             corners.map(|h| match large.whole(mesh.topology().origin(h)) {
                 Some(ring) => ring.near(h),
@@ -65,18 +65,18 @@ fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> 
 }
 
 /// Whether a tag that fades decides the surface over a face, given its corners.
-pub(super) fn fades(
+pub(super) fn is_semi_sharp(
     mesh: &Mesh,
     sharpness: &Sharpness<'_>,
     large: &LargeRings,
     corners: [HalfEdgeId; 3],
 ) -> bool {
-    let fades = |vertex: VertexId| match large.whole(vertex) {
-        Some(ring) => ring.fades(),
-        None => sharpness.ring(vertex).fading() > 0.0,
+    let is_semi_sharp = |vertex: VertexId| match large.whole(vertex) {
+        Some(ring) => ring.is_semi_sharp(),
+        None => sharpness.ring(vertex).semi_sharpness() > 0.0,
     };
     let mut vertices = corners.into_iter().map(|h| mesh.topology().origin(h));
-    vertices.any(|vertex| sharpness.is_tagged(vertex) && fades(vertex))
+    vertices.any(|vertex| sharpness.is_tagged(vertex) && is_semi_sharp(vertex))
 }
 
 /// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.

@@ -47,7 +47,7 @@ impl LargeRings {
         if sharpness.is_empty() || !rules.is_certified() {
             return Ok(large);
         }
-        let levels = sharpness.fading_levels();
+        let levels = sharpness.semi_sharp_levels();
         // Where something fades, it may do so beside any of them.
         for (vertex, ring) in large
             .0

@@ -39,7 +39,7 @@ pub(crate) use quartic::{Quartic, reciprocal_power};
 pub(crate) use sector::VertexSector;
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
-pub(crate) use spot::Spot;
+pub(crate) use spot::ParamTriangle;
 
 /// The neighbours of a vertex: nearly all have at most eight.
 pub(crate) type Neighbours<V = DVec3> = smallvec::SmallVec<[V; 8]>;

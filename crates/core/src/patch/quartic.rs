@@ -107,7 +107,7 @@ impl Quartic {
     }
 
     /// The net of the part whose corners are the given one and those `size` along u and along v from it; negative
-    /// for parts that stand on their heads.
+    /// for inverted parts.
     pub(crate) fn net(&self, [u, v]: [f64; 2], size: f64) -> BezierTriangle {
         let mut powers = [1.0; 5];
         (1..5).for_each(|i| powers[i] = size * powers[i - 1]);

@@ -21,7 +21,7 @@ use super::{Limit, LimitPoint, Rules};
 use super::{Patch, box_spline};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Sharpness};
-use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded};
+use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, decremented};
 use crate::vector::{DVec3, vector};
 
 /// A vertex with its neighbours, counter-clockwise, and the sharpness of the edges to them.
@@ -56,17 +56,19 @@ impl SemiSharpVertex {
         (self.slot as isize + offset).rem_euclid(self.neighbours.len() as isize) as usize
     }
 
-    fn fades(&self) -> bool {
-        self.whole
-            .as_ref()
-            .map_or_else(|| self.sharp.fading() > 0.0, PartOfRing::fades)
+    fn is_semi_sharp(&self) -> bool {
+        self.whole.as_ref().map_or_else(
+            || self.sharp.semi_sharpness() > 0.0,
+            PartOfRing::is_semi_sharp,
+        )
     }
 
     /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
-    fn fades_first(&self) -> f64 {
-        self.whole
-            .as_ref()
-            .map_or_else(|| self.sharp.fades_first(), PartOfRing::fades_first)
+    fn least_semi_sharpness(&self) -> f64 {
+        self.whole.as_ref().map_or_else(
+            || self.sharp.least_semi_sharpness(),
+            PartOfRing::least_semi_sharpness,
+        )
     }
 
     /// Where the centre moves by the rules of a ring as sharp as `sharp`.
@@ -162,7 +164,7 @@ impl SemiSharpVertex {
 
     /// The limit of a new vertex, on the side of the face.
     fn limit(mut self, rules: &Rules<'_>) -> LimitPoint {
-        while self.fades() {
+        while self.is_semi_sharp() {
             self = self.refined(rules);
         }
         let sector = self.sector();
@@ -183,7 +185,7 @@ pub(crate) enum SemiSharpPatch {
 impl SemiSharpPatch {
     /// The simplest form of the face with those corners.
     pub(super) fn of(corners: [SemiSharpVertex; 3]) -> Patch {
-        match corners.iter().any(SemiSharpVertex::fades) {
+        match corners.iter().any(SemiSharpVertex::is_semi_sharp) {
             true => Patch::SemiSharp(Box::new(match RegularSemiSharp::of(&corners) {
                 Some(regular) => Self::Regular(regular),
                 None => Self::Rings(corners),
@@ -218,9 +220,9 @@ impl SemiSharpPatch {
 
     /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter. `None`
     /// where that is not known.
-    pub(crate) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
+    pub(crate) fn infinitely_sharp_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         match self {
-            Self::Regular(regular) => regular.lasting_twin(rules),
+            Self::Regular(regular) => regular.infinitely_sharp_twin(rules),
             Self::Rings(corners) => rings_twin(corners, rules),
         }
     }
@@ -238,14 +240,14 @@ impl SemiSharpPatch {
     }
 }
 
-/// [`SemiSharpPatch::lasting_twin`] of the face with those corners.
+/// [`SemiSharpPatch::infinitely_sharp_twin`] of the face with those corners.
 fn rings_twin(corners: &[SemiSharpVertex; 3], rules: &Rules<'_>) -> Option<(Patch, f64)> {
-    let fades = corners
+    let least = corners
         .iter()
-        .map(SemiSharpVertex::fades_first)
+        .map(SemiSharpVertex::least_semi_sharpness)
         .fold(INFINITELY_SHARP, f64::min);
-    let mut gaps = Gaps::new(fades);
-    for corner in corners.iter().filter(|corner| corner.fades()) {
+    let mut gaps = Gaps::new(least);
+    for corner in corners.iter().filter(|corner| corner.is_semi_sharp()) {
         gaps.add(corner, rules)?;
     }
     Some((
@@ -304,7 +306,7 @@ impl RefinedRings<'_> {
         let near = [to.at, self.on_edge(next), self.on_edge(last), from.at];
         let before = &self.before[edge];
         let sharpness = before.sharp.spokes[before.slot];
-        let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
+        let (at, vertex, along) = (self.on_edge(edge), 0.0, decremented(sharpness));
         if sharpness >= INFINITELY_SHARP {
             let sharp = SharpRing {
                 open: true,

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::from_mesh::{fades, sector_of};
+use super::from_mesh::{is_semi_sharp, sector_of};
 use super::large_rings::LargeRings;
 use super::sector::{Centre, Far};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -40,9 +40,9 @@ impl Support {
         face: FaceId,
     ) -> Self {
         let half_edges = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
-        let corners = match fades(mesh, sharpness, large, half_edges) {
-            true => half_edges.map(|h| Corner::fading(mesh, sharpness, h)),
-            false => half_edges.map(|h| Corner::lasting(mesh, sharpness, large, h)),
+        let corners = match is_semi_sharp(mesh, sharpness, large, half_edges) {
+            true => half_edges.map(|h| Corner::semi_sharp(mesh, sharpness, h)),
+            false => half_edges.map(|h| Corner::infinitely_sharp(mesh, sharpness, large, h)),
         };
         let turns = [0, 1, 2].map(|turn| Self::turned(&corners, turn));
         let [first, second, third] = turns;
@@ -115,7 +115,7 @@ impl Numbered {
 
 impl Corner {
     /// A corner of a face beside which something fades: the whole ring, and how sharp it is.
-    fn fading(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
+    fn semi_sharp(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let ring = sharpness.ring(vertex);
@@ -141,7 +141,7 @@ impl Corner {
     }
 
     /// Any other corner: the sector on the face's side, as pieces are made of it.
-    fn lasting(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, h: HalfEdgeId) -> Self {
+    fn infinitely_sharp(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, h: HalfEdgeId) -> Self {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let is_plain = !sharpness.is_tagged(vertex);

@@ -53,9 +53,9 @@ pub(super) struct Gaps {
 
 impl Gaps {
     /// None yet, between a piece of which the least sharpness that fades is this and its twin.
-    pub(super) fn new(fades: f64) -> Self {
-        let first = (fades as usize).min(MOST - LEVELS);
-        let share = 1.0 - (fades - first as f64);
+    pub(super) fn new(least: f64) -> Self {
+        let first = (least as usize).min(MOST - LEVELS);
+        let share = 1.0 - (least - first as f64);
         Self {
             first,
             share,

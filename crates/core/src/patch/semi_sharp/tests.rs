@@ -228,7 +228,7 @@ fn lasting_twins_are_near() {
                         let Patch::SemiSharp(piece) = patch else {
                             continue;
                         };
-                        let Some((_, apart)) = piece.lasting_twin(&rules) else {
+                        let Some((_, apart)) = piece.infinitely_sharp_twin(&rules) else {
                             continue;
                         };
                         let distances = own[face.index()].iter().zip(&twins[face.index()]);

@@ -36,8 +36,8 @@ struct Level {
     at: DVec3,
     /// The mean of the neighbours.
     mean: DVec3,
-    fades: bool,
-    fades_first: f64,
+    is_semi_sharp: bool,
+    least_semi_sharpness: f64,
     is_corner: bool,
     /// The neighbours along sharp edges with their slots, ascending.
     sharp: Vec<(usize, DVec3)>,
@@ -49,7 +49,7 @@ impl Level {
     fn of(whole: &SemiSharpVertex, rules: &Rules<'_>) -> Self {
         let neighbours = &whole.neighbours;
         let sharp = (0..neighbours.len()).filter(|&slot| whole.sharp.is_sharp(slot));
-        let gaps = if whole.fades() {
+        let gaps = if whole.is_semi_sharp() {
             RingGaps::of(whole, rules)
         } else {
             None
@@ -57,8 +57,8 @@ impl Level {
         Self {
             at: whole.at,
             mean: neighbours.iter().sum::<DVec3>() / neighbours.len() as f64,
-            fades: whole.fades(),
-            fades_first: whole.fades_first(),
+            is_semi_sharp: whole.is_semi_sharp(),
+            least_semi_sharpness: whole.least_semi_sharpness(),
             is_corner: whole.sharp.rule() == VertexRule::Corner,
             sharp: sharp.map(|slot| (slot, neighbours[slot])).collect(),
             gaps: gaps.map(Box::new),
@@ -109,8 +109,8 @@ impl WholeRing {
     }
 
     /// Whether something fades.
-    pub(crate) fn fades(&self) -> bool {
-        self.levels[0].fades
+    pub(crate) fn is_semi_sharp(&self) -> bool {
+        self.levels[0].is_semi_sharp
     }
 
     /// The vertex as a corner of the face of `h`, which leaves it, with the neighbours near that face.
@@ -171,13 +171,13 @@ impl PartOfRing {
         self.level().at
     }
 
-    pub(super) fn fades(&self) -> bool {
-        self.level().fades
+    pub(super) fn is_semi_sharp(&self) -> bool {
+        self.level().is_semi_sharp
     }
 
     /// The least sharpness that fades of all of the ring.
-    pub(super) fn fades_first(&self) -> f64 {
-        self.level().fades_first
+    pub(super) fn least_semi_sharpness(&self) -> f64 {
+        self.level().least_semi_sharpness
     }
 
     pub(super) fn gaps(&self) -> Option<&RingGaps> {

@@ -19,11 +19,11 @@
 use super::back_faces::BackFaces;
 use super::control::Control;
 use super::emitted::{Emitted, Over};
-use super::surface::Ground;
+use super::surface::QuarticPiece;
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
 use crate::facing::{DEEPEST, back_but_for, is_back};
-use crate::patch::{LimitPoint, Patch, Rules, Spot};
+use crate::patch::{LimitPoint, ParamTriangle, Patch, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -91,7 +91,7 @@ pub(super) struct Behind<'a> {
 /// A leaf's piece.
 pub(super) enum Leaf<'a> {
     /// A part of a regular piece.
-    Regular(&'a Ground, Spot),
+    Regular(&'a QuarticPiece, ParamTriangle),
     /// Any other.
     General(&'a Patch, &'a Rules<'a>),
 }
@@ -105,7 +105,7 @@ impl<'a> Behind<'a> {
         rules: &'a Rules<'a>,
     ) -> Self {
         let leaf = match over {
-            Over::Regular(ground, _, spot) => Leaf::Regular(ground, *spot),
+            Over::Regular(quartic, _, domain) => Leaf::Regular(quartic, *domain),
             Over::General(pieces, ..) => Leaf::General(pieces.patch(), rules),
         };
         Self {
@@ -130,8 +130,8 @@ impl<'a> Behind<'a> {
             return None;
         }
         match self.leaf {
-            Leaf::Regular(ground, spot) => {
-                is_back(ground.net(spot, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
+            Leaf::Regular(quartic, domain) => {
+                is_back(quartic.net(domain, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
             }
             // Nothing of these is certain, distances neither.
             Leaf::General(Patch::Mesh(_), _) => Some(0.0),

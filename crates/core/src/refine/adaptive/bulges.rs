@@ -11,10 +11,10 @@ mod waiting;
 use super::backs::{Behind, looks_away};
 use super::control::Control;
 use super::emit::Emission;
-use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::HOPELESS;
 use super::measured::{FoundLast, Measured, fail};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
 use crate::patch::{Rules, reciprocal_power};
@@ -39,7 +39,7 @@ pub(super) struct Bulge {
     /// The least and the greatest height of the surface over each; not numbers where nobody looks.
     pub(super) ranges: Vec<[f64; 2]>,
     /// Leaves whose triangles bulge too far, and half of that.
-    failing: Vec<(Place, f64)>,
+    failing: Vec<(NodeAddress, f64)>,
     /// Whether triangles were not measured as they are.
     pub(super) waits: bool,
     /// Which triangles they are.
@@ -134,7 +134,7 @@ impl Bulges {
     }
 
     /// The leaves that fail wherever their corners are moved, and what they come to at best.
-    pub(super) fn failing(&self) -> Vec<(Place, f64)> {
+    pub(super) fn failing(&self) -> Vec<(NodeAddress, f64)> {
         self.0
             .iter()
             .flat_map(|face| &face.failing)
@@ -173,10 +173,10 @@ impl Bulge {
     }
 
     /// The leaf whose triangle has this number in the control face.
-    pub(super) fn place(&self, face: u32, number: usize) -> Place {
+    pub(super) fn place(&self, face: u32, number: usize) -> NodeAddress {
         let code = self.keys[number].leaf;
         let level = (u64::BITS - 1 - code.leading_zeros().min(u64::BITS - 1)) / 2;
-        Place {
+        NodeAddress {
             face,
             level,
             path: code & !(1 << (2 * level)),
@@ -201,7 +201,7 @@ struct Looking<'a> {
     found: Bulge,
 }
 
-impl Beholder for Looking<'_> {
+impl TriangleVisitor for Looking<'_> {
     fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
         let number = (emitted.number - self.first) as usize;
         let key = Key::of(emitted);
@@ -215,19 +215,20 @@ impl Beholder for Looking<'_> {
             return;
         }
         match over {
-            Over::Regular(ground, cell, spot) => {
-                if self.waiting.is_full(ground) {
+            Over::Regular(quartic, cell, domain) => {
+                if self.waiting.is_full(quartic) {
                     self.waiting
                         .look(self.emission, self.first, &mut self.found);
                 }
                 let turn = self.found.keys[number].turn() as u32;
-                self.waiting.push(ground, (emitted, turn), (cell, spot));
+                self.waiting.push(quartic, (emitted, turn), (cell, domain));
             }
             Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
-                let inside = points
-                    .filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
+                let inside = points.filter(|&point| {
+                    (0..3).all(|edge| frame.edge_position(edge, point).outside <= 0.0)
+                });
                 let heights = inside.map(|point| frame.height(point));
                 let range = heights.fold((0.0f64, 0.0f64), |(low, high), height| {
                     (low.min(height), high.max(height))

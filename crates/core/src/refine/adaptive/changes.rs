@@ -92,12 +92,12 @@ impl Changes {
 
     fn concern_one(&self, emission: &Emission, triangle: u32) -> bool {
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
-        let beside = twins
+        let adjacent = twins
             .iter()
             .filter(|&&twin| twin != NONE)
             .map(|twin| self.changes[*twin as usize / 3]);
         let mut change = self.changes[triangle as usize];
-        for other in beside {
+        for other in adjacent {
             change = match (change, other) {
                 (Change::Ends, _) | (_, Change::Ends) => Change::Ends,
                 (Change::None, other) => other,

@@ -21,7 +21,7 @@ pub(super) struct Control<'a> {
     pub(super) sharpness: &'a Sharpness<'a>,
     pub(super) large: LargeRings,
     /// What is sharp in the limit.
-    pub(super) lasting: &'a Sharpness<'a>,
+    pub(super) infinitely_sharp: &'a Sharpness<'a>,
     pub(super) positions: Vec<[f64; 3]>,
     /// Limit normals by side.
     pub(super) sided: SidedNormals,
@@ -75,11 +75,15 @@ impl Control<'_> {
 
     /// Which edges of a face lie on the boundary or on a sharp edge.
     pub(super) fn open(&self, face: u32) -> [bool; 3] {
-        [0, 1, 2].map(|edge| self.lasting.edge(HalfEdgeId::of(FaceId(face), edge)) > 0.0)
+        [0, 1, 2].map(|edge| {
+            self.infinitely_sharp
+                .edge(HalfEdgeId::of(FaceId(face), edge))
+                > 0.0
+        })
     }
 
     /// The faces beyond the edges of a face that are not sharp.
-    pub(super) fn beside(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn adjacent(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
         let open = self.open(face);
         let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
         inner

@@ -229,7 +229,7 @@ impl Emitter<'_> {
         let Self {
             control, chains, ..
         } = *self;
-        if control.lasting.is_empty() {
+        if control.infinitely_sharp.is_empty() {
             return Ok(());
         }
         for face in 0..control.mesh.face_count() as u32 {

@@ -129,17 +129,17 @@ impl FlatRegions {
                 }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
-                    let Some(beside) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
+                    let Some(adjacent) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
                     else {
                         continue;
                     };
-                    if !is_left[beside as usize] || control.kept.part(face, beside) {
+                    if !is_left[adjacent as usize] || control.kept.part(face, adjacent) {
                         continue;
                     }
-                    if let Some(found) = height(beside) {
-                        is_left[beside as usize] = false;
+                    if let Some(found) = height(adjacent) {
+                        is_left[adjacent as usize] = false;
                         off_plane = off_plane.max(found);
-                        faces.push(beside);
+                        faces.push(adjacent);
                     }
                 }
             }
@@ -322,12 +322,12 @@ impl FlatRegions {
     /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
     fn has_smooth_rim(&self, control: &Control<'_>, region: u32) -> bool {
         self.rim(control, region)
-            .any(|h| control.lasting.edge(HalfEdgeId(h)) <= 0.0)
+            .any(|h| control.infinitely_sharp.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.
     fn is_rim(&self, control: &Control<'_>, h: u32) -> bool {
-        let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
+        let is_sharp = control.infinitely_sharp.edge(HalfEdgeId(h)) > 0.0;
         let ends_at = |twin: u32| {
             self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3)
         };
@@ -346,10 +346,10 @@ fn may_be_flat(
 ) -> bool {
     let normal = normals[face as usize];
     let open = control.open(face);
-    let beside = (0..3u32)
+    let adjacent = (0..3u32)
         .filter(|&edge| !open[edge as usize])
         .filter_map(|edge| control.edges.twin(3 * face + edge));
-    let mut beside = beside.map(|twin| normals[twin as usize / 3]);
+    let mut adjacent = adjacent.map(|twin| normals[twin as usize / 3]);
     let is_alike = |other: DVec3| {
         let other = if may_be_turned_over && other.dot(normal) < 0.0 {
             -other
@@ -358,5 +358,5 @@ fn may_be_flat(
         };
         other.distance_squared(normal) <= ALIKE * ALIKE
     };
-    normal != DVec3::ZERO && beside.all(is_alike)
+    normal != DVec3::ZERO && adjacent.all(is_alike)
 }

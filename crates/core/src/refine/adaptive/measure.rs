@@ -2,7 +2,7 @@
 //!
 //! Takes what was emitted, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
 //! greatest bound of a distance and where it is, and the leaves whose values are too much. Distances to moved triangles are
-//! bounded as [`crate::certificate::Deviation::off`] and [`BesideEdges::deviation_off`] say.
+//! bounded as [`crate::certificate::Deviation::off`] and [`EdgeBounds::deviation_off`] say.
 
 mod at_once;
 
@@ -16,15 +16,15 @@ use super::backs::{Behind, looks_away};
 use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
-use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::{Goal, ROUNDED};
 use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use super::seen::{DIVISIONS, Seen};
 use super::surface::GeneralPiece;
 use crate::certificate::{
-    BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
+    Deviation, EdgeBounds, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
 use crate::patch::{LimitPoint, Rules};
@@ -93,7 +93,7 @@ struct Measuring<'a> {
     rim_alone: bool,
     /// Whether proven leaves are not looked at, and somebody counts on what the others have.
     is_trusted: bool,
-    counts_tilts: bool,
+    counts_normal_deviations: bool,
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
@@ -105,11 +105,11 @@ struct Measuring<'a> {
     length: f64,
     found: Measured,
     /// The triangles that fail, their leaves, and what they come to.
-    failing: Vec<(u32, Place, f64)>,
+    failing: Vec<(u32, NodeAddress, f64)>,
 }
 
-impl Beholder for Measuring<'_> {
-    fn wants(&self, _: Place, triangles: Range<u32>) -> bool {
+impl TriangleVisitor for Measuring<'_> {
+    fn wants(&self, _: NodeAddress, triangles: Range<u32>) -> bool {
         let own = (triangles.start - self.first) as usize..(triangles.end - self.first) as usize;
         self.is_left
             .as_ref()
@@ -133,9 +133,9 @@ impl Beholder for Measuring<'_> {
         if self.rim_alone {
             return self.along_rim(emitted, over, rules);
         }
-        if self.counts_tilts {
+        if self.counts_normal_deviations {
             let extent = Seen::of(&over.corners()).extent();
-            self.found.tilt = self.found.tilt.max(extent.tilt);
+            self.found.normal_deviation = self.found.normal_deviation.max(extent.normal_deviation);
             self.found.slope = self.found.slope.min(extent.slope);
         }
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
@@ -154,8 +154,8 @@ impl Beholder for Measuring<'_> {
         };
         // Heights that are met, and about the greatest.
         let height = match &mut over {
-            Over::Regular(ground, cell, _) => {
-                let heights = ground.jet().heights(cell, among.frame.normal());
+            Over::Regular(quartic, cell, _) => {
+                let heights = quartic.jet().heights(cell, among.frame.normal());
                 Height::Regular(heights.lifted_range(among.lifts), heights)
             }
             Over::General(_, _, piece) => {
@@ -178,20 +178,20 @@ impl Beholder for Measuring<'_> {
             value.value <= self.limit && value.bound <= self.length
         };
         let highest = match (over, height) {
-            (Over::Regular(ground, cell, spot), Height::Regular((height, rest), heights)) => {
-                let by_piece = ground.jet().beside(&cell, &among.frame, emitted.open);
-                let beside =
-                    ground
+            (Over::Regular(quartic, cell, domain), Height::Regular((height, rest), heights)) => {
+                let by_piece = quartic.jet().edge_bounds(&cell, &among.frame, emitted.open);
+                let edges =
+                    quartic
                         .jet()
-                        .beside_closely(&by_piece, &cell, &among.frame, emitted.open);
-                let off = |height| beside.deviation_off(height, among.moved, among.aside);
+                        .closer_edge_bounds(&by_piece, &cell, &among.frame, emitted.open);
+                let off = |height| edges.deviation_off(height, among.moved, among.aside);
                 let refined =
                     || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
                 // Nothing that is loose depends on heights.
-                let is_met = is_enough(off(height + rest))
-                    || !beside.is_loose() && is_enough(off(refined()));
-                if !is_met && !self.fails_by_height(&among, &beside, &off(height - rest)) {
-                    let net = ground.net(spot, emitted.part);
+                let is_met =
+                    is_enough(off(height + rest)) || !edges.is_loose() && is_enough(off(refined()));
+                if !is_met && !self.fails_by_height(&among, &edges, &off(height - rest)) {
+                    let net = quartic.net(domain, emitted.part);
                     let deviation =
                         net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
@@ -228,7 +228,7 @@ impl<'a> Measuring<'a> {
             back_faces: &control.back_faces,
             rim_alone: control.flat.is_its_rim(face),
             is_trusted: look.trusted.get(face as usize).copied().unwrap_or(false),
-            counts_tilts: !look.trusted.is_empty(),
+            counts_normal_deviations: !look.trusted.is_empty(),
             sharp,
             changes: look.changes,
             first: emission.triangles_of(face).start as u32,
@@ -282,7 +282,7 @@ impl<'a> Measuring<'a> {
     }
 
     /// Takes what a triangle comes to over which the surface is so high.
-    fn take(&mut self, (number, place): (u32, Place), value: Value, height: f64) {
+    fn take(&mut self, (number, place): (u32, NodeAddress), value: Value, height: f64) {
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
             *known = FoundLast {
@@ -308,8 +308,8 @@ impl<'a> Measuring<'a> {
         let frame = TriangleFrame::new(emitted.vertices.map(at));
         let effort = Effort::along_rim(self.limit.min(self.length), emitted.open);
         let deviation = match over {
-            Over::Regular(ground, _, spot) => ground
-                .net(spot, emitted.part)
+            Over::Regular(quartic, _, domain) => quartic
+                .net(domain, emitted.part)
                 .deviation(&frame, rules, effort),
             Over::General(pieces, ..) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
@@ -333,9 +333,9 @@ impl<'a> Measuring<'a> {
 
     /// Whether it is by its height alone that a triangle fails: it would pass with the least that this can be, so its drifts are good enough,
     /// and nets tell heights no better than derivatives do. As above nobody else is told that.
-    fn fails_by_height(&self, among: &Among, beside: &BesideEdges, least: &Deviation) -> bool {
+    fn fails_by_height(&self, among: &Among, edges: &EdgeBounds, least: &Deviation) -> bool {
         let counts_alone = self.length.is_infinite() && self.criteria.is_none();
-        counts_alone && !beside.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
+        counts_alone && !edges.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
     }
 
     /// The greatest height of a few points of a piece that is not regular.
@@ -522,13 +522,13 @@ impl Among {
     }
 
     /// How many times over the triangle of a leaf leaves its cones; not at all where these are given up.
-    fn cone(&self, criteria: &Criteria, place: Place, corners: &[LimitPoint; 3]) -> f64 {
+    fn cone(&self, criteria: &Criteria, place: NodeAddress, corners: &[LimitPoint; 3]) -> f64 {
         let (normal, normals) = (self.frame.normal(), corners.map(|corner| corner.normal));
-        let tilt = normals
+        let normal_deviation = normals
             .iter()
             .map(|corner| corner.distance(normal))
             .fold(0.0, f64::max);
-        let region = Region::around(self.corners, normal).turned(2.0 * tilt);
+        let region = Region::around(self.corners, normal).turned(2.0 * normal_deviation);
         let ratio = criteria.cone_ratio(normal, normals, &region, &self.backs);
         if place.level as usize >= criteria.deepest_cone() {
             ratio.min(1.0)

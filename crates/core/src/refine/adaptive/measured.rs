@@ -1,7 +1,7 @@
 //! What is found where emitted triangles are measured among their neighbours ([`super::measure`]): of one triangle, of one that was there
 //! before, and of all of a control face.
 
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use crate::certificate::exceeds;
 
 /// What a triangle comes to.
@@ -50,18 +50,18 @@ impl FoundLast {
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     /// The greatest bound of a distance, and the leaf that has it.
-    pub(super) worst: (f64, Place),
+    pub(super) worst: (f64, NodeAddress),
     /// The greatest height of the surface over a triangle, about, and the leaf.
-    pub(super) highest: (f64, Place),
+    pub(super) highest: (f64, NodeAddress),
     /// The greatest value.
     pub(super) value: f64,
     /// The greatest distance in the cameras' pictures, in pixels.
     pub(super) pixels: f64,
     /// The greatest tilt of a triangle, and the least tangent of an angle.
-    pub(super) tilt: f64,
+    pub(super) normal_deviation: f64,
     pub(super) slope: f64,
     /// Leaves that fail, in the order of the walk, and what they come to.
-    pub(super) failing: Vec<(Place, f64)>,
+    pub(super) failing: Vec<(NodeAddress, f64)>,
     /// What each triangle came to, this time or before, where that is kept.
     pub(super) each: Vec<FoundLast>,
 }
@@ -69,20 +69,20 @@ pub(super) struct Measured {
 impl Measured {
     /// Before anything was measured.
     pub(super) fn nothing(face: u32) -> Self {
-        let nowhere = (0.0, Place::root(face));
+        let nowhere = (0.0, NodeAddress::root(face));
         Self {
             worst: nowhere,
             highest: nowhere,
             value: 0.0,
             pixels: 0.0,
-            tilt: 0.0,
+            normal_deviation: 0.0,
             slope: f64::INFINITY,
             failing: Vec::new(),
             each: Vec::new(),
         }
     }
 
-    pub(super) fn add(&mut self, place: Place, value: &Value, height: f64) {
+    pub(super) fn add(&mut self, place: NodeAddress, value: &Value, height: f64) {
         if exceeds(height, self.highest.0) {
             self.highest = (height, place);
         }
@@ -108,13 +108,16 @@ impl Measured {
             self.highest = found.highest;
         }
         (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
-        (self.tilt, self.slope) = (self.tilt.max(found.tilt), self.slope.min(found.slope));
+        (self.normal_deviation, self.slope) = (
+            self.normal_deviation.max(found.normal_deviation),
+            self.slope.min(found.slope),
+        );
         self.failing.extend(found.failing);
     }
 }
 
 /// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
-pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
+pub(super) fn fail(failing: &mut Vec<(NodeAddress, f64)>, place: NodeAddress, value: f64) {
     match failing.last_mut() {
         Some((last, known)) if *last == place => *known = known.max(value),
         _ => failing.push((place, value)),

@@ -71,7 +71,7 @@ use control::Control;
 use demands::{Demands, Functions, Room, surfaces_of};
 use flat::regions::FlatRegions;
 use judge::Goal;
-use quadtree::{Edges, Place};
+use quadtree::{Edges, NodeAddress};
 
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
@@ -123,7 +123,7 @@ pub(super) fn adaptive(
         if found.stop != ExactStop::Met || is_met {
             return Ok(found);
         }
-        let deepest = |place: &Place| place.level as usize >= options.max_levels;
+        let deepest = |place: &NodeAddress| place.level as usize >= options.max_levels;
         let mut is_new = false;
         for place in held.failing.into_iter().filter(|place| !deepest(place)) {
             is_new |= demands.add(place);
@@ -308,14 +308,14 @@ impl Task<'_> {
         drop(stencils);
         join_copies(&mut positions, &mesh.junctions().vertices);
         let sharpness = Sharpness::of(mesh);
-        let lasting = sharpness.lasting();
+        let infinitely_sharp = sharpness.infinitely_sharp();
         let kept = KeptFaces::of(mesh, &options.kept_edges)?;
         let mut control = Control {
             mesh,
             edges: Edges::of(mesh),
             sharpness: &sharpness,
             large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
-            lasting: &lasting,
+            infinitely_sharp: &infinitely_sharp,
             positions,
             sided,
             rules: &rules,

@@ -59,7 +59,7 @@ impl Bulges {
         })?;
         // Corners and darts inside a face's reach; and copies, which would part.
         control
-            .lasting
+            .infinitely_sharp
             .tagged_vertices()
             .for_each(|vertex| offsets[vertex.index()] = 0.0);
         let copies = emission.junctions.vertices.iter().flatten();

@@ -15,7 +15,7 @@ use super::emitted::Sources;
 use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::measured::Measured;
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use super::state::State;
 use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
@@ -83,13 +83,13 @@ const LOOKED_AT: usize = 1 << 14;
 struct Bound {
     value: f64,
     face: u32,
-    leaf: Option<Place>,
+    leaf: Option<NodeAddress>,
 }
 
 /// What was looked at for lower bounds.
 struct Probed {
     /// Control faces, and which known leaf of theirs.
-    leaves: HashSet<(u32, Option<Place>)>,
+    leaves: HashSet<(u32, Option<NodeAddress>)>,
     /// A lower bound beyond this part of the upper one is good enough.
     enough: f64,
 }

@@ -4,7 +4,7 @@
 //! Anything else is the index of four consecutive words, those of the children, which [`crate::node`] numbers.
 
 use crate::mesh::MeshError;
-pub(super) use crate::node::{Along, Beyond, Edges, Place, along_edge, beyond};
+pub(super) use crate::node::{Along, Beyond, Edges, NodeAddress, along_edge, beyond};
 use crate::progress::Cancelled;
 use crate::refine::{RefineError, exact_options};
 
@@ -126,12 +126,12 @@ impl Trees {
     }
 
     /// Whether there is a node at `place`.
-    pub(super) fn has(&self, place: Place) -> bool {
+    pub(super) fn has(&self, place: NodeAddress) -> bool {
         self.word_at(place).is_some()
     }
 
     /// The word of the node at a place, if there is one.
-    pub(super) fn word_at(&self, place: Place) -> Option<u32> {
+    pub(super) fn word_at(&self, place: NodeAddress) -> Option<u32> {
         let mut at = place.face as usize;
         for level in 0..place.level {
             let word = self.words[at];
@@ -148,7 +148,11 @@ impl Trees {
 
     /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
     /// would be too many nodes.
-    pub(super) fn ensure(&mut self, place: Place, mut fresh: impl FnMut(Place)) -> bool {
+    pub(super) fn ensure(
+        &mut self,
+        place: NodeAddress,
+        mut fresh: impl FnMut(NodeAddress),
+    ) -> bool {
         let mut at = place.face as usize;
         for level in 0..place.level {
             let word = self.words[at];
@@ -160,7 +164,7 @@ impl Trees {
                     return true;
                 }
                 if !is_split(word) {
-                    fresh(Place {
+                    fresh(NodeAddress {
                         level,
                         path: place.path >> (2 * (place.level - level)),
                         ..place
@@ -180,7 +184,7 @@ impl Trees {
     }
 
     /// Splits the leaf at `place`. `false` if there would be too many nodes.
-    pub(super) fn split(&mut self, place: Place, fresh: impl FnMut(Place)) -> bool {
+    pub(super) fn split(&mut self, place: NodeAddress, fresh: impl FnMut(NodeAddress)) -> bool {
         self.ensure(place.child(0), fresh)
     }
 

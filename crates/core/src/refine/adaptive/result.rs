@@ -193,11 +193,11 @@ pub(super) fn open_cones(
         let normals = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
         let normals = normals.map(|corner| vector(exact.corner_normal(corner)));
         let frame = TriangleFrame::new(corners);
-        let tilt = normals
+        let normal_deviation = normals
             .iter()
             .map(|normal| normal.distance(frame.normal()))
             .fold(0.0, f64::max);
-        let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
+        let region = Region::around(corners, frame.normal()).turned(2.0 * normal_deviation);
         // By equation (11) it is the triangle that counts.
         let backs = criteria.backs(&region, |_, viewpoint, _| {
             shows_back(&corners, viewpoint).then_some(0.0)

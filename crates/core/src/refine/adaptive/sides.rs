@@ -16,7 +16,7 @@ pub(super) fn sides(
     emission: &Emission,
 ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
     let mut sides = Vec::new();
-    if control.lasting.is_empty() {
+    if control.infinitely_sharp.is_empty() {
         return Ok(sides);
     }
     let mut around = |from: u32, to: u32, normal: [f64; 3]| {
@@ -43,7 +43,7 @@ pub(super) fn sides(
     let topology = control.mesh.topology();
     let mut is_tagged = vec![false; control.mesh.vertex_count()];
     control
-        .lasting
+        .infinitely_sharp
         .tagged_vertices()
         .for_each(|vertex| is_tagged[vertex.index()] = true);
     watch.each(

@@ -11,7 +11,7 @@ use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
 use super::measured::Measured;
-use super::quadtree::{Piece, Place, Trees};
+use super::quadtree::{NodeAddress, Piece, Trees};
 use super::seen::{Allowance, Extent};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
@@ -103,7 +103,7 @@ impl State {
     /// Moves the leaves that fail to a list.
     pub(super) fn take_failing(
         &mut self,
-        failing: &mut Vec<(Place, f64)>,
+        failing: &mut Vec<(NodeAddress, f64)>,
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         watch.each(&mut self.measured, |face| failing.append(&mut face.failing))

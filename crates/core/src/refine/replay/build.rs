@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use super::ReplayError;
 use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE, groups};
 use super::wanted::{EvalPoint, Wants};
-use super::weights::{Place, Probe, Standing, Wanted};
+use super::weights::{ParamPoint, Probe, Standing, Wanted};
 use crate::index::{FaceId, VertexId};
 use crate::limit::{VertexStencil, VertexStencils};
 use crate::mesh::{Mesh, Sharpness};
@@ -57,7 +57,7 @@ struct Member {
 struct Shape {
     members: Vec<Member>,
     /// The places of all, each once.
-    places: Vec<Place>,
+    places: Vec<ParamPoint>,
 }
 
 /// Weights of a shape, and the rows that its members use.
@@ -291,7 +291,7 @@ fn next(count: &mut u32) -> u32 {
 }
 
 /// A place in whole steps, if it is one of these.
-fn coded(at: Place) -> Option<[u16; 2]> {
+fn coded(at: ParamPoint) -> Option<[u16; 2]> {
     let steps = at.map(|weight| weight * WHOLE);
     let is_whole = steps
         .iter()

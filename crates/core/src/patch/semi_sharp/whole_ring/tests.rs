@@ -154,7 +154,10 @@ fn pieces_do_not_ask_for_neighbours_far_away() {
                     let [Patch::SemiSharp(found), Patch::SemiSharp(expected)] = &patches else {
                         break;
                     };
-                    let both = [found.lasting_twin(&rules), expected.lasting_twin(&rules)];
+                    let both = [
+                        found.infinitely_sharp_twin(&rules),
+                        expected.infinitely_sharp_twin(&rules),
+                    ];
                     assert_eq!(both[0].is_some(), both[1].is_some(), "{what}");
                     if let [Some((found, apart)), Some((expected, whole_apart))] = both {
                         assert!(

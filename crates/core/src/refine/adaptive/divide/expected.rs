@@ -15,7 +15,7 @@ use crate::vector::{DVec3, Extremes, unit_normal};
 const BLOCK: usize = 1024;
 
 /// The least tilt that neighbours are allowed: it costs next to nothing.
-const LEAST_TILT: f64 = 0.01;
+const LEAST_DEVIATION: f64 = 0.01;
 
 /// Room for triangles that bend more than their control face does on the whole.
 const GENEROUS: f64 = 2.2;
@@ -27,7 +27,7 @@ const SLOPE_LEFT: f64 = 0.3;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Expected {
     /// The greatest tilt; 0 where the normals tell nothing.
-    tilt: f64,
+    normal_deviation: f64,
     /// The tangent of the least angle.
     slope: f64,
 }
@@ -48,7 +48,7 @@ impl Expected {
         let corners = control.corners(face);
         let slope = least_slope(corners.map(|at| at.position));
         Self {
-            tilt: tilt_by_normals(&corners, goal.allowed(face)),
+            normal_deviation: normal_deviation_of(&corners, goal.allowed(face)),
             slope,
         }
     }
@@ -62,23 +62,26 @@ impl Divider<'_> {
         if self.judge.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let (mut tilt, mut slope) = (
-            seen.tilt * shrunk(seen.highest(points), self.judge.limit),
+        let (mut normal_deviation, mut slope) = (
+            seen.normal_deviation * shrunk(seen.highest(points), self.judge.limit),
             seen.frame.least_slope(),
         );
-        for adjacent in self.control.beside(face) {
+        for adjacent in self.control.adjacent(face) {
             let other = self.expected[adjacent as usize];
-            (tilt, slope) = (tilt.larger(other.tilt), slope.min(other.slope));
+            (normal_deviation, slope) = (
+                normal_deviation.larger(other.normal_deviation),
+                slope.min(other.slope),
+            );
         }
         Allowance {
-            tilt: (GENEROUS * tilt).max(LEAST_TILT),
+            normal_deviation: (GENEROUS * normal_deviation).max(LEAST_DEVIATION),
             slope: SLOPE_LEFT * slope,
         }
     }
 }
 
 /// The tilt that is expected of triangles in a face by the normals at its corners, divided down to a limit; 0 where they tell nothing.
-fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
+fn normal_deviation_of(corners: &[LimitPoint; 3], limit: f64) -> f64 {
     let normal = unit_normal(corners.each_ref().map(|corner| corner.position));
     if normal == DVec3::ZERO || corners.iter().any(|corner| corner.normal == DVec3::ZERO) {
         return 0.0;

@@ -1,6 +1,6 @@
 //! The faces of an emission in shares, each with the parts of the arrays that are its own, and how a share is written.
 
-use super::super::quadtree::{Place, is_split};
+use super::super::quadtree::{NodeAddress, is_split};
 use super::super::rim::Rim;
 use super::super::surface::Surface;
 use super::super::walk::Walk;
@@ -11,7 +11,7 @@ use super::kept::Kept;
 use super::leaf_writer::Writer;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
-use crate::patch::{LimitPoint, Spot};
+use crate::patch::{LimitPoint, ParamTriangle};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
 
@@ -126,11 +126,11 @@ pub(super) fn write(
             (first..).zip(own).for_each(|(h, border)| *border = h);
             continue;
         }
-        walk.knots.clear();
-        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
+        walk.edge_vertices.clear();
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.edge_vertices);
         (writer.face, writer.diagonals) = (face, &covers[face as usize].diagonals);
         let before = writer.next_triangle - job.first_triangle;
-        let at = (Place::root(face), Spot::WHOLE);
+        let at = (NodeAddress::root(face), ParamTriangle::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
         if !is_split(word) && own.iter().all(|(_, places)| places.is_empty()) {
             // No vertex is its own.
@@ -150,7 +150,7 @@ pub(super) fn write(
         for side in sides {
             let own = split_off(&mut job.borders, side.segments());
             for (i, border) in own.iter_mut().enumerate() {
-                *border = walk.knots[side.stretch(i)].half_edge;
+                *border = walk.edge_vertices[side.segment(i)].half_edge;
             }
         }
     }

@@ -228,7 +228,7 @@ mod tests {
                 let planned = |face: u32| found.state.proven[face as usize].extent.bound;
                 let measured = measure(&sources, engine.watch, &faces, &look)?;
                 let topology = mesh.topology();
-                let is_beside = |face: &u32| {
+                let is_adjacent = |face: &u32| {
                     let corners = topology.triangles()[*face as usize].map(VertexId);
                     corners
                         .iter()
@@ -241,7 +241,7 @@ mod tests {
                     .iter()
                     .copied()
                     .filter(|&face| flat.region(face).is_some())
-                    .filter(is_beside);
+                    .filter(is_adjacent);
                 let (mut counted, mut assumed) = (0.0f64, 0.0f64);
                 for face in rims {
                     (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));

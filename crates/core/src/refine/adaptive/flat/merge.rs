@@ -415,11 +415,11 @@ fn by_face(
             if along.contains_key(&[from, to]) {
                 continue;
             }
-            if let Some(&beside) = by_edge.get(&[to, from])
-                && faces[beside].is_none()
+            if let Some(&adjacent) = by_edge.get(&[to, from])
+                && faces[adjacent].is_none()
             {
-                faces[beside] = faces[at];
-                known.push(beside);
+                faces[adjacent] = faces[at];
+                known.push(adjacent);
             }
         }
     }

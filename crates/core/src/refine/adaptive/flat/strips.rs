@@ -180,7 +180,7 @@ pub(super) fn straight_faces(
         flat.get(face as usize)
             .is_some_and(|&region| region != NONE)
     };
-    let is_beside_its_like = |face: u32| {
+    let has_a_like_neighbour = |face: u32| {
         let first = mesh.triangles()[face as usize][0];
         let plane = Plane {
             point: vector(mesh.positions()[first as usize]),
@@ -192,7 +192,7 @@ pub(super) fn straight_faces(
                 let twin = control
                     .edges
                     .twin(h)
-                    .filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
+                    .filter(|_| control.infinitely_sharp.edge(HalfEdgeId(h)) <= 0.0);
                 twin.is_some_and(|twin| {
                     !is_flat(twin / 3)
                         && plane.height(control.opposite(twin)).abs() <= most
@@ -203,7 +203,7 @@ pub(super) fn straight_faces(
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
         let faces = block.map(|face| face as u32);
         faces
-            .filter(|&face| is_beside_its_like(face) && may_have_direction(control, face, most))
+            .filter(|&face| has_a_like_neighbour(face) && may_have_direction(control, face, most))
             .filter(|&face| has_direction(control, face, most))
             .collect::<Vec<u32>>()
     })?;
@@ -221,14 +221,15 @@ fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     if corners.iter().any(|&vertex| is_edged(VertexId(vertex))) {
         return true;
     }
-    let beside = [0, 1, 2].map(|edge| {
+    let adjacent = [0, 1, 2].map(|edge| {
         control
             .edges
             .twin(3 * face + edge)
             .map(|twin| control.opposite(twin))
     });
     (0..3).any(|edge| {
-        let (Some(before), Some(after)) = (beside[(edge + 1) % 3], beside[(edge + 2) % 3]) else {
+        let (Some(before), Some(after)) = (adjacent[(edge + 1) % 3], adjacent[(edge + 2) % 3])
+        else {
             return true;
         };
         let middle = vector(mesh.positions()[corners[(edge + 2) % 3] as usize]);

@@ -7,9 +7,9 @@ use crate::models::{book, stirred};
 use crate::refine::ExactOptions;
 
 /// A leaf by its path below its control face.
-fn leaf(path: &[usize]) -> Place {
+fn leaf(path: &[usize]) -> NodeAddress {
     path.iter()
-        .fold(Place::root(0), |place, &child| place.child(child))
+        .fold(NodeAddress::root(0), |place, &child| place.child(child))
 }
 
 #[test]
