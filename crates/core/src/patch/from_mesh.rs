@@ -64,7 +64,7 @@ fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> 
     Some(points.map(|vertex| vector(mesh.positions()[vertex.index()])))
 }
 
-/// Whether a tag that fades decides the surface over a face, given its corners.
+/// Whether a semi-sharp tag decides the surface over a face, given its corners.
 pub(super) fn is_semi_sharp(
     mesh: &Mesh,
     sharpness: &Sharpness<'_>,
@@ -79,7 +79,7 @@ pub(super) fn is_semi_sharp(
     vertices.any(|vertex| sharpness.is_tagged(vertex) && is_semi_sharp(vertex))
 }
 
-/// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
+/// The surface over a face, given its corners, for a scheme of the Loop family. No tag may be semi-sharp there.
 fn patch_of(
     mesh: &Mesh,
     sharpness: &Sharpness<'_>,
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::models::stirred;
 
-    /// What is found at once is what the sectors of the corners tell, and nothing regular without tags is missed.
+    /// The quick test agrees with the sectors of the corners, and misses no regular face without tags.
     #[test]
     fn regular_faces_are_those_whose_sectors_are() {
         let (mut regular_faces, mut others) = (0, 0);

@@ -52,7 +52,7 @@ pub(super) struct MeshForm {
     samples: [OnceLock<Result<Samples, LimitError>>; SAMPLED_LEVELS],
 }
 
-/// What a step of refinement makes of surroundings.
+/// The result of a step of refinement of surroundings.
 #[derive(Debug)]
 pub(super) struct Step {
     /// The surroundings of the four parts, which are the first faces, each from its first corner. Positions mean nothing.
@@ -120,7 +120,7 @@ impl MeshForm {
         found.as_ref().map_err(Clone::clone)
     }
 
-    /// What a step makes of it.
+    /// The result of a step.
     pub(super) fn step(&self, forms: &Forms<'_>) -> &Step {
         match self.step.get() {
             Some(step) => step,

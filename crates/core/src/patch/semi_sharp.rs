@@ -1,9 +1,9 @@
-//! Pieces beside semi-sharp tags (DeRose, Kass and Truong 1998): a face of the Loop family with the whole rings of its
+//! Pieces at semi-sharp tags (DeRose, Kass and Truong 1998): a face of the Loop family with the whole rings of its
 //! three corners and how sharp their edges are.
 //!
 //! The rules are OpenSubdiv's (see [`SharpRing`]). Within the family a new point on an edge depends on that edge's
 //! sharpness alone and a vertex's on its own ring's, so that one refinement follows from the masks directly. New
-//! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
+//! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners is semi-sharp any
 //! more, it takes the form of other pieces. Of rings of very many edges pieces have the part near the face; what the rules ask of the
 //! others is found once for all faces ([`WholeRing`]).
 
@@ -63,7 +63,7 @@ impl SemiSharpVertex {
         )
     }
 
-    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
+    /// The least semi-sharp sharpness; [`INFINITELY_SHARP`] without one.
     fn least_semi_sharpness(&self) -> f64 {
         self.whole.as_ref().map_or_else(
             || self.sharp.least_semi_sharpness(),
@@ -98,7 +98,7 @@ impl SemiSharpVertex {
     }
 
     /// The new vertex on the edge to the neighbour in `slot`: between the middle and the smooth one where the edge is
-    /// about to fade.
+    /// about to become smooth.
     fn edge_point(&self, slot: usize) -> DVec3 {
         let count = self.neighbours.len();
         let end = self.neighbours[slot];
@@ -113,7 +113,7 @@ impl SemiSharpVertex {
         sharp * middle + (1.0 - sharp) * smooth
     }
 
-    /// The same vertex after one refinement.
+    /// The vertex after one refinement.
     fn refined(&self, rules: &Rules<'_>) -> Self {
         let sharp = self.sharp.refined();
         let whole = self.whole.as_ref().map(PartOfRing::refined);
@@ -130,7 +130,7 @@ impl SemiSharpVertex {
         }
     }
 
-    /// The sector that the face is in, where nothing fades.
+    /// The sector that the face is in, where nothing is semi-sharp.
     pub(super) fn sector(&self) -> VertexSector {
         if let Some(whole) = &self.whole {
             return whole.sector(&self.neighbours, self.slot);
@@ -173,7 +173,7 @@ impl SemiSharpVertex {
     }
 }
 
-/// A face of which one corner at least fades.
+/// A face of which one corner at least is semi-sharp.
 #[derive(Clone, Debug)]
 pub(crate) enum SemiSharpPatch {
     /// Its corners, whatever they are.
@@ -218,7 +218,7 @@ impl SemiSharpPatch {
         }
     }
 
-    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter. `None`
+    /// The piece that this would be if semi-sharp edges were infinitely sharp, and how far that is from it at most, over the same parameter. `None`
     /// where that is not known.
     pub(crate) fn infinitely_sharp_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         match self {

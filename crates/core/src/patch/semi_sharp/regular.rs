@@ -140,7 +140,7 @@ impl RegularSemiSharp {
         })
     }
 
-    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter.
+    /// The piece that this would be if semi-sharp edges were infinitely sharp, and how far that is from it at most, over the same parameter.
     pub(super) fn infinitely_sharp_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         let mut rings = RINGS.map(|ring| ring.map(|at| self.points[at as usize]));
         let is_regular = |corner: usize| {

@@ -1,9 +1,9 @@
-//! A ring of very many edges in a mesh with tags: how all of it fades, found once for all faces around its vertex.
+//! A ring of very many edges in a mesh with tags: its sharpness at each level, found once for all faces around its vertex.
 //!
 //! Takes a vertex; gives, for each of its faces, the neighbours near the face with what the rules ask of the others on every level: where the
-//! vertex goes, and, once nothing fades any more, the mean of its neighbours or the ends of the sector that the face is in. So a face takes no
+//! vertex goes, and, once nothing is semi-sharp any more, the mean of its neighbours or the ends of the sector that the face is in. So a face takes no
 //! more than at any other vertex. See [`crate::patch::pole`] for why the neighbours near a face are enough; sharp edges make that only better, as nothing
-//! comes to their new points from the neighbours beside them.
+//! comes to their new points from their adjacent neighbours.
 
 use std::sync::Arc;
 
@@ -26,11 +26,11 @@ pub(crate) struct WholeRing {
     slots: Vec<(HalfEdgeId, u32)>,
     neighbours: Vec<DVec3>,
     sharp: SharpRing,
-    /// At first, and after each refinement until nothing in the mesh fades any more.
+    /// At first, and after each refinement until nothing in the mesh is semi-sharp any more.
     levels: Vec<Level>,
 }
 
-/// What is left of the ring after some refinements.
+/// The ring after some refinements.
 #[derive(Debug)]
 struct Level {
     at: DVec3,
@@ -41,7 +41,7 @@ struct Level {
     is_corner: bool,
     /// The neighbours along sharp edges with their slots, ascending.
     sharp: Vec<(usize, DVec3)>,
-    /// How far the ring is from what it would be if nothing faded; `None` where that is not known, or nothing fades.
+    /// How far the ring is from its infinitely sharp twin; `None` where that is not known, or nothing is semi-sharp.
     gaps: Option<Box<RingGaps>>,
 }
 
@@ -79,7 +79,7 @@ impl Level {
 }
 
 impl WholeRing {
-    /// The ring of a vertex, and what becomes of it in so many refinements, after which nothing in the mesh fades. `None` if a crease
+    /// The ring of a vertex after each of so many refinements, after which nothing in the mesh is semi-sharp. `None` if a crease
     /// ends there then: the mean of the neighbours does not tell by itself where the vertex goes.
     pub(crate) fn of(
         mesh: &Mesh,
@@ -108,7 +108,7 @@ impl WholeRing {
         }))
     }
 
-    /// Whether something fades.
+    /// Whether an edge or the vertex is semi-sharp.
     pub(crate) fn is_semi_sharp(&self) -> bool {
         self.levels[0].is_semi_sharp
     }
@@ -152,7 +152,7 @@ pub(super) struct PartOfRing {
 }
 
 impl PartOfRing {
-    /// After the last level nothing in the mesh fades: nobody asks.
+    /// After the last level nothing in the mesh is semi-sharp, and this is not called.
     fn level(&self) -> &Level {
         &self.ring.levels[self.level.min(self.ring.levels.len() - 1)]
     }
@@ -175,7 +175,7 @@ impl PartOfRing {
         self.level().is_semi_sharp
     }
 
-    /// The least sharpness that fades of all of the ring.
+    /// The least semi-sharp sharpness of all of the ring.
     pub(super) fn least_semi_sharpness(&self) -> f64 {
         self.level().least_semi_sharpness
     }

@@ -36,7 +36,7 @@ impl Pending {
         match even_depth(word) {
             Some(0) => {}
             Some(depth) => {
-                // Inside, neighbours are equally deep, and so they mostly are beside it.
+                // Inside, neighbours are equally deep, and so are most of those around it.
                 for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, place, depth, edge)) {
                     for index in 0..1 << (depth - 1) {
                         let lowest = place.along(edge, depth - 1, index);
@@ -103,7 +103,7 @@ fn lacks(trees: &Trees, edges: &Edges<'_>, place: NodeAddress, edge: usize) -> b
     }
 }
 
-/// Splits what must be for the nodes in `pending`; `split` is told each place that was. `false` if there would be too many
+/// Splits what must be for the nodes in `pending`; `split` is called with each place that was. `false` if there would be too many
 /// nodes.
 pub(super) fn balance(
     trees: &mut Trees,
@@ -115,7 +115,7 @@ pub(super) fn balance(
     let mut asked = HashSet::new();
     let mut fresh = Vec::new();
     let mut steps = 0usize;
-    // Nothing is missing beside a control face.
+    // No split is missing at a control face.
     for level in (1..pending.0.len()).rev() {
         while let Some(place) = pending.0[level].pop() {
             steps += 1;

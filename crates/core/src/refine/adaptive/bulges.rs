@@ -29,14 +29,14 @@ const SAMPLED_LEVELS: usize = 2;
 /// The range of heights over a triangle that is divided in any case.
 pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// What is known of the triangles, by control face.
+/// Heights over the triangles, by control face.
 #[derive(Default)]
 pub(super) struct Bulges(pub(super) Vec<Bulge>);
 
 /// Those of a control face.
 #[derive(Clone, Default)]
 pub(super) struct Bulge {
-    /// The least and the greatest height of the surface over each; not numbers where nobody looks.
+    /// The least and the greatest height of the surface over each; NaN where it is not measured.
     pub(super) ranges: Vec<[f64; 2]>,
     /// Leaves whose triangles bulge too far, and half of that.
     failing: Vec<(NodeAddress, f64)>,
@@ -44,9 +44,9 @@ pub(super) struct Bulge {
     pub(super) waits: bool,
     /// Which triangles they are.
     keys: Vec<Key>,
-    /// What they came to when they were measured last; empty as long as none of them was.
+    /// Their last measured bounds; empty as long as none was measured.
     found: Vec<FoundLast>,
-    /// What their parts of the surface are like, in a unit that makes so much of lengths.
+    /// The bends of their parts of the surface, in units that multiply lengths by `scale`.
     pub(super) parts: Vec<BentFour>,
     pub(super) scale: f64,
 }
@@ -133,7 +133,7 @@ impl Bulges {
             .all(|face| face.found.is_empty() && face.failing.is_empty())
     }
 
-    /// The leaves that fail wherever their corners are moved, and what they come to at best.
+    /// The leaves that fail wherever their corners are moved, and their least bounds.
     pub(super) fn failing(&self) -> Vec<(NodeAddress, f64)> {
         self.0
             .iter()
@@ -156,7 +156,7 @@ impl Bulge {
         }
     }
 
-    /// What all came to when they were measured last.
+    /// The last measured bounds of all triangles.
     pub(super) fn found_last(&self) -> Vec<FoundLast> {
         let mut found = self.found.clone();
         found.resize(self.keys.len(), FoundLast::NOTHING);
@@ -184,7 +184,7 @@ impl Bulge {
     }
 }
 
-/// What makes the edges of a control face about 1.
+/// The factor that makes the edges of a control face about 1.
 fn scale(control: &Control<'_>, face: u32) -> f64 {
     let [a, b, c] =
         control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
@@ -246,7 +246,7 @@ impl Looking<'_> {
             .map(|vertex| vector(self.emission.positions[vertex as usize]))
     }
 
-    /// What was found, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
+    /// The result, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
     /// long as they may be divided.
     fn end(mut self, face: u32, (hopeless, max_levels): (f64, u32)) -> Bulge {
         self.waiting

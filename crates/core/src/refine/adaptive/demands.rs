@@ -1,4 +1,4 @@
-//! Nodes that are divided whatever their own triangles come to: for the sake of what else the triangles are to hold
+//! Nodes that are divided regardless of the error of their triangles: for the sake of what else the triangles are to hold
 //! ([`AttributeGoal`]).
 //!
 //! Takes the goals; gives, before anything is refined, the nodes over which the linear function is too far off, which depends on
@@ -29,7 +29,7 @@ const HALVINGS: usize = 2;
 /// The chord of angles at which neighbours do not help: none that counts is as great.
 const ALONE: f64 = 4.0;
 
-/// What nodes there is room for.
+/// The nodes for which there is room.
 #[derive(Clone, Copy)]
 pub(super) struct Room {
     /// Control faces.
@@ -81,7 +81,7 @@ impl Demands {
         self.by_triangles.insert(region);
     }
 
-    /// The same with all of them.
+    /// Judges all regions by their triangles.
     pub(super) fn judge_all_by_triangles(&mut self) {
         self.all_by_triangles = true;
     }
@@ -99,7 +99,7 @@ impl Demands {
 /// By goal and function, the surface over a node.
 type ParamPatches<'r, 'a> = Vec<Vec<(ParamPatch, &'r Rules<'a>)>>;
 
-/// A goal, with the surfaces that stand for its functions.
+/// A goal, with the limit functions as surfaces.
 #[derive(Clone, Copy)]
 struct Goal<'a> {
     tolerance: f64,
@@ -112,7 +112,7 @@ pub(super) struct Functions<'a> {
     goals: Vec<Goal<'a>>,
 }
 
-/// What emitted triangles hold of the functions.
+/// How well emitted triangles approximate the functions.
 pub(super) struct Held {
     /// By goal, the greatest bound.
     pub(super) bounds: Vec<f64>,
@@ -120,7 +120,7 @@ pub(super) struct Held {
     pub(super) failing: Vec<NodeAddress>,
 }
 
-/// By goal, the surfaces that stand for its functions.
+/// By goal, its functions as surfaces.
 ///
 /// # Errors
 /// The scheme has no limit at the shape of some ring.
@@ -159,7 +159,7 @@ impl<'a> Functions<'a> {
         }
     }
 
-    /// The same functions with tolerances so many times as large.
+    /// These goals with tolerances so many times as large.
     pub(super) fn coarser(&self, times: f64) -> Self {
         let coarser = |goal: &Goal<'a>| Goal {
             tolerance: times * goal.tolerance,
@@ -218,7 +218,7 @@ impl<'a> Functions<'a> {
         }))
     }
 
-    /// What the triangles hold of the functions.
+    /// How well the triangles approximate the functions.
     pub(super) fn held(
         &self,
         control: &Mesh,

@@ -1,4 +1,4 @@
-//! What has changed in the trees since their leaves were covered: everything at first, then leaves that were split.
+//! Changes in the trees since their leaves were covered: everything at first, then leaves that were split.
 
 use super::quadtree::{Along, Beyond, Edges, FULL, NodeAddress, beyond};
 

@@ -28,7 +28,7 @@ const COUNTED: usize = 256;
 /// The proven leaves of a control face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proven {
-    /// What their bounds assume.
+    /// The assumption of their bounds.
     pub(super) allowance: Allowance,
     pub(super) extent: Extent,
 }

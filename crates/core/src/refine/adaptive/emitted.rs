@@ -1,4 +1,4 @@
-//! The emitted triangles, each with its vertices and the part of the surface that it stands for.
+//! The emitted triangles, each with its vertices and the part of the surface that it approximates.
 
 use core::ops::Range;
 
@@ -74,7 +74,7 @@ pub(super) trait TriangleVisitor {
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>);
 }
 
-/// What the triangles came about from.
+/// The trees, covers and emission from which the triangles are listed.
 #[derive(Clone, Copy)]
 pub(super) struct Sources<'a> {
     pub(super) control: &'a Control<'a>,
@@ -319,7 +319,7 @@ impl<B: TriangleVisitor> Leaves<'_, B> {
         }
     }
 
-    /// The leaf to the right of an upright one, which stands on its head: its first corner is the second one emitted.
+    /// The inverted leaf to the right of an upright one: its first corner is the second one emitted.
     fn inverted(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let number = self.next;
         self.next += 1;

@@ -49,7 +49,7 @@ use crate::vector::{DVec3, vector};
 /// How far they are is measured, and counted with every distance.
 const IN_PLANE: f64 = 2e-7;
 
-/// The same as a part of the tolerance.
+/// The distance within which a surface counts as flat, as a part of the tolerance.
 const OF_TOLERANCE: f64 = 1e-3;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
@@ -296,7 +296,7 @@ impl FlatRegions {
             .sum()
     }
 
-    /// Those that one face comes to, of which `own` are its own if it is not flat.
+    /// The triangles of one face, of which `own` are its own if it is not flat.
     pub(super) fn count_over(
         &self,
         control: &Control<'_>,
@@ -335,7 +335,7 @@ impl FlatRegions {
     }
 }
 
-/// Whether a face may be flat: most are told apart by those beside them.
+/// Whether a face may be flat: the adjacent faces decide it for most.
 /// Faces that are turned over in one plane with others are flat where what the rim encloses is asked for: control points that were moved
 /// along the rim turn slivers over.
 fn may_be_flat(

@@ -23,7 +23,7 @@ use crate::scheme::Scheme;
 /// Rounds over all frames: in each, nothing is left to do but what dividing for other frames brought about.
 const MOST_ROUNDS: usize = 12;
 
-/// What several frames come to.
+/// The result of several frames.
 pub(in crate::refine) struct Found {
     /// With the vertices of the first frame.
     pub(in crate::refine) refined: Exact,
@@ -144,7 +144,7 @@ fn united(
     Ok(state)
 }
 
-/// What is proven of a frame.
+/// The bounds and normals of a frame.
 struct Proven {
     error: ErrorBounds,
     /// How many times over its worst triangle fails.
@@ -155,7 +155,7 @@ struct Proven {
     open_cones: usize,
 }
 
-/// What is proven of a frame of what was refined.
+/// Measures the refined mesh in the positions of a frame.
 fn proven(
     engine: &Engine<'_>,
     state: &mut State,

@@ -3,8 +3,8 @@
 //! A wrong guess costs time, never truth: [`super::measure`] proves each triangle among its neighbours as they are. Much of that is done here:
 //! what a triangle's bound needs to know of its neighbours (see [`crate::certificate`]) are the angles between their planes
 //! and its own and the angles at their corners. Neighbours share a corner and its limit normal, so the chord between two planes is at
-//! most the sum of the chords between each and that normal, their *tilts*. Each control face therefore has an
-//! [`Allowance`]: how far the triangles in it and adjacent to it may be tilted, and how acute they may be. Where a whole leaf is within the limit
+//! most the sum of the chords between each and that normal, their *normal deviations*. Each control face therefore has an
+//! [`Allowance`]: the greatest normal deviation and the least angle of the triangles in it and adjacent to it. Where a whole leaf is within the limit
 //! on that condition, its bound holds as soon as all these triangles keep the allowance.
 
 use super::back_faces::BackFaces;
@@ -24,7 +24,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{LimitPoint, ParamTriangle, Patch, Rules};
 use crate::vector::{DVec3, Extremes};
 
-/// What rounding leaves of a height that is just good enough.
+/// The part of a height that is good enough in spite of rounding.
 pub(super) const ROUNDED: f64 = 1.0 - 1e-9;
 
 /// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
@@ -36,7 +36,7 @@ pub(super) const HOPELESS: f64 = 2.0;
 /// The range of heights that a few points of a piece that need not be regular tell is about this part of what there is.
 const SEEN: f64 = 0.8;
 
-/// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
+/// The limits for the triangles of each control face. Values are distances between a triangle and its part of the surface
 /// where nothing else counts ([`super::control::Control::criteria`]), else how many times over the criteria fail.
 #[derive(Clone, Debug)]
 pub(super) enum Goal {
@@ -81,11 +81,11 @@ impl Goal {
     }
 }
 
-/// What is asked of the nodes of a control face.
+/// The limits for the nodes of a control face.
 #[derive(Clone, Copy)]
 pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
-    /// What is asked besides distances.
+    /// The criteria besides distances.
     pub(super) criteria: Option<&'a Criteria>,
     back_faces: &'a BackFaces,
     face: u32,
@@ -93,7 +93,7 @@ pub(super) struct Judge<'a> {
     rim_alone: bool,
     /// Greatest value: a distance where nothing else counts.
     pub(super) limit: f64,
-    /// Ranges of heights from one side to the other count by this, beside the greatest height on one side.
+    /// Ranges of heights from one side to the other count by this, as well as the greatest height on one side.
     range_share: f64,
     pub(super) allowance: Allowance,
 }
@@ -191,7 +191,7 @@ impl Judge<'_> {
         self.decided(seen, edges.deviation(heights.refined(DIVISIONS, enough)))
     }
 
-    /// A node whose derivatives do not tell how far points drift: drifts by the net, heights by the
+    /// A node whose derivatives do not bound tangential displacements: displacements by the net, heights by the
     /// derivatives, since those of a net are a third too great.
     fn by_net(
         &self,
@@ -254,7 +254,7 @@ impl Judge<'_> {
         if exceeds(attained, self.limit) {
             return Some(Verdict::of(Fate::Fails));
         }
-        // Heights of both signs are not told apart.
+        // Heights of both signs count alike.
         let may_be_uneven = 2.0 * self.range_share * deviation.height > self.limit;
         Some(self.decided(seen, deviation)).filter(|verdict| verdict.is_proven() && !may_be_uneven)
     }
@@ -316,7 +316,7 @@ impl Judge<'_> {
         }
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
         let chord = self.allowed(seen).0;
         // A guess: neighbours have angles like the triangle's own.
@@ -328,7 +328,7 @@ impl Judge<'_> {
             rim_alone: false,
             chord,
             slopes,
-            // What will be divided needs no bound.
+            // A node that will be divided needs no bound.
             gives_up: true,
             least_chord: Some(0.0),
         }
@@ -358,7 +358,7 @@ impl Judge<'_> {
         Verdict::of(if fails { Fate::Fails } else { Fate::Likely })
     }
 
-    /// The chord of the angles to the neighbours and the greatest slopes of drifts, by edge, that the allowance makes certain.
+    /// The chord of the angles to the neighbours and the greatest slopes of tangential displacements, by edge, that the allowance makes certain.
     #[inline]
     fn allowed(&self, seen: &Seen) -> (f64, [f64; 3]) {
         let Allowance {
@@ -371,7 +371,7 @@ impl Judge<'_> {
         )
     }
 
-    /// The same for rows of nodes.
+    /// The limits for rows of nodes.
     pub(super) fn row_target(&self) -> RowTarget {
         let Allowance {
             normal_deviation,

@@ -46,18 +46,18 @@ impl Covering {
     }
 }
 
-/// What goes down along with the triangles.
+/// Values that a descent computes for nodes.
 pub(super) trait Descent {
-    /// What is known of a node.
+    /// The value of a node.
     type Node;
 
-    /// What is known of a node's children.
+    /// The values of a node's children.
     fn children(&mut self, node: Self::Node) -> [Self::Node; 4];
 
     /// A leaf and the triangles that cover it.
     fn leaf(&mut self, place: NodeAddress, node: Self::Node, covering: &[Covering]);
 
-    /// Whether nobody wants the rest.
+    /// Whether the rest is not wanted.
     fn is_over(&self) -> bool;
 }
 

@@ -1,6 +1,6 @@
-//! The emitted triangles with their neighbours as they are: what each comes to, and which of them fail.
+//! Measures the emitted triangles among their neighbours as they are: a bound for each, and those that fail.
 //!
-//! Takes what was emitted, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
+//! Takes an emission, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
 //! greatest bound of a distance and where it is, and the leaves whose values are too much. Distances to moved triangles are
 //! bounded as [`crate::certificate::Deviation::off`] and [`EdgeBounds::deviation_off`] say.
 
@@ -31,7 +31,7 @@ use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
 
-/// Halvings of a net: towards a corner at which points drift too fast, where only short pieces are near.
+/// Halvings of a net: towards a corner with too steep tangential displacements, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
 
 /// How triangles are looked at.
@@ -104,7 +104,7 @@ struct Measuring<'a> {
     limit: f64,
     length: f64,
     found: Measured,
-    /// The triangles that fail, their leaves, and what they come to.
+    /// The triangles that fail, their leaves, and their values.
     failing: Vec<(u32, NodeAddress, f64)>,
 }
 
@@ -201,7 +201,7 @@ impl TriangleVisitor for Measuring<'_> {
             (Over::General(pieces, ..), height) => {
                 let deviation = self.by_pieces(&among, emitted, pieces, rules);
                 is_enough(deviation);
-                // What counts alone has no height of its own.
+                // A triangle with a viewer's criterion alone has no height of its own.
                 height.least().max(deviation.height - deviation.across)
             }
             (Over::Regular(..), Height::General(height)) => height,
@@ -240,7 +240,7 @@ impl<'a> Measuring<'a> {
         }
     }
 
-    /// What all come to.
+    /// The result for all triangles.
     fn found(mut self, bulge: Option<&Bulge>) -> Measured {
         let each = core::mem::take(&mut self.found.each);
         for (number, known) in each
@@ -281,7 +281,7 @@ impl<'a> Measuring<'a> {
         self.found
     }
 
-    /// Takes what a triangle comes to over which the surface is so high.
+    /// Takes the value of a triangle and the height of the surface over it.
     fn take(&mut self, (number, place): (u32, NodeAddress), value: Value, height: f64) {
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
@@ -326,13 +326,13 @@ impl<'a> Measuring<'a> {
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
-    /// divided. Nobody who asks for tight bounds or for more than distances is told that.
+    /// divided. It never does where tight bounds or more than distances are asked for.
     fn fails_for_sure(&self, height: f64) -> bool {
         self.length.is_infinite() && self.criteria.is_none() && height > self.limit
     }
 
-    /// Whether it is by its height alone that a triangle fails: it would pass with the least that this can be, so its drifts are good enough,
-    /// and nets tell heights no better than derivatives do. As above nobody else is told that.
+    /// Whether a triangle fails by its height alone: it would pass with the least possible height, so its tangential displacements are good enough,
+    /// and nets bound heights no better than derivatives do. It never does where tight bounds or more than distances are asked for.
     fn fails_by_height(&self, among: &Among, edges: &EdgeBounds, least: &Deviation) -> bool {
         let counts_alone = self.length.is_infinite() && self.criteria.is_none();
         counts_alone && !edges.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
@@ -357,7 +357,7 @@ impl<'a> Measuring<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. 0 where
+    /// The height over a triangle that is surely good enough, given the deviation for none: it need not be known better. 0 where
     /// there is none, or where more counts than distances.
     fn high_enough(&self, among: &Among, flat: &Deviation) -> f64 {
         let target = self.limit.min(self.length);
@@ -387,7 +387,7 @@ impl<'a> Measuring<'a> {
         deviation.off(among.moved, among.aside)
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, among: &Among, emitted: &Emitted) -> Effort {
         let allowed = match self.criteria {
             None => self.limit,
@@ -405,7 +405,7 @@ impl<'a> Measuring<'a> {
         }
     }
 
-    /// What the triangle comes to with this deviation.
+    /// The value of the triangle with this deviation.
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
         let bound = deviation.bound(among.chord, among.slopes);
         let Some(criteria) = self.criteria else {
@@ -432,7 +432,7 @@ impl<'a> Measuring<'a> {
 enum Height {
     /// That of the quadratic part, by how much it may be off, and all parts.
     Regular((f64, f64), Heights),
-    /// What is met in a few places.
+    /// The greatest height in a few places.
     General(f64),
 }
 
@@ -452,7 +452,7 @@ struct Among {
     frame: TriangleFrame,
     /// The greatest chord of the angles between its plane and its neighbours'.
     chord: f64,
-    /// The greatest slopes at which points may drift over its edges.
+    /// The greatest slopes of tangential displacements over its edges.
     slopes: [f64; 3],
     /// Heights of the surface's corners over the triangle's plane.
     lifts: [f64; 3],
@@ -460,7 +460,7 @@ struct Among {
     moved: f64,
     /// How far within the plane.
     aside: f64,
-    /// The triangles beside it, where anybody asks.
+    /// The adjacent triangles, where they are asked for.
     neighbours: Neighbours,
     /// Who sees nothing but its back and theirs.
     backs: Backs,
@@ -505,7 +505,7 @@ impl Among {
         }
     }
 
-    /// Who sees nothing but the back of the triangle, of those beside it, and of its piece.
+    /// The viewers that see nothing but the back of the triangle, of the adjacent ones, and of its piece.
     fn looks_away(
         &self,
         criteria: &Criteria,

@@ -1,10 +1,10 @@
-//! What is found where emitted triangles are measured among their neighbours ([`super::measure`]): of one triangle, of one that was there
+//! The results of measuring emitted triangles among their neighbours ([`super::measure`]): of one triangle, of one that was there
 //! before, and of all of a control face.
 
 use super::quadtree::NodeAddress;
 use crate::certificate::exceeds;
 
-/// What a triangle comes to.
+/// The values of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Value {
     /// Of the distance.
@@ -26,12 +26,12 @@ impl Value {
     }
 }
 
-/// What a triangle came to among its neighbours.
+/// The last measured values of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundLast {
     /// How far its corners were moved; not numbers as long as it was not measured.
     pub(super) offsets: [f64; 3],
-    /// The bound of its distance; what counts of that, which has one where the bound is infinite, too; and the height of the surface over it.
+    /// The bound of its distance; its value by the criteria, which may be finite where the bound is not; and the height of the surface over it.
     pub(super) bound: f64,
     pub(super) value: f64,
     pub(super) height: f64,
@@ -46,7 +46,7 @@ impl FoundLast {
     };
 }
 
-/// What the triangles of a control face come to.
+/// The values of a control face's triangles.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     /// The greatest bound of a distance, and the leaf that has it.
@@ -57,12 +57,12 @@ pub(super) struct Measured {
     pub(super) value: f64,
     /// The greatest distance in the cameras' pictures, in pixels.
     pub(super) pixels: f64,
-    /// The greatest tilt of a triangle, and the least tangent of an angle.
+    /// The greatest normal deviation of a triangle, and the least tangent of an angle.
     pub(super) normal_deviation: f64,
     pub(super) slope: f64,
-    /// Leaves that fail, in the order of the walk, and what they come to.
+    /// Leaves that fail, in the order of the walk, and their values.
     pub(super) failing: Vec<(NodeAddress, f64)>,
-    /// What each triangle came to, this time or before, where that is kept.
+    /// The last values of each triangle, this time's or earlier, where they are kept.
     pub(super) each: Vec<FoundLast>,
 }
 
@@ -95,7 +95,7 @@ impl Measured {
         self.pixels = self.pixels.max(value.pixels);
     }
 
-    /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
+    /// Takes the values of all triangles of the control face, or adds those of some while those of others are not kept.
     pub(super) fn replace(&mut self, found: Self, is_all: bool) {
         if is_all {
             *self = found;
@@ -116,7 +116,7 @@ impl Measured {
     }
 }
 
-/// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
+/// Adds a leaf that fails to a list in the order of the walk, or the value of another triangle of the last leaf.
 pub(super) fn fail(failing: &mut Vec<(NodeAddress, f64)>, place: NodeAddress, value: f64) {
     match failing.last_mut() {
         Some((last, known)) if *last == place => *known = known.max(value),

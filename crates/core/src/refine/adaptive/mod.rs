@@ -207,7 +207,7 @@ pub(super) fn count(
         if engine.control.flat.are_none() {
             return Ok(found.state.triangles);
         }
-        // Which regions cannot be triangulated from their rims nobody knows before.
+        // Only a run shows which regions cannot be triangulated from their rims.
         let levels = found.state.levels(engine.watch)?;
         Ok(engine
             .assemble(found.emission, levels, gaps)?
@@ -272,13 +272,13 @@ pub(super) fn count_over_first(
     })
 }
 
-/// What is refined, and what is asked.
+/// The control mesh, the options, and the nodes that are divided in any case.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     mesh: &'a Mesh,
     scheme: &'a dyn Scheme,
     options: &'a ExactOptions,
-    /// What is divided in any case.
+    /// The nodes that are divided in any case.
     demands: &'a Demands,
 }
 
@@ -364,7 +364,7 @@ fn with_engine<T>(
     task.with_engine(&mut crate::progress::unobserved, run)
 }
 
-/// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
+/// The criteria of the options; `None` where they ask for nothing but distances and numbers of triangles.
 fn criteria(
     mesh: &Mesh,
     options: &ExactOptions,
@@ -388,7 +388,7 @@ fn criteria(
     Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
 }
 
-/// What stays the same all the way.
+/// The settings of a run.
 #[derive(Clone, Copy)]
 struct Engine<'a> {
     control: &'a Control<'a>,
@@ -398,7 +398,7 @@ struct Engine<'a> {
     is_balanced: bool,
     /// Vertices tell where they came from.
     has_origins: bool,
-    /// What rounding may do to a distance.
+    /// The greatest rounding error of a distance.
     rounding: f64,
 }
 

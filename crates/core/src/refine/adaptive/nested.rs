@@ -173,7 +173,7 @@ impl Descent for Parents<'_> {
 /// Where the vertices of a mesh are, and how far it may be from the surface.
 type End<'a> = (&'a [[f64; 3]], f64);
 
-/// Triangles with their vertices in one place and another, beside the surface.
+/// Triangles with their vertices in one place and another, and their parts of the surface.
 struct Apart<'a> {
     surface: &'a LimitSurface<'a>,
     /// After a geomorph, and before.

@@ -17,7 +17,7 @@ pub(super) const PROVEN: u32 = 1 << 30;
 /// The depth of leaves below a node.
 const DEPTH: u32 = (1 << 5) - 1;
 
-/// Nodes whose indices have room beside the marks.
+/// Nodes whose indices leave room for the marks.
 pub(super) const MOST_NODES: usize = 1 << 28;
 
 /// Levels at most below a control face: paths take two bits a level, and places along an edge are counted in units of the
@@ -104,7 +104,7 @@ impl Trees {
         }
     }
 
-    /// What refuses `more` words than there are.
+    /// The error for `more` words than fit.
     pub(super) fn too_many(&self, more: usize) -> MeshError {
         MeshError::TooMany {
             what: "nodes",
@@ -146,7 +146,7 @@ impl Trees {
         Some(self.words[at])
     }
 
-    /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
+    /// Splits whatever must be for the node at `place` to exist; `fresh` is called with the places that were split. `false` if there
     /// would be too many nodes.
     pub(super) fn ensure(
         &mut self,
@@ -231,7 +231,7 @@ impl Piece {
         self.irregular_node(children)
     }
 
-    /// The same where the surface is not regular: such nodes are kept one by one, so that what is kept as a whole is regular.
+    /// Adds a node where the surface is not regular: such nodes are kept one by one, so that all even blocks are regular.
     pub(super) fn irregular_node(&mut self, children: [u32; 4]) -> u32 {
         let at = self.words.len() as u32;
         self.words.extend(children);

@@ -1,4 +1,4 @@
-//! What is handed out: the emitted mesh with all that is known of it.
+//! The result: the emitted mesh with its error, origins and tags.
 
 use super::backs::shows_back;
 use super::emit::Emission;
@@ -17,7 +17,7 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop};
 use crate::vector::vector;
 
-/// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
+/// The relative rounding error of an angle against its limit: normals are taken anew from the emitted triangles.
 const CONE_ROUNDING: f64 = 1e-6;
 
 impl Verified {

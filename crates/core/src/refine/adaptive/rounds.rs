@@ -35,7 +35,7 @@ const FIRST: f64 = 0.25;
 /// Around vertices of so many edges at most each division leaves a quarter of the distance, unless triangles are balanced.
 const REGULAR: u32 = 6;
 
-/// What fails by more times than this says nothing of those below it.
+/// A leaf that fails by more times than this does not show how its children fail.
 const MOST_TIMES: f64 = 64.0;
 
 /// A state whose triangles were all verified as they were emitted.
@@ -276,7 +276,7 @@ impl Engine<'_> {
             let is_all = bulges.keep(face, &mut found, emission) || is_other;
             state.measured[face as usize].replace(found, is_all);
         })?;
-        // What cannot be balanced was not measured.
+        // Leaves that cannot be balanced were not measured.
         let mut failing = if is_alone {
             bulges.failing()
         } else {
@@ -455,7 +455,7 @@ impl Engine<'_> {
 /// Whether the triangles of a control face and those adjacent to it keep what its proven leaves assume.
 fn is_kept(control: &Control<'_>, state: &State, face: u32) -> bool {
     let assumed = &state.proven[face as usize];
-    // What assumes nothing needs nothing.
+    // A proof that assumes nothing holds.
     if assumed.allowance == Allowance::NOTHING {
         return true;
     }

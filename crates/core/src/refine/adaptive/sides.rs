@@ -1,4 +1,4 @@
-//! What of the emitted mesh lies along sharp and cut edges: normals by side, tags, copies.
+//! The emitted mesh along sharp and cut edges: normals by side, tags, copies.
 
 use super::chains::Chains;
 use super::control::Control;

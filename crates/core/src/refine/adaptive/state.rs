@@ -34,13 +34,13 @@ pub(super) struct State {
     pub(super) has_failed: bool,
     /// Control faces whose triangles may have changed since the last emission.
     pub(super) is_changed: Vec<bool>,
-    /// What was found of the triangles of each control face.
+    /// The measured bounds, by control face.
     pub(super) measured: Vec<Measured>,
     pub(super) bulges: Bulges,
 }
 
 impl State {
-    /// That of a division, which nobody has covered yet.
+    /// The state of a division that is not covered yet.
     pub(super) fn of(goal: Goal, division: Division) -> Self {
         let Division { trees, proven } = division;
         let faces = proven.len();
@@ -83,7 +83,7 @@ impl State {
         Ok(state)
     }
 
-    /// The same trees, of whose leaves nothing is known.
+    /// Keeps the trees, and forgets what is known of their leaves.
     pub(super) fn forget(&mut self) {
         self.is_trusted.fill(false);
         self.is_changed.fill(true);

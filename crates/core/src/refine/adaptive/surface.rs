@@ -30,7 +30,7 @@ impl QuarticPiece {
         }
     }
 
-    /// The same where parts are bounded for sure.
+    /// A piece with its jet, where parts are bounded for sure.
     pub(super) fn with_jet(net: &BezierTriangle) -> Self {
         let piece = Quartic::of(net, 0);
         Self {
@@ -39,7 +39,7 @@ impl QuarticPiece {
         }
     }
 
-    /// What bounds parts of it.
+    /// The jet that bounds parts of it.
     #[inline]
     pub(super) fn jet(&self) -> &QuarticJet {
         self.jet.get_or_init(|| QuarticJet::of(&self.piece))
@@ -117,7 +117,7 @@ enum Refinement {
     },
 }
 
-/// Three regular pieces beside one at an irregular vertex. They stay part of what was refined, since of many of them nobody asks for anything.
+/// Three regular pieces and one at an irregular vertex. They stay part of the refined piece, since many of them are never asked for anything.
 struct AroundVertex {
     refined: RefinedExtraordinary,
     middles: OnceCell<[LimitPoint; 3]>,

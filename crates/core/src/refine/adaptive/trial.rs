@@ -49,7 +49,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The same for a node so many levels below its control face: cones are given up at last.
+    /// The trial of a node so many levels below its control face: cones are given up at last.
     pub(super) fn at_level(self, level: u32) -> Self {
         let is_given_up = level as usize >= self.criteria.deepest_cone();
         Self {
@@ -139,7 +139,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, open: [bool; 3]) -> Effort {
         Effort {
             target: self.limit * self.criteria.allowed_length(&self.region, &self.backs),

@@ -102,7 +102,7 @@ impl Side {
     }
 }
 
-/// What is done on the way.
+/// The visitor of a walk.
 pub(super) trait Visitor {
     /// A chain inside the face was made; `edge vertices` runs from its first to its last, `edge` is the edge of the middle child
     /// that it runs against, whose place in the face and surface are given.
@@ -199,7 +199,7 @@ impl<'a> Walk<'a> {
         self.until_asked == 0
     }
 
-    /// Walks over a node's leaves. What is left out once nobody wants the result any more is of no use to anybody.
+    /// Walks over a node's leaves. A walk that is stopped leaves leaves out.
     pub(super) fn node<V: Visitor>(
         &mut self,
         word: u32,
@@ -318,7 +318,7 @@ pub(super) fn merged<const N: usize>(
     merged(trees, &half(true), from + length / 2, length / 2, found);
 }
 
-/// The same for any number of members.
+/// [`merged`] for any number of members.
 pub(super) fn merged_all(
     trees: &Trees,
     members: &[(u32, usize, bool)],

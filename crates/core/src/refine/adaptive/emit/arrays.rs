@@ -1,5 +1,5 @@
 //! The arrays that an emission is written into: fresh ones, or those of the emission before, in which what is kept of it is moved to
-//! where it belongs now, so that no second ones stand beside them.
+//! where it belongs now, so that there is no second copy of them.
 
 use core::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::refine::exact_result::Origin;
 /// Origins that are written together: some milliseconds.
 const FILLED: usize = 1 << 17;
 
-/// What is written of each vertex and triangle.
+/// The arrays that are written, by vertex, half-edge and triangle.
 #[derive(Default)]
 pub(super) struct Arrays {
     pub(super) positions: Vec<[f64; 3]>,
@@ -60,7 +60,7 @@ impl Shifts {
         }
     }
 
-    /// The same for elements of which there are `times` as many.
+    /// Multiplies all numbers, for elements of which there are `times` as many.
     fn times(&self, times: usize) -> Self {
         let multiplied = |one: &Shift| Shift {
             before: times * one.before.start..times * one.before.end,

@@ -203,7 +203,7 @@ impl Writer<'_> {
     }
 
     /// The triangles of all leaves below a node, row by row: each leaf that stands upright is followed by the one to its right
-    /// that stands on its head.
+    /// that is inverted.
     fn cover(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         let n = 1usize << node.depth;
         self.below.clear();

@@ -68,7 +68,7 @@ impl RimGaps {
         self.0.is_empty()
     }
 
-    /// What may close them, at this attempt.
+    /// The nodes that are divided to close them at this attempt.
     pub(in super::super) fn at_attempt(
         &self,
         attempt: usize,

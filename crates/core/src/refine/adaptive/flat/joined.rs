@@ -1,6 +1,6 @@
 //! Regions in one plane side by side, such as the parts of a face that sharp edges divide at its concave corners.
 //!
-//! Where both are what their rims enclose, and so are the triangles that stand for them, what counts is what encloses them
+//! Where both are what their rims enclose, and so are the triangles that approximate them, what counts is what encloses them
 //! together: a point of the surface and not of the triangles, or the other way round, is one round which their rims, taken together, wind
 //! but not the chords of these, or the other way round. What two regions share runs the one way for the one and the other way for the
 //! other, so it winds round nothing. That takes regions round whose points rims wind forwards alone, or one could undo what the other does: those

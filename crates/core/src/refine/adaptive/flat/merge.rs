@@ -1,5 +1,5 @@
-//! What becomes of flat regions: their rims are triangulated anew, and what that gives is checked against what was emitted there. The module `replace`
-//! puts it in the place of that.
+//! Triangulates the rims of flat regions anew and checks the result against the emitted triangles. The module `replace`
+//! replaces these by the result.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -24,7 +24,7 @@ pub(super) const SAME_AREA: f64 = 1e-9;
 /// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
 const MOST_ROUNDS: usize = 8;
 
-/// What is done with a region.
+/// The outcome for a region.
 enum Fate {
     /// Its triangles stay.
     Stays,
@@ -146,7 +146,7 @@ impl FlatRegions {
         region.flat.is_some_and(|flat| self.by_rim[flat as usize])
     }
 
-    /// What becomes of a region: its triangles give way if there can be fewer, if they are those of its rim alone, or if they fold and
+    /// The outcome for a region: its triangles give way if there can be fewer, if they are those of its rim alone, or if they fold and
     /// what is around them is asked for.
     fn fate(
         &self,
@@ -190,7 +190,7 @@ impl FlatRegions {
         }
     }
 
-    /// What an outline encloses, triangulated, if that is what the triangles `before` cover, with fewer of them if it is not wanted in any case.
+    /// Triangulates the inside of an outline. `None` unless it has the area of the triangles `before`, and fewer triangles or `is_wanted`.
     fn covering(
         (outline, mut flat): (Outline, Flattened<'_>),
         (before, is_wanted, was_folded): (&[u32], bool, bool),
@@ -231,11 +231,11 @@ impl FlatRegions {
 /// An edge on a rim, and the control face of its triangle.
 type RimEdge = ([u32; 2], u32);
 
-/// What is around a region.
+/// The rim of a region.
 struct Outline {
     /// The edges from vertices that stay.
     rim: Vec<RimEdge>,
-    /// What follows a vertex that need not.
+    /// The next vertex after each vertex that may be left out.
     after: HashMap<u32, u32>,
     /// Twice the area.
     area: f64,
@@ -385,7 +385,7 @@ fn without_shared_edges(
     Ok(coverings)
 }
 
-/// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it. `None` where one is
+/// Gives each triangle a control face: that of a rim edge of its own, else that of an adjacent triangle. `None` where one is
 /// reached from no rim.
 fn by_face(
     triangles: Vec<[u32; 3]>,

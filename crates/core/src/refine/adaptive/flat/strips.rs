@@ -6,7 +6,7 @@
 //! are off ([`FlatRegions::off_planes`]).
 //!
 //! Only control faces over which the surface may go on in one direction all alike are looked at: regular pieces of which a derivative is the
-//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces beside creases whose vertices
+//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces at creases whose vertices
 //! are irregular, as where the quadrilaterals are cut now this way and now that.
 
 use limitmesh_pages::filled;
@@ -27,12 +27,12 @@ use std::collections::{HashMap, HashSet};
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
 
-/// Triangles are looked at where one beside them is so many times as far off their plane as it may be: that of a sliver is not known well.
+/// A triangle is looked at where an adjacent one is so many times as far off its plane as it may be: the plane of a sliver is not known well.
 const NEARLY: f64 = 1024.0;
 
 /// Where the coefficients of a regular piece's derivative along an edge, a quarter of them, are within a distance of the first, the vertex opposite
 /// that edge is within half of so many times this distance of the middle between the vertices beyond the two other edges: the second
-/// difference of these three is a sum of differences from the first, with weights that together come to 24. A third more for rounding.
+/// difference of these three is a sum of differences from the first, with weights whose sum is 24. A third more for rounding.
 const BENT: f64 = 32.0;
 
 /// Fewer triangles than this are not put together.
@@ -210,7 +210,7 @@ pub(super) fn straight_faces(
     Ok(found.concat())
 }
 
-/// Whether the surface over a face may be straight in a direction, as far as the vertices beside it tell ([`BENT`]).
+/// Whether the surface over a face may be straight in a direction, by its adjacent vertices ([`BENT`]).
 fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     let Control {
         mesh, sharpness, ..
@@ -238,7 +238,7 @@ fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
 }
 
 /// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges, or may be
-/// straight beside creases whose vertices are irregular.
+/// straight at creases whose vertices are irregular.
 fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     let points = match control.patch(face) {
         Patch::Regular(points) => points,
@@ -289,7 +289,7 @@ impl FlatRegions {
         Ok(regions)
     }
 
-    /// Triangles that these come to once they are put together, less than there are.
+    /// How many triangles fewer there are once these are joined.
     pub(in super::super) fn saved(
         &self,
         net: &Net<'_>,

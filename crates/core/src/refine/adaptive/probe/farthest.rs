@@ -1,6 +1,6 @@
 //! The points of the surface that are likely to be farthest from the mesh: what lower bounds are found with.
 //!
-//! What was said of leaves is of no use here: neighbours may have had them split since, so that vertices of the mesh lie where the
+//! Heights over leaves are of no use here: neighbours may have had leaves split since, so that vertices of the mesh lie where the
 //! surface stood highest over them.
 
 use core::ops::Range;
@@ -90,7 +90,7 @@ pub(super) fn farthest(
         let most = farthest.map_or(-1.0, |(squared, _)| squared);
         let mut least = f64::INFINITY;
         for corners in &triangles {
-            // One that is near enough tells that the point is not the farthest.
+            // If one is near enough, the point is not the farthest.
             if least <= most {
                 break;
             }
@@ -218,7 +218,7 @@ mod tests {
         }
     }
 
-    /// Nodes that are passed over take nothing with them: what is found is what a list of all tells.
+    /// Nodes that are skipped hold no farther point: the result is that of a list of all.
     #[test]
     fn the_leaf_of_a_triangle_is_found_with_all_of_its_triangles() {
         let mut found_in_parts = 0;
