@@ -47,7 +47,7 @@ pub(super) struct Node {
     pub(super) triangles: u8,
     pub(super) is_suspect: bool,
     is_touched: bool,
-    piece: PieceRef,
+    piece: Option<PieceRef>,
 }
 
 /// The values that a demand reads, in one line of the cache.
@@ -152,7 +152,7 @@ impl<'a> Forest<'a> {
                 corners,
                 across,
                 NONE,
-                PieceRef::Control,
+                None,
             ));
             extents.push(Extent::of(places, value, 0));
         }
@@ -333,11 +333,10 @@ impl<'a> Forest<'a> {
 
     /// Divides a node; the nodes beyond its edges exist.
     pub(super) fn divide(&mut self, node: u32) {
-        if matches!(self.node(node).piece, PieceRef::Control) {
-            let piece = self.pieces.control(self.node(node).place.face);
-            self.node_mut(node).piece = piece;
-        }
-        let parts = self.pieces.parts(self.node(node).piece);
+        let Node { piece, place, .. } = *self.node(node);
+        let piece = piece.unwrap_or_else(|| self.pieces.control(place.face));
+        self.node_mut(node).piece = Some(piece);
+        let parts = self.pieces.parts(piece);
         let middles = [0u8, 1, 2].map(|edge| self.middle_vertex(node, edge));
         let own = self.node_mut(node);
         let slots = core::mem::take(&mut own.triangles);
@@ -359,7 +358,7 @@ impl<'a> Forest<'a> {
             let at = child_corners(corners, middles, child);
             let at_places = at.map(|vertex| self.vertices.at(vertex));
             let index = (first as usize) + child;
-            self.nodes[index] = Node::new(place.child(child), at, sides, node, piece);
+            self.nodes[index] = Node::new(place.child(child), at, sides, node, Some(piece));
             let stamp = self.extents[index].stamp;
             self.extents[index] = Extent {
                 stamp,
@@ -396,7 +395,7 @@ impl<'a> Forest<'a> {
             [0; 3],
             [Across::Border; 3],
             NONE,
-            PieceRef::Control,
+            None,
         );
         self.nodes.resize(first + 4, blank);
         self.extents
@@ -459,7 +458,9 @@ impl<'a> Forest<'a> {
             let (slots, count) = (own.own, core::mem::take(&mut own.triangles));
             let theirs = own.piece;
             self.released.extend(&slots[..usize::from(count)]);
-            if matches!(piece, PieceRef::General(_) | PieceRef::Sampled(_)) {
+            if let (Some(PieceRef::General(_) | PieceRef::Sampled(_)), Some(theirs)) =
+                (piece, theirs)
+            {
                 self.pieces.give_back(theirs);
             }
             self.node_mut(child).parent = NONE;
@@ -467,8 +468,9 @@ impl<'a> Forest<'a> {
             extent.stamp = extent.stamp.wrapping_add(1);
         }
         if is_root {
-            self.pieces.give_back(piece);
-            self.node_mut(node).piece = PieceRef::Control;
+            if let Some(piece) = self.node_mut(node).piece.take() {
+                self.pieces.give_back(piece);
+            }
         }
         self.free.push(first);
         for edge in 0..3u8 {
@@ -521,7 +523,7 @@ impl Node {
         corners: [u32; 3],
         across: [Across; 3],
         parent: u32,
-        piece: PieceRef,
+        piece: Option<PieceRef>,
     ) -> Self {
         Self {
             place,

@@ -22,11 +22,9 @@ use crate::vector::DVec3;
 /// Values of irregular pieces are tight down to this part of their size.
 const TIGHT: f64 = 1e-6;
 
-/// Where the surface over a node is kept.
+/// Where the surface over a node is kept. Undivided control faces have none.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum PieceRef {
-    /// Nowhere: a control face that is not divided.
-    Control,
     /// Part of a regular piece.
     Regular(u32, ParamTriangle),
     /// A piece of its own.
@@ -42,10 +40,10 @@ struct General {
     middles: [DVec3; 3],
 }
 
-/// Items in numbered slots, which are freed and used again.
+/// Items in numbered slots. A slot that is freed keeps its item until it is used again.
 #[derive(Debug)]
 struct Shelf<T> {
-    all: Vec<Option<T>>,
+    all: Vec<T>,
     free: Vec<u32>,
 }
 
@@ -61,20 +59,19 @@ impl<T> Default for Shelf<T> {
 impl<T> Shelf<T> {
     fn put(&mut self, item: T) -> u32 {
         if let Some(place) = self.free.pop() {
-            self.all[place as usize] = Some(item);
+            self.all[place as usize] = item;
             return place;
         }
-        self.all.push(Some(item));
+        self.all.push(item);
         (self.all.len() - 1) as u32
     }
 
     fn take(&mut self, place: u32) {
-        self.all[place as usize] = None;
         self.free.push(place);
     }
 
-    fn get(&self, place: u32) -> Option<&T> {
-        self.all.get(place as usize)?.as_ref()
+    fn get(&self, place: u32) -> &T {
+        &self.all[place as usize]
     }
 }
 
@@ -163,37 +160,23 @@ impl<'a> Pieces<'a> {
     /// The four parts of a node's surface.
     pub(super) fn parts(&mut self, piece: PieceRef) -> [Part; 4] {
         match piece {
-            PieceRef::Control => [(PieceRef::Control, f64::INFINITY); 4],
             PieceRef::Regular(piece, domain) => {
-                let derivatives = self
-                    .regular
-                    .get(piece)
-                    .map(|piece| SecondDerivatives::of(piece));
+                let derivatives = SecondDerivatives::of(self.regular.get(piece));
                 from_fn(|child| {
                     let own = domain.child(child);
-                    let value = derivatives
-                        .as_ref()
-                        .map(|all| all.off_triangles(own.corners(), own.size));
-                    (
-                        PieceRef::Regular(piece, own),
-                        value.unwrap_or(f64::INFINITY),
-                    )
+                    let value = derivatives.off_triangles(own.corners(), own.size);
+                    (PieceRef::Regular(piece, own), value)
                 })
             }
-            PieceRef::General(piece) => {
-                let Some(piece) = self.general.get(piece) else {
-                    return [(PieceRef::Control, f64::INFINITY); 4];
-                };
-                piece
-                    .sheet
-                    .children(self.surface.rules())
-                    .map(|sheet| self.part(sheet))
-            }
+            PieceRef::General(piece) => self
+                .general
+                .get(piece)
+                .sheet
+                .children(self.surface.rules())
+                .map(|sheet| self.part(sheet)),
             PieceRef::Sampled(piece) => {
-                let Some(piece) = self.sampled.get(piece) else {
-                    return [(PieceRef::Control, f64::INFINITY); 4];
-                };
-                piece.children(self.surface.rules()).map(|part| {
+                let parts = self.sampled.get(piece).children(self.surface.rules());
+                parts.map(|part| {
                     let value = part.value(self.measure);
                     (PieceRef::Sampled(self.sampled.put(Box::new(part))), value)
                 })
@@ -224,7 +207,6 @@ impl<'a> Pieces<'a> {
     /// Gives back the piece of a node that is its own.
     pub(super) fn give_back(&mut self, piece: PieceRef) {
         match piece {
-            PieceRef::Control => {}
             PieceRef::Regular(piece, _) => self.regular.take(piece),
             PieceRef::General(piece) => self.general.take(piece),
             PieceRef::Sampled(piece) => self.sampled.take(piece),
@@ -237,9 +219,9 @@ impl<'a> Pieces<'a> {
     }
 
     /// The point in the middle of a node's edge, as the piece over the node has it.
-    pub(super) fn middle(&self, piece: PieceRef, face: u32, edge: usize) -> DVec3 {
+    pub(super) fn middle(&self, piece: Option<PieceRef>, face: u32, edge: usize) -> DVec3 {
         match piece {
-            PieceRef::Control => {
+            None => {
                 let (sheet, rules) = self.surface.sheet(FaceId(face));
                 match &sheet.patch {
                     Patch::Regular(points) if self.measure == Measure::Distance => {
@@ -248,18 +230,11 @@ impl<'a> Pieces<'a> {
                     _ => sheet.patch.refined(rules).middle(edge).position,
                 }
             }
-            PieceRef::Regular(piece, domain) => self
-                .regular
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| at(piece, domain.along(edge, 0.5))),
-            PieceRef::General(piece) => self
-                .general
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| piece.middles[edge]),
-            PieceRef::Sampled(piece) => self
-                .sampled
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| piece.middle(edge)),
+            Some(PieceRef::Regular(piece, domain)) => {
+                at(self.regular.get(piece), domain.along(edge, 0.5))
+            }
+            Some(PieceRef::General(piece)) => self.general.get(piece).middles[edge],
+            Some(PieceRef::Sampled(piece)) => self.sampled.get(piece).middle(edge),
         }
     }
 }

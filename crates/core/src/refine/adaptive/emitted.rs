@@ -150,10 +150,7 @@ impl<B: TriangleVisitor> Visitor for Leaves<'_, B> {
         let end = self.next + node.triangles() as u32;
         let skips = self.skips(node) && node.is_plain();
         if skips || !self.visitor.wants(node.place, self.next..end) {
-            self.diagonals = self
-                .diagonals
-                .get(self.rim.diagonals(node, edge_vertices)..)
-                .unwrap_or_default();
+            self.diagonals = &self.diagonals[self.rim.diagonals(node, edge_vertices)..];
             self.next = end;
             return;
         }

@@ -75,11 +75,8 @@ pub(in crate::refine) fn frames(
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
     let greatest = |of: fn(&Proven) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let (worst, open_cones) = (
-        greatest(|own| own.worst),
-        all.iter().map(|own| own.open_cones).max(),
-    );
-    let open_cones = open_cones.unwrap_or(0);
+    let worst = greatest(|own| own.worst);
+    let open_cones = all.iter().map(|own| own.open_cones).fold(0, usize::max);
     let stop = match () {
         () if state.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
         () if open_cones > 0 => ExactStop::Cones,

@@ -170,12 +170,14 @@ pub(super) fn count(
     let functions = Functions::of(&options.attributes, &surfaces).coarser(times);
     let room = Room::of(mesh, options, usize::MAX);
     let demands = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
-    let demands = demands.unwrap_or_default();
+    let Some(demands) = demands else {
+        return Ok(usize::MAX);
+    };
     let plain = options.clone().balance(false);
     // As in [`once`], angles that balanced vertices meet late are met with plain ones.
     let fewest = match options.balance && options.angle.is_some() {
-        true => Some(count(mesh, scheme, &plain, times, observer)?),
-        false => None,
+        true => count(mesh, scheme, &plain, times, observer)?,
+        false => usize::MAX,
     };
     let most = options.budget().0;
     let task = Task {
@@ -197,12 +199,12 @@ pub(super) fn count(
             Goal::Within(limit)
         };
         let most = if engine.is_balanced {
-            fewest.unwrap_or(usize::MAX)
+            fewest
         } else {
             usize::MAX
         };
         let Some(found) = engine.refined(goal, most)? else {
-            return Ok(fewest.unwrap_or(0));
+            return Ok(fewest);
         };
         if engine.control.flat.are_none() {
             return Ok(found.state.triangles);
@@ -214,8 +216,8 @@ pub(super) fn count(
             .mesh
             .face_count())
     })?;
-    let may_be_fewer = fewest.is_none() && options.balance;
-    if may_be_fewer
+    if options.balance
+        && options.angle.is_none()
         && may_do_with_fewer(
             Task {
                 options: &plain,

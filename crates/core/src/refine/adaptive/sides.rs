@@ -110,7 +110,10 @@ pub(super) fn junctions(
     let edges = &control.edges;
     watch.each(0..edges.group_count(), |group| {
         let members = edges.members(group);
-        let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());
+        let Some(&(first, _)) = members.first() else {
+            return;
+        };
+        let places = chains.own(first).1.len();
         let at = |turned: bool, count: usize, place: usize| {
             if turned { count - 1 - place } else { place }
         };

@@ -55,6 +55,7 @@ struct Member {
 
 /// The faces whose surfaces are the same function of their control points.
 struct Shape {
+    /// One at least.
     members: Vec<Member>,
     /// The places of all, each once.
     places: Vec<ParamPoint>,
@@ -120,12 +121,7 @@ pub(super) fn build(
         },
     )?;
     for (shape, weighed) in shapes.iter().zip(weighed.into_iter().flatten()) {
-        let face = || {
-            shape
-                .members
-                .first()
-                .map_or(0, |member| faces[member.group].of)
-        };
+        let face = || faces[shape.members[0].group].of;
         building.shape(
             shape,
             weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?,
@@ -354,9 +350,10 @@ impl Building {
         let mut starts: Vec<Option<Vec<u32>>> = vec![None; control.stencils.list.len()];
         for corner in corners {
             let number = control.stencils.by_vertex[corner.of as usize] as usize;
-            if starts[number].is_none() {
-                starts[number] = Some(self.stencil(&control.stencils.list[number])?);
-            }
+            let starts = match &mut starts[number] {
+                Some(known) => known,
+                unknown => unknown.insert(self.stencil(&control.stencils.list[number])?),
+            };
             let ring = control
                 .mesh
                 .topology()
@@ -374,10 +371,7 @@ impl Building {
                     self.slots[point as usize] = slot;
                     continue;
                 }
-                let start = starts[number]
-                    .as_ref()
-                    .and_then(|starts| starts.get(side as usize));
-                self.table.rows.push(start.copied().unwrap_or(0));
+                self.table.rows.push(starts[side as usize]);
                 slots.push((side, self.next));
                 self.take_slot(point);
             }

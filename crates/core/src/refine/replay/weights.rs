@@ -114,8 +114,7 @@ impl<'a> Probe<'a> {
         let block_start = row_count * SUMS * groups;
         let blocks = pieces.iter().flatten().count() * COEFFICIENTS * groups;
         let mut weights = vec![[0.0; LANES]; block_start + blocks];
-        let others = support.points.get(1..).unwrap_or_default();
-        for (three, points) in others.chunks(3).enumerate() {
+        for (three, points) in support.points[1..].chunks(3).enumerate() {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
             points
                 .iter()

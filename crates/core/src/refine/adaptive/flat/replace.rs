@@ -503,7 +503,9 @@ impl Numbers<'_> {
         let shares = (0..faces).step_by(share).map(|first| {
             let faces = first..(first + share).min(faces);
             let count = 3 * (self.starts[faces.end] - self.starts[faces.start]) as usize;
-            (faces, twins.split_off_mut(..count).unwrap_or_default())
+            let (own, rest) = core::mem::take(&mut twins).split_at_mut(count);
+            twins = rest;
+            (faces, own)
         });
         let shares: Vec<_> = shares.collect();
         parallel::each_long_polled(
@@ -514,7 +516,8 @@ impl Numbers<'_> {
                     let own = 3 * self.starts[face]..3 * self.starts[face + 1];
                     let now = self.exchange.starts[face];
                     let moved = (now != NONE).then(|| (3 * now).wrapping_sub(own.start));
-                    let of_face = twins.split_off_mut(..own.len()).unwrap_or_default();
+                    let (of_face, rest) = core::mem::take(&mut twins).split_at_mut(own.len());
+                    twins = rest;
                     for twins in of_face.chunks_mut(RENAMED) {
                         twins.iter_mut().for_each(|twin| match moved {
                             Some(by) if own.contains(twin) => *twin = twin.wrapping_add(by),
