@@ -341,7 +341,7 @@ impl CellRows {
             few.fill(block, n, scale);
             measure(n * n, &few.parts(), &rest, target, &mut self.found);
             let mut found = [Mark::Passes; FEW];
-            self.found.mark((n * n, scale), target, extent, &mut found);
+            self.found.mark(scale, target, extent, &mut found[..n * n]);
             for (number, &(i, j, is_inverted)) in few.places[..n * n].iter().enumerate() {
                 let list = if is_inverted {
                     &mut marks.inverted
@@ -352,8 +352,7 @@ impl CellRows {
             }
             return;
         }
-        let steps = (block.size / n as f64, scale);
-        self.corners[0].fill(block, steps, (0, n), &mut self.normals);
+        self.corners[0].fill(block, scale, 0, n, &mut self.normals);
         for j in 0..n {
             let count = n - j;
             let [first, second] = &mut self.corners;
@@ -362,9 +361,9 @@ impl CellRows {
             } else {
                 (second, first)
             };
-            upper.fill(block, steps, (j + 1, n), &mut self.normals);
+            upper.fill(block, scale, j + 1, n, &mut self.normals);
             self.between
-                .fill(block, steps, (j, count), [&lower.points, &upper.points]);
+                .fill(block, scale, j, n, [&lower.points, &upper.points]);
             let rows =
                 [false, true].map(|is_inverted| self.between.parts(lower, upper, is_inverted));
             let lists = [&mut marks.upright, &mut marks.inverted];
@@ -377,7 +376,7 @@ impl CellRows {
                 }
                 measure(count, parts, &rest, target, &mut self.found);
                 let own = &mut list[j * n..j * n + count];
-                self.found.mark((count, scale), target, extent, own);
+                self.found.mark(scale, target, extent, own);
             }
         }
     }
@@ -385,14 +384,9 @@ impl CellRows {
 
 impl CornerRow {
     /// Row j of a node whose edges are cut into n: its corners, its edges, and the second derivatives along them.
-    fn fill(
-        &mut self,
-        block: &RowBlock<'_>,
-        (step, scale): (f64, f64),
-        (j, n): (usize, usize),
-        wide: &mut Row,
-    ) {
-        let (v, count) = (block.at[1] + step * j as f64, n - j);
+    fn fill(&mut self, block: &RowBlock<'_>, scale: f64, j: usize, n: usize, wide: &mut Row) {
+        let (step, count) = (block.size / n as f64, n - j);
+        let v = block.at[1] + step * j as f64;
         block.piece.by_axis_along(
             v,
             block.at[0],
@@ -409,20 +403,21 @@ impl CornerRow {
         }
         let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
         self.bends
-            .fill(uu, [block.at[0] + 0.5 * step, v], (step, count), factor);
+            .fill(uu, [block.at[0] + 0.5 * step, v], step, count, factor);
     }
 }
 
 impl Between {
-    /// Fills the differences between row j, with `edges` edges, and the next, by the corners of
-    /// both.
+    /// Fills the differences between row j of a node whose edges are cut into n and the next row, by the corners of both.
     fn fill(
         &mut self,
         block: &RowBlock<'_>,
-        (step, scale): (f64, f64),
-        (j, count): (usize, usize),
+        scale: f64,
+        j: usize,
+        n: usize,
         [lower, upper]: [&Row; 2],
     ) {
+        let (step, count) = (block.size / n as f64, n - j);
         for axis in 0..3 {
             differences(
                 &lower[axis][..count],
@@ -436,8 +431,8 @@ impl Between {
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
         let factor = step * step * scale;
         self.across
-            .fill(&across, [u + 0.5 * step, v], (step, count), factor);
-        self.upward.fill(vv, [u, v], (step, count + 1), factor);
+            .fill(&across, [u + 0.5 * step, v], step, count, factor);
+        self.upward.fill(vv, [u, v], step, count + 1, factor);
     }
 
     /// The parts between two rows: the upright ones, or the inverted ones.
@@ -490,7 +485,7 @@ fn differences(from: &[f64], to: &[f64], factor: f64, out: &mut [f32]) {
 
 impl Bends {
     /// A quadratic polynomial in `count` places along a row, times a factor. Values are off by ten roundings of the size at most.
-    fn fill(&mut self, c: &[DVec3; 6], [u, v]: Domain, (step, count): (f64, usize), factor: f64) {
+    fn fill(&mut self, c: &[DVec3; 6], [u, v]: Domain, step: f64, count: usize, factor: f64) {
         // By the number of the place over that of all.
         let length = step * count as f64;
         let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);

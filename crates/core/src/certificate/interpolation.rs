@@ -63,7 +63,8 @@ impl ParamPatch {
     pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
         self.off(
             part,
-            (self.corners_of(part, rules), self.corners),
+            self.corners_of(part, rules),
+            self.corners,
             target,
             rules,
         )
@@ -75,7 +76,8 @@ impl ParamPatch {
     pub(crate) fn off(
         &self,
         part: SubTriangle,
-        (own, whole): ([DVec3; 3], [DVec3; 3]),
+        own: [DVec3; 3],
+        whole: [DVec3; 3],
         target: f64,
         rules: &Rules<'_>,
     ) -> f64 {

@@ -372,15 +372,15 @@ impl<'a> Forest<'a> {
                     self.touch(other);
                 } else {
                     let side = u32::from(side);
-                    self.join((first + edge, edge), (theirs + (side + 1) % 3, side));
-                    self.join((first + (edge + 1) % 3, edge), (theirs + side, side));
+                    self.join(first + edge, edge, theirs + (side + 1) % 3, side);
+                    self.join(first + (edge + 1) % 3, edge, theirs + side, side);
                 }
             }
         }
         (0..4).for_each(|child| self.touch(first + child));
     }
 
-    fn join(&mut self, (a, edge): (u32, u32), (b, side): (u32, u32)) {
+    fn join(&mut self, a: u32, edge: u32, b: u32, side: u32) {
         self.node_mut(a).across[edge as usize] = Across::Node(b, side as u8);
         self.node_mut(b).across[side as usize] = Across::Node(a, edge as u8);
     }

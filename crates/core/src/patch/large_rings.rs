@@ -55,7 +55,7 @@ impl LargeRings {
             .filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v))
         {
             ring.whole =
-                WholeRing::of(mesh, sharpness, (*vertex, levels), rules, poll)?.map(Arc::new);
+                WholeRing::of(mesh, sharpness, *vertex, levels, rules, poll)?.map(Arc::new);
         }
         Ok(large)
     }

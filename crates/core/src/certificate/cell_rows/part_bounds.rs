@@ -357,7 +357,7 @@ impl Found {
     /// their unit.
     pub(super) fn mark(
         &self,
-        (count, scale): (usize, f64),
+        scale: f64,
         target: &RowTarget,
         extent: &mut RowExtent,
         marks: &mut [Mark],
@@ -365,7 +365,7 @@ impl Found {
         // A part without a bound, which is infinite, must not pass, however great the target is.
         let most = (target.distance * scale).smaller(f64::from(f32::MAX));
         let mut greatest = 0.0f64;
-        for (i, mark) in marks.iter_mut().enumerate().take(count) {
+        for (i, mark) in marks.iter_mut().enumerate() {
             let bound = f64::from(self.bound[i]);
             *mark = if f64::from(self.low[i]) > most {
                 Mark::Fails

@@ -156,7 +156,7 @@ fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
             along: [[0.0; WIDTH]; 3],
             size: 0.0,
         };
-        bends.fill(&c, [u, v], (step, count), 0.3);
+        bends.fill(&c, [u, v], step, count, 0.3);
         let most = f64::from(bends.size);
         for i in 0..count {
             let expected = 0.3 * quadratic(&c, [u + step * i as f64, v]);

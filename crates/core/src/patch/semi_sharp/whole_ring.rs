@@ -84,7 +84,8 @@ impl WholeRing {
     pub(crate) fn of(
         mesh: &Mesh,
         sharpness: &Sharpness<'_>,
-        (vertex, levels): (VertexId, usize),
+        vertex: VertexId,
+        levels: usize,
         rules: &Rules<'_>,
         poll: &mut Poll<'_>,
     ) -> Result<Option<Self>, Cancelled> {

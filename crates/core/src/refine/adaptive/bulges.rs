@@ -58,7 +58,8 @@ impl Bulges {
         sources: &Sources<'_>,
         watch: &SharedWatch<'_>,
         faces: &[u32],
-        (allowed, max_levels): (f64, u32),
+        allowed: f64,
+        max_levels: u32,
     ) -> Result<(), Cancelled> {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
@@ -80,7 +81,7 @@ impl Bulges {
                     found,
                 };
                 sources.show(face, is_stopped, &mut looking);
-                looking.end(face, (hopeless, max_levels))
+                looking.end(face, hopeless, max_levels)
             });
             found.collect::<Vec<_>>()
         })?;
@@ -221,7 +222,7 @@ impl TriangleVisitor for Looking<'_> {
                         .look(self.emission, self.first, &mut self.found);
                 }
                 let turn = self.found.keys[number].turn() as u32;
-                self.waiting.push(quartic, (emitted, turn), (cell, domain));
+                self.waiting.push(quartic, emitted, turn, cell, domain);
             }
             Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
@@ -248,7 +249,7 @@ impl Looking<'_> {
 
     /// The result, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
     /// long as they may be divided.
-    fn end(mut self, face: u32, (hopeless, max_levels): (f64, u32)) -> Bulge {
+    fn end(mut self, face: u32, hopeless: f64, max_levels: u32) -> Bulge {
         self.waiting
             .look(self.emission, self.first, &mut self.found);
         let found = &mut self.found;

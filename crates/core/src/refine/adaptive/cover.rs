@@ -59,13 +59,7 @@ impl Covering<'_> {
             rim: Rim::default(),
             halved: Vec::new(),
         };
-        walk.node(
-            word,
-            (NodeAddress::root(face), ParamTriangle::WHOLE),
-            sides,
-            Surface::Unknown,
-            &mut count,
-        );
+        walk.face(face, sides, Surface::Unknown, &mut count);
         *edge_vertices = walk.edge_vertices;
         let mut piece = None;
         let diagonals = count.halved.iter().map(|&(place, unsplit)| {

@@ -171,7 +171,7 @@ impl Divider<'_> {
             let refined = patch.refined(control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
             self.judge.allowance = self.allowance(face, &Seen::of(&corners), &middles);
-            self.general(&patch, (&refined, middles), corners, open, place)
+            self.general(&patch, &refined, middles, corners, open, place)
         };
         self.piece.roots.push(word);
         Proven {
@@ -199,14 +199,15 @@ impl Divider<'_> {
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-        self.general(patch, (&refined, middles), corners, open, place)
+        self.general(patch, &refined, middles, corners, open, place)
     }
 
     /// A piece that is not regular, with its refinement and the limits in the middles of its edges.
     fn general(
         &mut self,
         patch: &Patch,
-        (refined, middles): (&RefinedPatch<'_>, [LimitPoint; 3]),
+        refined: &RefinedPatch<'_>,
+        middles: [LimitPoint; 3],
         corners: [LimitPoint; 3],
         open: [bool; 3],
         place: NodeAddress,

@@ -88,7 +88,7 @@ impl Emitter<'_> {
             Some(before) => {
                 let mut arrays = Arrays::taken(before);
                 let shifts = self.shifts(before, &is_new, &numbers, &first_triangles, watch)?;
-                arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
+                arrays.rearrange(length, &shifts.0, &shifts.1, watch)?;
                 arrays
             }
             None => {

@@ -117,14 +117,8 @@ impl Sources<'_> {
             is_stopped,
             visitor,
         };
-        let at = (NodeAddress::root(face), ParamTriangle::WHOLE);
-        walk.node(
-            trees.root(face),
-            at,
-            sides,
-            control.piece(face).surface(control.rules),
-            &mut leaves,
-        );
+        let piece = control.piece(face);
+        walk.face(face, sides, piece.surface(control.rules), &mut leaves);
     }
 }
 
@@ -199,7 +193,7 @@ impl<B: TriangleVisitor> Leaves<'_, B> {
             return;
         }
         if bits == 0 {
-            return self.whole(node, (i, j), (place, open));
+            return self.whole(node, i, j, place, open);
         }
         let mut from_end = false;
         if bits.count_ones() == 2
@@ -282,12 +276,7 @@ impl<B: TriangleVisitor> Leaves<'_, B> {
     }
 
     /// An upright leaf none of whose edges is split.
-    fn whole(
-        &mut self,
-        node: &Node<'_>,
-        (i, j): (usize, usize),
-        (place, open): (NodeAddress, [bool; 3]),
-    ) {
+    fn whole(&mut self, node: &Node<'_>, i: usize, j: usize, place: NodeAddress, open: [bool; 3]) {
         let number = self.next;
         self.next += 1;
         let vertices = self.triangles[number as usize];

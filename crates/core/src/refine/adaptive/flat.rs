@@ -206,7 +206,7 @@ impl FlatRegions {
             }
         }
         found.by_rim = found.by_rim(control, options, most, watch)?;
-        found.join(control, (most, size), watch)?;
+        found.join(control, most, size, watch)?;
         Ok(found)
     }
 

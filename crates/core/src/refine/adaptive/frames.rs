@@ -70,7 +70,7 @@ pub(in crate::refine) fn frames(
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
         all.push(task(mesh).with_engine(observer, |engine| {
-            proven(engine, &mut state, (&refined, &frame), options)
+            proven(engine, &mut state, &refined, &frame, options)
         })?);
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
@@ -156,7 +156,8 @@ struct Proven {
 fn proven(
     engine: &Engine<'_>,
     state: &mut State,
-    (refined, frame): (&Exact, &Frame),
+    refined: &Exact,
+    frame: &Frame,
     options: &ExactOptions,
 ) -> Result<Proven, RefineError> {
     let mut emission = engine.emit_all(state)?;

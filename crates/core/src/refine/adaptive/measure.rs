@@ -168,7 +168,7 @@ impl TriangleVisitor for Measuring<'_> {
                 value: height.least(),
                 pixels: 0.0,
             };
-            return self.take((emitted.number, emitted.place), value, 0.0);
+            return self.take(emitted, value, 0.0);
         }
         let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
@@ -215,7 +215,7 @@ impl TriangleVisitor for Measuring<'_> {
             },
             ..value
         };
-        self.take((emitted.number, emitted.place), value, highest);
+        self.take(emitted, value, highest);
     }
 }
 
@@ -282,7 +282,8 @@ impl<'a> Measuring<'a> {
     }
 
     /// Takes the value of a triangle and the height of the surface over it.
-    fn take(&mut self, (number, place): (u32, NodeAddress), value: Value, height: f64) {
+    fn take(&mut self, emitted: &Emitted, value: Value, height: f64) {
+        let Emitted { number, place, .. } = *emitted;
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
             *known = FoundLast {
@@ -315,7 +316,7 @@ impl<'a> Measuring<'a> {
         };
         let bound = deviation.own;
         self.take(
-            (emitted.number, emitted.place),
+            emitted,
             Value {
                 bound,
                 value: bound,

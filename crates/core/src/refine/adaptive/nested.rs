@@ -275,7 +275,8 @@ impl Descent for Looking<'_> {
                 let target = greatest.max(NEGLIGIBLE * enough).min(enough);
                 let bound = sheet.off(
                     part,
-                    (part.corners(corners, middles), corners),
+                    part.corners(corners, middles),
+                    corners,
                     target,
                     self.rules,
                 );

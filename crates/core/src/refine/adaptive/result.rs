@@ -134,11 +134,9 @@ impl Engine<'_> {
             sides,
             junctions,
         };
-        let corners = control.mesh.vertex_count();
-        let (whole, unfolded) =
-            control
-                .flat
-                .merge(control, whole, (&starts, &sharp), corners, gaps, watch)?;
+        let (whole, unfolded) = control
+            .flat
+            .merge(control, whole, &starts, &sharp, gaps, watch)?;
         let Assembled {
             positions,
             normals,

@@ -248,7 +248,8 @@ impl Engine<'_> {
                 &sources,
                 watch,
                 &marked(is_changed),
-                (allowed, self.max_levels),
+                allowed,
+                self.max_levels,
             )?;
             let (offsets, faces) = bulges.offsets(control, emission, allowed, watch)?;
             emission.shift(offsets, &faces, watch)?;

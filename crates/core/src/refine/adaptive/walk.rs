@@ -199,11 +199,23 @@ impl<'a> Walk<'a> {
         self.until_asked == 0
     }
 
-    /// Walks over a node's leaves. A walk that is stopped leaves leaves out.
-    pub(super) fn node<V: Visitor>(
+    /// Walks over a control face's leaves. A walk that is stopped leaves some out.
+    pub(super) fn face<V: Visitor>(
+        &mut self,
+        face: u32,
+        sides: [Side; 3],
+        surface: Surface<'_>,
+        visitor: &mut V,
+    ) {
+        let (word, place) = (self.trees.root(face), NodeAddress::root(face));
+        self.node(word, place, ParamTriangle::WHOLE, sides, surface, visitor);
+    }
+
+    fn node<V: Visitor>(
         &mut self,
         word: u32,
-        (place, domain): (NodeAddress, ParamTriangle),
+        place: NodeAddress,
+        domain: ParamTriangle,
         sides: [Side; 3],
         surface: Surface<'_>,
         visitor: &mut V,
@@ -262,8 +274,9 @@ impl<'a> Walk<'a> {
                 own[(child + 2) % 3] = halves[(child + 2) % 3][1];
                 own
             };
-            let at = (place.child(child), domain.child(child));
-            self.node(children[child], at, own, surface.child(child), visitor);
+            let (place, domain) = (place.child(child), domain.child(child));
+            let surface = surface.child(child);
+            self.node(children[child], place, domain, own, surface, visitor);
         }
         self.edge_vertices.truncate(floor);
     }

@@ -219,7 +219,7 @@ fn shapes(
 fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighed> {
     let first = shape.members.first()?;
     let face = FaceId(faces[first.group].of);
-    let (standing, pieces) = probe.standing((&first.support, face), &shape.places)?;
+    let (standing, pieces) = probe.standing(&first.support, face, &shape.places)?;
     let mut rows = vec![None; shape.places.len()];
     let mut blocks = vec![None; pieces as usize];
     let (mut row_count, mut block_count) = (0u32, 0u32);

@@ -82,7 +82,8 @@ impl<'a> Probe<'a> {
     /// The pieces of the places, and the number of regular pieces; `None` where a place is on none.
     pub(super) fn standing(
         &self,
-        (support, face): (&Support, FaceId),
+        support: &Support,
+        face: FaceId,
         places: &[ParamPoint],
     ) -> Option<(Vec<Standing>, u32)> {
         let mut found = vec![None; places.len()];

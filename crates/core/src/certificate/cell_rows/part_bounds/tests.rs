@@ -228,7 +228,7 @@ fn what_has_no_bound_is_within_nothing() {
         let mut found = Found::default();
         (found.bound[0], found.bound[1]) = (f32::INFINITY, f32::NAN);
         let (mut extent, mut marks) = (RowExtent::NONE, [Mark::Passes; 3]);
-        found.mark((3, 1e30), &target, &mut extent, &mut marks);
+        found.mark(1e30, &target, &mut extent, &mut marks);
         assert_eq!(marks, [Mark::Open, Mark::Open, Mark::Passes], "{distance}");
     }
 }

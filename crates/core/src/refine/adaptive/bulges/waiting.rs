@@ -50,8 +50,10 @@ impl Waiting {
     pub(super) fn push(
         &mut self,
         quartic: &QuarticPiece,
-        (emitted, turn): (&Emitted, u32),
-        (cell, domain): (Cell, ParamTriangle),
+        emitted: &Emitted,
+        turn: u32,
+        cell: Cell,
+        domain: ParamTriangle,
     ) {
         if self.quartic.is_none() {
             self.quartic = Some(core::ptr::from_ref(quartic));

@@ -108,7 +108,7 @@ impl Divider<'_> {
                 marks: &levels[..tested],
                 first: least,
             };
-            self.row_node(&found, (0, 0, false), 0)
+            self.row_node(&found, 0, 0, false, 0)
         };
         self.marks = levels;
         AtOnce::Decided(word)
@@ -118,7 +118,9 @@ impl Divider<'_> {
     fn row_node(
         &mut self,
         rows: &Rows<'_>,
-        (i, j, is_inverted): (usize, usize, bool),
+        i: usize,
+        j: usize,
+        is_inverted: bool,
         level: u32,
     ) -> u32 {
         if level >= rows.first {
@@ -172,8 +174,8 @@ impl Divider<'_> {
             ]
         };
         let mut children = [LEAF; 4];
-        for (word, at) in children.iter_mut().zip(below) {
-            *word = self.row_node(rows, at, level + 1);
+        for (word, (i, j, is_inverted)) in children.iter_mut().zip(below) {
+            *word = self.row_node(rows, i, j, is_inverted, level + 1);
         }
         self.piece.node(children)
     }

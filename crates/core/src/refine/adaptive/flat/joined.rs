@@ -18,7 +18,8 @@ impl FlatRegions {
     pub(super) fn join(
         &mut self,
         control: &Control<'_>,
-        (most, size): (f64, f64),
+        most: f64,
+        size: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let count = self.regions.len() as u32;

@@ -45,21 +45,22 @@ impl Fate {
 
 impl FlatRegions {
     /// Triangulates the regions and strips anew; gives how many of them were folded, too. `starts` has the first triangle of each control
-    /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay. Notes
+    /// face and one more, `sharp` the half-edges along sharp edges. Control vertices stay. Notes
     /// regions that should have been triangulated and could not be.
     pub(in super::super) fn merge(
         &self,
         control: &Control<'_>,
         whole: Assembled,
-        (starts, sharp): (&[u32], &HashSet<u32>),
-        corners: usize,
+        starts: &[u32],
+        sharp: &HashSet<u32>,
         gaps: &mut RimGaps,
         watch: &SharedWatch<'_>,
     ) -> Result<(Assembled, usize), Cancelled> {
         if self.regions.is_empty() && self.straight.is_empty() {
             return Ok((whole, 0));
         }
-        let net = whole.net((starts, sharp), control.kept, corners);
+        let corners = control.mesh.vertex_count();
+        let net = whole.net(starts, sharp, control.kept, corners);
         let mut regions = self.regions(&net, watch)?;
         let coverings = self.coverings(control, &net, &mut regions, gaps, watch)?;
         if coverings.iter().all(Option::is_none) {
@@ -92,7 +93,7 @@ impl FlatRegions {
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
             let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
-                let fate = |region| self.fate(region, control, (net, regions), is_stopped);
+                let fate = |region| self.fate(region, control, net, regions, is_stopped);
                 block.map(fate).collect::<Vec<_>>()
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
@@ -152,7 +153,8 @@ impl FlatRegions {
         &self,
         region: usize,
         control: &Control<'_>,
-        (net, regions): (&Net<'_>, &Regions),
+        net: &Net<'_>,
+        regions: &Regions,
         is_stopped: &IsStopped<'_>,
     ) -> Fate {
         let own = &regions.list[region];
@@ -166,7 +168,7 @@ impl FlatRegions {
             return Fate::Stays;
         }
         let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
-        let Some(outline) = Outline::of(own, net, regions, (&mut flat, is_stopped)) else {
+        let Some(outline) = Outline::of(own, net, regions, &mut flat, is_stopped) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
         let has_turned = outline.has_turned
@@ -178,8 +180,11 @@ impl FlatRegions {
         }
         let is_wanted = by_rim || was_folded;
         let covering = Self::covering(
-            (outline, flat),
-            (before, is_wanted, was_folded),
+            outline,
+            flat,
+            before,
+            is_wanted,
+            was_folded,
             self.off_planes,
             is_stopped,
         );
@@ -192,8 +197,11 @@ impl FlatRegions {
 
     /// Triangulates the inside of an outline. `None` unless it has the area of the triangles `before`, and fewer triangles or `is_wanted`.
     fn covering(
-        (outline, mut flat): (Outline, Flattened<'_>),
-        (before, is_wanted, was_folded): (&[u32], bool, bool),
+        outline: Outline,
+        mut flat: Flattened<'_>,
+        before: &[u32],
+        is_wanted: bool,
+        was_folded: bool,
         off_planes: f64,
         is_stopped: &IsStopped<'_>,
     ) -> Option<Covering> {
@@ -251,7 +259,8 @@ impl Outline {
         own: &Region,
         net: &Net<'_>,
         regions: &Regions,
-        (flat, is_stopped): (&mut Flattened<'_>, &IsStopped<'_>),
+        flat: &mut Flattened<'_>,
+        is_stopped: &IsStopped<'_>,
     ) -> Option<Self> {
         let (rim, after) = (Vec::new(), HashMap::new());
         let mut found = Self {

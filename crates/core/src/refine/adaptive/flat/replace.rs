@@ -30,7 +30,8 @@ pub(in super::super) struct Assembled {
 impl Assembled {
     pub(super) fn net<'a>(
         &'a self,
-        (starts, sharp): (&'a [u32], &'a HashSet<u32>),
+        starts: &'a [u32],
+        sharp: &'a HashSet<u32>,
         kept: &'a KeptFaces,
         corners: usize,
     ) -> Net<'a> {
