@@ -18,7 +18,7 @@ pub use derivatives::{Curvature, Derivatives};
 
 use std::borrow::Cow;
 
-use crate::certificate::Sheet;
+use crate::certificate::ParamPatch;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::{LimitError, SidedNormals};
 use crate::mesh::{Mesh, Sharpness};
@@ -191,10 +191,10 @@ impl<'a> LimitSurface<'a> {
     }
 
     /// The surface over a face, and the rules by which it is refined.
-    pub(crate) fn sheet(&self, face: FaceId) -> (Sheet, &Rules<'a>) {
+    pub(crate) fn sheet(&self, face: FaceId) -> (ParamPatch, &Rules<'a>) {
         let corners = self.corner_positions(face);
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
-        (Sheet { patch, corners }, &self.rules)
+        (ParamPatch { patch, corners }, &self.rules)
     }
 
     /// The rules by which its pieces are refined.

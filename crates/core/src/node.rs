@@ -10,13 +10,13 @@ use crate::mesh::{Mesh, Topology};
 
 /// A node's place: control face, levels below it, and the child taken on each, the last in the lowest two bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct Place {
+pub(crate) struct NodeAddress {
     pub(crate) face: u32,
     pub(crate) level: u32,
     pub(crate) path: u64,
 }
 
-impl Place {
+impl NodeAddress {
     pub(crate) fn root(face: u32) -> Self {
         Self {
             face,
@@ -48,7 +48,7 @@ impl Place {
         self,
         depth: u32,
         (mut i, mut j): (usize, usize),
-        mut is_headlong: bool,
+        mut is_inverted: bool,
     ) -> Self {
         let mut place = self;
         for level in (0..depth).rev() {
@@ -59,11 +59,11 @@ impl Place {
             } else if j >= half {
                 j -= half;
                 2
-            } else if i + j + 1 + usize::from(is_headlong) <= half {
+            } else if i + j + 1 + usize::from(is_inverted) <= half {
                 0
             } else {
                 // The middle child stands the other way.
-                (i, j, is_headlong) = (half - 1 - i, half - 1 - j, !is_headlong);
+                (i, j, is_inverted) = (half - 1 - i, half - 1 - j, !is_inverted);
                 3
             };
             place = place.child(child);
@@ -122,7 +122,7 @@ pub(crate) fn along_edge(edge: usize, second: bool) -> usize {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Beyond {
     /// The node of the same level in the same control face; its edge has the same number.
-    Same(Place),
+    Same(NodeAddress),
     /// The node lies along an edge of the control face.
     Control(Along),
 }
@@ -138,7 +138,7 @@ pub(crate) struct Along {
 
 impl Along {
     /// The node of the control face of `half_edge`, which runs along the same edge, the other way if `turned`.
-    pub(crate) fn node_at(self, half_edge: u32, turned: bool) -> (Place, usize) {
+    pub(crate) fn node_at(self, half_edge: u32, turned: bool) -> (NodeAddress, usize) {
         let index = if turned {
             (1 << self.level) - 1 - self.index
         } else {
@@ -146,14 +146,14 @@ impl Along {
         };
         let edge = (half_edge % 3) as usize;
         (
-            Place::root(half_edge / 3).along(edge, self.level, index),
+            NodeAddress::root(half_edge / 3).along(edge, self.level, index),
             edge,
         )
     }
 }
 
 /// The region beyond an edge of a node, on the node's own level.
-pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
+pub(crate) fn beyond(place: NodeAddress, edge: usize) -> Beyond {
     let (mut path, mut level) = (place.path, place.level);
     let (mut index, mut depth) = (0u32, 0u32);
     while level > 0 {
@@ -165,7 +165,7 @@ pub(crate) fn beyond(place: Place, edge: usize) -> Beyond {
             for bit in (0..depth).rev() {
                 path = path << 2 | along_edge(edge, index >> bit & 1 == 0) as u64;
             }
-            return Beyond::Same(Place { path, ..place });
+            return Beyond::Same(NodeAddress { path, ..place });
         }
         index |= u32::from(child != edge) << depth;
         depth += 1;
@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     /// Where a node's corners are, in units of its control face's edge over 2 to the level.
-    fn corners(place: Place) -> [[i64; 2]; 3] {
+    fn corners(place: NodeAddress) -> [[i64; 2]; 3] {
         let full = 1i64 << place.level;
         let mut at = [[0, 0], [full, 0], [0, full]];
         for level in 0..place.level {
@@ -274,7 +274,7 @@ mod tests {
     fn nodes_beyond_an_edge_share_it() {
         for level in 0..5u32 {
             for path in 0..1u64 << (2 * level) {
-                let place = Place {
+                let place = NodeAddress {
                     face: 7,
                     level,
                     path,
@@ -303,7 +303,7 @@ mod tests {
 
     #[test]
     fn nodes_are_found_by_column_and_row() {
-        let node = Place {
+        let node = NodeAddress {
             face: 0,
             level: 2,
             path: 0b11_01,

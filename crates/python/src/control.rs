@@ -184,7 +184,7 @@ impl Tables {
 pub(crate) struct InterpolatedTold {
     method: InterpolationMethod,
     residual: f64,
-    passed_by: usize,
+    relaxed: usize,
     folded_regions: usize,
     displacement: f64,
 }
@@ -194,7 +194,7 @@ impl InterpolatedTold {
         Self {
             method: found.method,
             residual: found.residual,
-            passed_by: found.passed_by.len(),
+            relaxed: found.relaxed.len(),
             folded_regions,
             displacement: found.displacement,
         }
@@ -211,7 +211,7 @@ impl InterpolatedTold {
         };
         dict.set_item("method", method)?;
         dict.set_item("residual", self.residual)?;
-        dict.set_item("passed_by", self.passed_by)?;
+        dict.set_item("relaxed", self.relaxed)?;
         dict.set_item("folded_regions", self.folded_regions)?;
         dict.set_item("displacement", self.displacement)?;
         Ok(dict)

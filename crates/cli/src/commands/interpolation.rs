@@ -48,7 +48,7 @@ pub(super) fn apply(
 
 /// Where the surface of a part passes by vertices, because through them it would fold.
 fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion) -> String {
-    let vertices = counted(found.passed_by.len(), "vertex", "vertices");
+    let vertices = counted(found.relaxed.len(), "vertex", "vertices");
     let faces = counted(largest.faces.len(), "face", "faces");
     let [low, high] = largest.bounding_box.map(point);
     let largest = if regions == 1 {
@@ -63,10 +63,10 @@ fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion)
 }
 
 fn in_words(found: &Interpolated, within: f64, diagonal: f64) -> String {
-    let passed_by = found.passed_by.len();
-    let mut vertices = counted(found.mesh.vertex_count() - passed_by, "vertex", "vertices");
-    if passed_by > 0 {
-        let others = counted(passed_by, "vertex", "vertices");
+    let relaxed = found.relaxed.len();
+    let mut vertices = counted(found.mesh.vertex_count() - relaxed, "vertex", "vertices");
+    if relaxed > 0 {
+        let others = counted(relaxed, "vertex", "vertices");
         vertices +=
             &format!(", and by {others} next to much longer edges of sharp lines and boundaries");
     }

@@ -15,10 +15,10 @@ pub(crate) struct InterpolationReport {
     pub(crate) method: &'static str,
     /// Steps of conjugate gradients.
     pub(crate) iterations: usize,
-    /// The greatest distance of a limit from its vertex, but for relaxed ones, which `passed_by` counts.
+    /// The greatest distance of a limit from its vertex, but for relaxed ones, which `relaxed` counts.
     pub(crate) residual: f64,
     /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries, and those in regions that would fold.
-    pub(crate) passed_by: usize,
+    pub(crate) relaxed: usize,
     /// Regions of a part that would fold if the surface passed through all vertices.
     pub(crate) folded_regions: usize,
     /// The greatest distance of a control point from its vertex.
@@ -51,7 +51,7 @@ impl InterpolationReport {
             },
             iterations: found.iterations,
             residual: found.residual,
-            passed_by: found.passed_by.len(),
+            relaxed: found.relaxed.len(),
             folded_regions,
             displacement: found.displacement,
             displacement_percent: percent(found.displacement, diagonal.max(f64::MIN_POSITIVE)),

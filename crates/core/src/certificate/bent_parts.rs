@@ -102,7 +102,7 @@ impl<'a> Bender<'a> {
         }
     }
 
-    /// Parts with edges along the axes of the domain, given by their first corners, with sizes that are negative for those on their heads.
+    /// Parts with edges along the axes of the domain, given by their first corners, with sizes that are negative for inverted ones.
     #[inline]
     pub(crate) fn even(&self, [u, v]: Places, size: f64x4) -> Bent {
         let ([uu, _, vv], half, third) = (self.jet.second(), 0.5 * size, size * (1.0 / 3.0));

@@ -20,7 +20,7 @@
 //! surface leaves the plane; the neighbour then covers what T does not. Let T′ be the triangle
 //! beyond edge e, θ the angle between both planes, σ = 2 sin(θ/2). A point at height h over the
 //! plane of T, outside e by g, is within |h| + σg of T′ if its projection lies in T′ turned into
-//! the plane of T ([`Deviation::height`], [`Deviation::drift`]); |h| + σ max(0, g) is convex. Its
+//! the plane of T ([`Deviation::height`], [`Deviation::displacement`]); |h| + σ max(0, g) is convex. Its
 //! projection lies there where g is at most tan x times its distance along e from either end, x
 //! being at most the angles of T′ at e and at most half of what the angles of T at e leave of π, so
 //! that T and its three flaps are convex together ([`Deviation::slopes`]). For the other way take
@@ -53,7 +53,7 @@
 //! cone at the vertex, so that slopes stay bounded there. (Any p and t would do.)
 //!
 //! At semi-sharp edges, Ŝ is the piece with infinitely sharp ones, and R its distance
-//! (`lasting_twin` in [`crate::patch`]). As its corners may be R from those of T, T counts as one
+//! (`infinitely_sharp_twin` in [`crate::patch`]). As its corners may be R from those of T, T counts as one
 //! whose corners were moved ([`Deviation::off`]).
 //!
 //! Elsewhere Ŝ is the point of T nearest to S, and for curves the nearest of the edge: then R is

@@ -60,47 +60,47 @@ pub(crate) struct RowTarget {
     /// does not count.
     pub(crate) range_share: f64,
     /// The greatest normal deviation of the adjacent triangles, as a chord.
-    pub(crate) tilt: f64,
+    pub(crate) normal_deviation: f64,
     /// The least tangent of the angles of the adjacent triangles.
     pub(crate) slope: f64,
     /// The share of the least of 1 and the tangents of a part's own angles that tangential
     /// displacements over an edge may have ([`TriangleFrame::slope_at`]).
     ///
     /// [`TriangleFrame::slope_at`]: super::triangle_frame::TriangleFrame::slope_at
-    pub(crate) drift_share: f64,
+    pub(crate) displacement_share: f64,
 }
 
 /// The greatest bounds of the parts that passed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowExtent {
-    pub(crate) tilt: f64,
+    pub(crate) normal_deviation: f64,
     pub(crate) slope: f64,
-    pub(crate) drift_slope: f64,
+    pub(crate) displacement_slope: f64,
     pub(crate) bound: f64,
 }
 
 impl RowExtent {
     pub(crate) const NONE: Self = Self {
-        tilt: 0.0,
+        normal_deviation: 0.0,
         slope: f64::INFINITY,
-        drift_slope: 0.0,
+        displacement_slope: 0.0,
         bound: 0.0,
     };
 }
 
-/// Marks of the parts of a level: upright ones and those on their heads, by row and column.
+/// Marks of the parts of a level: upright ones and inverted ones, by row and column.
 #[derive(Default)]
 pub(crate) struct Marks {
     n: usize,
     upright: Vec<Mark>,
-    headlong: Vec<Mark>,
+    inverted: Vec<Mark>,
 }
 
 impl Marks {
     /// The mark of the part in column i and row j.
-    pub(crate) fn at(&self, i: usize, j: usize, is_headlong: bool) -> Mark {
-        let list = if is_headlong {
-            &self.headlong
+    pub(crate) fn at(&self, i: usize, j: usize, is_inverted: bool) -> Mark {
+        let list = if is_inverted {
+            &self.inverted
         } else {
             &self.upright
         };
@@ -112,10 +112,10 @@ impl Marks {
         (0..self.n).all(|j| {
             let count = self.n - j;
             let upright = &self.upright[j * self.n..j * self.n + count];
-            let headlong = &self.headlong[j * self.n..j * self.n + count - 1];
+            let inverted = &self.inverted[j * self.n..j * self.n + count - 1];
             upright
                 .iter()
-                .chain(headlong)
+                .chain(inverted)
                 .all(|&mark| mark == Mark::Passes)
         })
     }
@@ -195,7 +195,7 @@ pub(crate) struct RowBlock<'a> {
 }
 
 impl<'a> RowBlock<'a> {
-    /// The node whose first corner is given, with edges of this length in the domain, negative for nodes on their heads.
+    /// The node whose first corner is given, with edges of this length in the domain, negative for inverted nodes.
     pub(crate) fn of(piece: &'a Quartic, jet: &'a QuarticJet, at: Domain, size: f64) -> Self {
         // Third derivatives along edges and of the bubble are linear: greatest in a corner.
         let corners = [at, [at[0] + size, at[1]], [at[0], at[1] + size]];
@@ -330,7 +330,7 @@ impl CellRows {
     ) {
         let n = 1usize << divisions;
         marks.n = n;
-        for list in [&mut marks.upright, &mut marks.headlong] {
+        for list in [&mut marks.upright, &mut marks.inverted] {
             list.clear();
             list.resize(n * n, Mark::Passes);
         }
@@ -341,10 +341,10 @@ impl CellRows {
             few.fill(block, n, scale);
             measure(n * n, &few.parts(), &rest, target, &mut self.found);
             let mut found = [Mark::Passes; FEW];
-            self.found.mark((n * n, scale), target, extent, &mut found);
-            for (number, &(i, j, is_headlong)) in few.places[..n * n].iter().enumerate() {
-                let list = if is_headlong {
-                    &mut marks.headlong
+            self.found.mark(scale, target, extent, &mut found[..n * n]);
+            for (number, &(i, j, is_inverted)) in few.places[..n * n].iter().enumerate() {
+                let list = if is_inverted {
+                    &mut marks.inverted
                 } else {
                     &mut marks.upright
                 };
@@ -352,8 +352,7 @@ impl CellRows {
             }
             return;
         }
-        let steps = (block.size / n as f64, scale);
-        self.corners[0].fill(block, steps, (0, n), &mut self.normals);
+        self.corners[0].fill(block, scale, 0, n, &mut self.normals);
         for j in 0..n {
             let count = n - j;
             let [first, second] = &mut self.corners;
@@ -362,22 +361,22 @@ impl CellRows {
             } else {
                 (second, first)
             };
-            upper.fill(block, steps, (j + 1, n), &mut self.normals);
+            upper.fill(block, scale, j + 1, n, &mut self.normals);
             self.between
-                .fill(block, steps, (j, count), [&lower.points, &upper.points]);
+                .fill(block, scale, j, n, [&lower.points, &upper.points]);
             let rows =
-                [false, true].map(|is_headlong| self.between.parts(lower, upper, is_headlong));
-            let lists = [&mut marks.upright, &mut marks.headlong];
-            for (is_headlong, (parts, list)) in
+                [false, true].map(|is_inverted| self.between.parts(lower, upper, is_inverted));
+            let lists = [&mut marks.upright, &mut marks.inverted];
+            for (is_inverted, (parts, list)) in
                 [false, true].into_iter().zip(rows.iter().zip(lists))
             {
-                let count = count - usize::from(is_headlong);
+                let count = count - usize::from(is_inverted);
                 if count == 0 {
                     continue;
                 }
                 measure(count, parts, &rest, target, &mut self.found);
                 let own = &mut list[j * n..j * n + count];
-                self.found.mark((count, scale), target, extent, own);
+                self.found.mark(scale, target, extent, own);
             }
         }
     }
@@ -385,14 +384,9 @@ impl CellRows {
 
 impl CornerRow {
     /// Row j of a node whose edges are cut into n: its corners, its edges, and the second derivatives along them.
-    fn fill(
-        &mut self,
-        block: &RowBlock<'_>,
-        (step, scale): (f64, f64),
-        (j, n): (usize, usize),
-        wide: &mut Row,
-    ) {
-        let (v, count) = (block.at[1] + step * j as f64, n - j);
+    fn fill(&mut self, block: &RowBlock<'_>, scale: f64, j: usize, n: usize, wide: &mut Row) {
+        let (step, count) = (block.size / n as f64, n - j);
+        let v = block.at[1] + step * j as f64;
         block.piece.by_axis_along(
             v,
             block.at[0],
@@ -409,20 +403,21 @@ impl CornerRow {
         }
         let ([uu, ..], factor) = (block.jet.second(), step * step * scale);
         self.bends
-            .fill(uu, [block.at[0] + 0.5 * step, v], (step, count), factor);
+            .fill(uu, [block.at[0] + 0.5 * step, v], step, count, factor);
     }
 }
 
 impl Between {
-    /// Fills the differences between row j, with `edges` edges, and the next, by the corners of
-    /// both.
+    /// Fills the differences between row j of a node whose edges are cut into n and the next row, by the corners of both.
     fn fill(
         &mut self,
         block: &RowBlock<'_>,
-        (step, scale): (f64, f64),
-        (j, count): (usize, usize),
+        scale: f64,
+        j: usize,
+        n: usize,
         [lower, upper]: [&Row; 2],
     ) {
+        let (step, count) = (block.size / n as f64, n - j);
         for axis in 0..3 {
             differences(
                 &lower[axis][..count],
@@ -436,8 +431,8 @@ impl Between {
         let across: [DVec3; 6] = from_fn(|i| uu[i] - 2.0 * uv[i] + vv[i]);
         let factor = step * step * scale;
         self.across
-            .fill(&across, [u + 0.5 * step, v], (step, count), factor);
-        self.upward.fill(vv, [u, v], (step, count + 1), factor);
+            .fill(&across, [u + 0.5 * step, v], step, count, factor);
+        self.upward.fill(vv, [u, v], step, count + 1, factor);
     }
 
     /// The parts between two rows: the upright ones, or the inverted ones.
@@ -445,16 +440,16 @@ impl Between {
         &'r self,
         lower: &'r CornerRow,
         upper: &'r CornerRow,
-        is_headlong: bool,
+        is_inverted: bool,
     ) -> Parts<'r> {
-        // Those on their heads have their edge along a row in the upper one, and the others turned.
-        let (own, turned) = if is_headlong { (upper, 1) } else { (lower, 0) };
+        // Inverted ones have their edge along a row in the upper one, and the others turned.
+        let (own, turned) = if is_inverted { (upper, 1) } else { (lower, 0) };
         let size = self
             .across
             .size
             .larger(self.upward.size)
             .larger(own.bends.size);
-        let normals = match is_headlong {
+        let normals = match is_inverted {
             false => [
                 at(&lower.normals, 0),
                 at(&lower.normals, 1),
@@ -468,7 +463,7 @@ impl Between {
         };
         Parts {
             edges: [at(&own.edges, 0), at(&self.edges, turned)],
-            is_turned: is_headlong,
+            is_turned: is_inverted,
             normals,
             bends: [
                 at(&own.bends.along, 0),
@@ -490,7 +485,7 @@ fn differences(from: &[f64], to: &[f64], factor: f64, out: &mut [f32]) {
 
 impl Bends {
     /// A quadratic polynomial in `count` places along a row, times a factor. Values are off by ten roundings of the size at most.
-    fn fill(&mut self, c: &[DVec3; 6], [u, v]: Domain, (step, count): (f64, usize), factor: f64) {
+    fn fill(&mut self, c: &[DVec3; 6], [u, v]: Domain, step: f64, count: usize, factor: f64) {
         // By the number of the place over that of all.
         let length = step * count as f64;
         let (square, linear) = (c[3] * factor, (c[1] + c[4] * v) * factor);

@@ -16,7 +16,7 @@ pub(crate) struct Deviation {
     /// The greatest height over the triangle's plane, and distance to edges without a neighbour.
     pub(crate) height: f64,
     /// How far pieces reach over edges with a neighbour.
-    pub(crate) drift: f64,
+    pub(crate) displacement: f64,
     /// The greatest ratio of that to the distance from the edge's ends, by edge.
     pub(crate) slopes: [f64; 3],
     /// How much of the height may point in any direction rather than along normals.
@@ -29,7 +29,7 @@ impl Deviation {
         Self {
             own: greater(self.own, other.own),
             height: greater(self.height, other.height),
-            drift: greater(self.drift, other.drift),
+            displacement: greater(self.displacement, other.displacement),
             slopes: [0, 1, 2].map(|edge| greater(self.slopes[edge], other.slopes[edge])),
             across: greater(self.across, other.across),
         }
@@ -41,7 +41,7 @@ impl Deviation {
         Self {
             own,
             height: own,
-            drift: 0.0,
+            displacement: 0.0,
             slopes: [0.0; 3],
             across: own,
         }
@@ -62,7 +62,7 @@ impl Deviation {
         Self {
             own: greater(self.own, moved),
             height,
-            drift: self.drift + aside,
+            displacement: self.displacement + aside,
             across,
             ..self
         }
@@ -109,12 +109,12 @@ impl Deviation {
     #[inline]
     fn among_neighbours(&self, chord: f64, slopes: [f64; 3]) -> Option<f64> {
         let can_help = self.is_within(slopes) && chord * chord <= SHARPEST;
-        can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.drift)
+        can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.displacement)
     }
 
     /// The height for which that would be no more than this.
     pub(crate) fn height_within(&self, limit: f64, chord: f64) -> f64 {
-        (limit - chord * self.drift) / (1.0 + 0.5 * chord * chord)
+        (limit - chord * self.displacement) / (1.0 + 0.5 * chord * chord)
     }
 
     /// The bounds with and without neighbours, and which part of the former is along normals.

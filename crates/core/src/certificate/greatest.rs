@@ -27,7 +27,7 @@ struct Greatest<'a> {
     squared: f64,
     /// The part of that distance within the plane.
     side: f64,
-    drift: f64,
+    displacement: f64,
     slopes: [f64; 3],
     /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
     swings: [f64; 3],
@@ -79,10 +79,10 @@ pub(super) fn of_net(
         }
     }
     greatest.most(INNER.map(|at| points[at]));
-    if greatest.is_beside() {
+    if greatest.may_be_outside() {
         let mut bits = inner_points(borders);
         while bits != 0 {
-            greatest.beside(points[bits.trailing_zeros() as usize]);
+            greatest.outside_edges(points[bits.trailing_zeros() as usize]);
             bits &= bits - 1;
         }
     }
@@ -103,8 +103,10 @@ pub(super) fn of_points(
     }
     let mut greatest = Greatest::over(frame);
     inner.iter().for_each(|&point| greatest.most([point]));
-    if greatest.is_beside() {
-        inner.iter().for_each(|&point| greatest.beside(point));
+    if greatest.may_be_outside() {
+        inner
+            .iter()
+            .for_each(|&point| greatest.outside_edges(point));
     }
     for (edge, own) in curves
         .chunk_by(|a, b| a.0 == b.0)
@@ -146,7 +148,7 @@ impl<'a> Greatest<'a> {
             most: f64x4::ZERO,
             squared: 0.0,
             side: 0.0,
-            drift: 0.0,
+            displacement: 0.0,
             slopes: [0.0; 3],
             swings: [0.0; 3],
             beyond: false,
@@ -163,14 +165,14 @@ impl<'a> Greatest<'a> {
 
     /// Whether one of these may be outside an edge.
     #[inline]
-    fn is_beside(&self) -> bool {
+    fn may_be_outside(&self) -> bool {
         let (_, outside) = Trilinear(self.most).split();
         outside.iter().any(|&outside| outside > self.frame.on_edge)
     }
 
     /// Adds a point of the surface that may be outside an edge.
     #[inline]
-    fn beside(&mut self, point: Trilinear) {
+    fn outside_edges(&mut self, point: Trilinear) {
         let on_edge = self.frame.on_edge;
         if !point
             .0
@@ -186,13 +188,13 @@ impl<'a> Greatest<'a> {
             .enumerate()
             .filter(|&(_, outside)| outside > on_edge)
         {
-            let along = point.beside(self.frame, edge).along;
+            let along = point.edge_position(self.frame, edge).along;
             let room = along.min(self.frame.lengths[edge] - along);
             side = side.larger(outside);
             self.slopes[edge] = self.slopes[edge].larger(outside / room);
             self.beyond |= exceeds(0.0, room);
         }
-        self.drift = self.drift.larger(side);
+        self.displacement = self.displacement.larger(side);
         self.side = self.side.larger(side);
         self.squared = self.squared.larger(height * height + side * side);
     }
@@ -214,7 +216,7 @@ impl<'a> Greatest<'a> {
         self.side = self.side.larger(greatest(side));
         self.swings[edge] = self.swings[edge].larger(greatest(swings));
         self.slopes[edge] = self.slopes[edge].larger(greatest(outside & swings));
-        self.drift = self.drift.larger(greatest(outside & out));
+        self.displacement = self.displacement.larger(greatest(outside & out));
         let rooms = is_off.bitselect(room, room + on_edge);
         self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
@@ -227,7 +229,7 @@ impl<'a> Greatest<'a> {
             most,
             squared,
             side,
-            drift,
+            displacement,
             slopes,
             ..
         } = self;
@@ -244,7 +246,7 @@ impl<'a> Greatest<'a> {
         (stays && !self.beyond).then_some(Deviation {
             own,
             height,
-            drift,
+            displacement,
             slopes,
             across: 0.0,
         })

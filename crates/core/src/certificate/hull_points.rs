@@ -30,7 +30,7 @@ pub(super) trait HullPoint: Blend {
     fn height(self, frame: &Self::Frame) -> f64;
 
     /// The position of the point relative to an edge.
-    fn beside(self, frame: &Self::Frame, edge: usize) -> EdgePosition;
+    fn edge_position(self, frame: &Self::Frame, edge: usize) -> EdgePosition;
 
     /// Squared distance to the triangle.
     fn squared(self, frame: &Self::Frame) -> f64;
@@ -77,8 +77,8 @@ impl HullPoint for DVec3 {
         frame.height(self)
     }
 
-    fn beside(self, frame: &TriangleFrame, edge: usize) -> EdgePosition {
-        frame.beside(edge, self)
+    fn edge_position(self, frame: &TriangleFrame, edge: usize) -> EdgePosition {
+        frame.edge_position(edge, self)
     }
 
     fn squared(self, frame: &TriangleFrame) -> f64 {
@@ -122,8 +122,8 @@ impl HullPoint for Trilinear {
         self.split().0
     }
 
-    fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
-        self.beside(frame, edge)
+    fn edge_position(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
+        self.edge_position(frame, edge)
     }
 
     fn squared(self, frame: &TrilinearFrame) -> f64 {
@@ -232,13 +232,13 @@ impl<P: HullPoint> DeviationBound<'_, P> {
         let mut own = height;
         let mut alone = height;
         for edge in 0..3 {
-            let beside = point.beside(self.frame, edge);
-            if exceeds(beside.outside, 0.0) {
+            let position = point.edge_position(self.frame, edge);
+            if exceeds(position.outside, 0.0) {
                 own = f64::INFINITY;
                 if self.open[edge] {
-                    alone = greater(alone, hypotenuse(height, beside.outside));
+                    alone = greater(alone, hypotenuse(height, position.outside));
                 } else {
-                    self.drifted(edge, beside, deviation);
+                    self.displaced(edge, position, deviation);
                 }
             }
         }
@@ -272,13 +272,13 @@ impl<P: HullPoint> DeviationBound<'_, P> {
             deviation.across = greater(deviation.across, own);
         } else {
             deviation.height = greater(deviation.height, point.height(self.frame).abs());
-            let beside = point.beside(self.frame, edge);
-            if exceeds(beside.outside, 0.0) {
-                self.drifted(edge, beside, deviation);
+            let position = point.edge_position(self.frame, edge);
+            if exceeds(position.outside, 0.0) {
+                self.displaced(edge, position, deviation);
             }
         }
         for other in [(edge + 1) % 3, (edge + 2) % 3] {
-            if exceeds(point.beside(self.frame, other).outside, 0.0) {
+            if exceeds(point.edge_position(self.frame, other).outside, 0.0) {
                 deviation.slopes = [f64::INFINITY; 3];
             }
         }
@@ -293,11 +293,13 @@ impl<P: HullPoint> DeviationBound<'_, P> {
         });
     }
 
-    fn drifted(&self, edge: usize, beside: EdgePosition, deviation: &mut Deviation) {
-        let room = beside.along.min(P::length(self.frame, edge) - beside.along);
-        deviation.drift = greater(deviation.drift, beside.outside);
+    fn displaced(&self, edge: usize, position: EdgePosition, deviation: &mut Deviation) {
+        let room = position
+            .along
+            .min(P::length(self.frame, edge) - position.along);
+        deviation.displacement = greater(deviation.displacement, position.outside);
         let slope = if room > 0.0 {
-            beside.outside / room
+            position.outside / room
         } else {
             f64::INFINITY
         };
@@ -367,7 +369,7 @@ mod tests {
                     "{case}: {found:?} {each:?}"
                 );
                 assert!(
-                    near(found.height, each.height) && near(found.drift, each.drift),
+                    near(found.height, each.height) && near(found.displacement, each.displacement),
                     "{case}: {found:?} {each:?}"
                 );
                 assert!(

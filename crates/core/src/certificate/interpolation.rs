@@ -27,12 +27,12 @@ const NEGLIGIBLE: f64 = 0.125;
 
 /// A function over a piece of the control mesh, and its values at the corners.
 #[derive(Clone, Debug)]
-pub(crate) struct Sheet {
+pub(crate) struct ParamPatch {
     pub(crate) patch: Patch,
     pub(crate) corners: [DVec3; 3],
 }
 
-impl Sheet {
+impl ParamPatch {
     /// The bounds over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);
@@ -63,7 +63,8 @@ impl Sheet {
     pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
         self.off(
             part,
-            (self.corners_of(part, rules), self.corners),
+            self.corners_of(part, rules),
+            self.corners,
             target,
             rules,
         )
@@ -75,7 +76,8 @@ impl Sheet {
     pub(crate) fn off(
         &self,
         part: SubTriangle,
-        (own, whole): ([DVec3; 3], [DVec3; 3]),
+        own: [DVec3; 3],
+        whole: [DVec3; 3],
         target: f64,
         rules: &Rules<'_>,
     ) -> f64 {

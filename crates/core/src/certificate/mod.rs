@@ -32,10 +32,10 @@ pub(crate) use cell_rows::{CellRows, MOST_DIVISIONS, Mark, Marks, RowBlock, RowE
 pub(crate) use deviation::Deviation;
 pub(crate) use dihedral::around;
 pub(crate) use effort::Effort;
-pub(crate) use interpolation::Sheet;
+pub(crate) use interpolation::ParamPatch;
 pub(crate) use net_part::NetPart;
 pub(crate) use parametric::SecondDerivatives;
-pub(crate) use quartic_cell::{BesideEdges, Cell, Heights, QuarticJet};
+pub(crate) use quartic_cell::{Cell, EdgeBounds, Heights, QuarticJet};
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 

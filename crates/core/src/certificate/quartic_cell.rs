@@ -170,12 +170,12 @@ impl QuarticJet {
 
     /// The distances of a part of the surface from the edges of the triangle of its corners; `open`
     /// edges have no neighbour. Third and fourth derivatives are bounded over the whole piece.
-    pub(crate) fn beside(
+    pub(crate) fn edge_bounds(
         &self,
         cell: &Cell,
         frame: &TriangleFrame,
         open: [bool; 3],
-    ) -> BesideEdges {
+    ) -> EdgeBounds {
         let bends = self.bends(cell);
         let (third, fourth) = self.most(reach(cell));
         let is_folding = is_folding(
@@ -189,22 +189,22 @@ impl QuarticJet {
             outward: steep,
             along: steep,
         };
-        BesideEdges::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
+        EdgeBounds::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
     }
 
     /// The distances from the edges by the part's own third and fourth derivatives, where the first
     /// is known.
-    pub(crate) fn beside_closely(
+    pub(crate) fn closer_edge_bounds(
         &self,
-        known: &BesideEdges,
+        known: &EdgeBounds,
         cell: &Cell,
         frame: &TriangleFrame,
         open: [bool; 3],
-    ) -> BesideEdges {
-        let BesideEdges { bends, rest, .. } = known;
+    ) -> EdgeBounds {
+        let EdgeBounds { bends, rest, .. } = known;
         let part = self.part(cell);
         let rests = [0, 1, 2].map(|edge| part.rest(edge, frame));
-        BesideEdges::of(
+        EdgeBounds::of(
             frame,
             bends,
             rests,
@@ -314,13 +314,13 @@ impl QuarticJet {
 
 /// The distances of a part of the surface from the edges of its triangle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BesideEdges {
+pub(crate) struct EdgeBounds {
     /// How far curves are from their edges within the triangle's plane.
     side: f64,
     /// The distance from edges without a neighbour.
     open: f64,
     /// How far curves reach over the others.
-    drift: f64,
+    displacement: f64,
     /// The greatest ratio of that to the distance from the edge's ends, by edge.
     slopes: [f64; 3],
     /// The distance of the surface from the triangle, where none of the others is bounded.
@@ -384,7 +384,7 @@ struct EdgeRest {
     along: f64,
 }
 
-impl BesideEdges {
+impl EdgeBounds {
     /// By the second derivatives along the edges in their middles, the share of third and fourth
     /// ones in the curves, whether the surface may fold, and the greatest deviation of second
     /// derivatives along edges.
@@ -401,7 +401,7 @@ impl BesideEdges {
         let mut found = Self {
             side: 0.0,
             open: 0.0,
-            drift: 0.0,
+            displacement: 0.0,
             slopes,
             loose: None,
             bends: *bends,
@@ -423,7 +423,7 @@ impl BesideEdges {
             if open[edge] {
                 found.open = found.open.larger(off);
             } else {
-                found.drift = found.drift.larger(0.125 * outward + by_rest.off);
+                found.displacement = found.displacement.larger(0.125 * outward + by_rest.off);
                 found.slopes[edge] = (0.5 * outward + by_rest.outward) / room;
             }
         }
@@ -453,11 +453,15 @@ impl BesideEdges {
             None => {
                 let alone = hypotenuse(height, self.open);
                 let across = if self.open > 0.0 { alone } else { 0.0 };
-                let (own, drift, slopes) = (hypotenuse(height, self.side), self.drift, self.slopes);
+                let (own, displacement, slopes) = (
+                    hypotenuse(height, self.side),
+                    self.displacement,
+                    self.slopes,
+                );
                 Deviation {
                     own,
                     height: alone,
-                    drift,
+                    displacement,
                     slopes,
                     across,
                 }

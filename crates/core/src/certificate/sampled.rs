@@ -8,7 +8,7 @@ use super::deviation::Deviation;
 use super::hull_points::DeviationBound;
 use super::sub_triangle::SubTriangle;
 use crate::patch::Rules;
-use crate::patch::mesh_form::{Place, SAMPLED_LEVELS};
+use crate::patch::mesh_form::{GridPoint, SAMPLED_LEVELS};
 use crate::patch::mesh_patch::MeshPatch;
 use crate::vector::DVec3;
 
@@ -16,9 +16,9 @@ use crate::vector::DVec3;
 const UNIT: i32 = 1 << SAMPLED_LEVELS;
 
 /// Limit points of a piece.
-pub(crate) struct Samples(Vec<(Place, DVec3)>);
+pub(crate) struct Samples(Vec<(GridPoint, DVec3)>);
 
-fn middle(a: Place, b: Place) -> Place {
+fn middle(a: GridPoint, b: GridPoint) -> GridPoint {
     [0, 1, 2].map(|i| (a[i] + b[i]) / 2)
 }
 
@@ -51,7 +51,7 @@ impl Samples {
 }
 
 /// The places of the corners of a part.
-fn places_of(part: SubTriangle, unit: i32) -> [Place; 3] {
+fn places_of(part: SubTriangle, unit: i32) -> [GridPoint; 3] {
     let whole = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
     let on = |edge: usize| middle(whole[edge % 3], whole[(edge + 1) % 3]);
     let mut corners = whole;
@@ -71,7 +71,7 @@ fn places_of(part: SubTriangle, unit: i32) -> [Place; 3] {
     corners
 }
 
-fn determinant([a, b, c]: [Place; 3]) -> i64 {
+fn determinant([a, b, c]: [GridPoint; 3]) -> i64 {
     let [a, b, c] = [a, b, c].map(|place| place.map(i64::from));
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])

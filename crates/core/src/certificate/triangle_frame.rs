@@ -165,7 +165,7 @@ impl TriangleFrame {
 
     /// The position of a point relative to the edge from corner `edge`.
     #[inline]
-    pub(crate) fn beside(&self, edge: usize, point: DVec3) -> EdgePosition {
+    pub(crate) fn edge_position(&self, edge: usize, point: DVec3) -> EdgePosition {
         let offset = point - self.corners[edge];
         let outside = self.outward[edge].dot(offset);
         EdgePosition {

@@ -118,7 +118,7 @@ impl Trilinear {
     }
 
     /// The position of the projection relative to an edge.
-    pub(super) fn beside(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
+    pub(super) fn edge_position(self, frame: &TrilinearFrame, edge: usize) -> EdgePosition {
         let (_, outside) = self.split();
         let own = outside[edge];
         let [by_before, by_own] = frame.shares_along(edge);
@@ -143,7 +143,7 @@ impl Trilinear {
             return f64::INFINITY;
         }
         let (height, outside) = self.split();
-        let along = self.beside(frame, edge).along;
+        let along = self.edge_position(frame, edge).along;
         let beyond = (-along).max(along - frame.lengths[edge]).max(0.0);
         height * height + outside[edge] * outside[edge] + beyond * beyond
     }
@@ -252,7 +252,10 @@ mod tests {
             let (own, second) = (frame.see(point), frame.see(other));
             near(own.split().0, triangle.height(point), size);
             for edge in 0..3 {
-                let (found, expected) = (own.beside(&frame, edge), triangle.beside(edge, point));
+                let (found, expected) = (
+                    own.edge_position(&frame, edge),
+                    triangle.edge_position(edge, point),
+                );
                 near(found.outside, expected.outside, size);
                 near(found.along, expected.along, size);
                 let squared = triangle.squared_to_edge(edge, point);
@@ -286,7 +289,7 @@ mod tests {
                     assert_eq!(seen.squared_to_edge(&frame, edge), f64::INFINITY, "{point}");
                 }
                 // Nothing that fails closed takes any of these to be within something.
-                let distances = [0, 1, 2].map(|edge| seen.beside(&frame, edge).outside);
+                let distances = [0, 1, 2].map(|edge| seen.edge_position(&frame, edge).outside);
                 let height = seen.split().0.abs();
                 let is_near = |&distance: &f64| distance <= f64::MAX;
                 assert!(

@@ -2,7 +2,6 @@
 
 use super::forest::{Forest, NONE};
 use crate::closure::{Diagonal, closure};
-use crate::vector::DVec3;
 
 /// Marks a slot whose triangle was removed.
 const NOBODY: u32 = u32::MAX;
@@ -103,32 +102,38 @@ pub(super) fn covering(forest: &Forest<'_>, node: u32) -> ([[u32; 3]; 4], usize)
     let split = (0..3)
         .filter(|&edge| splits[edge].is_some())
         .fold(0, |bits, edge| bits | 1 << edge);
-    let label = |label: u8| match usize::from(label) {
-        corner @ 0..3 => corners[corner],
-        middle => splits[middle - 3].unwrap_or(NONE),
+    // The whole edge of a quadrilateral, and the vertices on the edges after and before it.
+    let two = match splits {
+        [None, Some(after), Some(before)] => Some((0, after, before)),
+        [Some(before), None, Some(after)] => Some((1, after, before)),
+        [Some(after), Some(before), None] => Some((2, after, before)),
+        _ => None,
     };
-    let diagonal = if u32::from(split).count_ones() == 2 {
-        let whole = (0..3).find(|&edge| splits[edge].is_none()).unwrap_or(0);
-        let at =
-            |edge: usize| splits[edge].map_or(DVec3::ZERO, |vertex| forest.vertices.at(vertex));
-        let (start, end) = (
-            forest.vertices.at(corners[whole]),
-            forest.vertices.at(corners[(whole + 1) % 3]),
-        );
-        let (after, before) = (at((whole + 1) % 3), at((whole + 2) % 3));
-        if start.distance_squared(after) <= end.distance_squared(before) {
-            Diagonal::FromStart
-        } else {
-            Diagonal::FromEnd
-        }
-    } else {
+    let length = |a: u32, b: u32| {
+        forest
+            .vertices
+            .at(a)
+            .distance_squared(forest.vertices.at(b))
+    };
+    let is_from_start = two.is_none_or(|(whole, after, before)| {
+        length(corners[whole], after) <= length(corners[(whole + 1) % 3], before)
+    });
+    let diagonal = if is_from_start {
         Diagonal::FromStart
+    } else {
+        Diagonal::FromEnd
     };
+    // No triangle has the middle of a whole edge.
+    let [[a, b, c], [d, e, f]] = [corners, splits.map(|split| split.unwrap_or(NONE))];
+    let labelled = [a, b, c, d, e, f];
     let mut found = [[0; 3]; 4];
     let pattern = closure(split, diagonal).triangles();
     found
         .iter_mut()
         .zip(pattern)
-        .for_each(|(triangle, labels)| *triangle = labels.map(label));
+        .for_each(|(triangle, labels)| {
+            *triangle = labels.map(|label| labelled[usize::from(label)]);
+            debug_assert!(!triangle.contains(&NONE));
+        });
     (found, pattern.len())
 }

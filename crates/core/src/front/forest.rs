@@ -11,10 +11,10 @@ use smallvec::SmallVec;
 
 use super::halt::Halt;
 use super::measure::Measure;
-use super::pieces::{Ground, Pieces};
+use super::pieces::{PieceRef, Pieces};
 use crate::criterion::Region;
 use crate::limit_surface::LimitSurface;
-use crate::node::{Along, Beyond, Edges, Place, beyond};
+use crate::node::{Along, Beyond, Edges, NodeAddress, beyond};
 use crate::parallel::{self, Cancelled};
 use crate::patch::child_corners;
 use crate::vector::{DVec3, vector};
@@ -36,7 +36,7 @@ pub(super) enum Across {
 /// A triangle over a part of a control face.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
-    pub(super) place: Place,
+    pub(super) place: NodeAddress,
     pub(super) corners: [u32; 3],
     pub(super) across: [Across; 3],
     pub(super) parent: u32,
@@ -47,7 +47,7 @@ pub(super) struct Node {
     pub(super) triangles: u8,
     pub(super) is_suspect: bool,
     is_touched: bool,
-    ground: Ground,
+    piece: Option<PieceRef>,
 }
 
 /// The values that a demand reads, in one line of the cache.
@@ -148,11 +148,11 @@ impl<'a> Forest<'a> {
                 None => Across::Border,
             });
             nodes.push(Node::new(
-                Place::root(face),
+                NodeAddress::root(face),
                 corners,
                 across,
                 NONE,
-                Ground::Control,
+                None,
             ));
             extents.push(Extent::of(places, value, 0));
         }
@@ -248,7 +248,7 @@ impl<'a> Forest<'a> {
     }
 
     /// The node at a place, if it exists, or where the way there ends.
-    fn find(&self, place: Place) -> Result<u32, u32> {
+    fn find(&self, place: NodeAddress) -> Result<u32, u32> {
         let mut node = place.face;
         for level in 0..place.level {
             match self.node(node).children {
@@ -260,7 +260,7 @@ impl<'a> Forest<'a> {
     }
 
     /// The places of all other nodes along a cut edge, in the order of the group; the first says whose point counts.
-    fn copies_of(&self, place: Place, edge: u8) -> SmallVec<[(Place, u8); 4]> {
+    fn copies_of(&self, place: NodeAddress, edge: u8) -> SmallVec<[(NodeAddress, u8); 4]> {
         let Beyond::Control(along) = beyond(place, usize::from(edge)) else {
             return SmallVec::new();
         };
@@ -333,11 +333,10 @@ impl<'a> Forest<'a> {
 
     /// Divides a node; the nodes beyond its edges exist.
     pub(super) fn divide(&mut self, node: u32) {
-        if matches!(self.node(node).ground, Ground::Control) {
-            let ground = self.pieces.control(self.node(node).place.face);
-            self.node_mut(node).ground = ground;
-        }
-        let parts = self.pieces.parts(self.node(node).ground);
+        let Node { piece, place, .. } = *self.node(node);
+        let piece = piece.unwrap_or_else(|| self.pieces.control(place.face));
+        self.node_mut(node).piece = Some(piece);
+        let parts = self.pieces.parts(piece);
         let middles = [0u8, 1, 2].map(|edge| self.middle_vertex(node, edge));
         let own = self.node_mut(node);
         let slots = core::mem::take(&mut own.triangles);
@@ -346,7 +345,7 @@ impl<'a> Forest<'a> {
         self.released.extend(&triangles[..usize::from(slots)]);
         let first = self.take_four();
         self.node_mut(node).children = first;
-        for (child, (ground, value)) in parts.into_iter().enumerate() {
+        for (child, (piece, value)) in parts.into_iter().enumerate() {
             let mut sides = [Across::Missing; 3];
             for (edge, side) in sides.iter_mut().enumerate() {
                 *side = match child {
@@ -359,7 +358,7 @@ impl<'a> Forest<'a> {
             let at = child_corners(corners, middles, child);
             let at_places = at.map(|vertex| self.vertices.at(vertex));
             let index = (first as usize) + child;
-            self.nodes[index] = Node::new(place.child(child), at, sides, node, ground);
+            self.nodes[index] = Node::new(place.child(child), at, sides, node, Some(piece));
             let stamp = self.extents[index].stamp;
             self.extents[index] = Extent {
                 stamp,
@@ -373,15 +372,15 @@ impl<'a> Forest<'a> {
                     self.touch(other);
                 } else {
                     let side = u32::from(side);
-                    self.join((first + edge, edge), (theirs + (side + 1) % 3, side));
-                    self.join((first + (edge + 1) % 3, edge), (theirs + side, side));
+                    self.join(first + edge, edge, theirs + (side + 1) % 3, side);
+                    self.join(first + (edge + 1) % 3, edge, theirs + side, side);
                 }
             }
         }
         (0..4).for_each(|child| self.touch(first + child));
     }
 
-    fn join(&mut self, (a, edge): (u32, u32), (b, side): (u32, u32)) {
+    fn join(&mut self, a: u32, edge: u32, b: u32, side: u32) {
         self.node_mut(a).across[edge as usize] = Across::Node(b, side as u8);
         self.node_mut(b).across[side as usize] = Across::Node(a, edge as u8);
     }
@@ -392,11 +391,11 @@ impl<'a> Forest<'a> {
         }
         let first = self.nodes.len();
         let blank = Node::new(
-            Place::root(0),
+            NodeAddress::root(0),
             [0; 3],
             [Across::Border; 3],
             NONE,
-            Ground::Control,
+            None,
         );
         self.nodes.resize(first + 4, blank);
         self.extents
@@ -444,22 +443,24 @@ impl<'a> Forest<'a> {
         let (teller, side) = all
             .min_by_key(|&(node, edge)| (key(node), edge))
             .unwrap_or((node, edge));
-        let Node { ground, place, .. } = self.node(teller);
-        self.pieces.middle(*ground, place.face, usize::from(side))
+        let Node { piece, place, .. } = self.node(teller);
+        self.pieces.middle(*piece, place.face, usize::from(side))
     }
 
     /// Undoes a division; the children are not divided.
     pub(super) fn merge(&mut self, node: u32) {
         let own = self.node_mut(node);
         let first = core::mem::replace(&mut own.children, NONE);
-        let (middles, across, ground) = (own.own, own.across, own.ground);
+        let (middles, across, piece) = (own.own, own.across, own.piece);
         let is_root = own.parent == NONE;
         for child in first..first + 4 {
             let own = self.node_mut(child);
             let (slots, count) = (own.own, core::mem::take(&mut own.triangles));
-            let theirs = own.ground;
+            let theirs = own.piece;
             self.released.extend(&slots[..usize::from(count)]);
-            if matches!(ground, Ground::General(_) | Ground::Sampled(_)) {
+            if let (Some(PieceRef::General(_) | PieceRef::Sampled(_)), Some(theirs)) =
+                (piece, theirs)
+            {
                 self.pieces.give_back(theirs);
             }
             self.node_mut(child).parent = NONE;
@@ -467,8 +468,9 @@ impl<'a> Forest<'a> {
             extent.stamp = extent.stamp.wrapping_add(1);
         }
         if is_root {
-            self.pieces.give_back(ground);
-            self.node_mut(node).ground = Ground::Control;
+            if let Some(piece) = self.node_mut(node).piece.take() {
+                self.pieces.give_back(piece);
+            }
         }
         self.free.push(first);
         for edge in 0..3u8 {
@@ -517,11 +519,11 @@ impl<'a> Forest<'a> {
 
 impl Node {
     fn new(
-        place: Place,
+        place: NodeAddress,
         corners: [u32; 3],
         across: [Across; 3],
         parent: u32,
-        ground: Ground,
+        piece: Option<PieceRef>,
     ) -> Self {
         Self {
             place,
@@ -533,7 +535,7 @@ impl Node {
             triangles: 0,
             is_suspect: false,
             is_touched: false,
-            ground,
+            piece,
         }
     }
 }

@@ -60,17 +60,18 @@ pub(super) fn loosen(forest: &mut Forest<'_>, lost: Vec<u32>, halt: &mut Halt<'_
     };
     for &node in &suspects {
         if settling.forest.node(node).is_suspect && settling.has_reason(node) {
-            settling.acquit(node);
+            settling.rederive(node);
         }
     }
     settling.run();
     let Settling { mut outcome, .. } = settling;
-    let mut guilty: Vec<u32> = suspects
+    let mut overdeleted: Vec<u32> = suspects
         .into_iter()
         .filter(|&node| forest.node(node).is_suspect)
         .collect();
-    guilty.sort_unstable_by_key(|&node| (core::cmp::Reverse(forest.node(node).place.level), node));
-    for node in guilty {
+    overdeleted
+        .sort_unstable_by_key(|&node| (core::cmp::Reverse(forest.node(node).place.level), node));
+    for node in overdeleted {
         forest.node_mut(node).is_suspect = false;
         if halt.goes_on(forest.triangles) {
             forest.merge(node);
@@ -159,7 +160,7 @@ impl Settling<'_, '_, '_> {
         })
     }
 
-    fn acquit(&mut self, node: u32) {
+    fn rederive(&mut self, node: u32) {
         self.forest.node_mut(node).is_suspect = false;
         self.work.push(node);
     }
@@ -169,7 +170,7 @@ impl Settling<'_, '_, '_> {
         if !self.forest.is_divided(node) {
             self.divide(node);
         } else if self.forest.node(node).is_suspect {
-            self.acquit(node);
+            self.rederive(node);
         }
     }
 
@@ -213,7 +214,7 @@ impl Settling<'_, '_, '_> {
                 for (other, _) in self.forest.adjacent(node, edge) {
                     let above = self.forest.node(other).parent;
                     if above != NONE && self.forest.node(above).is_suspect {
-                        self.acquit(above);
+                        self.rederive(above);
                     }
                 }
             }

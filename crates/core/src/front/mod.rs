@@ -124,6 +124,13 @@ const RING_PART: f64 = 1.0 / 1024.0;
 /// The clock starts anew at this many lengths: its digits are needed.
 const LAST_HOUR: f64 = 1e4;
 
+/// The divisions of an update.
+#[derive(Default)]
+struct Counts {
+    divided: usize,
+    merged: usize,
+}
+
 impl<'a> Front<'a> {
     /// A front of the control mesh's own triangles, with their corners on the limit surface.
     ///
@@ -192,7 +199,7 @@ impl<'a> Front<'a> {
             leaving,
         };
         front.ask_all(front.question.clone(), &mut halt);
-        front.finish((0, 0));
+        front.finish(Counts::default());
         Ok(front)
     }
 
@@ -241,7 +248,7 @@ impl<'a> Front<'a> {
         }
         let question = Question::of(demand)?;
         self.demand = Some(demand.clone());
-        let (mut counts, mut halt) = ((0, 0), Halt::new(observer));
+        let (mut counts, mut halt) = (Counts::default(), Halt::new(observer));
         let most = demand.most.unwrap_or(demand::MOST_TRIANGLES);
         // A demand is mostly close to the last one; the first demand begins with the coarsest mesh.
         if demand.most.is_some() || !self.ask(question.clone(), most, &mut counts, &mut halt) {
@@ -253,7 +260,7 @@ impl<'a> Front<'a> {
             } else {
                 greatest
             };
-            self.fit(question, start, (most, &mut counts, &mut halt));
+            self.fit(question, start, most, &mut counts, &mut halt);
         }
         self.finish(counts);
         if halt.is_asked() {
@@ -272,7 +279,9 @@ impl<'a> Front<'a> {
         &mut self,
         question: Question,
         start: f64,
-        (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
+        most: usize,
+        counts: &mut Counts,
+        halt: &mut Halt<'_>,
     ) {
         let is_over = core::cell::Cell::new(false);
         let mut fits = |limit: f64| {
@@ -340,7 +349,7 @@ impl<'a> Front<'a> {
         &mut self,
         question: Question,
         most: usize,
-        counts: &mut (usize, usize),
+        counts: &mut Counts,
         halt: &mut Halt<'_>,
     ) -> bool {
         if question == self.question && self.waiting.is_empty() && self.leaving.is_empty() {
@@ -356,7 +365,7 @@ impl<'a> Front<'a> {
             self.turning = Agenda::ring(RING_PART * self.length);
             self.clocks = [0.0; 2];
             let (lost, gained) = self.ask_all(question, halt);
-            return self.settle(lost, gained, (most, counts, halt));
+            return self.settle(lost, gained, most, counts, halt);
         }
         self.question = question;
         let mut due = Vec::new();
@@ -372,7 +381,7 @@ impl<'a> Front<'a> {
             let wants = self.asked(node);
             self.note(node, wants, &mut lost, &mut gained);
         }
-        self.settle(lost, gained, (most, counts, halt))
+        self.settle(lost, gained, most, counts, halt)
     }
 
     /// The test by measures that are kept for all nodes: for distances, and while a limit is
@@ -381,7 +390,7 @@ impl<'a> Front<'a> {
         &mut self,
         question: Question,
         most: usize,
-        counts: &mut (usize, usize),
+        counts: &mut Counts,
         halt: &mut Halt<'_>,
     ) -> bool {
         let is_known = !self.agenda.is_ring()
@@ -395,7 +404,7 @@ impl<'a> Front<'a> {
             );
             self.turning = Agenda::ring(self.length);
             let (lost, gained) = self.ask_all(question, halt);
-            return self.settle(lost, gained, (most, counts, halt));
+            return self.settle(lost, gained, most, counts, halt);
         }
         let (low, high) = (
             question.limit.min(self.question.limit),
@@ -413,7 +422,7 @@ impl<'a> Front<'a> {
                 self.question.measure(&self.forest.extents[node as usize]) > self.question.limit;
             self.note(node, wants, &mut lost, &mut gained);
         }
-        self.settle(lost, gained, (most, counts, halt))
+        self.settle(lost, gained, most, counts, halt)
     }
 
     fn note(&mut self, node: u32, wants: bool, lost: &mut Vec<u32>, gained: &mut Vec<u32>) {
@@ -458,7 +467,9 @@ impl<'a> Front<'a> {
         &mut self,
         mut lost: Vec<u32>,
         mut gained: Vec<u32>,
-        (most, counts, halt): (usize, &mut (usize, usize), &mut Halt<'_>),
+        most: usize,
+        counts: &mut Counts,
+        halt: &mut Halt<'_>,
     ) -> bool {
         lost.append(&mut self.leaving);
         // Nodes that leave come first, so that their triangles are not counted.
@@ -476,8 +487,8 @@ impl<'a> Front<'a> {
             halt: Some(&mut *halt),
         };
         let mut extended = extend(&mut self.forest, &gained, &mut asking);
-        counts.0 += extended.divided;
-        counts.1 += loosened.merged;
+        counts.divided += extended.divided;
+        counts.merged += loosened.merged;
         self.waiting.append(&mut extended.waiting);
         let extents = &self.forest.extents;
         if self.agenda.len() + self.turning.len() > 2 * extents.len() + STALE {
@@ -488,7 +499,7 @@ impl<'a> Front<'a> {
         self.waiting.is_empty() && self.forest.triangles <= most && !halt.is_asked()
     }
 
-    fn finish(&mut self, (divided, merged): (usize, usize)) {
+    fn finish(&mut self, Counts { divided, merged }: Counts) {
         let triangles = self.buffers.update(&mut self.forest);
         let mut vertices = core::mem::take(&mut self.forest.vertices.written);
         vertices.sort_unstable();

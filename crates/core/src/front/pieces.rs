@@ -5,30 +5,28 @@
 //!
 //! A node over part of a regular piece keeps the piece's number and its place there; any other its
 //! own piece. Values belong to nodes alone: of parts of regular pieces by second derivatives
-//! ([`SecondDerivatives`]); of others by [`Sheet::off_linear`] for the node's triangle, and for
+//! ([`SecondDerivatives`]); of others by [`ParamPatch::off_linear`] for the node's triangle, and for
 //! closing triangles by the distances of the middles of edges from those of the triangle, since
 //! linear interpolation of these differences is no greater than they are.
 
 use core::array::from_fn;
 
 use super::measure::{Measure, Sampled, greatest};
-use crate::certificate::{SecondDerivatives, Sheet, SubTriangle};
+use crate::certificate::{ParamPatch, SecondDerivatives, SubTriangle};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, Points, Quartic, Spot};
+use crate::patch::{ParamTriangle, Patch, Points, Quartic};
 use crate::vector::DVec3;
 
 /// Values of irregular pieces are tight down to this part of their size.
 const TIGHT: f64 = 1e-6;
 
-/// Where the surface over a node is kept.
+/// Where the surface over a node is kept. Undivided control faces have none.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Ground {
-    /// Nowhere: a control face that is not divided.
-    Control,
+pub(super) enum PieceRef {
     /// Part of a regular piece.
-    Regular(u32, Spot),
+    Regular(u32, ParamTriangle),
     /// A piece of its own.
     General(u32),
     /// A piece of its own, of a front that does not measure distances.
@@ -38,14 +36,14 @@ pub(super) enum Ground {
 /// A piece that is not regular, and the points in the middles of its edges.
 #[derive(Debug)]
 struct General {
-    sheet: Sheet,
+    sheet: ParamPatch,
     middles: [DVec3; 3],
 }
 
-/// Items in numbered slots, which are freed and used again.
+/// Items in numbered slots. A slot that is freed keeps its item until it is used again.
 #[derive(Debug)]
 struct Shelf<T> {
-    all: Vec<Option<T>>,
+    all: Vec<T>,
     free: Vec<u32>,
 }
 
@@ -61,20 +59,19 @@ impl<T> Default for Shelf<T> {
 impl<T> Shelf<T> {
     fn put(&mut self, item: T) -> u32 {
         if let Some(place) = self.free.pop() {
-            self.all[place as usize] = Some(item);
+            self.all[place as usize] = item;
             return place;
         }
-        self.all.push(Some(item));
+        self.all.push(item);
         (self.all.len() - 1) as u32
     }
 
     fn take(&mut self, place: u32) {
-        self.all[place as usize] = None;
         self.free.push(place);
     }
 
-    fn get(&self, place: u32) -> Option<&T> {
-        self.all.get(place as usize)?.as_ref()
+    fn get(&self, place: u32) -> &T {
+        &self.all[place as usize]
     }
 }
 
@@ -88,7 +85,7 @@ pub(super) struct Pieces<'a> {
 }
 
 /// A part of a node's surface, and its value.
-pub(super) type Part = (Ground, f64);
+pub(super) type Part = (PieceRef, f64);
 
 impl<'a> Pieces<'a> {
     pub(super) fn of(surface: LimitSurface<'a>, measure: Measure) -> Self {
@@ -122,9 +119,8 @@ impl<'a> Pieces<'a> {
         }
         let (sheet, rules) = self.surface.sheet(FaceId(face));
         match &sheet.patch {
-            Patch::Regular(points) => {
-                SecondDerivatives::of(&quartic(points)).off_triangles(Spot::WHOLE.corners(), 1.0)
-            }
+            Patch::Regular(points) => SecondDerivatives::of(&quartic(points))
+                .off_triangles(ParamTriangle::WHOLE.corners(), 1.0),
             _ => {
                 let refined = sheet.patch.refined(rules);
                 self.general_value(&sheet, from_fn(|edge| refined.middle(edge).position))
@@ -132,7 +128,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    fn general_value(&self, sheet: &Sheet, middles: [DVec3; 3]) -> f64 {
+    fn general_value(&self, sheet: &ParamPatch, middles: [DVec3; 3]) -> f64 {
         let [a, b, c] = sheet.corners;
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let off = sheet.off_linear(SubTriangle::Whole, TIGHT * size, self.surface.rules());
@@ -142,68 +138,59 @@ impl<'a> Pieces<'a> {
     }
 
     /// The surface over a control face that is to be divided.
-    pub(super) fn control(&mut self, face: u32) -> Ground {
+    pub(super) fn control(&mut self, face: u32) -> PieceRef {
         if self.measure != Measure::Distance {
             let own = self.control_sampled(face);
-            return Ground::Sampled(self.sampled.put(Box::new(own)));
+            return PieceRef::Sampled(self.sampled.put(Box::new(own)));
         }
         let (sheet, rules) = self.surface.sheet(FaceId(face));
         match &sheet.patch {
-            Patch::Regular(points) => {
-                Ground::Regular(self.regular.put(Box::new(quartic(points))), Spot::WHOLE)
-            }
+            Patch::Regular(points) => PieceRef::Regular(
+                self.regular.put(Box::new(quartic(points))),
+                ParamTriangle::WHOLE,
+            ),
             _ => {
                 let refined = sheet.patch.refined(rules);
                 let middles = from_fn(|edge| refined.middle(edge).position);
-                Ground::General(self.general.put(Box::new(General { sheet, middles })))
+                PieceRef::General(self.general.put(Box::new(General { sheet, middles })))
             }
         }
     }
 
     /// The four parts of a node's surface.
-    pub(super) fn parts(&mut self, ground: Ground) -> [Part; 4] {
-        match ground {
-            Ground::Control => [(Ground::Control, f64::INFINITY); 4],
-            Ground::Regular(piece, spot) => {
-                let derivatives = self
-                    .regular
-                    .get(piece)
-                    .map(|piece| SecondDerivatives::of(piece));
+    pub(super) fn parts(&mut self, piece: PieceRef) -> [Part; 4] {
+        match piece {
+            PieceRef::Regular(piece, domain) => {
+                let derivatives = SecondDerivatives::of(self.regular.get(piece));
                 from_fn(|child| {
-                    let own = spot.child(child);
-                    let value = derivatives
-                        .as_ref()
-                        .map(|all| all.off_triangles(own.corners(), own.size));
-                    (Ground::Regular(piece, own), value.unwrap_or(f64::INFINITY))
+                    let own = domain.child(child);
+                    let value = derivatives.off_triangles(own.corners(), own.size);
+                    (PieceRef::Regular(piece, own), value)
                 })
             }
-            Ground::General(piece) => {
-                let Some(piece) = self.general.get(piece) else {
-                    return [(Ground::Control, f64::INFINITY); 4];
-                };
-                piece
-                    .sheet
-                    .children(self.surface.rules())
-                    .map(|sheet| self.part(sheet))
-            }
-            Ground::Sampled(piece) => {
-                let Some(piece) = self.sampled.get(piece) else {
-                    return [(Ground::Control, f64::INFINITY); 4];
-                };
-                piece.children(self.surface.rules()).map(|part| {
+            PieceRef::General(piece) => self
+                .general
+                .get(piece)
+                .sheet
+                .children(self.surface.rules())
+                .map(|sheet| self.part(sheet)),
+            PieceRef::Sampled(piece) => {
+                let parts = self.sampled.get(piece).children(self.surface.rules());
+                parts.map(|part| {
                     let value = part.value(self.measure);
-                    (Ground::Sampled(self.sampled.put(Box::new(part))), value)
+                    (PieceRef::Sampled(self.sampled.put(Box::new(part))), value)
                 })
             }
         }
     }
 
-    fn part(&mut self, sheet: Sheet) -> Part {
+    fn part(&mut self, sheet: ParamPatch) -> Part {
         if let Patch::Regular(points) = &sheet.patch {
             let piece = quartic(points);
-            let value = SecondDerivatives::of(&piece).off_triangles(Spot::WHOLE.corners(), 1.0);
+            let value =
+                SecondDerivatives::of(&piece).off_triangles(ParamTriangle::WHOLE.corners(), 1.0);
             return (
-                Ground::Regular(self.regular.put(Box::new(piece)), Spot::WHOLE),
+                PieceRef::Regular(self.regular.put(Box::new(piece)), ParamTriangle::WHOLE),
                 value,
             );
         }
@@ -212,18 +199,17 @@ impl<'a> Pieces<'a> {
         let value = self.general_value(&sheet, middles);
         drop(refined);
         (
-            Ground::General(self.general.put(Box::new(General { sheet, middles }))),
+            PieceRef::General(self.general.put(Box::new(General { sheet, middles }))),
             value,
         )
     }
 
     /// Gives back the piece of a node that is its own.
-    pub(super) fn give_back(&mut self, ground: Ground) {
-        match ground {
-            Ground::Control => {}
-            Ground::Regular(piece, _) => self.regular.take(piece),
-            Ground::General(piece) => self.general.take(piece),
-            Ground::Sampled(piece) => self.sampled.take(piece),
+    pub(super) fn give_back(&mut self, piece: PieceRef) {
+        match piece {
+            PieceRef::Regular(piece, _) => self.regular.take(piece),
+            PieceRef::General(piece) => self.general.take(piece),
+            PieceRef::Sampled(piece) => self.sampled.take(piece),
         }
     }
 
@@ -233,29 +219,22 @@ impl<'a> Pieces<'a> {
     }
 
     /// The point in the middle of a node's edge, as the piece over the node has it.
-    pub(super) fn middle(&self, ground: Ground, face: u32, edge: usize) -> DVec3 {
-        match ground {
-            Ground::Control => {
+    pub(super) fn middle(&self, piece: Option<PieceRef>, face: u32, edge: usize) -> DVec3 {
+        match piece {
+            None => {
                 let (sheet, rules) = self.surface.sheet(FaceId(face));
                 match &sheet.patch {
                     Patch::Regular(points) if self.measure == Measure::Distance => {
-                        at(&quartic(points), Spot::WHOLE.along(edge, 0.5))
+                        at(&quartic(points), ParamTriangle::WHOLE.along(edge, 0.5))
                     }
                     _ => sheet.patch.refined(rules).middle(edge).position,
                 }
             }
-            Ground::Regular(piece, spot) => self
-                .regular
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| at(piece, spot.along(edge, 0.5))),
-            Ground::General(piece) => self
-                .general
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| piece.middles[edge]),
-            Ground::Sampled(piece) => self
-                .sampled
-                .get(piece)
-                .map_or(DVec3::NAN, |piece| piece.middle(edge)),
+            Some(PieceRef::Regular(piece, domain)) => {
+                at(self.regular.get(piece), domain.along(edge, 0.5))
+            }
+            Some(PieceRef::General(piece)) => self.general.get(piece).middles[edge],
+            Some(PieceRef::Sampled(piece)) => self.sampled.get(piece).middle(edge),
         }
     }
 }

@@ -50,13 +50,13 @@ impl Snapshot {
             origins,
             parents,
         };
-        let tags = found.lasting_tags(control);
+        let tags = found.infinitely_sharp_tags(control);
         found.mesh = found.mesh.with_tags(tags)?;
         Ok(found)
     }
 
     /// The tags of edges that lie on infinitely sharp edges of the control mesh.
-    fn lasting_tags(&self, control: &Mesh) -> Tags {
+    fn infinitely_sharp_tags(&self, control: &Mesh) -> Tags {
         let lasts = |sharpness: f64| sharpness >= INFINITELY_SHARP;
         let tags = control.tags();
         let mut sharp: Vec<[u32; 2]> = tags

@@ -158,7 +158,7 @@ pub struct Interpolated {
     /// last solution.
     pub iterations: usize,
     /// The greatest distance of a limit from its vertex, except for those
-    /// [relaxed](Self::passed_by), and from its plane where the surface fills that. It is the
+    /// [relaxed](Self::relaxed), and from its plane where the surface fills that. It is the
     /// rounding error, unless limits may leave their vertices or the answer is one of least
     /// squares.
     pub residual: f64,
@@ -166,7 +166,7 @@ pub struct Interpolated {
     /// longer than their neighbours: the curve passes near them, at a distance smaller than its
     /// turn there; a curve through them would leave the mesh and come back. Others keep their
     /// control point so that the surface [does not fold](crate::part::interpolate_unfolded).
-    pub passed_by: Vec<VertexId>,
+    pub relaxed: Vec<VertexId>,
     /// The greatest distance of a control point from its vertex: the greater, the likelier the
     /// surface undulates in between.
     pub displacement: f64,
@@ -239,7 +239,7 @@ pub(crate) fn interpolate_but(
             method: InterpolationMethod::Unchanged,
             iterations: 0,
             residual: 0.0,
-            passed_by: points.relaxed(),
+            relaxed: points.relaxed(),
             displacement: 0.0,
             most_displaced: VertexId(0),
             fairness: None,
@@ -305,7 +305,7 @@ pub(crate) fn interpolate_but(
         method,
         iterations: moved.steps,
         residual,
-        passed_by: relaxed,
+        relaxed: relaxed,
         displacement,
         most_displaced,
         fairness: moved.energies.map(|energies| energies.fairness()),

@@ -132,7 +132,7 @@ impl LimitTable<'_> {
     fn analyse_sharp(&self, ring: SharpRing) -> Result<SharpStencil, LimitError> {
         let (scheme, mut fading) = (self.scheme(), Vec::new());
         let mut lasting = ring.clone();
-        while lasting.fading() > 0.0 {
+        while lasting.semi_sharpness() > 0.0 {
             fading.push(Neighbourhood::of_sharp(scheme, lasting.clone())?);
             lasting = lasting.refined();
         }

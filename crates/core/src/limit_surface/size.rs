@@ -8,7 +8,7 @@
 use super::{LimitSurface, regular};
 use crate::index::FaceId;
 use crate::parallel;
-use crate::patch::{Patch, Quartic, Spot, child_corners, root_patch};
+use crate::patch::{ParamTriangle, Patch, Quartic, child_corners, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Faces that are integrated together.
@@ -53,7 +53,12 @@ struct Volume;
 
 impl Integrand for Area {
     fn of_piece(&self, piece: &Quartic, whole: f64) -> f64 {
-        area(piece, Spot::WHOLE, AGREEMENT * whole, MOST_DIVISIONS)
+        area(
+            piece,
+            ParamTriangle::WHOLE,
+            AGREEMENT * whole,
+            MOST_DIVISIONS,
+        )
     }
 
     fn of_triangle(&self, [a, b, c]: [DVec3; 3]) -> f64 {
@@ -63,7 +68,7 @@ impl Integrand for Area {
 
 impl Integrand for Volume {
     fn of_piece(&self, piece: &Quartic, _: f64) -> f64 {
-        integral(&SIX, Spot::WHOLE, |u, v| {
+        integral(&SIX, ParamTriangle::WHOLE, |u, v| {
             let [by_u, by_v] = piece.tangents(u, v);
             piece.point(u, v).dot(by_u.cross(by_v)) / 3.0
         })
@@ -179,25 +184,25 @@ impl LimitSurface<'_> {
     }
 }
 
-fn area(piece: &Quartic, spot: Spot, agreement: f64, divisions: u32) -> f64 {
+fn area(piece: &Quartic, domain: ParamTriangle, agreement: f64, divisions: u32) -> f64 {
     let density = |u: f64, v: f64| {
         let [by_u, by_v] = piece.tangents(u, v);
         by_u.cross(by_v).length()
     };
     let (coarse, fine) = (
-        integral(&FOUR, spot, density),
-        integral(&SIX, spot, density),
+        integral(&FOUR, domain, density),
+        integral(&SIX, domain, density),
     );
     if (coarse - fine).abs() <= agreement || divisions == 0 {
         return fine;
     }
     (0..4)
-        .map(|child| area(piece, spot.child(child), 0.25 * agreement, divisions - 1))
+        .map(|child| area(piece, domain.child(child), 0.25 * agreement, divisions - 1))
         .sum()
 }
 
 /// The integral over a part, by a product of rules on the square that is collapsed to the triangle.
-fn integral(rule: &[(f64, f64)], spot: Spot, density: impl Fn(f64, f64) -> f64) -> f64 {
+fn integral(rule: &[(f64, f64)], domain: ParamTriangle, density: impl Fn(f64, f64) -> f64) -> f64 {
     let nodes = || {
         rule.iter()
             .flat_map(|&(at, weight)| [(-at, weight), (at, weight)])
@@ -207,9 +212,9 @@ fn integral(rule: &[(f64, f64)], spot: Spot, density: impl Fn(f64, f64) -> f64) 
         let x = 0.5 + 0.5 * x;
         for (y, of_y) in nodes() {
             let y = (0.5 + 0.5 * y) * (1.0 - x);
-            let [u, v] = spot.at([x, y]);
+            let [u, v] = domain.at([x, y]);
             sum += of_x * of_y * (1.0 - x) * density(u, v);
         }
     }
-    0.25 * sum * spot.size * spot.size
+    0.25 * sum * domain.size * domain.size
 }

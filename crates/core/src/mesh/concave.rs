@@ -68,8 +68,8 @@ impl Mesh {
     /// The mesh gets more elements than can be numbered.
     pub fn with_divided_concave_corners(self) -> Result<(Self, ConcaveCorners), MeshError> {
         let sharpness = Sharpness::of(&self);
-        let mut ribs = ribs_of(&self, &sharpness.lasting());
-        if sharpness.fades() {
+        let mut ribs = ribs_of(&self, &sharpness.infinitely_sharp());
+        if sharpness.is_semi_sharp() {
             for (edge, rib) in ribs_of(&self, &sharpness) {
                 ribs.entry(edge).or_insert(rib);
             }

@@ -119,7 +119,7 @@ impl<'m> Sharpness<'m> {
     }
 
     /// The infinitely sharp tags: those left after enough levels of refinement.
-    pub fn lasting(&self) -> Self {
+    pub fn infinitely_sharp(&self) -> Self {
         let half_edges = self
             .half_edges
             .iter()
@@ -139,7 +139,7 @@ impl<'m> Sharpness<'m> {
     }
 
     /// Whether there are semi-sharp tags.
-    pub fn fades(&self) -> bool {
+    pub fn is_semi_sharp(&self) -> bool {
         let mut all = self
             .half_edges
             .iter()
@@ -149,7 +149,7 @@ impl<'m> Sharpness<'m> {
     }
 
     /// Levels of refinement after which only infinitely sharp tags are left.
-    pub(crate) fn fading_levels(&self) -> usize {
+    pub(crate) fn semi_sharp_levels(&self) -> usize {
         let all = self
             .half_edges
             .iter()

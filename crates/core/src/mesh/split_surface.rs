@@ -74,7 +74,7 @@ impl SplitSurface {
     /// The mesh with the mean normals of the faces around each vertex, weighted by area, on each
     /// side of its infinitely sharp edges: the shading of a mesh without other data.
     pub fn by_faces(mesh: &Mesh) -> Self {
-        let sharpness = Sharpness::of(mesh).lasting();
+        let sharpness = Sharpness::of(mesh).infinitely_sharp();
         let topology = mesh.topology();
         let mut at_corners = vec![[0.0; 3]; topology.half_edge_count()];
         let mut fill = |corners: &mut dyn Iterator<Item = HalfEdgeId>| {

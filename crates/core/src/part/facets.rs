@@ -45,12 +45,12 @@ pub(super) fn are_of_round_things(
     let mut is_coarse = vec![false; mesh.face_count()];
     coarse
         .iter()
-        .flat_map(|bend| facets.beside(bend))
+        .flat_map(|bend| facets.adjacent(bend))
         .for_each(|facet| is_coarse[facet as usize] = true);
     let is_finer = |bend: &Bend| {
         (FLAT..*degrees.start() as f64).contains(&bend.degrees)
             && !facets
-                .beside(bend)
+                .adjacent(bend)
                 .iter()
                 .any(|&facet| is_coarse[facet as usize])
     };
@@ -91,13 +91,13 @@ impl Facets {
     }
 
     /// The facets at an edge.
-    fn beside(&self, bend: &Bend) -> [u32; 2] {
+    fn adjacent(&self, bend: &Bend) -> [u32; 2] {
         [bend.edge, bend.twin].map(|h| self.first[h.face().index()])
     }
 
     /// An edge from both sides, if the facets are about as large.
     fn sides(&self, bend: &Bend) -> Option<[Side; 2]> {
-        let [a, b] = self.beside(bend);
+        let [a, b] = self.adjacent(bend);
         let [own, other] = [a, b].map(|facet| self.areas[facet as usize]);
         let side = |facet, other| Side {
             facet,

@@ -2,7 +2,7 @@
 //!
 //! A part has flat or nearly flat edges inside its faces, sharp edges between these, and little in between: in lengths of edges by
 //! angle there is a gap. The sharp edges form lines, whereas those of organic shapes that happen to be sharp end here and there. A
-//! coarse cage is sharp everywhere, and a file of quadrilaterals is one whatever its angles. Voxels have a gap, too; what tells them is
+//! coarse cage is sharp everywhere, and a file of quadrilaterals is one whatever its angles. Voxels have a gap, too; they are recognised by
 //! that their flat regions are all small, and that more than three sharp edges, up and down, meet at many of their corners.
 
 use std::ops::RangeInclusive;
@@ -14,7 +14,7 @@ use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Mesh;
 
-/// What a mesh looks like.
+/// The look of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Look {
@@ -34,7 +34,7 @@ const SEEN: usize = 20;
 /// Facets of round parts meet at no more than this in any case: 360° by 7 and a little.
 const ROUND: usize = 52;
 
-/// What meets at these is either facets of round parts or meant as it is.
+/// Faces that meet at these are either facets of round parts or meant as they are.
 const COARSE: RangeInclusive<usize> = USUAL + 1..=ROUND;
 
 /// Edges beyond this are nearly square.
@@ -53,7 +53,7 @@ const LOWER_GAP: usize = 8;
 /// A part of the length of sharp edges (one in so many) that may lie within the gap: chamfers and the like.
 const WITHIN: f64 = 50.0;
 
-/// The same where much is flat and much is sharp, and for the usual angle to be within the gap.
+/// [`WITHIN`] where much is flat and much is sharp, and for the usual angle to be within the gap.
 const WITHIN_PLAIN_PARTS: f64 = 10.0;
 
 /// The length of all edges is so many times that of flat ones (below 1°), and of sharp ones, where much is flat and sharp.
@@ -77,7 +77,7 @@ const SMALL: f64 = 12.0;
 const SADDLES: usize = 100;
 
 impl Look {
-    /// What `mesh` looks like. `faces` are the input's faces that those of the mesh are from ([`Trace::faces`](crate::mesh::Trace)), by which
+    /// The look of `mesh`. `faces` are the input's faces that those of the mesh are from ([`Trace::faces`](crate::mesh::Trace)), by which
     /// polygons are known; empty where all are triangles. Tags are not looked at.
     pub fn of(mesh: &Mesh, faces: &[u32]) -> Self {
         match Self::by_angles(mesh) {
@@ -205,7 +205,7 @@ impl Lengths {
 
     /// The widest gap between smooth and sharp edges, which begin at so many degrees at least.
     fn gap(&self, least_sharp: usize) -> Option<Gap> {
-        // What is nearly square is sharp before all else: the facets of a coarse cylinder may be taken for edges as well.
+        // Edges that are nearly square are sharp before all others: the facets of a coarse cylinder may be taken for edges as well.
         let by = |one_in: f64| {
             self.widest(NEARLY_SQUARE..=SHARP, GAP, one_in)
                 .or_else(|| self.widest(least_sharp..=NEARLY_SQUARE, WIDE_GAP, one_in))

@@ -1,11 +1,11 @@
-//! What is sharp on a part: edges beyond an angle, and the tips of cones.
+//! The sharp edges and vertices of a part: edges beyond an angle, and the tips of cones.
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{CreasesAbove, Mesh, MeshError};
 use crate::parallel;
 use crate::vector::DVec3;
 
-/// What is sharp on a part.
+/// The sharp edges and vertices of a part.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Part {
@@ -22,7 +22,7 @@ pub struct Part {
 const STRAIGHT: f64 = 0.5;
 
 impl Part {
-    /// What is sharp on `mesh` if edges are whose faces' normals differ by more than `degrees`.
+    /// The sharp edges and vertices of `mesh`: edges whose faces' normals differ by more than `degrees`.
     ///
     /// # Errors
     /// The angle is not within 0 … 180.

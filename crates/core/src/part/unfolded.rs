@@ -1,6 +1,6 @@
 //! Control meshes that lead a surface through the vertices of a mesh, but not where it would fold.
 //!
-//! Between slivers, as programs that cut solids leave them, control points for a surface through all vertices come to lie far away, and
+//! Between slivers, as programs that cut solids leave them, control points for a surface through all vertices lie far away, and
 //! the surface turns over. So the surface is refined, and where a piece of it is turned over against the face that it is over, or
 //! against its own limit normals, the vertices of that face are taken for control points as they are: the surface passes by them. With
 //! what is around them solved anew that is looked at again, and more vertices follow until nothing folds.
@@ -52,7 +52,7 @@ pub enum UnfoldedError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Unfolded {
-    /// The control mesh; vertices that keep their place are among those [passed by](Interpolated::passed_by).
+    /// The control mesh; vertices that keep their place are among those [passed by](Interpolated::relaxed).
     pub interpolated: Interpolated,
     /// Regions that would fold if the surface passed through all vertices, the one with most faces first.
     pub folded: Vec<FoldedRegion>,
@@ -81,7 +81,7 @@ pub fn interpolate_unfolded(mesh: &Mesh, scheme: &dyn Scheme) -> Result<Unfolded
 /// [`interpolate_unfolded`], telling an observer how it goes on.
 ///
 /// # Errors
-/// The same, or the observer asked to stop.
+/// [`interpolate_unfolded`] that can be cancelled.
 pub fn interpolate_unfolded_observed(
     mesh: &Mesh,
     scheme: &dyn Scheme,

@@ -12,7 +12,7 @@ pub(crate) type Points = [DVec3; 12];
 /// First and last column of each row of the twelve, from row −1 on.
 const ROWS: [(i32, i32); 4] = [(0, 2), (-1, 2), (-1, 1), (-1, 0)];
 
-/// The same for the eighteen points around the face's four parts, in coordinates of half the step.
+/// The rows of the eighteen points around the face's four parts, in coordinates of half the step.
 const REFINED_ROWS: [(i32, i32); 5] = [(0, 3), (-1, 3), (-1, 2), (-1, 1), (-1, 0)];
 
 /// The six neighbours of a lattice point, counter-clockwise.
@@ -197,7 +197,7 @@ fn ring_sum(points: &Points, ring: &[u8; 6]) -> DVec3 {
     ((at(0) + at(3)) + (at(1) + at(4))) + (at(2) + at(5))
 }
 
-/// The twelve points from the corners and their rings, of each of which we are told where the next corner stands in it.
+/// The twelve points from the corners and their rings, each given with the slot of the next corner in it.
 #[inline]
 pub(crate) fn assemble<T: Copy>(
     corners: [T; 3],

@@ -20,7 +20,7 @@ pub(crate) struct Characteristic {
     pub(crate) control: ExtraordinaryPatch,
     /// The face's sector, and its halves on either side of the bisector.
     pub(crate) sectors: [MapSector; 3],
-    /// What the five control points beyond the ring weigh together at most, anywhere over the face.
+    /// The greatest sum of the weights of the five control points beyond the ring, anywhere over the face.
     pub(crate) outer_share: f64,
     /// The least coefficient of the Jacobian of its three regular pieces, by differences of their nets.
     pub(crate) least_jacobian: f64,
@@ -37,7 +37,7 @@ pub(crate) struct MapSector {
     pub(crate) rim: Vec<DVec3>,
     /// From 0 to here runs the edge at which the sector starts, counter-clockwise.
     pub(crate) start: DVec3,
-    /// The same for the edge at which it ends.
+    /// From 0 to here runs the edge at which the sector ends.
     pub(crate) end: DVec3,
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct ExtraordinaryPatch<V = DVec3> {
     pub(crate) at: V,
     /// Its neighbours, counter-clockwise from the face's next corner.
     pub(crate) ring: Neighbours<V>,
-    /// What completes the rings of the other corners: opposite to the vertex beyond the edge r₋₁r₀, beyond r₀, beyond
+    /// The points that complete the rings of the other corners: opposite to the vertex beyond the edge r₋₁r₀, beyond r₀, beyond
     /// r₀r₁, beyond r₁, beyond r₁r₂.
     pub(crate) outer: [V; 5],
 }
@@ -36,7 +36,7 @@ impl<V: Blend> ExtraordinaryPatch<V> {
             .chain(self.outer)
     }
 
-    /// What becomes of the points by itself.
+    /// Maps each point by itself.
     pub(crate) fn map<W: Blend>(&self, each: impl Fn(V) -> W) -> ExtraordinaryPatch<W> {
         ExtraordinaryPatch {
             corner: self.corner,
@@ -327,7 +327,7 @@ mod tests {
             .collect()
     }
 
-    /// The same face by its three sectors.
+    /// A face by its three sectors.
     fn sectors(patch: &ExtraordinaryPatch) -> SectorPatch {
         let ExtraordinaryPatch {
             corner,

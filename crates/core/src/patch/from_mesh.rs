@@ -28,7 +28,7 @@ pub(crate) fn root_patch(
     if let Some(points) = regular(mesh, sharpness, corners) {
         return Patch::Regular(points);
     }
-    match fades(mesh, sharpness, large, corners) {
+    match is_semi_sharp(mesh, sharpness, large, corners) {
         true => SemiSharpPatch::of(
             corners.map(|h| match large.whole(mesh.topology().origin(h)) {
                 Some(ring) => ring.near(h),
@@ -64,22 +64,22 @@ fn regular(mesh: &Mesh, sharpness: &Sharpness<'_>, corners: [HalfEdgeId; 3]) -> 
     Some(points.map(|vertex| vector(mesh.positions()[vertex.index()])))
 }
 
-/// Whether a tag that fades decides the surface over a face, given its corners.
-pub(super) fn fades(
+/// Whether a semi-sharp tag decides the surface over a face, given its corners.
+pub(super) fn is_semi_sharp(
     mesh: &Mesh,
     sharpness: &Sharpness<'_>,
     large: &LargeRings,
     corners: [HalfEdgeId; 3],
 ) -> bool {
-    let fades = |vertex: VertexId| match large.whole(vertex) {
-        Some(ring) => ring.fades(),
-        None => sharpness.ring(vertex).fading() > 0.0,
+    let is_semi_sharp = |vertex: VertexId| match large.whole(vertex) {
+        Some(ring) => ring.is_semi_sharp(),
+        None => sharpness.ring(vertex).semi_sharpness() > 0.0,
     };
     let mut vertices = corners.into_iter().map(|h| mesh.topology().origin(h));
-    vertices.any(|vertex| sharpness.is_tagged(vertex) && fades(vertex))
+    vertices.any(|vertex| sharpness.is_tagged(vertex) && is_semi_sharp(vertex))
 }
 
-/// The surface over a face, given its corners, for a scheme of the Loop family. No tag may fade there.
+/// The surface over a face, given its corners, for a scheme of the Loop family. No tag may be semi-sharp there.
 fn patch_of(
     mesh: &Mesh,
     sharpness: &Sharpness<'_>,
@@ -145,7 +145,7 @@ mod tests {
     use super::*;
     use crate::models::stirred;
 
-    /// What is found at once is what the sectors of the corners tell, and nothing regular without tags is missed.
+    /// The quick test agrees with the sectors of the corners, and misses no regular face without tags.
     #[test]
     fn regular_faces_are_those_whose_sectors_are() {
         let (mut regular_faces, mut others) = (0, 0);

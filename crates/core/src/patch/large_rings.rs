@@ -26,17 +26,17 @@ struct Ring {
     valence: usize,
     mean: DVec3,
     ends: Option<[VertexId; 2]>,
-    /// What becomes of it, where tags count.
+    /// Its levels of refinement, where tags count.
     whole: Option<Arc<WholeRing>>,
 }
 
 impl LargeRings {
-    /// Those of `mesh`, and what becomes of them beside tags.
+    /// The large rings of `mesh`, with their refined rings where tags count.
     pub(crate) fn with_tags(mesh: &Mesh, sharpness: &Sharpness<'_>, rules: &Rules<'_>) -> Self {
         uncancelled(|_| Self::with_tags_polled(mesh, sharpness, rules, &mut |_| Ok(())))
     }
 
-    /// [`Self::with_tags`] that can be cancelled, between the levels on which a ring fades.
+    /// [`Self::with_tags`] that can be cancelled, between the levels on which a ring is semi-sharp.
     pub(crate) fn with_tags_polled(
         mesh: &Mesh,
         sharpness: &Sharpness<'_>,
@@ -47,20 +47,20 @@ impl LargeRings {
         if sharpness.is_empty() || !rules.is_certified() {
             return Ok(large);
         }
-        let levels = sharpness.fading_levels();
-        // Where something fades, it may do so beside any of them.
+        let levels = sharpness.semi_sharp_levels();
+        // A semi-sharp tag may be adjacent to any of them.
         for (vertex, ring) in large
             .0
             .iter_mut()
             .filter(|(v, _)| levels > 0 || sharpness.is_tagged(*v))
         {
             ring.whole =
-                WholeRing::of(mesh, sharpness, (*vertex, levels), rules, poll)?.map(Arc::new);
+                WholeRing::of(mesh, sharpness, *vertex, levels, rules, poll)?.map(Arc::new);
         }
         Ok(large)
     }
 
-    /// What becomes of the ring of a vertex, if it is one of them and tags count.
+    /// The refined rings of a vertex, if it is one of them and tags count.
     pub(super) fn whole(&self, vertex: VertexId) -> Option<&Arc<WholeRing>> {
         let number = self
             .0
@@ -102,7 +102,7 @@ impl LargeRings {
         })
     }
 
-    /// What [`Self::sector`] is made of.
+    /// The neighbours of which [`Self::sector`] is made.
     pub(super) fn near(&self, topology: &Topology, h: HalfEdgeId) -> Option<Near> {
         let vertex = topology.origin(h);
         let number = self
@@ -164,7 +164,7 @@ impl LargeRings {
         self.0.iter().map(|&(vertex, _)| vertex)
     }
 
-    /// Sets what stands for the mean of a ring, by the vertex's number.
+    /// Sets the mean of a ring, by the vertex's number.
     pub(crate) fn set_mean(&mut self, number: usize, mean: DVec3) {
         self.0[number].1.mean = mean;
     }

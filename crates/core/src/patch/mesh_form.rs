@@ -34,13 +34,13 @@ const CLEAR: f64 = 1e-4;
 pub(crate) const SAMPLED_LEVELS: usize = 3;
 
 /// Barycentric coordinates, multiplied by a power of 2.
-pub(crate) type Place = [i32; 3];
+pub(crate) type GridPoint = [i32; 3];
 
 /// Points and the weights by which they are summed.
 type Row = Vec<(u32, f64)>;
 
 /// Where limits stand over a face, and the weights of all points of the form in each.
-type Samples = Vec<(Place, Vec<f64>)>;
+type Samples = Vec<(GridPoint, Vec<f64>)>;
 
 /// The surroundings of a face, which is the first of a small mesh.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ pub(super) struct MeshForm {
     samples: [OnceLock<Result<Samples, LimitError>>; SAMPLED_LEVELS],
 }
 
-/// What a step of refinement makes of surroundings.
+/// The result of a step of refinement of surroundings.
 #[derive(Debug)]
 pub(super) struct Step {
     /// The surroundings of the four parts, which are the first faces, each from its first corner. Positions mean nothing.
@@ -120,7 +120,7 @@ impl MeshForm {
         found.as_ref().map_err(Clone::clone)
     }
 
-    /// What a step makes of it.
+    /// The result of a step.
     pub(super) fn step(&self, forms: &Forms<'_>) -> &Step {
         match self.step.get() {
             Some(step) => step,
@@ -218,7 +218,7 @@ impl Step {
         forms: &Forms<'_>,
     ) -> Result<Samples, LimitError> {
         let unit = 1 << levels;
-        let corners: [Place; 3] = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
+        let corners: [GridPoint; 3] = [[unit, 0, 0], [0, unit, 0], [0, 0, unit]];
         let middles = [0, 1, 2]
             .map(|edge| [0, 1, 2].map(|i| (corners[edge][i] + corners[(edge + 1) % 3][i]) / 2));
         let mut samples = Samples::new();

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::mesh_form::{MeshForm, Place, SAMPLED_LEVELS, surroundings};
+use super::mesh_form::{GridPoint, MeshForm, SAMPLED_LEVELS, surroundings};
 use super::rules::Rules;
 use super::{Limit, Patch};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -60,7 +60,7 @@ impl MeshPatch {
 
     /// The limits of all vertices [`SAMPLED_LEVELS`] below, the corners left out, and where they stand; none after a failure, which
     /// the rules keep.
-    pub(crate) fn samples(&self, rules: &Rules<'_>) -> Vec<(Place, DVec3)> {
+    pub(crate) fn samples(&self, rules: &Rules<'_>) -> Vec<(GridPoint, DVec3)> {
         let limit = |weights: &[f64]| {
             weights
                 .iter()

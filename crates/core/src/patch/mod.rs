@@ -1,9 +1,9 @@
-//! The limit surface of a control mesh in exact pieces. Knows no triangles that stand for them, and no bounds.
+//! The limit surface of a control mesh in exact pieces. Knows no triangles that approximate them, and no bounds.
 //!
 //! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
 //! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
 //! computed; limit positions and normals of new vertices come with it. Schemes of the Loop family have pieces of simple
-//! forms, also where tags still fade; for others a piece is a small mesh that is refined as a whole.
+//! forms, also where tags are semi-sharp; for others a piece is a small mesh that is refined as a whole.
 
 pub(crate) mod bezier_triangle;
 mod box_spline;
@@ -39,7 +39,7 @@ pub(crate) use quartic::{Quartic, reciprocal_power};
 pub(crate) use sector::VertexSector;
 use sector::{Far, RefinedSectors, SectorPatch};
 use semi_sharp::{RefinedSemiSharp, SemiSharpPatch};
-pub(crate) use spot::Spot;
+pub(crate) use spot::ParamTriangle;
 
 /// The neighbours of a vertex: nearly all have at most eight.
 pub(crate) type Neighbours<V = DVec3> = smallvec::SmallVec<[V; 8]>;
@@ -53,11 +53,11 @@ pub(crate) enum Patch {
     Regular(Points),
     /// One corner inside the surface has another number of edges, the others are regular.
     Extraordinary(Box<ExtraordinaryPatch>),
-    /// The same where it has very many.
+    /// One at a vertex with very many edges.
     Pole(Box<PolePatch>),
-    /// Any other without tags that fade, of the Loop family.
+    /// Any other without semi-sharp tags, of the Loop family.
     Sectors(Box<SectorPatch>),
-    /// One where tags still fade, of the Loop family.
+    /// One with semi-sharp tags, of the Loop family.
     SemiSharp(Box<SemiSharpPatch>),
     /// Of a scheme outside the Loop family.
     Mesh(MeshPatch),
@@ -70,7 +70,7 @@ pub(crate) struct LimitPoint {
     pub(crate) normal: DVec3,
 }
 
-/// What is wanted of a vertex's limit.
+/// The parts of a vertex's limit that are wanted.
 pub(crate) trait Limit: Copy {
     /// The limit of a regular vertex.
     fn regular(at: DVec3, ring: &[DVec3; 6]) -> Self;
@@ -192,7 +192,7 @@ impl Patch {
     }
 
     /// Moves the piece so that one of its points is at the origin, and gives where that was. Pieces that are refined a few times before
-    /// they are others, or of which nobody asks for more than limits, stay.
+    /// they are others, or which are asked for nothing but limits, stay.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         match self {
             Self::Regular(points) => {
@@ -239,7 +239,7 @@ impl RefinedPatch<'_> {
             Self::Extraordinary(refined) => refined.is_regular(part),
             Self::Pole(refined) => refined.is_regular(part),
             Self::Sectors(refined) => refined.is_regular(part),
-            // Parts whose tags have faded may be, too; they are few.
+            // Parts without semi-sharp tags may be, too; they are few.
             Self::SemiSharp(_) | Self::Mesh(_) => false,
         }
     }
@@ -291,7 +291,7 @@ impl RefinedPatch<'_> {
         self.middle_as(edge)
     }
 
-    /// What is wanted of that.
+    /// The limit in the middle of an edge, as far as it is wanted.
     #[inline]
     pub(crate) fn middle_as<L: Limit>(&self, edge: usize) -> L {
         // One by one, so that rings stay in registers.

@@ -2,12 +2,12 @@
 //!
 //! The surface over a face v r₀ r₁ knows the far part of the ring only by its mean: with m the mean of all k neighbours, one
 //! refinement takes v to (1 − kβ) v + kβ m and m to 3/8 v + 5/8 m, and each neighbour to a combination of v, itself and
-//! the two beside it. So the neighbours near the face, the mean and what else an [`ExtraordinaryPatch`] has suffice. All of that
+//! the two adjacent to it. So the neighbours near the face, the mean and what else an [`ExtraordinaryPatch`] has suffice. All of that
 //! are convex combinations: the piece lies in the hull of those points.
 //!
 //! Where the part of the ring that is kept ends, refinements take the neighbour at its other end for the one that is left out. Let eⱼ be how far neighbour j is
 //! from where it ought to be: a refinement makes 3/8 eⱼ + 1/8 (eⱼ₋₁ + eⱼ₊₁) of it at most (half of eⱼ on a sharp edge, and between both on one that
-//! fades). For x = (5 − √21)/2 = 0.209, which solves 3/8 + 1/8 (x + 1/x) = 1, that keeps eⱼ ≤ D (xᵃ + xᵇ), where neighbour j is a and b
+//! decays). For x = (5 − √21)/2 = 0.209, which solves 3/8 + 1/8 (x + 1/x) = 1, that keeps eⱼ ≤ D (xᵃ + xᵇ), where neighbour j is a and b
 //! steps away from the first ones left out at either side, and D is the diameter of the hull, in which all stays that is taken for them: with [`BEYOND`] of 40,
 //! 1e-27 D at any level for those that the face needs. Seen by the size of the level, which is 5/8 of the one before, none of it arrives in the first
 //! 40 levels, and 3e-11 after 84, when all of the ring is within 1e-17 of D.
@@ -38,7 +38,7 @@ pub(crate) struct PolePatch {
 }
 
 impl PolePatch {
-    /// The same piece as `whole`, without the far part of its ring.
+    /// The piece `whole`, without the far part of its ring.
     pub(super) fn of(mut whole: ExtraordinaryPatch) -> Self {
         let valence = whole.ring.len();
         let mean = whole.ring.iter().sum::<DVec3>() / valence as f64;

@@ -107,7 +107,7 @@ impl Quartic {
     }
 
     /// The net of the part whose corners are the given one and those `size` along u and along v from it; negative
-    /// for parts that stand on their heads.
+    /// for inverted parts.
     pub(crate) fn net(&self, [u, v]: [f64; 2], size: f64) -> BezierTriangle {
         let mut powers = [1.0; 5];
         (1..5).for_each(|i| powers[i] = size * powers[i - 1]);
@@ -181,7 +181,7 @@ impl Quartic {
         fill(&self.normal_row(&row, v), start, step, normals);
     }
 
-    /// What [`Self::points_and_normals_along`] gives, by axis; `count` places, rounded up to a multiple of eight.
+    /// The result of [`Self::points_and_normals_along`] by axis; `count` places, rounded up to a multiple of eight.
     pub(crate) fn by_axis_along<const N: usize>(
         &self,
         v: f64,
@@ -360,7 +360,7 @@ fn positions(a: &[f64; 15], v: f64) -> [f64; 5] {
     ]
 }
 
-/// The same for the derivative by v.
+/// The coefficients of the derivative by v along constant v.
 #[inline]
 fn slopes(a: &[f64; 15], v: f64) -> [f64; 4] {
     [
@@ -371,7 +371,7 @@ fn slopes(a: &[f64; 15], v: f64) -> [f64; 4] {
     ]
 }
 
-/// What stands along constant v.
+/// A function along constant v.
 trait Row {
     /// At several values of u, by axis.
     fn at_each<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 3];
@@ -458,7 +458,7 @@ fn fill(row: &impl Row, start: f64, step: f64, slots: &mut [[f64; 3]]) {
     }
 }
 
-/// What stands at N places from number `first` on.
+/// The values at N places from number `first` on.
 #[inline]
 fn chunk_at<const N: usize>(row: &impl Row, start: f64, step: f64, first: f64) -> [[f64; 3]; N] {
     let mut u = [0.0; N];

@@ -1,4 +1,4 @@
-//! What the pieces of a surface need to know of its scheme: the weights and characteristic maps of the Loop family for
+//! The rules of a scheme as pieces of a surface need them: the weights and characteristic maps of the Loop family for
 //! those that say they are of it, limit stencils for all.
 
 use std::sync::{Arc, OnceLock};
@@ -18,11 +18,11 @@ pub(crate) struct Rules<'s> {
     family: Option<LoopFamily>,
     betas: [f64; KEPT],
     found: Arc<Found<'s>>,
-    /// What went wrong first.
+    /// The first error.
     failure: OnceLock<LimitError>,
 }
 
-/// What takes long to find, and depends on nothing but the scheme.
+/// Values that take long to find, and depend on nothing but the scheme.
 struct Found<'s> {
     forms: Forms<'s>,
     characteristics: [OnceLock<Characteristic>; KEPT],
@@ -55,7 +55,7 @@ impl<'s> Rules<'s> {
         }
     }
 
-    /// The same rules for another surface: what is found for one is known to both, and each has its own failures.
+    /// Rules for another surface of the scheme: both share what is found, and each has its own failures.
     pub(crate) fn sharing(&self) -> Self {
         let Self {
             scheme,
@@ -87,7 +87,7 @@ impl<'s> Rules<'s> {
         &self.found.forms
     }
 
-    /// Whether the scheme is of the Loop family: what does not fade has a form of its own, and bounds hold.
+    /// Whether the scheme is of the Loop family: pieces without semi-sharp tags have forms of their own, and bounds hold.
     #[inline]
     pub(crate) fn is_certified(&self) -> bool {
         self.family.is_some()
@@ -105,7 +105,7 @@ impl<'s> Rules<'s> {
         self.failure.get()
     }
 
-    /// The weight of each neighbour of a smooth vertex; 0 outside the Loop family, where nobody asks for it.
+    /// The weight of each neighbour of a smooth vertex; 0 outside the Loop family, where it is not used.
     #[inline]
     pub(crate) fn beta(&self, valence: usize) -> f64 {
         match (self.betas.get(valence), self.family) {
@@ -127,7 +127,7 @@ impl Rules<'_> {
         Some(kept.get_or_init(|| Characteristic::of(valence)))
     }
 
-    /// How much what stands beside the characteristic map of a valence can grow ([`settling::growth`]); `None` where that is not known.
+    /// How much differences from the characteristic map of a valence can grow ([`settling::growth`]); `None` where that is not known.
     pub(crate) fn settling(&self, valence: usize) -> Option<f64> {
         let map = self.characteristic(valence)?;
         *self

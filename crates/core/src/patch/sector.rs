@@ -16,7 +16,7 @@ use super::{Neighbours, Patch};
 use crate::ring::RingShape;
 use crate::vector::DVec3;
 
-/// What becomes of a sector's centre.
+/// The rule of a sector's centre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Centre {
     /// Faces all round; with the slot of its sharp edge where it has just one (a dart).
@@ -28,7 +28,7 @@ pub(crate) enum Centre {
 }
 
 impl Centre {
-    /// What becomes of the centre of a sector with that shape, whose first edge is sharp where any is.
+    /// The rule of the centre of a sector with that shape, whose first edge is sharp where any is.
     pub(super) fn of(shape: RingShape) -> Self {
         match (shape.corner, shape.open) {
             (true, true) => Self::Corner {
@@ -47,7 +47,7 @@ impl Centre {
     }
 }
 
-/// What is known of a sector's neighbours.
+/// The neighbours of a sector that are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Far {
     /// All are there.
@@ -73,9 +73,9 @@ pub(crate) struct VertexSector {
     pub(crate) at: DVec3,
     pub(crate) neighbours: Neighbours,
     pub(crate) centre: Centre,
-    /// The neighbour that is the face's next corner; the one after it is the corner after that. 0 where a mean stands for the others.
+    /// The neighbour that is the face's next corner; the one after it is the corner after that. 0 where a mean replaces the others.
     pub(crate) slot: usize,
-    /// What is left out.
+    /// The neighbours that are left out.
     pub(crate) far: Far,
 }
 
@@ -426,7 +426,7 @@ mod tests {
     use super::*;
     use crate::scheme::Loop;
 
-    /// What is made without sectors is to the bit what they come to.
+    /// Pieces that are made without sectors equal those of the sectors to the bit.
     #[test]
     fn pieces_are_those_of_the_sectors() {
         let rules = Rules::of(&Loop);

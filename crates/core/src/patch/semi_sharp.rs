@@ -1,9 +1,9 @@
-//! Pieces beside semi-sharp tags (DeRose, Kass and Truong 1998): a face of the Loop family with the whole rings of its
+//! Pieces at semi-sharp tags (DeRose, Kass and Truong 1998): a face of the Loop family with the whole rings of its
 //! three corners and how sharp their edges are.
 //!
 //! The rules are OpenSubdiv's (see [`SharpRing`]). Within the family a new point on an edge depends on that edge's
 //! sharpness alone and a vertex's on its own ring's, so that one refinement follows from the masks directly. New
-//! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners fades any
+//! vertices have six edges, of which two may stay sharp for a while. As soon as nothing at a part's corners is semi-sharp any
 //! more, it takes the form of other pieces. Of rings of very many edges pieces have the part near the face; what the rules ask of the
 //! others is found once for all faces ([`WholeRing`]).
 
@@ -21,7 +21,7 @@ use super::{Limit, LimitPoint, Rules};
 use super::{Patch, box_spline};
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Sharpness};
-use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded};
+use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, decremented};
 use crate::vector::{DVec3, vector};
 
 /// A vertex with its neighbours, counter-clockwise, and the sharpness of the edges to them.
@@ -56,17 +56,19 @@ impl SemiSharpVertex {
         (self.slot as isize + offset).rem_euclid(self.neighbours.len() as isize) as usize
     }
 
-    fn fades(&self) -> bool {
-        self.whole
-            .as_ref()
-            .map_or_else(|| self.sharp.fading() > 0.0, PartOfRing::fades)
+    fn is_semi_sharp(&self) -> bool {
+        self.whole.as_ref().map_or_else(
+            || self.sharp.semi_sharpness() > 0.0,
+            PartOfRing::is_semi_sharp,
+        )
     }
 
-    /// The least sharpness that fades; [`INFINITELY_SHARP`] where nothing does.
-    fn fades_first(&self) -> f64 {
-        self.whole
-            .as_ref()
-            .map_or_else(|| self.sharp.fades_first(), PartOfRing::fades_first)
+    /// The least semi-sharp sharpness; [`INFINITELY_SHARP`] without one.
+    fn least_semi_sharpness(&self) -> f64 {
+        self.whole.as_ref().map_or_else(
+            || self.sharp.least_semi_sharpness(),
+            PartOfRing::least_semi_sharpness,
+        )
     }
 
     /// Where the centre moves by the rules of a ring as sharp as `sharp`.
@@ -96,7 +98,7 @@ impl SemiSharpVertex {
     }
 
     /// The new vertex on the edge to the neighbour in `slot`: between the middle and the smooth one where the edge is
-    /// about to fade.
+    /// about to become smooth.
     fn edge_point(&self, slot: usize) -> DVec3 {
         let count = self.neighbours.len();
         let end = self.neighbours[slot];
@@ -111,7 +113,7 @@ impl SemiSharpVertex {
         sharp * middle + (1.0 - sharp) * smooth
     }
 
-    /// The same vertex after one refinement.
+    /// The vertex after one refinement.
     fn refined(&self, rules: &Rules<'_>) -> Self {
         let sharp = self.sharp.refined();
         let whole = self.whole.as_ref().map(PartOfRing::refined);
@@ -128,7 +130,7 @@ impl SemiSharpVertex {
         }
     }
 
-    /// The sector that the face is in, where nothing fades.
+    /// The sector that the face is in, where nothing is semi-sharp.
     pub(super) fn sector(&self) -> VertexSector {
         if let Some(whole) = &self.whole {
             return whole.sector(&self.neighbours, self.slot);
@@ -162,7 +164,7 @@ impl SemiSharpVertex {
 
     /// The limit of a new vertex, on the side of the face.
     fn limit(mut self, rules: &Rules<'_>) -> LimitPoint {
-        while self.fades() {
+        while self.is_semi_sharp() {
             self = self.refined(rules);
         }
         let sector = self.sector();
@@ -171,7 +173,7 @@ impl SemiSharpVertex {
     }
 }
 
-/// A face of which one corner at least fades.
+/// A face of which one corner at least is semi-sharp.
 #[derive(Clone, Debug)]
 pub(crate) enum SemiSharpPatch {
     /// Its corners, whatever they are.
@@ -183,7 +185,7 @@ pub(crate) enum SemiSharpPatch {
 impl SemiSharpPatch {
     /// The simplest form of the face with those corners.
     pub(super) fn of(corners: [SemiSharpVertex; 3]) -> Patch {
-        match corners.iter().any(SemiSharpVertex::fades) {
+        match corners.iter().any(SemiSharpVertex::is_semi_sharp) {
             true => Patch::SemiSharp(Box::new(match RegularSemiSharp::of(&corners) {
                 Some(regular) => Self::Regular(regular),
                 None => Self::Rings(corners),
@@ -216,11 +218,11 @@ impl SemiSharpPatch {
         }
     }
 
-    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter. `None`
+    /// The piece that this would be if semi-sharp edges were infinitely sharp, and how far that is from it at most, over the same parameter. `None`
     /// where that is not known.
-    pub(crate) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
+    pub(crate) fn infinitely_sharp_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         match self {
-            Self::Regular(regular) => regular.lasting_twin(rules),
+            Self::Regular(regular) => regular.infinitely_sharp_twin(rules),
             Self::Rings(corners) => rings_twin(corners, rules),
         }
     }
@@ -238,14 +240,14 @@ impl SemiSharpPatch {
     }
 }
 
-/// [`SemiSharpPatch::lasting_twin`] of the face with those corners.
+/// [`SemiSharpPatch::infinitely_sharp_twin`] of the face with those corners.
 fn rings_twin(corners: &[SemiSharpVertex; 3], rules: &Rules<'_>) -> Option<(Patch, f64)> {
-    let fades = corners
+    let least = corners
         .iter()
-        .map(SemiSharpVertex::fades_first)
+        .map(SemiSharpVertex::least_semi_sharpness)
         .fold(INFINITELY_SHARP, f64::min);
-    let mut gaps = Gaps::new(fades);
-    for corner in corners.iter().filter(|corner| corner.fades()) {
+    let mut gaps = Gaps::new(least);
+    for corner in corners.iter().filter(|corner| corner.is_semi_sharp()) {
         gaps.add(corner, rules)?;
     }
     Some((
@@ -304,7 +306,7 @@ impl RefinedRings<'_> {
         let near = [to.at, self.on_edge(next), self.on_edge(last), from.at];
         let before = &self.before[edge];
         let sharpness = before.sharp.spokes[before.slot];
-        let (at, vertex, along) = (self.on_edge(edge), 0.0, faded(sharpness));
+        let (at, vertex, along) = (self.on_edge(edge), 0.0, decremented(sharpness));
         if sharpness >= INFINITELY_SHARP {
             let sharp = SharpRing {
                 open: true,

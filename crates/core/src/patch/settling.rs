@@ -4,7 +4,7 @@
 //! characteristic map χ. The points are p + t₁χ₁ + t₂χ₂ + r, where the limit p and the tangents t are those of A's left eigenvectors,
 //! which are 0 on the outer points; so r is of the form Pr, where the projection P takes the three away, and AP = PA. Let D take points to
 //! the differences of neighbouring net points of the three regular pieces that one refinement gives. After j levels those of what
-//! stands beside the map are, at the map's own size, λ⁻ʲDAʲPr, none longer than ‖DAʲP‖ λ⁻ʲ times the longest of r (the norm is the
+//! differs from the map are, at the map's own size, λ⁻ʲDAʲPr, none longer than ‖DAʲP‖ λ⁻ʲ times the longest of r (the norm is the
 //! greatest sum of a row's absolute values). Once ‖AᵐP‖ λ⁻ᵐ is below 1, no m levels add to what is longest: so the greatest of the first
 //! m factors is never exceeded.
 
@@ -22,10 +22,10 @@ const MOST_LEVELS: usize = 400;
 /// Differences of the nets of three pieces, two ways each.
 const DIFFERENCES: usize = 3 * 2 * CUBIC;
 
-/// What rounding may do to a factor.
+/// The greatest factor by rounding.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// How long the differences of what stands beside the characteristic map are at most, at any level and at the map's size, where the longest of its
+/// How long the differences from the characteristic map are at most, at any level and at the map's size, where the longest of its
 /// points is 1: `None` if it is not known.
 /// `beta` is the weight of each neighbour of the vertex.
 pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {

@@ -1,14 +1,14 @@
 //! Where part of a piece is over its face: what division in four leads to.
 
-/// A part of the parameter triangle: its first corner, and its edges' length there, negative where it stands on its head.
+/// A part of the parameter triangle: its first corner, and its edges' length there, negative where it is inverted.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct ParamTriangle {
     pub(crate) u: f64,
     pub(crate) v: f64,
     pub(crate) size: f64,
 }
 
-impl Spot {
+impl ParamTriangle {
     pub(crate) const WHOLE: Self = Self {
         u: 0.0,
         v: 0.0,
@@ -51,10 +51,10 @@ impl Spot {
         }
     }
 
-    /// The part `depth` levels below in column i and row j, upright or on its head.
-    pub(crate) fn row(self, depth: u32, i: usize, j: usize, is_headlong: bool) -> Self {
+    /// The part `depth` levels below in column i and row j, upright or inverted.
+    pub(crate) fn row(self, depth: u32, i: usize, j: usize, is_inverted: bool) -> Self {
         let Self { u, v, size } = self.leaf(depth, i, j);
-        if is_headlong {
+        if is_inverted {
             Self {
                 u: u + size,
                 v: v + size,

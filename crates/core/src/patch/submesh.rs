@@ -9,7 +9,7 @@ use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{
     CornerTag, CreaseTag, Junctions, Mesh, NONE, Sharpness, Tags, Topology, outgoing_half_edges,
 };
-use crate::ring::faded;
+use crate::ring::decremented;
 
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
@@ -115,7 +115,7 @@ pub(super) fn quartered(mesh: &Mesh) -> (Topology, Vec<HalfEdgeId>, Tags) {
 
 /// The tags of a mesh after a step, given the new vertex on each half-edge.
 fn refined_tags(mesh: &Mesh, on_edge: &[u32]) -> Tags {
-    let left = |sharpness: f64| Some(faded(sharpness)).filter(|&left| left > 0.0);
+    let left = |sharpness: f64| Some(decremented(sharpness)).filter(|&left| left > 0.0);
     let creases = mesh.tags().creases.iter().flat_map(
         |&CreaseTag {
              vertices: [a, b],

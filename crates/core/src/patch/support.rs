@@ -1,11 +1,11 @@
-//! What the limit surface over a face depends on: which control points, and what they are to the rules.
+//! The control points on which the limit surface over a face depends, and a key of the rules between them.
 //!
 //! Takes a face of a mesh of the Loop family; gives the control points in an order of their own, and a key. Faces with equal keys
 //! have the same surface as a function of their control points, so that what is found of one of them serves all.
 
 use std::collections::HashMap;
 
-use super::from_mesh::{fades, sector_of};
+use super::from_mesh::{is_semi_sharp, sector_of};
 use super::large_rings::LargeRings;
 use super::sector::{Centre, Far};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
@@ -19,7 +19,7 @@ const FEW: usize = 32;
 pub(crate) struct Support {
     /// The corner of the face that counts as the first.
     pub(crate) turn: usize,
-    /// What the points are to each other.
+    /// The key of the points' rules.
     pub(crate) key: Vec<u32>,
     /// Vertices, that corner first; from the number of vertices on the means of large rings, by the number of the ring.
     pub(crate) points: Vec<u32>,
@@ -40,9 +40,9 @@ impl Support {
         face: FaceId,
     ) -> Self {
         let half_edges = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
-        let corners = match fades(mesh, sharpness, large, half_edges) {
-            true => half_edges.map(|h| Corner::fading(mesh, sharpness, h)),
-            false => half_edges.map(|h| Corner::lasting(mesh, sharpness, large, h)),
+        let corners = match is_semi_sharp(mesh, sharpness, large, half_edges) {
+            true => half_edges.map(|h| Corner::semi_sharp(mesh, sharpness, h)),
+            false => half_edges.map(|h| Corner::infinitely_sharp(mesh, sharpness, large, h)),
         };
         let turns = [0, 1, 2].map(|turn| Self::turned(&corners, turn));
         let [first, second, third] = turns;
@@ -114,8 +114,8 @@ impl Numbered {
 }
 
 impl Corner {
-    /// A corner of a face beside which something fades: the whole ring, and how sharp it is.
-    fn fading(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
+    /// A corner of a face with semi-sharp tags: the whole ring, and how sharp it is.
+    fn semi_sharp(mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> Self {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let ring = sharpness.ring(vertex);
@@ -141,7 +141,12 @@ impl Corner {
     }
 
     /// Any other corner: the sector on the face's side, as pieces are made of it.
-    fn lasting(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, h: HalfEdgeId) -> Self {
+    fn infinitely_sharp(
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        large: &LargeRings,
+        h: HalfEdgeId,
+    ) -> Self {
         let topology = mesh.topology();
         let vertex = topology.origin(h);
         let is_plain = !sharpness.is_tagged(vertex);

@@ -15,7 +15,7 @@ use crate::geometry::box_tree::distance_to;
 use crate::geometry::closest_to_origin;
 use crate::index::FaceId;
 use crate::parallel::IsStopped;
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 use crate::vector::{DVec3, vector};
 
 /// Newton's steps on a piece at most: it converges within five, or it is better to quarter the piece.
@@ -238,7 +238,7 @@ impl<'q> Query<'q> {
             Form::Regular(regular) => {
                 let [a, b, c] = piece.corners.map(|corner| corner - self.from);
                 let [_, u, v] = closest_to_origin(a, b, c).weights;
-                if let Some(lower) = self.descend(regular, [u, v], (piece.spot, face)) {
+                if let Some(lower) = self.descend(regular, [u, v], (piece.domain, face)) {
                     return self.pass_over(lower);
                 }
             }
@@ -249,7 +249,7 @@ impl<'q> Query<'q> {
                         .into_iter()
                         .zip([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
                 {
-                    self.offer(corner.distance(self.from), corner, (piece.spot, face), at);
+                    self.offer(corner.distance(self.from), corner, (piece.domain, face), at);
                 }
             }
         }
@@ -275,7 +275,7 @@ impl<'q> Query<'q> {
         &mut self,
         distance: f64,
         point: DVec3,
-        (spot, face): (Spot, u32),
+        (domain, face): (ParamTriangle, u32),
         at: [f64; 2],
     ) -> bool {
         let is_nearer = distance < self.best.distance;
@@ -284,7 +284,7 @@ impl<'q> Query<'q> {
                 distance,
                 point,
                 face,
-                weights: spot.weights(at),
+                weights: domain.weights(at),
             };
         }
         is_nearer
@@ -297,7 +297,7 @@ impl<'q> Query<'q> {
         &mut self,
         piece: &RegularPiece,
         mut at: [f64; 2],
-        over: (Spot, u32),
+        over: (ParamTriangle, u32),
     ) -> Option<f64> {
         let from = self.from - piece.origin;
         let made = if piece.convexity.is_none() {

@@ -9,7 +9,7 @@ use crate::geometry::{SurfaceFrame, closest_to_origin};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{self, Patch, Quartic, Rules, Spot, child_corners};
+use crate::patch::{self, ParamTriangle, Patch, Quartic, Rules, child_corners};
 use crate::vector::DVec3;
 
 /// Refinements of a face towards irregular corners before its pieces are kept.
@@ -30,7 +30,7 @@ pub(super) struct Piece {
     /// How far a point of it is at most from that of the triangle with the same weights.
     pub(super) deviation: f64,
     /// Where it is over the face.
-    pub(super) spot: Spot,
+    pub(super) domain: ParamTriangle,
     pub(super) form: Form,
 }
 
@@ -60,7 +60,7 @@ impl RegularPiece {
 
 impl Piece {
     /// Of a net in the frame.
-    fn of_net(net: &BezierTriangle, spot: Spot) -> Self {
+    fn of_net(net: &BezierTriangle, domain: ParamTriangle) -> Self {
         let corners = net.corners();
         let origin = (corners[0] + corners[1] + corners[2]) / 3.0;
         let net = BezierTriangle(net.0.map(|point| point - origin));
@@ -80,14 +80,19 @@ impl Piece {
                 .map(DVec3::length_squared)
                 .fold(0.0, f64::max)
                 .sqrt(),
-            spot,
+            domain,
             form: Form::Regular(Box::new(piece)),
         }
     }
 
-    fn of_patch(frame: &SurfaceFrame, patch: Patch, corners: [DVec3; 3], spot: Spot) -> Self {
+    fn of_patch(
+        frame: &SurfaceFrame,
+        patch: Patch,
+        corners: [DVec3; 3],
+        domain: ParamTriangle,
+    ) -> Self {
         if let Patch::Regular(points) = patch {
-            return Self::of_points(frame, &points, spot);
+            return Self::of_points(frame, &points, domain);
         }
         let mut points = Vec::new();
         patch.for_each_hull_point(|point| points.push(frame.inside(point)));
@@ -101,15 +106,15 @@ impl Piece {
             corners,
             height,
             deviation,
-            spot,
+            domain,
             form: Form::Irregular(Box::new(patch)),
         }
     }
 
-    fn of_points(frame: &SurfaceFrame, points: &patch::Points, spot: Spot) -> Self {
+    fn of_points(frame: &SurfaceFrame, points: &patch::Points, domain: ParamTriangle) -> Self {
         Self::of_net(
             &BezierTriangle::of(&points.map(|point| frame.inside(point))),
-            spot,
+            domain,
         )
     }
 
@@ -117,22 +122,22 @@ impl Piece {
     pub(super) fn parts(&self, frame: &SurfaceFrame, rules: &Rules<'_>) -> [Self; 4] {
         match &self.form {
             Form::Regular(regular) => [0, 1, 2, 3].map(|part| {
-                let Spot { u, v, size } = Spot::WHOLE.child(part);
+                let ParamTriangle { u, v, size } = ParamTriangle::WHOLE.child(part);
                 let net = regular
                     .quartic
                     .net([u, v], size)
                     .0
                     .map(|point| point + regular.origin);
-                Self::of_net(&BezierTriangle(net), self.spot.child(part))
+                Self::of_net(&BezierTriangle(net), self.domain.child(part))
             }),
             Form::Irregular(patch) => {
                 let refined = patch.refined(rules);
                 let middles = [0, 1, 2].map(|edge| frame.inside(refined.middle_as::<DVec3>(edge)));
                 [0, 1, 2, 3].map(|part| match refined.points(part) {
-                    Some(points) => Self::of_points(frame, &points, self.spot.child(part)),
+                    Some(points) => Self::of_points(frame, &points, self.domain.child(part)),
                     None => {
                         let corners = child_corners(self.corners, middles, part);
-                        Self::of_patch(frame, refined.part(part), corners, self.spot.child(part))
+                        Self::of_patch(frame, refined.part(part), corners, self.domain.child(part))
                     }
                 })
             }
@@ -229,7 +234,7 @@ pub(super) fn closing(piece: &Piece, parts: &[Piece; 4]) -> [[DVec3; 3]; 3] {
 fn whole(surface: &LimitSurface<'_>, frame: &SurfaceFrame, face: FaceId) -> Piece {
     let (sheet, _) = surface.sheet(face);
     let corners = sheet.corners.map(|corner| frame.inside(corner));
-    Piece::of_patch(frame, sheet.patch, corners, Spot::WHOLE)
+    Piece::of_patch(frame, sheet.patch, corners, ParamTriangle::WHOLE)
 }
 
 /// A box around the surface over a face and the triangle of its corners, where pieces are not kept: around its four parts, as the hull

@@ -7,7 +7,7 @@ use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, Points, Rules, Spot};
+use crate::patch::{ParamTriangle, Patch, Points, Rules};
 use crate::vector::DVec3;
 
 /// Refinements of a face towards irregular corners before its pieces are kept.
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     pub(super) face: u32,
-    pub(super) spot: Spot,
+    pub(super) domain: ParamTriangle,
     pub(super) form: Form,
 }
 
@@ -39,9 +39,9 @@ pub(super) enum Form {
 
 /// The weights of a part's second and third corner at the one that is a corner of the face, as in
 /// pieces that stay irregular; at its middle where there is none.
-pub(super) fn control_corner(spot: Spot) -> [f64; 2] {
+pub(super) fn control_corner(domain: ParamTriangle) -> [f64; 2] {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
-    let is_control = |at: &[f64; 2]| spot.weights(*at).contains(&1.0);
+    let is_control = |at: &[f64; 2]| domain.weights(*at).contains(&1.0);
     corners
         .into_iter()
         .find(is_control)
@@ -61,7 +61,7 @@ pub(super) fn pieces(
     append(
         &mut found,
         (frame, rules),
-        (face.0, Spot::WHOLE),
+        (face.0, ParamTriangle::WHOLE),
         sheet.patch,
         levels,
     );
@@ -71,11 +71,11 @@ pub(super) fn pieces(
 fn append(
     found: &mut Vec<(Bounds, Piece)>,
     (frame, rules): (&SurfaceFrame, &Rules<'_>),
-    (face, spot): (u32, Spot),
+    (face, domain): (u32, ParamTriangle),
     patch: Patch,
     levels: u32,
 ) {
-    let piece = |form| Piece { face, spot, form };
+    let piece = |form| Piece { face, domain, form };
     let margin = DVec3::splat(ROUNDING);
     let with_margin = |[low, high]: Bounds| [low - margin, high + margin];
     match patch {
@@ -98,7 +98,7 @@ fn append(
                 append(
                     found,
                     (frame, rules),
-                    (face, spot.child(own)),
+                    (face, domain.child(own)),
                     refined.part(own),
                     levels - 1,
                 );

@@ -10,7 +10,7 @@ use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, Search};
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{Patch, Points, Refined, Spot};
+use crate::patch::{ParamTriangle, Patch, Points, Refined};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// The most pieces visited for a ray. The others then count as grazed: a ray may run within a
@@ -146,7 +146,13 @@ impl<'a> RaySearch<'a> {
         }
     }
 
-    fn add(&mut self, (face, spot): (u32, Spot), at: [f64; 2], depth: f64, crossing: Crossing) {
+    fn add(
+        &mut self,
+        (face, domain): (u32, ParamTriangle),
+        at: [f64; 2],
+        depth: f64,
+        crossing: Crossing,
+    ) {
         if depth < self.first || depth > self.last {
             return;
         }
@@ -157,7 +163,7 @@ impl<'a> RaySearch<'a> {
         self.found.push(Found {
             depth,
             face,
-            weights: spot.weights(at),
+            weights: domain.weights(at),
             crossing,
         });
     }
@@ -179,7 +185,7 @@ impl<'a> RaySearch<'a> {
     }
 
     /// A regular piece, its points in the ray's frame.
-    fn regular(&mut self, points: &Points, place: (u32, Spot)) {
+    fn regular(&mut self, points: &Points, place: (u32, ParamTriangle)) {
         self.looked_at += 1;
         let net = BezierTriangle::of(points);
         if self.is_missed(net.0.iter().copied(), Some(net.corners())) {
@@ -219,7 +225,7 @@ impl<'a> RaySearch<'a> {
     }
 
     /// A piece that is to be refined.
-    fn irregular(&mut self, patch: &Patch, place: (u32, Spot)) {
+    fn irregular(&mut self, patch: &Patch, place: (u32, ParamTriangle)) {
         let (frame, scale) = (self.frame, *self.scale);
         let inside = |point: DVec3| frame.inside(scale.inside(point));
         if let Patch::Regular(points) = patch {
@@ -263,7 +269,7 @@ impl Search for RaySearch<'_> {
     fn visit(&mut self, item: u32) {
         let pieces = self.pieces;
         let piece = &pieces[item as usize];
-        let place = (piece.face, piece.spot);
+        let place = (piece.face, piece.domain);
         match &piece.form {
             Form::Regular(points) => {
                 let frame = self.frame;

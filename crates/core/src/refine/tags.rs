@@ -3,7 +3,7 @@
 use super::split::{SplitEdges, SplitTopology};
 use crate::index::VertexId;
 use crate::mesh::{CornerTag, CreaseTag, Mesh, Tags};
-use crate::ring::faded;
+use crate::ring::decremented;
 
 /// The tags after a step: both halves of a split edge take over its crease, and the sharpness of
 /// semi-sharp tags falls by one. `moves` marks the old vertices that take their new position; the
@@ -48,5 +48,5 @@ pub(super) fn refined_tags(
 
 /// The sharpness one level on; `None` once the tag has faded.
 pub(super) fn less_sharp(sharpness: f64) -> Option<f64> {
-    Some(faded(sharpness)).filter(|&left| left > 0.0)
+    Some(decremented(sharpness)).filter(|&left| left > 0.0)
 }

@@ -334,7 +334,7 @@ fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
     let first = levels
         .saturating_sub(MOST_TOGETHER)
         .max(1)
-        .max(Sharpness::of(mesh).fading_levels());
+        .max(Sharpness::of(mesh).semi_sharp_levels());
     levels.saturating_sub(first)
 }
 

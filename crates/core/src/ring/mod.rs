@@ -6,7 +6,7 @@
 mod sharp;
 
 pub use sharp::{INFINITELY_SHARP, RingSector, SharpRing, VertexRule};
-pub(crate) use sharp::{faded, present_weight, rule};
+pub(crate) use sharp::{decremented, present_weight, rule};
 
 /// The rule of a vertex.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]

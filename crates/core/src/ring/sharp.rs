@@ -51,7 +51,7 @@ pub struct SharpRing {
 
 /// The sharpness after one refinement.
 #[inline]
-pub(crate) fn faded(sharpness: f64) -> f64 {
+pub(crate) fn decremented(sharpness: f64) -> f64 {
     if sharpness >= INFINITELY_SHARP {
         sharpness
     } else {
@@ -120,16 +120,16 @@ impl SharpRing {
 
     /// The ring after one refinement.
     pub fn refined(&self) -> Self {
-        let spokes = self.spokes.iter().map(|&s| faded(s)).collect();
+        let spokes = self.spokes.iter().map(|&s| decremented(s)).collect();
         Self {
             open: self.open,
-            vertex: faded(self.vertex),
+            vertex: decremented(self.vertex),
             spokes,
         }
     }
 
     /// The greatest semi-sharp sharpness; 0 without semi-sharp tags.
-    pub fn fading(&self) -> f64 {
+    pub fn semi_sharpness(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]);
         all.copied()
             .filter(|&s| s < INFINITELY_SHARP)
@@ -137,7 +137,7 @@ impl SharpRing {
     }
 
     /// The least semi-sharp sharpness; [`INFINITELY_SHARP`] without semi-sharp tags.
-    pub(crate) fn fades_first(&self) -> f64 {
+    pub(crate) fn least_semi_sharpness(&self) -> f64 {
         let all = self.spokes.iter().chain([&self.vertex]).copied();
         all.filter(|&s| s > 0.0).fold(INFINITELY_SHARP, f64::min)
     }

@@ -63,7 +63,7 @@ pub fn uniform_observed(
     }
     let (limits, normals) = match (options.limit, options.normals) {
         (false, false) => (None, None),
-        asked => limits(&level, asked, &mut watch)?,
+        (positions, normals) => limits(&level, positions, normals, &mut watch)?,
     };
     let mesh = match limits {
         Some(positions) => level.mesh.with_positions(positions)?,
@@ -86,7 +86,8 @@ type Limits = (Option<Vec<[f64; 3]>>, Option<SidedNormals>);
 /// Limit positions and normals of the vertices of a level, as far as requested.
 fn limits(
     level: &Level,
-    (positions, normals): (bool, bool),
+    positions: bool,
+    normals: bool,
     watch: &mut Watch<'_>,
 ) -> Result<Limits, RefineError> {
     watch.stage(Stage::Limits, Some(level.mesh.vertex_count()))?;

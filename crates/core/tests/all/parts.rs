@@ -402,7 +402,7 @@ fn rings_close_together_would_fold_and_do_not() {
             .positions(&interpolated.mesh)
             .unwrap();
         for (v, (limit, vertex)) in limits.iter().zip(mesh.positions()).enumerate() {
-            let is_passed_by = interpolated.passed_by.contains(&VertexId(v as u32));
+            let is_passed_by = interpolated.relaxed.contains(&VertexId(v as u32));
             assert!(is_passed_by || distance(*limit, *vertex) < 1e-9, "{v}");
         }
         assert!(!folded.is_empty());
@@ -411,7 +411,7 @@ fn rings_close_together_would_fold_and_do_not() {
         // Where whole rings fold, the rims keep their radius: they are curves of their own.
         let is_on_rim = |v: &VertexId| [0.0, 8.0].contains(&mesh.positions()[v.index()][2]);
         if turns.len() == 16 {
-            assert!(!interpolated.passed_by.iter().any(is_on_rim), "{heights:?}");
+            assert!(!interpolated.relaxed.iter().any(is_on_rim), "{heights:?}");
         }
     }
 }
@@ -450,10 +450,10 @@ fn what_folds_does_not_change_the_rest() {
             / 6.0
     };
     assert!((volume(&|p| p[0] < 10.0) / (PI * 200.0) - 1.0).abs() < 1e-3);
-    let passed_by = &found.interpolated.passed_by;
+    let relaxed = &found.interpolated.relaxed;
     assert!(
-        !passed_by.is_empty()
-            && passed_by
+        !relaxed.is_empty()
+            && relaxed
                 .iter()
                 .all(|v| mesh.positions()[v.index()][0] > 10.0)
     );

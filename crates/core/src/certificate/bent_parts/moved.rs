@@ -54,7 +54,7 @@ struct Triangle {
 struct EdgeDeviations {
     /// How far curves are from their edges, and how far they reach over them.
     side: f64x4,
-    drift: f64x4,
+    displacement: f64x4,
     /// The greatest slopes of that.
     slopes: [f64x4; 3],
     /// Whether each curve stays within the angles at its edge.
@@ -90,23 +90,23 @@ impl MovedFour {
             lifts,
         );
         let height = high.fast_max(-low);
-        let beside = triangle.beside(&bends, curve, steep);
+        let edges = triangle.edge_bounds(&bends, curve, steep);
         let opposite = [from, second, third].map(|corner| corner.map(|axis| axis * scale));
         let around = triangle.around(&opposite, self.opposite.each_ref().map(vectors), scale);
         let is_plain = triangle.has_plane
-            & beside.is_plain
+            & edges.is_plain
             & triangle.is_unfolded(&bends, first)
             & around.is_known;
-        // As `BesideEdges::deviation_off` and `Deviation::bound` have it.
-        let (most, off) = (height + rest, beside.side + aside);
+        // As `EdgeBounds::deviation_off` and `Deviation::bound` have it.
+        let (most, off) = (height + rest, edges.side + aside);
         let own = (most * most + off * off).sqrt().fast_max(moved);
         let at_corners = most.fast_max(moved);
         let apart = (at_corners * at_corners + 4.0 * aside * aside).sqrt();
-        let within = |edge: usize| beside.slopes[edge].simd_le(around.slopes[edge]);
+        let within = |edge: usize| edges.slopes[edge].simd_le(around.slopes[edge]);
         let is_helped =
             within(0) & within(1) & within(2) & around.squared.simd_le(f64x4::splat(SHARPEST));
-        let among =
-            apart * (1.0 + 0.5 * around.squared) + around.squared.sqrt() * (beside.drift + aside);
+        let among = apart * (1.0 + 0.5 * around.squared)
+            + around.squared.sqrt() * (edges.displacement + aside);
         let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
         FoundFour {
@@ -161,12 +161,12 @@ impl Triangle {
         (lifts, moved.sqrt(), aside.sqrt())
     }
 
-    /// As in [`super::super::quartic_cell::QuarticJet::beside`].
+    /// As in [`super::super::quartic_cell::QuarticJet::edge_bounds`].
     #[inline(always)]
-    fn beside(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
+    fn edge_bounds(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
         let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
-        let (mut side, mut drift, mut slopes) = (zero, zero, [zero; 3]);
+        let (mut side, mut displacement, mut slopes) = (zero, zero, [zero; 3]);
         let mut is_plain = self.has_plane;
         for edge in 0..3 {
             let share = 1.0 / self.lengths[edge];
@@ -179,12 +179,12 @@ impl Triangle {
             is_plain = is_plain & room.simd_gt(zero) & stays;
             side = side.fast_max(0.125 * outward.abs() + curve);
             // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
-            drift = drift.fast_max(0.125 * outward.fast_max(zero) + curve);
+            displacement = displacement.fast_max(0.125 * outward.fast_max(zero) + curve);
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
         EdgeDeviations {
             side,
-            drift,
+            displacement,
             slopes,
             is_plain,
         }

@@ -119,14 +119,14 @@ fn four_at_once_come_to_what_each_comes_to() {
                 .heights(&case.cells[l], frame.normal())
                 .lifted_range(lifts);
             let open = [false; 3];
-            let by_piece = jet.beside(&case.cells[l], &frame, open);
-            let beside = jet.beside_closely(&by_piece, &case.cells[l], &frame, open);
+            let by_piece = jet.edge_bounds(&case.cells[l], &frame, open);
+            let edges = jet.closer_edge_bounds(&by_piece, &case.cells[l], &frame, open);
             let aside = aside.into_iter().fold(0.0, f64::max);
             let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
             let (squared, slopes) = around(corners, &opposite.map(Some));
             // By derivatives of the part itself, and by those of all of its piece.
-            let [expected, loosely] = [beside, by_piece].map(|beside| {
-                beside
+            let [expected, loosely] = [edges, by_piece].map(|edges| {
+                edges
                     .deviation_off(height + rest, moved, aside)
                     .bound(squared.sqrt(), slopes)
             });
@@ -142,7 +142,7 @@ fn four_at_once_come_to_what_each_comes_to() {
             if found.bound[l].is_infinite() {
                 continue;
             }
-            assert!(!beside.is_loose(), "round {round}");
+            assert!(!edges.is_loose(), "round {round}");
             assert!(
                 found.bound[l] >= expected - 1e-12 * unit,
                 "round {round}: {found:?} {expected}"

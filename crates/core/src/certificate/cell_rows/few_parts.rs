@@ -62,7 +62,6 @@ impl FewParts {
                 normals[axis][4 * four..4 * four + 4].copy_from_slice(&normal[axis]);
             }
         }
-        let all = (&points, &normals, scale);
         let corner = |i: usize, j: usize| j * (n + 1) - j * j.saturating_sub(1) / 2 + i;
         let mut number = 0;
         for j in 0..n {
@@ -71,12 +70,14 @@ impl FewParts {
                 self.set_corners(
                     number,
                     [corner(i, j), corner(i + 1, j), corner(i, j + 1)],
-                    all,
+                    &points,
+                    &normals,
+                    scale,
                 );
                 number += 1;
             }
         }
-        self.set_bends(block, (step, scale), number, (&u, &v), corner);
+        self.set_bends(block, step, scale, number, [&u, &v], corner);
         let upright = |i: usize, j: usize| j * n - j * j.saturating_sub(1) / 2 + i;
         for j in 0..n - 1 {
             for i in 0..n - 1 - j {
@@ -84,7 +85,9 @@ impl FewParts {
                 self.set_corners(
                     number,
                     [corner(i + 1, j + 1), corner(i, j + 1), corner(i + 1, j)],
-                    all,
+                    &points,
+                    &normals,
+                    scale,
                 );
                 let adjacent = [upright(i, j + 1), upright(i, j), upright(i + 1, j)];
                 for (bends, from) in self.bends.iter_mut().zip(adjacent) {
@@ -101,7 +104,9 @@ impl FewParts {
         &mut self,
         number: usize,
         corners: [usize; 3],
-        (points, normals, scale): (&Corners, &Corners, f64),
+        points: &Corners,
+        normals: &Corners,
+        scale: f64,
     ) {
         for axis in 0..3 {
             let [first, second, third] = corners.map(|corner| points[axis][corner]);
@@ -117,9 +122,10 @@ impl FewParts {
     fn set_bends(
         &mut self,
         block: &RowBlock<'_>,
-        (step, scale): (f64, f64),
+        step: f64,
+        scale: f64,
         number: usize,
-        (u, v): (&[f64; FEW_CORNERS], &[f64; FEW_CORNERS]),
+        [u, v]: [&[f64; FEW_CORNERS]; 2],
         corner: impl Fn(usize, usize) -> usize,
     ) {
         let [uu, uv, vv] = block.jet.second();

@@ -82,20 +82,20 @@ pub(super) struct Remainder {
 pub(super) struct Found {
     bound: [f32; WIDTH],
     low: [f32; WIDTH],
-    tilt: [f32; WIDTH],
+    normal_deviation: [f32; WIDTH],
     slope: [f32; WIDTH],
-    drift_slope: [f32; WIDTH],
+    displacement_slope: [f32; WIDTH],
 }
 
 impl Default for Found {
     fn default() -> Self {
-        let [bound, low, tilt, slope, drift_slope] = [[0.0; WIDTH]; 5];
+        let [bound, low, normal_deviation, slope, displacement_slope] = [[0.0; WIDTH]; 5];
         Self {
             bound,
             low,
-            tilt,
+            normal_deviation,
             slope,
-            drift_slope,
+            displacement_slope,
         }
     }
 }
@@ -126,14 +126,15 @@ pub(super) fn measure(
     let Found {
         bound,
         low,
-        tilt: tilts,
+        normal_deviation: normal_deviations,
         slope: slopes,
-        drift_slope: drift_slopes,
+        displacement_slope: displacement_slopes,
     } = found;
-    let [bound, low, tilts, slopes, drift_slopes] = [bound, low, tilts, slopes, drift_slopes]
-        .map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
-    let (allowed, share) = (below(target.slope), below(target.drift_share));
-    let neighbour = above(target.tilt);
+    let [bound, low, normal_deviations, slopes, displacement_slopes] =
+        [bound, low, normal_deviations, slopes, displacement_slopes]
+            .map(|row| &mut row.as_chunks_mut::<LANES>().0[..fours]);
+    let (allowed, share) = (below(target.slope), below(target.displacement_share));
+    let neighbour = above(target.normal_deviation);
     let range_share = below(target.range_share);
     let size = f32x4::splat(parts.size);
     let facing: f32 = if parts.is_turned { -1.0 } else { 1.0 };
@@ -149,21 +150,22 @@ pub(super) fn measure(
             least = least.fast_max(range_share * edge_range(seen) + rest.height);
         }
         let height = most + 0.3 * triangle.unsure * size + rest.height;
-        let tilt = triangle.tilt([at(&m0), at(&m1), at(&m2)]);
-        let chord = tilt + neighbour;
-        let beside = triangle.beside(&bends, off, rest, share);
-        let is_plain = beside.is_plain
+        let normal_deviation = triangle.normal_deviation([at(&m0), at(&m1), at(&m2)]);
+        let chord = normal_deviation + neighbour;
+        let edges = triangle.edge_bounds(&bends, off, rest, share);
+        let is_plain = edges.is_plain
             & triangle.is_unfolded(&bends, off, rest)
-            & beside.slope.simd_le(f32x4::splat(allowed))
+            & edges.slope.simd_le(f32x4::splat(allowed))
             & (chord * chord).simd_le(f32x4::splat(SHARPEST));
-        let value = (height * (1.0 + 0.5 * chord * chord) + chord * beside.drift) * A_LITTLE_MORE;
+        let value =
+            (height * (1.0 + 0.5 * chord * chord) + chord * edges.displacement) * A_LITTLE_MORE;
         bound[i] = is_plain
             .bitselect(value, f32x4::splat(f32::INFINITY))
             .to_array();
         low[i] = (least - rest.height).to_array();
-        tilts[i] = tilt.to_array();
+        normal_deviations[i] = normal_deviation.to_array();
         slopes[i] = triangle.slope().to_array();
-        drift_slopes[i] = beside.slope.to_array();
+        displacement_slopes[i] = edges.slope.to_array();
     }
 }
 
@@ -192,7 +194,7 @@ struct Triangle {
 /// The distances of parts of the surface from the edges of their triangles.
 struct EdgeDeviations {
     /// How far they reach over them.
-    drift: f32x4,
+    displacement: f32x4,
     /// The greatest slope of that displacement, or of the inner part.
     slope: f32x4,
     /// Whether each curve stays within the angles at its edge.
@@ -227,7 +229,7 @@ impl Triangle {
 
     /// The chord between the triangle's normal and those at its corners.
     #[inline(always)]
-    fn tilt(&self, normals: [[f32x4; 3]; 3]) -> f32x4 {
+    fn normal_deviation(&self, normals: [[f32x4; 3]; 3]) -> f32x4 {
         let apart = normals.map(|normal| {
             let d = minus(normal, self.normal);
             dot(d, d)
@@ -243,7 +245,7 @@ impl Triangle {
 
     /// By the second derivatives outwards, times the edges' lengths.
     #[inline(always)]
-    fn beside(
+    fn edge_bounds(
         &self,
         [wa, wc, wb]: &[[f32x4; 3]; 3],
         off: f32x4,
@@ -279,14 +281,14 @@ impl Triangle {
         let zero = f32x4::ZERO;
         let is_roomy = ra.simd_ge(zero) & rb.simd_ge(zero) & rc.simd_ge(zero);
         let reach = larger(out).fast_max(zero) + off;
-        let drift = 0.125 * reach / la.fast_min(lb).fast_min(lc).sqrt() + rest.curve;
+        let displacement = 0.125 * reach / la.fast_min(lb).fast_min(lc).sqrt() + rest.curve;
         let [first, second, third] = self.products.map(f32x4::abs);
         let most = share * area * (1.0 - 8.0 * self.unsure);
         let stays = (ra * larger([first, second, area])).simd_le(most)
             & (rc * larger([second, third, area])).simd_le(most)
             & (rb * larger([third, first, area])).simd_le(most);
         EdgeDeviations {
-            drift,
+            displacement,
             slope: larger([ra, rb, rc]) * A_LITTLE_MORE,
             is_plain: is_roomy & stays,
         }
@@ -355,7 +357,7 @@ impl Found {
     /// their unit.
     pub(super) fn mark(
         &self,
-        (count, scale): (usize, f64),
+        scale: f64,
         target: &RowTarget,
         extent: &mut RowExtent,
         marks: &mut [Mark],
@@ -363,14 +365,18 @@ impl Found {
         // A part without a bound, which is infinite, must not pass, however great the target is.
         let most = (target.distance * scale).smaller(f64::from(f32::MAX));
         let mut greatest = 0.0f64;
-        for (i, mark) in marks.iter_mut().enumerate().take(count) {
+        for (i, mark) in marks.iter_mut().enumerate() {
             let bound = f64::from(self.bound[i]);
             *mark = if f64::from(self.low[i]) > most {
                 Mark::Fails
             } else if bound <= most {
-                extent.tilt = extent.tilt.larger(f64::from(self.tilt[i]));
+                extent.normal_deviation = extent
+                    .normal_deviation
+                    .larger(f64::from(self.normal_deviation[i]));
                 extent.slope = extent.slope.smaller(f64::from(self.slope[i]));
-                extent.drift_slope = extent.drift_slope.larger(f64::from(self.drift_slope[i]));
+                extent.displacement_slope = extent
+                    .displacement_slope
+                    .larger(f64::from(self.displacement_slope[i]));
                 greatest = greatest.larger(bound);
                 Mark::Passes
             } else {

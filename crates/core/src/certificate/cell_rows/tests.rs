@@ -51,21 +51,21 @@ fn samples_lie_within(range_share: f64) {
         let target = RowTarget {
             distance,
             range_share,
-            tilt: 0.2,
+            normal_deviation: 0.2,
             slope: f64::INFINITY,
-            drift_share: 0.3,
+            displacement_share: 0.3,
         };
         let mut extent = RowExtent::NONE;
         let mut marks = Marks::default();
         CellRows::default().test(&block, divisions, &target, &mut extent, &mut marks);
         for j in 0..n {
             for i in 0..n - j {
-                for is_headlong in [false, true] {
-                    if is_headlong && i + j + 1 >= n {
+                for is_inverted in [false, true] {
+                    if is_inverted && i + j + 1 >= n {
                         continue;
                     }
                     let (i, j) = (i as f64, j as f64);
-                    let corners = if is_headlong {
+                    let corners = if is_inverted {
                         [[i + 1.0, j + 1.0], [i, j + 1.0], [i + 1.0, j]]
                     } else {
                         [[i, j], [i + 1.0, j], [i, j + 1.0]]
@@ -85,17 +85,18 @@ fn samples_lie_within(range_share: f64) {
                             let height = frame.height(point);
                             (low, high) = (low.min(height), high.max(height));
                             for edge in 0..3 {
-                                outside = outside.max(frame.beside(edge, point).outside);
+                                outside = outside.max(frame.edge_position(edge, point).outside);
                             }
                         }
                     }
                     let (highest, range) = (high.max(-low), range_share * (high - low));
-                    let tilts = domain.map(|[u, v]| piece.normal(u, v).distance(frame.normal()));
-                    let tilt = tilts.into_iter().fold(0.0, f64::max);
-                    match marks.at(i as usize, j as usize, is_headlong) {
+                    let normal_deviations =
+                        domain.map(|[u, v]| piece.normal(u, v).distance(frame.normal()));
+                    let normal_deviation = normal_deviations.into_iter().fold(0.0, f64::max);
+                    match marks.at(i as usize, j as usize, is_inverted) {
                         Mark::Passes => {
                             passed += 1;
-                            let chord = tilt + target.tilt;
+                            let chord = normal_deviation + target.normal_deviation;
                             let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
                             assert!(value <= distance, "round {round}: {value} of {distance}");
                             // Of ranges only the quadratic part is used.
@@ -105,7 +106,7 @@ fn samples_lie_within(range_share: f64) {
                                 "round {round}: {range}, {distance}"
                             );
                             assert!(
-                                tilt <= extent.tilt
+                                normal_deviation <= extent.normal_deviation
                                     && frame.least_slope() >= extent.slope * (1.0 - 1e-9)
                             );
                         }
@@ -155,7 +156,7 @@ fn bends_are_off_by_ten_roundings_of_their_size_at_most() {
             along: [[0.0; WIDTH]; 3],
             size: 0.0,
         };
-        bends.fill(&c, [u, v], (step, count), 0.3);
+        bends.fill(&c, [u, v], step, count, 0.3);
         let most = f64::from(bends.size);
         for i in 0..count {
             let expected = 0.3 * quadratic(&c, [u + step * i as f64, v]);

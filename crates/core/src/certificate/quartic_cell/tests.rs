@@ -71,10 +71,13 @@ fn dense_samples_lie_within_the_bounds() {
         let (low, high) = heights.range();
         let refined = heights.refined(2, 0.0);
         let open = [false, true, false];
-        let at_first = jet.beside(&cell, &frame, open);
-        let beside = [at_first, jet.beside_closely(&at_first, &cell, &frame, open)];
-        closer += usize::from(beside[0].is_loose() && !beside[1].is_loose());
-        let deviation = beside[usize::from(round % 3 > 0)].deviation(high.min(refined));
+        let at_first = jet.edge_bounds(&cell, &frame, open);
+        let edges = [
+            at_first,
+            jet.closer_edge_bounds(&at_first, &cell, &frame, open),
+        ];
+        closer += usize::from(edges[0].is_loose() && !edges[1].is_loose());
+        let deviation = edges[usize::from(round % 3 > 0)].deviation(high.min(refined));
         let (mut highest, mut farthest, mut outside) = (0.0f64, 0.0f64, [0.0f64; 3]);
         for weights in grid(GRID) {
             let [u, v] = place(&cell, weights);
@@ -82,7 +85,7 @@ fn dense_samples_lie_within_the_bounds() {
             highest = highest.max(frame.height(point).abs());
             farthest = farthest.max(frame.squared(point).sqrt());
             for edge in 0..3 {
-                outside[edge] = outside[edge].max(frame.beside(edge, point).outside);
+                outside[edge] = outside[edge].max(frame.edge_position(edge, point).outside);
                 // A point of the curve.
                 if weights[(edge + 2) % 3] == 0.0 {
                     let from_edge = frame.squared_to_edge(edge, point).sqrt();
@@ -115,7 +118,7 @@ fn dense_samples_lie_within_the_bounds() {
         if deviation.steepest().is_finite() {
             let most = outside[0].max(outside[2]);
             assert!(
-                most <= deviation.drift + slack,
+                most <= deviation.displacement + slack,
                 "round {round}: {most} {deviation:?}"
             );
         }
@@ -157,7 +160,7 @@ fn parts_that_do_not_fold_keep_their_orientation() {
         if frame.is_flat() {
             continue;
         }
-        // Upright parts and those on their heads turn alike.
+        // Upright parts and inverted ones turn alike.
         let least = grid(24).map(|weights| {
             let [u, v] = place(&cell, weights);
             let [by_u, by_v] = piece.tangents(u, v);
@@ -217,7 +220,7 @@ fn triangles_off_the_surface_are_bounded() {
         let aside = aside.into_iter().fold(0.0, f64::max);
         let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
         let deviation = jet
-            .beside(&cell, &frame, [false; 3])
+            .edge_bounds(&cell, &frame, [false; 3])
             .deviation_off(bound, moved, aside);
         let (mut highest, mut farthest) = (0.0f64, 0.0f64);
         for weights in grid(GRID) {

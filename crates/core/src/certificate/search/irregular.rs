@@ -39,7 +39,7 @@ impl<P: HullPoint> Search<'_, P> {
         };
         let aim = self.aim();
         let Some((near, rest)) = piece
-            .lasting_twin(self.rules)
+            .infinitely_sharp_twin(self.rules)
             .filter(|&(_, rest)| rest <= aim)
         else {
             return false;

@@ -122,7 +122,7 @@ fn both_half_edges_know_the_sharpest_tag_and_tags_of_sharpness_zero_are_none() {
         (sharpness.rule(VertexId(0)), sharpness.vertex(VertexId(0))),
         (VertexRule::Dart, 0.0)
     );
-    assert!(sharpness.fades() && sharpness.lasting().is_empty());
+    assert!(sharpness.is_semi_sharp() && sharpness.infinitely_sharp().is_empty());
     let none = tagged(fan(5, false), &[(3, 0.0)], None);
     assert!(Sharpness::of(&none).is_empty());
 }
@@ -133,7 +133,7 @@ fn a_vertex_with_a_tag_of_its_own_is_a_corner_and_what_fades_is_not_lasting() {
     let sharpness = Sharpness::of(&mesh);
     assert_eq!(sharpness.rule(VertexId(0)), VertexRule::Corner);
     assert_eq!(sharpness.sectors(VertexId(0)).len(), 2);
-    let lasting = sharpness.lasting();
+    let lasting = sharpness.infinitely_sharp();
     assert_eq!(lasting.rule(VertexId(0)), VertexRule::Dart);
     assert_eq!(
         lasting.sectors(VertexId(0)),
@@ -149,5 +149,5 @@ fn a_vertex_with_a_tag_of_its_own_is_a_corner_and_what_fades_is_not_lasting() {
             },
         }]
     );
-    assert!(!lasting.fades());
+    assert!(!lasting.is_semi_sharp());
 }

@@ -1,11 +1,11 @@
-//! The lasting twin of a semi-sharp piece: the same points, but sharp edges never fade. It is of a simpler form, and near.
+//! The infinitely sharp twin of a semi-sharp piece: equal points, but all sharp edges stay sharp. It is of a simpler form, and near.
 //!
-//! Takes the rings of the corners at which something fades; says how far the surfaces are apart at most, over the same
+//! Takes the rings of the corners at which something is semi-sharp; says how far the surfaces are apart at most, over the same
 //! parameter.
 //!
-//! Let f be the least sharpness that fades, n = ⌊f⌋. Until level n both pieces have the same points. From then on a new point of
-//! the piece lies between those of the twin's rules and of the rules that are left when some or all edges have faded; on the first step no
-//! farther from the twin's than 1 − f + n of the way, the weight of what fades being at least f − n. Averages never add to
+//! Let f be the least semi-sharp sharpness, n = ⌊f⌋. Until level n both pieces have the same points. From then on a new point of
+//! the piece lies between those of the twin's rules and of the rules that are left when some or all edges are smooth; on the first step no
+//! farther from the twin's than 1 − f + n of the way, the weight of the sharp rules being at least f − n. Averages never add to
 //! a difference, so the surfaces are no farther apart than the sum, over all levels from n on, of the greatest distance between the
 //! new points by either rules from the twin's points of that level. That is, for κ = v + w − a − b, v w being a sharp edge and a, b the
 //! points opposite,
@@ -34,10 +34,10 @@ const LEVELS: usize = 6;
 /// Levels of which something is known.
 const MOST: usize = crate::ring::INFINITELY_SHARP as usize + LEVELS;
 
-/// Sharp edges at a vertex up to which all pairs of them are looked at, as curves that may be left when others have faded.
+/// Sharp edges at a vertex up to which all pairs of them are looked at, as curves that may be left when others are smooth.
 const FEW: usize = 8;
 
-/// What differs, level by level.
+/// The differences, level by level.
 pub(super) struct Gaps {
     /// The level of the first difference.
     first: usize,
@@ -52,10 +52,10 @@ pub(super) struct Gaps {
 }
 
 impl Gaps {
-    /// None yet, between a piece of which the least sharpness that fades is this and its twin.
-    pub(super) fn new(fades: f64) -> Self {
-        let first = (fades as usize).min(MOST - LEVELS);
-        let share = 1.0 - (fades - first as f64);
+    /// None yet, between a piece with this least semi-sharp sharpness and its twin.
+    pub(super) fn new(least: f64) -> Self {
+        let first = (least as usize).min(MOST - LEVELS);
+        let share = 1.0 - (least - first as f64);
         Self {
             first,
             share,
@@ -65,7 +65,7 @@ impl Gaps {
         }
     }
 
-    /// Meets the ring of a corner where something fades; `None` if nothing is known of such.
+    /// Adds the ring of a corner where something is semi-sharp; `None` if nothing is known of such.
     pub(super) fn add(&mut self, corner: &SemiSharpVertex, rules: &Rules<'_>) -> Option<()> {
         if let Some(whole) = &corner.whole {
             return whole.gaps().map(|gaps| self.add_known(gaps));
@@ -116,7 +116,7 @@ impl Gaps {
     }
 }
 
-/// What [`Gaps`] ask of the ring of one vertex, whatever fades first at the others.
+/// The values that [`Gaps`] take from the ring of one vertex, whichever sharpness is least at the others.
 #[derive(Debug)]
 pub(super) struct RingGaps {
     kinks: [f64; MOST],
@@ -125,7 +125,7 @@ pub(super) struct RingGaps {
 }
 
 impl RingGaps {
-    /// Those of a vertex at which something fades; `None` if nothing is known of such.
+    /// Those of a vertex at which something is semi-sharp; `None` if nothing is known of such.
     pub(super) fn of(vertex: &SemiSharpVertex, rules: &Rules<'_>) -> Option<Self> {
         let mut ring = Ring::of(vertex, rules)?;
         let mut gaps = Self {
@@ -216,7 +216,7 @@ impl Ring {
         }
     }
 
-    /// The greatest distance between where the vertex goes and where it may go when edges have faded.
+    /// The greatest distance between where the vertex goes and where it may go when edges are smooth.
     fn moves(&self) -> f64 {
         let own = self.moved();
         let mut greatest = if self.is_open {
@@ -225,7 +225,7 @@ impl Ring {
             (self.beta * self.neighbours.iter().sum::<DVec3>()).distance_squared(own)
         };
         if self.sharp.len() > FEW {
-            // What is along two of them lies in the middle between what either would be twice.
+            // A point along two of them lies in the middle between those along either one twice.
             let twice = self
                 .sharp
                 .iter()

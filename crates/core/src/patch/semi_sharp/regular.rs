@@ -10,7 +10,7 @@ use crate::patch::box_spline::{
     CORNERS, EDGE_POINTS, MIDDLES, PARTS, Points, REFINED_CORNERS, RINGS, Refined, assemble,
 };
 use crate::patch::{Limit, LimitPoint, Patch, Rules};
-use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, faded, present_weight, rule};
+use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule, decremented, present_weight, rule};
 use crate::vector::DVec3;
 
 /// No edge.
@@ -140,8 +140,8 @@ impl RegularSemiSharp {
         })
     }
 
-    /// The piece that this would be if nothing faded, and how far that is from it at most, over the same parameter.
-    pub(super) fn lasting_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
+    /// The piece that this would be if semi-sharp edges were infinitely sharp, and how far that is from it at most, over the same parameter.
+    pub(super) fn infinitely_sharp_twin(&self, rules: &Rules<'_>) -> Option<(Patch, f64)> {
         let mut rings = RINGS.map(|ring| ring.map(|at| self.points[at as usize]));
         let is_regular = |corner: usize| {
             mirror(
@@ -157,7 +157,7 @@ impl RegularSemiSharp {
             .edges
             .iter()
             .copied()
-            .filter(|&sharpness| faded(sharpness) != sharpness);
+            .filter(|&sharpness| decremented(sharpness) != sharpness);
         let mut gaps = Gaps::new(fading.fold(INFINITELY_SHARP, f64::min));
         let mut kink = 0.0f64;
         for (&(_, [v, w], [a, b]), _) in EDGE_POINTS
@@ -187,7 +187,7 @@ impl RegularSemiSharp {
         if self
             .edges
             .iter()
-            .all(|&sharpness| faded(sharpness) == sharpness)
+            .all(|&sharpness| decremented(sharpness) == sharpness)
         {
             return SemiSharpPatch::of(self.corners());
         }
@@ -212,7 +212,7 @@ impl RegularSemiSharp {
                 0.625 * at + 0.0625 * ring.iter().sum::<DVec3>()
             }
         };
-        let (now, after) = (present_weight(0.0, &spokes), spokes.map(faded));
+        let (now, after) = (present_weight(0.0, &spokes), spokes.map(decremented));
         if now == 1.0 || rule(false, 0.0, &spokes) == rule(false, 0.0, &after) {
             return as_sharp_as(&spokes);
         }
@@ -237,7 +237,7 @@ impl RegularSemiSharp {
         }
         RefinedRegular {
             points: Refined(points),
-            edges: self.edges.map(faded),
+            edges: self.edges.map(decremented),
         }
     }
 }

@@ -179,10 +179,10 @@ fn limits(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Vec<Vec<DVec3>> {
         .collect()
 }
 
-/// The surface with sharp edges that fade, and the one where they last, are no farther apart than is said, at any of their
+/// The semi-sharp surface and its infinitely sharp twin are no farther apart than is said, at any of their
 /// points; and not much nearer either.
 #[test]
-fn lasting_twins_are_near() {
+fn infinitely_sharp_twins_are_near() {
     let step = |mesh: &Mesh| {
         uniform(mesh, &Loop, &UniformOptions::default().levels(1))
             .unwrap()
@@ -228,7 +228,7 @@ fn lasting_twins_are_near() {
                         let Patch::SemiSharp(piece) = patch else {
                             continue;
                         };
-                        let Some((_, apart)) = piece.lasting_twin(&rules) else {
+                        let Some((_, apart)) = piece.infinitely_sharp_twin(&rules) else {
                             continue;
                         };
                         let distances = own[face.index()].iter().zip(&twins[face.index()]);

@@ -1,9 +1,9 @@
-//! A ring of very many edges in a mesh with tags: how all of it fades, found once for all faces around its vertex.
+//! A ring of very many edges in a mesh with tags: its sharpness at each level, found once for all faces around its vertex.
 //!
 //! Takes a vertex; gives, for each of its faces, the neighbours near the face with what the rules ask of the others on every level: where the
-//! vertex goes, and, once nothing fades any more, the mean of its neighbours or the ends of the sector that the face is in. So a face takes no
+//! vertex goes, and, once nothing is semi-sharp any more, the mean of its neighbours or the ends of the sector that the face is in. So a face takes no
 //! more than at any other vertex. See [`crate::patch::pole`] for why the neighbours near a face are enough; sharp edges make that only better, as nothing
-//! comes to their new points from the neighbours beside them.
+//! comes to their new points from their adjacent neighbours.
 
 use std::sync::Arc;
 
@@ -26,22 +26,22 @@ pub(crate) struct WholeRing {
     slots: Vec<(HalfEdgeId, u32)>,
     neighbours: Vec<DVec3>,
     sharp: SharpRing,
-    /// At first, and after each refinement until nothing in the mesh fades any more.
+    /// At first, and after each refinement until nothing in the mesh is semi-sharp any more.
     levels: Vec<Level>,
 }
 
-/// What is left of the ring after some refinements.
+/// The ring after some refinements.
 #[derive(Debug)]
 struct Level {
     at: DVec3,
     /// The mean of the neighbours.
     mean: DVec3,
-    fades: bool,
-    fades_first: f64,
+    is_semi_sharp: bool,
+    least_semi_sharpness: f64,
     is_corner: bool,
     /// The neighbours along sharp edges with their slots, ascending.
     sharp: Vec<(usize, DVec3)>,
-    /// How far the ring is from what it would be if nothing faded; `None` where that is not known, or nothing fades.
+    /// How far the ring is from its infinitely sharp twin; `None` where that is not known, or nothing is semi-sharp.
     gaps: Option<Box<RingGaps>>,
 }
 
@@ -49,7 +49,7 @@ impl Level {
     fn of(whole: &SemiSharpVertex, rules: &Rules<'_>) -> Self {
         let neighbours = &whole.neighbours;
         let sharp = (0..neighbours.len()).filter(|&slot| whole.sharp.is_sharp(slot));
-        let gaps = if whole.fades() {
+        let gaps = if whole.is_semi_sharp() {
             RingGaps::of(whole, rules)
         } else {
             None
@@ -57,8 +57,8 @@ impl Level {
         Self {
             at: whole.at,
             mean: neighbours.iter().sum::<DVec3>() / neighbours.len() as f64,
-            fades: whole.fades(),
-            fades_first: whole.fades_first(),
+            is_semi_sharp: whole.is_semi_sharp(),
+            least_semi_sharpness: whole.least_semi_sharpness(),
             is_corner: whole.sharp.rule() == VertexRule::Corner,
             sharp: sharp.map(|slot| (slot, neighbours[slot])).collect(),
             gaps: gaps.map(Box::new),
@@ -79,12 +79,13 @@ impl Level {
 }
 
 impl WholeRing {
-    /// The ring of a vertex, and what becomes of it in so many refinements, after which nothing in the mesh fades. `None` if a crease
+    /// The ring of a vertex after each of so many refinements, after which nothing in the mesh is semi-sharp. `None` if a crease
     /// ends there then: the mean of the neighbours does not tell by itself where the vertex goes.
     pub(crate) fn of(
         mesh: &Mesh,
         sharpness: &Sharpness<'_>,
-        (vertex, levels): (VertexId, usize),
+        vertex: VertexId,
+        levels: usize,
         rules: &Rules<'_>,
         poll: &mut Poll<'_>,
     ) -> Result<Option<Self>, Cancelled> {
@@ -108,9 +109,9 @@ impl WholeRing {
         }))
     }
 
-    /// Whether something fades.
-    pub(crate) fn fades(&self) -> bool {
-        self.levels[0].fades
+    /// Whether an edge or the vertex is semi-sharp.
+    pub(crate) fn is_semi_sharp(&self) -> bool {
+        self.levels[0].is_semi_sharp
     }
 
     /// The vertex as a corner of the face of `h`, which leaves it, with the neighbours near that face.
@@ -152,7 +153,7 @@ pub(super) struct PartOfRing {
 }
 
 impl PartOfRing {
-    /// After the last level nothing in the mesh fades: nobody asks.
+    /// After the last level nothing in the mesh is semi-sharp, and this is not called.
     fn level(&self) -> &Level {
         &self.ring.levels[self.level.min(self.ring.levels.len() - 1)]
     }
@@ -171,13 +172,13 @@ impl PartOfRing {
         self.level().at
     }
 
-    pub(super) fn fades(&self) -> bool {
-        self.level().fades
+    pub(super) fn is_semi_sharp(&self) -> bool {
+        self.level().is_semi_sharp
     }
 
-    /// The least sharpness that fades of all of the ring.
-    pub(super) fn fades_first(&self) -> f64 {
-        self.level().fades_first
+    /// The least semi-sharp sharpness of all of the ring.
+    pub(super) fn least_semi_sharpness(&self) -> f64 {
+        self.level().least_semi_sharpness
     }
 
     pub(super) fn gaps(&self) -> Option<&RingGaps> {

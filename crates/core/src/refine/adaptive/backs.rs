@@ -1,14 +1,14 @@
-//! What looks away from a viewer for certain, so that it may stay coarse: a triangle, those beside it, and its piece of the surface.
+//! Triangles that face away from a viewer for certain, with their adjacent triangles and their pieces of the surface. They may stay coarse.
 //!
 //! Takes a triangle, its piece, and criteria with viewers; gives who sees nothing but backs. Nothing is asked of such a triangle for
 //! their sake.
 //!
 //! **Why that is enough**, for a camera before a closed surface. What the surface shows is its front: x with `(e − x)·N > 0`. If x belongs to the
 //! piece of a triangle that was left coarse, then to the part around a corner of which nothing is known; the corner is a vertex of the
-//! mesh, and what its distance comes to is counted. Any other x belongs to a triangle T that was looked at, and its bound is about the
-//! *triangles* beside T, as sets of points: how far these stand for their own pieces does not matter. What the mesh shows is
-//! triangles that face the eye. Their bounds count on the pieces of the triangles beside them, too ([`crate::certificate`]: a point
-//! of T may be covered by a neighbour's piece), so that must not be as far off as it pleases. It is not: none beside a triangle that is left
+//! mesh, and its distance is counted. Any other x belongs to a triangle T that was looked at, and its bound is about the
+//! *triangles* adjacent to T, as sets of points: how well these approximate their own pieces does not matter. The mesh shows
+//! triangles that face the eye. Their bounds count on the pieces of adjacent triangles, too ([`crate::certificate`]: a point
+//! of T may be covered by a neighbour's piece), so that must not be as far off as it pleases. It is not: none adjacent to a triangle that is left
 //! coarse faces the eye, but across edges that nothing counts on anyway, sharp ones. So all that is seen of one has a point of the other
 //! within the limit. That goes for outlines: the front's rim is where they are, and a ray that meets a closed surface, from outside, meets its
 //! front; so pictures of both fronts are pictures of all there is.
@@ -19,22 +19,22 @@
 use super::back_faces::BackFaces;
 use super::control::Control;
 use super::emitted::{Emitted, Over};
-use super::surface::Ground;
+use super::surface::QuarticPiece;
 use crate::certificate::SubTriangle;
 use crate::criterion::{Backs, Criteria, Region, Viewpoint};
 use crate::facing::{DEEPEST, back_but_for, is_back};
-use crate::patch::{LimitPoint, Patch, Rules, Spot};
+use crate::patch::{LimitPoint, ParamTriangle, Patch, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// What rounding may do to the side of a triangle's plane that a place is on, as a part of the product of the lengths.
+/// The rounding error of a place's height over a triangle's plane, as a part of the product of the lengths.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Control faces times viewers for which that is kept: where there are more, leaves are looked at one by one.
 const MOST_KEPT: usize = 1 << 23;
 
 impl BackFaces {
-    /// Where vertices move, only what is certain all over: nobody knows how far a control face's corners do.
+    /// Where vertices move, only faces that face away all over: it is not known how far a control face's corners move.
     pub(super) fn of(
         control: &Control<'_>,
         is_balanced: bool,
@@ -91,7 +91,7 @@ pub(super) struct Behind<'a> {
 /// A leaf's piece.
 pub(super) enum Leaf<'a> {
     /// A part of a regular piece.
-    Regular(&'a Ground, Spot),
+    Regular(&'a QuarticPiece, ParamTriangle),
     /// Any other.
     General(&'a Patch, &'a Rules<'a>),
 }
@@ -105,7 +105,7 @@ impl<'a> Behind<'a> {
         rules: &'a Rules<'a>,
     ) -> Self {
         let leaf = match over {
-            Over::Regular(ground, _, spot) => Leaf::Regular(ground, *spot),
+            Over::Regular(quartic, _, domain) => Leaf::Regular(quartic, *domain),
             Over::General(pieces, ..) => Leaf::General(pieces.patch(), rules),
         };
         Self {
@@ -130,8 +130,8 @@ impl<'a> Behind<'a> {
             return None;
         }
         match self.leaf {
-            Leaf::Regular(ground, spot) => {
-                is_back(ground.net(spot, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
+            Leaf::Regular(quartic, domain) => {
+                is_back(quartic.net(domain, SubTriangle::Whole).net(), viewpoint).then_some(0.0)
             }
             // Nothing of these is certain, distances neither.
             Leaf::General(Patch::Mesh(_), _) => Some(0.0),
@@ -143,7 +143,7 @@ impl<'a> Behind<'a> {
     }
 }
 
-/// Who sees nothing but the back of some triangles and of the first one's piece, of which [`Behind::is_back`] tells. That triangle's corners may
+/// The viewers that see nothing but the back of some triangles and of the first one's piece, by [`Behind::is_back`]. That triangle's corners may
 /// be moved by so much.
 pub(super) fn looks_away(
     criteria: &Criteria,

@@ -6,7 +6,7 @@
 
 use std::collections::HashSet;
 
-use super::quadtree::{Along, Beyond, Edges, Place, Trees, beyond, even_depth};
+use super::quadtree::{Along, Beyond, Edges, NodeAddress, Trees, beyond, even_depth};
 use crate::progress::Cancelled;
 
 /// Nodes between two calls of the observer.
@@ -14,11 +14,11 @@ const STEPS: usize = 1 << 12;
 
 /// Nodes with children whose neighbours must exist, by level.
 #[derive(Default)]
-pub(super) struct Pending(Vec<Vec<Place>>);
+pub(super) struct Pending(Vec<Vec<NodeAddress>>);
 
 impl Pending {
     /// A node that has children.
-    pub(super) fn push(&mut self, place: Place) {
+    pub(super) fn push(&mut self, place: NodeAddress) {
         let level = place.level as usize;
         if self.0.len() <= level {
             self.0.resize_with(level + 1, Vec::new);
@@ -29,14 +29,14 @@ impl Pending {
     /// Those nodes with children in the tree of a control face that lack a neighbour: of even nodes the lowest ones, which speak for
     /// those above.
     pub(super) fn push_tree(&mut self, trees: &Trees, edges: &Edges<'_>, face: u32) {
-        self.push_below(trees, edges, trees.root(face), Place::root(face));
+        self.push_below(trees, edges, trees.root(face), NodeAddress::root(face));
     }
 
-    fn push_below(&mut self, trees: &Trees, edges: &Edges<'_>, word: u32, place: Place) {
+    fn push_below(&mut self, trees: &Trees, edges: &Edges<'_>, word: u32, place: NodeAddress) {
         match even_depth(word) {
             Some(0) => {}
             Some(depth) => {
-                // Inside, neighbours are equally deep, and so they mostly are beside it.
+                // Inside, neighbours are equally deep, and so are most of those around it.
                 for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, place, depth, edge)) {
                     for index in 0..1 << (depth - 1) {
                         let lowest = place.along(edge, depth - 1, index);
@@ -70,7 +70,13 @@ impl Pending {
 }
 
 /// Whether the node beyond an edge of an even one is even, too, and at most a level less deep.
-fn is_as_deep(trees: &Trees, edges: &Edges<'_>, place: Place, depth: u32, edge: usize) -> bool {
+fn is_as_deep(
+    trees: &Trees,
+    edges: &Edges<'_>,
+    place: NodeAddress,
+    depth: u32,
+    edge: usize,
+) -> bool {
     let other = match beyond(place, edge) {
         Beyond::Same(other) => Some(other),
         Beyond::Control(along) => edges
@@ -84,7 +90,7 @@ fn is_as_deep(trees: &Trees, edges: &Edges<'_>, place: Place, depth: u32, edge: 
 }
 
 /// Whether the node of the same level beyond an edge may be missing.
-fn lacks(trees: &Trees, edges: &Edges<'_>, place: Place, edge: usize) -> bool {
+fn lacks(trees: &Trees, edges: &Edges<'_>, place: NodeAddress, edge: usize) -> bool {
     if place.has_sibling_beyond(edge) {
         return false;
     }
@@ -97,19 +103,19 @@ fn lacks(trees: &Trees, edges: &Edges<'_>, place: Place, edge: usize) -> bool {
     }
 }
 
-/// Splits what must be for the nodes in `pending`; `split` is told each place that was. `false` if there would be too many
+/// Splits what must be for the nodes in `pending`; `split` is called with each place that was. `false` if there would be too many
 /// nodes.
 pub(super) fn balance(
     trees: &mut Trees,
     edges: &Edges<'_>,
     mut pending: Pending,
     poll: &mut dyn FnMut() -> Result<(), Cancelled>,
-    mut split: impl FnMut(Place),
+    mut split: impl FnMut(NodeAddress),
 ) -> Result<bool, Cancelled> {
     let mut asked = HashSet::new();
     let mut fresh = Vec::new();
     let mut steps = 0usize;
-    // Nothing is missing beside a control face.
+    // No split is missing at a control face.
     for level in (1..pending.0.len()).rev() {
         while let Some(place) = pending.0[level].pop() {
             steps += 1;
@@ -117,7 +123,8 @@ pub(super) fn balance(
                 poll()?;
             }
             for edge in (0..3).filter(|&edge| !place.has_sibling_beyond(edge)) {
-                let mut ensure = |place: Place| trees.ensure(place, |place| fresh.push(place));
+                let mut ensure =
+                    |place: NodeAddress| trees.ensure(place, |place| fresh.push(place));
                 let fits = match beyond(place, edge) {
                     Beyond::Same(other) => ensure(other),
                     Beyond::Control(along) => ensure_along(edges, along, &mut asked, ensure),
@@ -140,7 +147,7 @@ fn ensure_along(
     edges: &Edges<'_>,
     along: Along,
     asked: &mut HashSet<(usize, u32, u32)>,
-    mut ensure: impl FnMut(Place) -> bool,
+    mut ensure: impl FnMut(NodeAddress) -> bool,
 ) -> bool {
     let h = along.half_edge;
     if let Some(twin) = edges.twin(h) {
@@ -185,7 +192,7 @@ mod tests {
     }
 
     /// The places of all leaves.
-    fn leaves(trees: &Trees, word: u32, place: Place, found: &mut Vec<Place>) {
+    fn leaves(trees: &Trees, word: u32, place: NodeAddress, found: &mut Vec<NodeAddress>) {
         if !is_split(word) {
             found.push(place);
         } else {
@@ -196,7 +203,7 @@ mod tests {
     }
 
     /// The level of the leaf at a place, or of the node there if it has children.
-    fn level_at(trees: &Trees, place: Place) -> u32 {
+    fn level_at(trees: &Trees, place: NodeAddress) -> u32 {
         let mut word = trees.root(place.face);
         for level in 0..place.level {
             if !is_split(word) {
@@ -213,7 +220,7 @@ mod tests {
             let mut missing = Vec::new();
             for face in 0..faces {
                 let mut found = Vec::new();
-                leaves(trees, trees.root(face), Place::root(face), &mut found);
+                leaves(trees, trees.root(face), NodeAddress::root(face), &mut found);
                 for leaf in found.into_iter().filter(|leaf| leaf.level > 1) {
                     for edge in 0..3 {
                         let other = match beyond(leaf, edge) {
@@ -225,7 +232,7 @@ mod tests {
                                 along.node_at(twin, true).0
                             }
                         };
-                        let above = Place {
+                        let above = NodeAddress {
                             level: other.level - 1,
                             path: other.path >> 2,
                             ..other
@@ -266,7 +273,7 @@ mod tests {
                 for _ in 0..3 {
                     let face = random.below(mesh.face_count()) as u32;
                     let level = 3 + random.below(3) as u32;
-                    let place = Place {
+                    let place = NodeAddress {
                         face,
                         level,
                         path: random.below(1 << (2 * level)) as u64,
@@ -281,8 +288,13 @@ mod tests {
                 assert!(balance(&mut trees, &edges, pending, &mut || Ok(()), |_| ()).unwrap());
                 for face in 0..mesh.face_count() as u32 {
                     let (mut a, mut b) = (Vec::new(), Vec::new());
-                    leaves(&trees, trees.root(face), Place::root(face), &mut a);
-                    leaves(&expected, expected.root(face), Place::root(face), &mut b);
+                    leaves(&trees, trees.root(face), NodeAddress::root(face), &mut a);
+                    leaves(
+                        &expected,
+                        expected.root(face),
+                        NodeAddress::root(face),
+                        &mut b,
+                    );
                     assert_eq!(a, b, "{name}, face {face}");
                 }
             }

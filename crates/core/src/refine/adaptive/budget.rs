@@ -38,16 +38,16 @@ const AIMED: f64 = 0.02;
 const COUNTED_BEYOND: usize = 2;
 const GUESSED_BEYOND: usize = 4;
 
-/// What has more triangles than could be counted has about so many times the budget.
+/// A mesh with too many triangles to count has about so many times the budget.
 const UNCOUNTED: f64 = 2.0;
 
-/// What is verified has about so many triangles for each that was guessed.
+/// A verified mesh has about so many triangles for each that was guessed.
 const FOR_A_GUESS: f64 = 1.05;
 
 /// From one value to the next they change by so many times at most.
 const MOST_APART: f64 = 16.0;
 
-/// What fails so many times over is as bad as any that has no number.
+/// A triangle that fails so many times over counts as one without a number.
 const COARSEST: f64 = 1e12;
 
 /// Faces are divided evenly only where that takes all of the budget but for so many triangles (one in so many).
@@ -153,7 +153,7 @@ struct Search<'e, 'a> {
     engine: &'e Engine<'a>,
     most: usize,
     between: Between,
-    /// What the least value that fits gives.
+    /// The result at the least value that fits.
     best: Verified,
     /// Below this no value makes a difference.
     least: f64,

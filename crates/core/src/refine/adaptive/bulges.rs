@@ -11,10 +11,10 @@ mod waiting;
 use super::backs::{Behind, looks_away};
 use super::control::Control;
 use super::emit::Emission;
-use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::HOPELESS;
 use super::measured::{FoundLast, Measured, fail};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use crate::certificate::{BentFour, FOUR, TriangleFrame};
 use crate::criterion::Region;
 use crate::patch::{Rules, reciprocal_power};
@@ -29,24 +29,24 @@ const SAMPLED_LEVELS: usize = 2;
 /// The range of heights over a triangle that is divided in any case.
 pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// What is known of the triangles, by control face.
+/// Heights over the triangles, by control face.
 #[derive(Default)]
 pub(super) struct Bulges(pub(super) Vec<Bulge>);
 
 /// Those of a control face.
 #[derive(Clone, Default)]
 pub(super) struct Bulge {
-    /// The least and the greatest height of the surface over each; not numbers where nobody looks.
+    /// The least and the greatest height of the surface over each; NaN where it is not measured.
     pub(super) ranges: Vec<[f64; 2]>,
     /// Leaves whose triangles bulge too far, and half of that.
-    failing: Vec<(Place, f64)>,
+    failing: Vec<(NodeAddress, f64)>,
     /// Whether triangles were not measured as they are.
     pub(super) waits: bool,
     /// Which triangles they are.
     keys: Vec<Key>,
-    /// What they came to when they were measured last; empty as long as none of them was.
+    /// Their last measured bounds; empty as long as none was measured.
     found: Vec<FoundLast>,
-    /// What their parts of the surface are like, in a unit that makes so much of lengths.
+    /// The bends of their parts of the surface, in units that multiply lengths by `scale`.
     pub(super) parts: Vec<BentFour>,
     pub(super) scale: f64,
 }
@@ -58,7 +58,8 @@ impl Bulges {
         sources: &Sources<'_>,
         watch: &SharedWatch<'_>,
         faces: &[u32],
-        (allowed, max_levels): (f64, u32),
+        allowed: f64,
+        max_levels: u32,
     ) -> Result<(), Cancelled> {
         let hopeless = HOPELESS * allowed;
         let emission = sources.emission;
@@ -80,7 +81,7 @@ impl Bulges {
                     found,
                 };
                 sources.show(face, is_stopped, &mut looking);
-                looking.end(face, (hopeless, max_levels))
+                looking.end(face, hopeless, max_levels)
             });
             found.collect::<Vec<_>>()
         })?;
@@ -133,8 +134,8 @@ impl Bulges {
             .all(|face| face.found.is_empty() && face.failing.is_empty())
     }
 
-    /// The leaves that fail wherever their corners are moved, and what they come to at best.
-    pub(super) fn failing(&self) -> Vec<(Place, f64)> {
+    /// The leaves that fail wherever their corners are moved, and their least bounds.
+    pub(super) fn failing(&self) -> Vec<(NodeAddress, f64)> {
         self.0
             .iter()
             .flat_map(|face| &face.failing)
@@ -156,7 +157,7 @@ impl Bulge {
         }
     }
 
-    /// What all came to when they were measured last.
+    /// The last measured bounds of all triangles.
     pub(super) fn found_last(&self) -> Vec<FoundLast> {
         let mut found = self.found.clone();
         found.resize(self.keys.len(), FoundLast::NOTHING);
@@ -173,10 +174,10 @@ impl Bulge {
     }
 
     /// The leaf whose triangle has this number in the control face.
-    pub(super) fn place(&self, face: u32, number: usize) -> Place {
+    pub(super) fn place(&self, face: u32, number: usize) -> NodeAddress {
         let code = self.keys[number].leaf;
         let level = (u64::BITS - 1 - code.leading_zeros().min(u64::BITS - 1)) / 2;
-        Place {
+        NodeAddress {
             face,
             level,
             path: code & !(1 << (2 * level)),
@@ -184,7 +185,7 @@ impl Bulge {
     }
 }
 
-/// What makes the edges of a control face about 1.
+/// The factor that makes the edges of a control face about 1.
 fn scale(control: &Control<'_>, face: u32) -> f64 {
     let [a, b, c] =
         control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
@@ -201,7 +202,7 @@ struct Looking<'a> {
     found: Bulge,
 }
 
-impl Beholder for Looking<'_> {
+impl TriangleVisitor for Looking<'_> {
     fn wants_triangle(&mut self, emitted: &Emitted) -> bool {
         let number = (emitted.number - self.first) as usize;
         let key = Key::of(emitted);
@@ -215,19 +216,20 @@ impl Beholder for Looking<'_> {
             return;
         }
         match over {
-            Over::Regular(ground, cell, spot) => {
-                if self.waiting.is_full(ground) {
+            Over::Regular(quartic, cell, domain) => {
+                if self.waiting.is_full(quartic) {
                     self.waiting
                         .look(self.emission, self.first, &mut self.found);
                 }
                 let turn = self.found.keys[number].turn() as u32;
-                self.waiting.push(ground, (emitted, turn), (cell, spot));
+                self.waiting.push(quartic, emitted, turn, cell, domain);
             }
             Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
                 let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
-                let inside = points
-                    .filter(|&point| (0..3).all(|edge| frame.beside(edge, point).outside <= 0.0));
+                let inside = points.filter(|&point| {
+                    (0..3).all(|edge| frame.edge_position(edge, point).outside <= 0.0)
+                });
                 let heights = inside.map(|point| frame.height(point));
                 let range = heights.fold((0.0f64, 0.0f64), |(low, high), height| {
                     (low.min(height), high.max(height))
@@ -245,9 +247,9 @@ impl Looking<'_> {
             .map(|vertex| vector(self.emission.positions[vertex as usize]))
     }
 
-    /// What was found, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
+    /// The result, with the leaves over which heights are in a greater range than this. These have no say where corners are moved as
     /// long as they may be divided.
-    fn end(mut self, face: u32, (hopeless, max_levels): (f64, u32)) -> Bulge {
+    fn end(mut self, face: u32, hopeless: f64, max_levels: u32) -> Bulge {
         self.waiting
             .look(self.emission, self.first, &mut self.found);
         let found = &mut self.found;

@@ -30,7 +30,7 @@ const LEAST_ROOM: f64 = 0.25;
 /// An even division that is nearer is taken where what is proven of it is at most so many times as far.
 const PROVEN_ALIKE: f64 = 1.25;
 
-/// What balancing leaves of a plain mesh's distance, at equal triangles, about.
+/// The distance of a balanced mesh as a part of a plain one's, at equal triangles, about.
 const BALANCED: f64 = 0.65;
 
 /// Values that are tried under a budget.
@@ -192,7 +192,7 @@ fn within_caps(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, Ref
     within_room(task, most, observer)
 }
 
-/// Refines with so many triangles at most, or more where flat regions keep some that nobody counted.
+/// Refines with so many triangles at most, or more where flat regions keep some that were not counted.
 fn within_room(
     task: Task<'_>,
     most: usize,
@@ -272,7 +272,7 @@ impl Engine<'_> {
     }
 }
 
-/// What an engine finds where all flat regions that are judged by their rims could be triangulated from these: where they could not it is run again,
+/// Runs an engine until all flat regions that are judged by their rims can be triangulated from these: where they cannot, it is run again,
 /// with rims that are divided further, or with regions that are judged by their triangles. There may be so many triangles.
 pub(super) fn without_gaps<T>(
     task: Task<'_>,

@@ -6,7 +6,7 @@
 use core::ops::Range;
 
 use super::quadtree::{Edges, FULL, Trees};
-use super::walk::{Knot, Side, merged, merged_all};
+use super::walk::{EdgeVertex, Side, merged, merged_all};
 use crate::mesh::Mesh;
 use crate::progress::{Cancelled, SharedWatch};
 
@@ -135,39 +135,39 @@ impl Chains {
         first as usize..first as usize + places.len()
     }
 
-    /// Appends the knots of a face's edges, and says where they are.
+    /// Appends the edge vertices of a face's edges, and says where they are.
     pub(super) fn sides(
         &self,
         mesh: &Mesh,
         edges: &Edges<'_>,
         face: u32,
-        knots: &mut Vec<Knot>,
+        edge_vertices: &mut Vec<EdgeVertex>,
     ) -> [Side; 3] {
         let corners = mesh.triangles()[face as usize];
         [0, 1, 2].map(|edge| {
             let h = 3 * face + edge as u32;
-            let first = knots.len();
+            let first = edge_vertices.len();
             let owner = first_of(edges, h);
             let (number, at) = self.own(owner);
-            knots.push(Knot::new(0, corners[edge]));
+            edge_vertices.push(EdgeVertex::new(0, corners[edge]));
             if owner == h {
-                knots.extend(
+                edge_vertices.extend(
                     (number..)
                         .zip(at)
-                        .map(|(vertex, &at)| Knot::new(at, vertex)),
+                        .map(|(vertex, &at)| EdgeVertex::new(at, vertex)),
                 );
             } else {
                 let numbers = (number..number + at.len() as u32).rev();
-                knots.extend(
+                edge_vertices.extend(
                     numbers
                         .zip(at.iter().rev())
-                        .map(|(vertex, &at)| Knot::new(FULL - at, vertex)),
+                        .map(|(vertex, &at)| EdgeVertex::new(FULL - at, vertex)),
                 );
             }
-            knots.push(Knot::new(FULL, corners[(edge + 1) % 3]));
+            edge_vertices.push(EdgeVertex::new(FULL, corners[(edge + 1) % 3]));
             Side {
                 first,
-                last: knots.len() - 1,
+                last: edge_vertices.len() - 1,
                 reversed: false,
             }
         })

@@ -1,6 +1,6 @@
-//! Which triangles may come to something else than when they were looked at last.
+//! Which triangles may have another bound than when they were measured last.
 //!
-//! What a triangle comes to depends on its part of the surface, on its corners and on those of the triangles beside it. Of triangles whose
+//! The bound of a triangle depends on its part of the surface, on its corners and on those of adjacent triangles. Of triangles whose
 //! corners are moved off the surface it is known which were there before, and how these were moved then ([`super::bulges`]);
 //! of others, in which control faces all were.
 
@@ -11,16 +11,16 @@ use crate::mesh::NONE;
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 
-/// What has become of a triangle.
+/// How a triangle differs from the last emission.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Change {
     None,
     Some,
-    /// It is divided anyway, which nobody beside it knows yet.
+    /// It is divided anyway, which the triangles adjacent to it do not know yet.
     Ends,
 }
 
-/// What has changed.
+/// The differences between two emissions.
 pub(super) struct Changes {
     /// By triangle; empty where every one is new.
     changes: Vec<Change>,
@@ -84,7 +84,7 @@ impl Changes {
         })
     }
 
-    /// Whether a triangle may come to something else.
+    /// Whether a triangle may have another bound.
     #[inline]
     pub(super) fn concern(&self, emission: &Emission, triangle: u32) -> bool {
         self.changes.is_empty() || self.concern_one(emission, triangle)
@@ -92,12 +92,12 @@ impl Changes {
 
     fn concern_one(&self, emission: &Emission, triangle: u32) -> bool {
         let twins = &emission.twins[3 * triangle as usize..3 * triangle as usize + 3];
-        let beside = twins
+        let adjacent = twins
             .iter()
             .filter(|&&twin| twin != NONE)
             .map(|twin| self.changes[*twin as usize / 3]);
         let mut change = self.changes[triangle as usize];
-        for other in beside {
+        for other in adjacent {
             change = match (change, other) {
                 (Change::Ends, _) | (_, Change::Ends) => Change::Ends,
                 (Change::None, other) => other,

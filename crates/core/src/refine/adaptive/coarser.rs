@@ -4,7 +4,7 @@
 //! any other, is found going down the face; the vertex stands on it, and no rounding decides where.
 
 use super::leaves::{Covering, Descent, Leaves, child_with, in_child};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::Mesh;
 use crate::parallel::IsStopped;
@@ -126,7 +126,7 @@ impl Descent for Finding<'_> {
         below
     }
 
-    fn leaf(&mut self, _: Place, node: Self::Node, covering: &[Covering]) {
+    fn leaf(&mut self, _: NodeAddress, node: Self::Node, covering: &[Covering]) {
         for Asked { by, at } in node {
             let holds = |covering: &Covering| Some((covering.triangle, covering.within(at)?));
             if let Some((triangle, weights)) = covering.iter().find_map(holds) {

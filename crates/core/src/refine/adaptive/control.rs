@@ -14,27 +14,27 @@ use crate::patch::{LimitPoint, Patch, Rules, root_patch};
 use crate::refine::kept_faces::KeptFaces;
 use crate::vector::{DVec3, vector};
 
-/// What is known of the control mesh, and what is asked.
+/// The control mesh with its limits, and the goal.
 pub(super) struct Control<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) edges: Edges<'a>,
     pub(super) sharpness: &'a Sharpness<'a>,
     pub(super) large: LargeRings,
-    /// What is sharp in the limit.
-    pub(super) lasting: &'a Sharpness<'a>,
+    /// The infinitely sharp tags.
+    pub(super) infinitely_sharp: &'a Sharpness<'a>,
     pub(super) positions: Vec<[f64; 3]>,
     /// Limit normals by side.
     pub(super) sided: SidedNormals,
     pub(super) rules: &'a Rules<'a>,
     /// The faces whose surface is a part of a plane.
     pub(super) flat: FlatRegions,
-    /// What is asked; `None` where nothing but distances and numbers of triangles count.
+    /// The criteria; `None` where nothing but distances and numbers of triangles count.
     pub(super) criteria: Option<Criteria>,
-    /// What looks away from those who look.
+    /// The faces that face away from the viewers.
     pub(super) back_faces: BackFaces,
     /// The faces that no triangle reaches over together.
     pub(super) kept: &'a KeptFaces,
-    /// What is divided in any case.
+    /// The nodes that are divided in any case.
     pub(super) demands: &'a Demands,
 }
 
@@ -75,11 +75,15 @@ impl Control<'_> {
 
     /// Which edges of a face lie on the boundary or on a sharp edge.
     pub(super) fn open(&self, face: u32) -> [bool; 3] {
-        [0, 1, 2].map(|edge| self.lasting.edge(HalfEdgeId::of(FaceId(face), edge)) > 0.0)
+        [0, 1, 2].map(|edge| {
+            self.infinitely_sharp
+                .edge(HalfEdgeId::of(FaceId(face), edge))
+                > 0.0
+        })
     }
 
     /// The faces beyond the edges of a face that are not sharp.
-    pub(super) fn beside(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn adjacent(&self, face: u32) -> impl Iterator<Item = u32> + '_ {
         let open = self.open(face);
         let inner = (0..3u32).filter(move |&edge| !open[edge as usize]);
         inner

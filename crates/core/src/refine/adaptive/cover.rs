@@ -3,12 +3,12 @@
 
 use super::chains::Chains;
 use super::control::Control;
-use super::quadtree::{Place, Trees, is_split};
+use super::quadtree::{NodeAddress, Trees, is_split};
 use super::rim::Rim;
 use super::surface::{Surface, SurfacePiece};
-use super::walk::{Knot, Node, Visitor, Walk};
+use super::walk::{EdgeVertex, Node, Visitor, Walk};
 use crate::parallel::IsStopped;
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 
 /// The triangles over a control face.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,11 +31,11 @@ pub(super) struct Covering<'a> {
 }
 
 impl Covering<'_> {
-    /// Walks over a face. The knots are room to be used again.
+    /// Walks over a face. The edge vertices are room to be used again.
     pub(super) fn cover(
         &self,
         face: u32,
-        knots: &mut Vec<Knot>,
+        edge_vertices: &mut Vec<EdgeVertex>,
         is_stopped: &IsStopped<'_>,
     ) -> Cover {
         let Self {
@@ -51,22 +51,16 @@ impl Covering<'_> {
                 ..Cover::default()
             };
         }
-        let mut walk = Walk::new(trees, core::mem::take(knots), 0, is_stopped);
-        walk.knots.clear();
-        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
+        let mut walk = Walk::new(trees, core::mem::take(edge_vertices), 0, is_stopped);
+        walk.edge_vertices.clear();
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.edge_vertices);
         let mut count = Count {
             triangles: 0,
             rim: Rim::default(),
             halved: Vec::new(),
         };
-        walk.node(
-            word,
-            (Place::root(face), Spot::WHOLE),
-            sides,
-            Surface::Unknown,
-            &mut count,
-        );
-        *knots = walk.knots;
+        walk.face(face, sides, Surface::Unknown, &mut count);
+        *edge_vertices = walk.edge_vertices;
         let mut piece = None;
         let diagonals = count.halved.iter().map(|&(place, unsplit)| {
             if has_fixed_diagonals {
@@ -83,7 +77,7 @@ impl Covering<'_> {
     }
 
     /// The surface over a leaf of a face, given that over the whole face.
-    fn surface<'p>(&'p self, piece: &'p SurfacePiece, place: Place) -> Surface<'p> {
+    fn surface<'p>(&'p self, piece: &'p SurfacePiece, place: NodeAddress) -> Surface<'p> {
         let levels = 0..place.level;
         levels.fold(piece.surface(self.control.rules), |surface, level| {
             surface.child(place.digit(level))
@@ -107,18 +101,18 @@ struct Count {
     triangles: usize,
     rim: Rim,
     /// The leaves, with their unsplit edges.
-    halved: Vec<(Place, usize)>,
+    halved: Vec<(NodeAddress, usize)>,
 }
 
 impl Visitor for Count {
-    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
+    fn chain(&mut self, _: &[EdgeVertex], _: usize, _: ParamTriangle, _: Surface<'_>) {}
 
-    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+    fn leaves(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         self.triangles += node.triangles();
         if node.is_plain() {
             return;
         }
-        self.rim.set(node, knots);
+        self.rim.set(node, edge_vertices);
         let n = 1 << node.depth;
         for (i, j) in Rim::leaves(n) {
             if let Some(unsplit) = unsplit_edge(self.rim.split(n, i, j)) {

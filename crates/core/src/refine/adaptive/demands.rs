@@ -1,4 +1,4 @@
-//! Nodes that are divided whatever their own triangles come to: for the sake of what else the triangles are to hold
+//! Nodes that are divided regardless of the error of their triangles: for the sake of what else the triangles are to hold
 //! ([`AttributeGoal`]).
 //!
 //! Takes the goals; gives, before anything is refined, the nodes over which the linear function is too far off, which depends on
@@ -9,8 +9,8 @@ use std::collections::{BTreeSet, HashSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::leaves::{Covering, Descent, Leaves};
-use super::quadtree::Place;
-use crate::certificate::{Effort, Pieces, Sheet, SubTriangle, TriangleFrame, exceeds};
+use super::quadtree::NodeAddress;
+use crate::certificate::{Effort, ParamPatch, Pieces, SubTriangle, TriangleFrame, exceeds};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::Mesh;
@@ -29,7 +29,7 @@ const HALVINGS: usize = 2;
 /// The chord of angles at which neighbours do not help: none that counts is as great.
 const ALONE: f64 = 4.0;
 
-/// What nodes there is room for.
+/// The nodes for which there is room.
 #[derive(Clone, Copy)]
 pub(super) struct Room {
     /// Control faces.
@@ -52,7 +52,7 @@ impl Room {
 /// Nodes that are divided, and flat regions that are judged by their triangles though their rims would do.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Demands {
-    divided: HashSet<Place>,
+    divided: HashSet<NodeAddress>,
     by_triangles: BTreeSet<u32>,
     all_by_triangles: bool,
 }
@@ -60,12 +60,12 @@ pub(super) struct Demands {
 impl Demands {
     /// Whether a node is divided.
     #[inline]
-    pub(super) fn divides(&self, place: Place) -> bool {
+    pub(super) fn divides(&self, place: NodeAddress) -> bool {
         !self.divided.is_empty() && self.divided.contains(&place)
     }
 
     /// Adds a node and all that hold it; says whether it is new.
-    pub(super) fn add(&mut self, place: Place) -> bool {
+    pub(super) fn add(&mut self, place: NodeAddress) -> bool {
         let is_new = self.divided.insert(place);
         let mut above = place;
         while let Some(parent) = above.parent()
@@ -81,7 +81,7 @@ impl Demands {
         self.by_triangles.insert(region);
     }
 
-    /// The same with all of them.
+    /// Judges all regions by their triangles.
     pub(super) fn judge_all_by_triangles(&mut self) {
         self.all_by_triangles = true;
     }
@@ -97,9 +97,9 @@ impl Demands {
 }
 
 /// By goal and function, the surface over a node.
-type Sheets<'r, 'a> = Vec<Vec<(Sheet, &'r Rules<'a>)>>;
+type ParamPatches<'r, 'a> = Vec<Vec<(ParamPatch, &'r Rules<'a>)>>;
 
-/// A goal, with the surfaces that stand for its functions.
+/// A goal, with the limit functions as surfaces.
 #[derive(Clone, Copy)]
 struct Goal<'a> {
     tolerance: f64,
@@ -112,15 +112,15 @@ pub(super) struct Functions<'a> {
     goals: Vec<Goal<'a>>,
 }
 
-/// What emitted triangles hold of the functions.
+/// How well emitted triangles approximate the functions.
 pub(super) struct Held {
     /// By goal, the greatest bound.
     pub(super) bounds: Vec<f64>,
     /// Leaves with triangles that fail.
-    pub(super) failing: Vec<Place>,
+    pub(super) failing: Vec<NodeAddress>,
 }
 
-/// By goal, the surfaces that stand for its functions.
+/// By goal, its functions as surfaces.
 ///
 /// # Errors
 /// The scheme has no limit at the shape of some ring.
@@ -159,7 +159,7 @@ impl<'a> Functions<'a> {
         }
     }
 
-    /// The same functions with tolerances so many times as large.
+    /// These goals with tolerances so many times as large.
     pub(super) fn coarser(&self, times: f64) -> Self {
         let coarser = |goal: &Goal<'a>| Goal {
             tolerance: times * goal.tolerance,
@@ -196,7 +196,11 @@ impl<'a> Functions<'a> {
                 is_stopped,
             };
             for face in block {
-                search.node(Place::root(face as u32), &self.sheets(face), &mut found);
+                search.node(
+                    NodeAddress::root(face as u32),
+                    &self.sheets(face),
+                    &mut found,
+                );
             }
             found
         })?;
@@ -214,7 +218,7 @@ impl<'a> Functions<'a> {
         }))
     }
 
-    /// What the triangles hold of the functions.
+    /// How well the triangles approximate the functions.
     pub(super) fn held(
         &self,
         control: &Mesh,
@@ -262,7 +266,7 @@ impl<'a> Functions<'a> {
             .all(|(goal, &bound)| !exceeds(bound, goal.tolerance))
     }
 
-    fn sheets(&self, face: usize) -> Sheets<'_, 'a> {
+    fn sheets(&self, face: usize) -> ParamPatches<'_, 'a> {
         let face = FaceId(face as u32);
         debug_assert!(self.goals.iter().all(|goal| !goal.surfaces.is_empty()));
         let of_goal = |goal: &Goal<'a>| {
@@ -295,13 +299,13 @@ struct Looking<'s, 'a> {
 }
 
 impl<'s, 'a> Descent for Looking<'s, 'a> {
-    type Node = Sheets<'s, 'a>;
+    type Node = ParamPatches<'s, 'a>;
 
     fn children(&mut self, sheets: Self::Node) -> [Self::Node; 4] {
         children(&sheets)
     }
 
-    fn leaf(&mut self, place: Place, sheets: Self::Node, covering: &[Covering]) {
+    fn leaf(&mut self, place: NodeAddress, sheets: Self::Node, covering: &[Covering]) {
         for &Covering { part, .. } in covering {
             let mut fails = false;
             for (number, goal) in self.functions.goals.iter().enumerate() {
@@ -326,8 +330,8 @@ impl<'s, 'a> Descent for Looking<'s, 'a> {
 }
 
 /// The functions over the four parts of a node.
-fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Sheets<'r, 'a>; 4] {
-    let mut parts: [Sheets<'r, 'a>; 4] = Default::default();
+fn children<'r, 'a>(sheets: &[Vec<(ParamPatch, &'r Rules<'a>)>]) -> [ParamPatches<'r, 'a>; 4] {
+    let mut parts: [ParamPatches<'r, 'a>; 4] = Default::default();
     for of_goal in sheets {
         parts
             .iter_mut()
@@ -344,7 +348,7 @@ fn children<'r, 'a>(sheets: &[Vec<(Sheet, &'r Rules<'a>)>]) -> [Sheets<'r, 'a>; 
 }
 
 /// How far a goal's function is from what a triangle over a part of a node holds.
-fn bound(goal: &Goal<'_>, sheets: &[(Sheet, &Rules<'_>)], part: SubTriangle) -> f64 {
+fn bound(goal: &Goal<'_>, sheets: &[(ParamPatch, &Rules<'_>)], part: SubTriangle) -> f64 {
     match goal.kind {
         GoalKind::Values => {
             let target = goal.tolerance / (sheets.len() as f64).sqrt();
@@ -385,11 +389,16 @@ struct Dividing<'s, 'a> {
 }
 
 impl Dividing<'_, '_> {
-    fn node(&self, place: Place, sheets: &[Vec<(Sheet, &Rules<'_>)>], found: &mut Vec<Place>) {
+    fn node(
+        &self,
+        place: NodeAddress,
+        sheets: &[Vec<(ParamPatch, &Rules<'_>)>],
+        found: &mut Vec<NodeAddress>,
+    ) {
         if place.level >= self.max_levels || (self.is_stopped)() {
             return;
         }
-        let fails = |(goal, sheets): (&Goal<'_>, &Vec<(Sheet, &Rules<'_>)>)| {
+        let fails = |(goal, sheets): (&Goal<'_>, &Vec<(ParamPatch, &Rules<'_>)>)| {
             exceeds(bound(goal, sheets, SubTriangle::Whole), goal.tolerance)
         };
         if !self.functions.goals.iter().zip(sheets).any(fails)

@@ -1,6 +1,6 @@
-//! What has changed in the trees since their leaves were covered: everything at first, then leaves that were split.
+//! Changes in the trees since their leaves were covered: everything at first, then leaves that were split.
 
-use super::quadtree::{Along, Beyond, Edges, FULL, Place, beyond};
+use super::quadtree::{Along, Beyond, Edges, FULL, NodeAddress, beyond};
 
 /// Control faces whose cover may be another than it was, and why.
 pub(super) struct Dirty {
@@ -9,7 +9,7 @@ pub(super) struct Dirty {
     /// By control face, whether leaves were split on it or beyond its edges.
     is_marked: Vec<bool>,
     /// Leaves that were split.
-    split: Vec<Place>,
+    split: Vec<NodeAddress>,
 }
 
 impl Dirty {
@@ -37,7 +37,7 @@ impl Dirty {
     }
 
     /// The leaves that were split.
-    pub(super) fn split(&self) -> &[Place] {
+    pub(super) fn split(&self) -> &[NodeAddress] {
         &self.split
     }
 
@@ -54,7 +54,7 @@ impl Dirty {
     }
 
     /// Adds a leaf that was split, and marks the control faces that have a vertex on their edges by that.
-    pub(super) fn add(&mut self, edges: &Edges<'_>, place: Place) {
+    pub(super) fn add(&mut self, edges: &Edges<'_>, place: NodeAddress) {
         self.split.push(place);
         self.is_marked[place.face as usize] = true;
         for edge in (0..3).filter(|&edge| place.lies_along(edge)) {
@@ -72,7 +72,7 @@ impl Dirty {
 }
 
 /// Adds the middle of a node's edge, which lies along one of its control face, for all half-edges there that keep vertices.
-fn insert(edges: &Edges<'_>, place: Place, edge: usize, inserted: &mut Vec<(u32, u32)>) {
+fn insert(edges: &Edges<'_>, place: NodeAddress, edge: usize, inserted: &mut Vec<(u32, u32)>) {
     let Beyond::Control(Along {
         half_edge: h,
         level,

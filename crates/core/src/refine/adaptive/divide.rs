@@ -10,13 +10,13 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use super::Engine;
 use super::control::Control;
 use super::judge::{Goal, Judge, Verdict};
-use super::quadtree::{LEAF, MOST_LEVELS, PROVEN, Piece, Place, Trees};
+use super::quadtree::{LEAF, MOST_LEVELS, NodeAddress, PROVEN, Piece, Trees};
 use super::seen::{Allowance, Extent, Fate, Seen};
-use super::surface::Ground;
+use super::surface::QuarticPiece;
 use crate::certificate::{CellRows, Marks, Pieces};
 use crate::parallel::IsStopped;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, RefinedPatch, Spot, child_corners};
+use crate::patch::{LimitPoint, ParamTriangle, Patch, RefinedPatch, child_corners};
 use crate::refine::RefineError;
 use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
@@ -28,7 +28,7 @@ const COUNTED: usize = 256;
 /// The proven leaves of a control face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proven {
-    /// What their bounds assume.
+    /// The assumption of their bounds.
     pub(super) allowance: Allowance,
     pub(super) extent: Extent,
 }
@@ -136,9 +136,9 @@ struct Divider<'a> {
 /// A node over a part of a regular piece.
 #[derive(Clone, Copy)]
 struct Part<'a> {
-    ground: &'a Ground,
-    spot: Spot,
-    place: Place,
+    quartic: &'a QuarticPiece,
+    domain: ParamTriangle,
+    place: NodeAddress,
     corners: [LimitPoint; 3],
     open: [bool; 3],
     /// Whether rows may be worth while at the node or below it.
@@ -157,7 +157,7 @@ impl Divider<'_> {
         }
         self.extent = Extent::NONE;
         let (patch, corners) = (control.patch(face), control.corners(face));
-        let (open, place) = (control.open(face), Place::root(face));
+        let (open, place) = (control.open(face), NodeAddress::root(face));
         let word = if let Patch::Regular(points) = &patch {
             let net = BezierTriangle::of(points);
             let middles = net.middles();
@@ -171,7 +171,7 @@ impl Divider<'_> {
             let refined = patch.refined(control.rules);
             let middles = [0, 1, 2].map(|edge| refined.middle(edge));
             self.judge.allowance = self.allowance(face, &Seen::of(&corners), &middles);
-            self.general(&patch, (&refined, middles), corners, open, place)
+            self.general(&patch, &refined, middles, corners, open, place)
         };
         self.piece.roots.push(word);
         Proven {
@@ -191,7 +191,7 @@ impl Divider<'_> {
         patch: &Patch,
         corners: [LimitPoint; 3],
         open: [bool; 3],
-        place: Place,
+        place: NodeAddress,
     ) -> u32 {
         if let Patch::Regular(points) = patch {
             let net = BezierTriangle::of(points);
@@ -199,17 +199,18 @@ impl Divider<'_> {
         }
         let refined = patch.refined(self.control.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle(edge));
-        self.general(patch, (&refined, middles), corners, open, place)
+        self.general(patch, &refined, middles, corners, open, place)
     }
 
     /// A piece that is not regular, with its refinement and the limits in the middles of its edges.
     fn general(
         &mut self,
         patch: &Patch,
-        (refined, middles): (&RefinedPatch<'_>, [LimitPoint; 3]),
+        refined: &RefinedPatch<'_>,
+        middles: [LimitPoint; 3],
         corners: [LimitPoint; 3],
         open: [bool; 3],
-        place: Place,
+        place: NodeAddress,
     ) -> u32 {
         // Pieces that are not regular take long each.
         if self.is_too_much() || place.level > 0 && (self.is_stopped)() {
@@ -245,7 +246,7 @@ impl Divider<'_> {
         middles: &[DVec3; 3],
         corners: [LimitPoint; 3],
         open: [bool; 3],
-        place: Place,
+        place: NodeAddress,
     ) -> u32 {
         let seen = Seen::of(&corners);
         let is_demanded = self.control.demands.divides(place);
@@ -256,11 +257,11 @@ impl Divider<'_> {
         {
             return self.leaf(&verdict);
         }
-        let (ground, has_rows) = (&Ground::with_jet(net), self.judge.has_rows());
+        let (quartic, has_rows) = (&QuarticPiece::with_jet(net), self.judge.has_rows());
         self.part(
             Part {
-                ground,
-                spot: Spot::WHOLE,
+                quartic,
+                domain: ParamTriangle::WHOLE,
                 place,
                 corners,
                 open,
@@ -276,8 +277,8 @@ impl Divider<'_> {
             return LEAF;
         }
         let Part {
-            ground,
-            spot,
+            quartic,
+            domain,
             place,
             corners,
             open,
@@ -286,7 +287,7 @@ impl Divider<'_> {
         let is_demanded = self.control.demands.divides(place);
         let mut fails = surely_fails || is_demanded;
         if has_rows && !is_demanded && open == [false; 3] && !self.judge.is_inside(open) {
-            match self.rows(ground, spot, place) {
+            match self.rows(quartic, domain, place) {
                 AtOnce::Decided(word) => return word,
                 AtOnce::NotHere {
                     fails: is_known,
@@ -300,15 +301,15 @@ impl Divider<'_> {
         if !fails || is_deepest {
             let verdict = self
                 .judge
-                .regular(ground, spot, place.level, &corners, open);
+                .regular(quartic, domain, place.level, &corners, open);
             if verdict.fate != Fate::Fails || is_deepest {
                 return self.leaf(&verdict);
             }
         }
-        let middles = ground.at([0, 1, 2].map(|edge| spot.along(edge, 0.5)));
+        let middles = quartic.at([0, 1, 2].map(|edge| domain.along(edge, 0.5)));
         let children = [0, 1, 2, 3].map(|child| {
             let own = Part {
-                spot: spot.child(child),
+                domain: domain.child(child),
                 place: place.child(child),
                 corners: child_corners(corners, middles, child),
                 open: child_open(open, child),

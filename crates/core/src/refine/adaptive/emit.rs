@@ -88,7 +88,7 @@ impl Emitter<'_> {
             Some(before) => {
                 let mut arrays = Arrays::taken(before);
                 let shifts = self.shifts(before, &is_new, &numbers, &first_triangles, watch)?;
-                arrays.rearrange(length, (&shifts.0, &shifts.1), watch)?;
+                arrays.rearrange(length, &shifts.0, &shifts.1, watch)?;
                 arrays
             }
             None => {
@@ -229,7 +229,7 @@ impl Emitter<'_> {
         let Self {
             control, chains, ..
         } = *self;
-        if control.lasting.is_empty() {
+        if control.infinitely_sharp.is_empty() {
             return Ok(());
         }
         for face in 0..control.mesh.face_count() as u32 {

@@ -1,4 +1,4 @@
-//! The emitted triangles, each with its vertices and the part of the surface that it stands for.
+//! The emitted triangles, each with its vertices and the part of the surface that it approximates.
 
 use core::ops::Range;
 
@@ -7,14 +7,14 @@ use super::control::Control;
 use super::cover::Cover;
 use super::emit::Emission;
 use super::leaf::LeafTriangle;
-use super::quadtree::{Place, Trees, is_proven, is_split};
+use super::quadtree::{NodeAddress, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
-use super::surface::{GeneralPiece, Ground, Surface};
-use super::walk::{Knot, Node, Visitor, Walk};
+use super::surface::{GeneralPiece, QuarticPiece, Surface};
+use super::walk::{EdgeVertex, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::closure::{Diagonal, closure};
 use crate::parallel::IsStopped;
-use crate::patch::{LimitPoint, Rules, Spot};
+use crate::patch::{LimitPoint, ParamTriangle, Rules};
 
 /// Rows of triangles that are shown between two questions whether that is still of use.
 const ROWS: usize = 8;
@@ -28,7 +28,7 @@ pub(super) struct Emitted {
     /// Which of the emitted triangle's corners is the first of those.
     pub(super) turn: usize,
     /// The leaf that it covers, or a part of which.
-    pub(super) place: Place,
+    pub(super) place: NodeAddress,
     /// That part.
     pub(super) part: SubTriangle,
     /// Which of its edges have no neighbour that counts.
@@ -38,7 +38,7 @@ pub(super) struct Emitted {
 /// The surface over an emitted triangle.
 pub(super) enum Over<'e, 'p> {
     /// A part of a regular piece, and the place of the leaf.
-    Regular(&'e Ground, Cell, Spot),
+    Regular(&'e QuarticPiece, Cell, ParamTriangle),
     /// Any other, with the limits at the triangle's corners, and the piece over the leaf.
     General(&'e mut Pieces<'p>, [LimitPoint; 3], &'e GeneralPiece),
 }
@@ -47,16 +47,16 @@ impl Over<'_, '_> {
     /// The limits at the triangle's corners, normals on this side.
     pub(super) fn corners(&self) -> [LimitPoint; 3] {
         match self {
-            Self::Regular(ground, cell, _) => ground.at(cell.0),
+            Self::Regular(quartic, cell, _) => quartic.at(cell.0),
             Self::General(_, corners, _) => *corners,
         }
     }
 }
 
 /// Who looks at the triangles.
-pub(super) trait Beholder {
+pub(super) trait TriangleVisitor {
     /// Whether any of the triangles with these numbers, which cover leaves below a node, is to be shown.
-    fn wants(&self, _node: Place, _triangles: Range<u32>) -> bool {
+    fn wants(&self, _node: NodeAddress, _triangles: Range<u32>) -> bool {
         true
     }
 
@@ -74,7 +74,7 @@ pub(super) trait Beholder {
     fn triangle<'p>(&mut self, emitted: &Emitted, over: Over<'_, 'p>, rules: &'p Rules<'p>);
 }
 
-/// What the triangles came about from.
+/// The trees, covers and emission from which the triangles are listed.
 #[derive(Clone, Copy)]
 pub(super) struct Sources<'a> {
     pub(super) control: &'a Control<'a>,
@@ -92,7 +92,12 @@ impl Sources<'_> {
     }
 
     /// Shows the triangles of a control face, in the order in which they stand.
-    pub(super) fn show(&self, face: u32, is_stopped: &IsStopped<'_>, beholder: &mut impl Beholder) {
+    pub(super) fn show(
+        &self,
+        face: u32,
+        is_stopped: &IsStopped<'_>,
+        visitor: &mut impl TriangleVisitor,
+    ) {
         let Self {
             control,
             trees,
@@ -101,7 +106,7 @@ impl Sources<'_> {
             emission,
         } = *self;
         let mut walk = Walk::new(trees, Vec::new(), 0, is_stopped);
-        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.edge_vertices);
         let mut leaves = Leaves {
             rules: control.rules,
             triangles: &emission.triangles,
@@ -110,16 +115,10 @@ impl Sources<'_> {
             diagonals: &covers[face as usize].diagonals,
             rim: Rim::default(),
             is_stopped,
-            beholder,
+            visitor,
         };
-        let at = (Place::root(face), Spot::WHOLE);
-        walk.node(
-            trees.root(face),
-            at,
-            sides,
-            control.piece(face).surface(control.rules),
-            &mut leaves,
-        );
+        let piece = control.piece(face);
+        walk.face(face, sides, piece.surface(control.rules), &mut leaves);
     }
 }
 
@@ -134,36 +133,33 @@ struct Leaves<'a, B> {
     diagonals: &'a [bool],
     rim: Rim,
     is_stopped: &'a IsStopped<'a>,
-    beholder: &'a mut B,
+    visitor: &'a mut B,
 }
 
-impl<B: Beholder> Visitor for Leaves<'_, B> {
-    fn chain(&mut self, _: &[Knot], _: usize, _: Spot, _: Surface<'_>) {}
+impl<B: TriangleVisitor> Visitor for Leaves<'_, B> {
+    fn chain(&mut self, _: &[EdgeVertex], _: usize, _: ParamTriangle, _: Surface<'_>) {}
 
-    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+    fn leaves(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         let n = 1usize << node.depth;
         let end = self.next + node.triangles() as u32;
         let skips = self.skips(node) && node.is_plain();
-        if skips || !self.beholder.wants(node.place, self.next..end) {
-            self.diagonals = self
-                .diagonals
-                .get(self.rim.diagonals(node, knots)..)
-                .unwrap_or_default();
+        if skips || !self.visitor.wants(node.place, self.next..end) {
+            self.diagonals = &self.diagonals[self.rim.diagonals(node, edge_vertices)..];
             self.next = end;
             return;
         }
-        self.rim.set(node, knots);
+        self.rim.set(node, edge_vertices);
         let is_plain = node.is_plain();
         for j in 0..n {
             let end = self.next + 2 * (n - j) as u32 - 1;
-            if is_plain && !self.beholder.wants(node.place, self.next..end) {
+            if is_plain && !self.visitor.wants(node.place, self.next..end) {
                 self.next = end;
                 continue;
             }
             for i in 0..n - j {
                 self.upright(node, (i, j));
                 if i + j + 1 < n {
-                    self.headlong(node, (i, j));
+                    self.inverted(node, (i, j));
                 }
             }
             if j % ROWS == ROWS - 1 && (self.is_stopped)() {
@@ -173,11 +169,11 @@ impl<B: Beholder> Visitor for Leaves<'_, B> {
     }
 }
 
-impl<B: Beholder> Leaves<'_, B> {
+impl<B: TriangleVisitor> Leaves<'_, B> {
     /// Whether the leaves of a node that have no split edges are not shown.
     #[inline]
     fn skips(&self, node: &Node<'_>) -> bool {
-        node.is_proven && self.beholder.skips_proven()
+        node.is_proven && self.visitor.skips_proven()
     }
 
     fn upright(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
@@ -197,7 +193,7 @@ impl<B: Beholder> Leaves<'_, B> {
             return;
         }
         if bits == 0 {
-            return self.whole(node, (i, j), (place, open));
+            return self.whole(node, i, j, place, open);
         }
         let mut from_end = false;
         if bits.count_ones() == 2
@@ -239,25 +235,25 @@ impl<B: Beholder> Leaves<'_, B> {
         });
         match node.surface {
             Surface::Unknown => {}
-            Surface::Regular(piece, spot) => {
-                let spot = spot.leaf(node.depth, i, j);
-                let [a, b, c] = spot.corners();
-                let domain = [
+            Surface::Regular(piece, domain) => {
+                let domain = domain.leaf(node.depth, i, j);
+                let [a, b, c] = domain.corners();
+                let places = [
                     a,
                     b,
                     c,
-                    spot.along(0, 0.5),
-                    spot.along(1, 0.5),
-                    spot.along(2, 0.5),
+                    domain.along(0, 0.5),
+                    domain.along(1, 0.5),
+                    domain.along(2, 0.5),
                 ];
                 for (emitted, corners) in triangles {
-                    if !self.beholder.wants_triangle(&emitted) {
+                    if !self.visitor.wants_triangle(&emitted) {
                         continue;
                     }
-                    let cell = Cell(corners.map(|label| domain[label]));
-                    self.beholder.triangle(
+                    let cell = Cell(corners.map(|label| places[label]));
+                    self.visitor.triangle(
                         &emitted,
-                        Over::Regular(piece.ground(), cell, spot),
+                        Over::Regular(piece.quartic(), cell, domain),
                         self.rules,
                     );
                 }
@@ -266,26 +262,21 @@ impl<B: Beholder> Leaves<'_, B> {
                 let mut pieces = Pieces::of(&piece.patch);
                 let [a, b, c] = piece.corners;
                 for (emitted, corners) in triangles {
-                    if !self.beholder.wants_triangle(&emitted) {
+                    if !self.visitor.wants_triangle(&emitted) {
                         continue;
                     }
                     let [d, e, f] = *piece.middles(rules);
                     let points = [a, b, c, d, e, f];
                     let limits = corners.map(|label| points[label]);
                     let over = Over::General(&mut pieces, limits, piece);
-                    self.beholder.triangle(&emitted, over, self.rules);
+                    self.visitor.triangle(&emitted, over, self.rules);
                 }
             }
         }
     }
 
     /// An upright leaf none of whose edges is split.
-    fn whole(
-        &mut self,
-        node: &Node<'_>,
-        (i, j): (usize, usize),
-        (place, open): (Place, [bool; 3]),
-    ) {
+    fn whole(&mut self, node: &Node<'_>, i: usize, j: usize, place: NodeAddress, open: [bool; 3]) {
         let number = self.next;
         self.next += 1;
         let vertices = self.triangles[number as usize];
@@ -297,31 +288,31 @@ impl<B: Beholder> Leaves<'_, B> {
             part: SubTriangle::Whole,
             open,
         };
-        if !self.beholder.wants_triangle(&emitted) {
+        if !self.visitor.wants_triangle(&emitted) {
             return;
         }
         match node.surface {
             Surface::Unknown => {}
-            Surface::Regular(piece, spot) => {
-                let spot = spot.leaf(node.depth, i, j);
-                let over = Over::Regular(piece.ground(), Cell(spot.corners()), spot);
-                self.beholder.triangle(&emitted, over, self.rules);
+            Surface::Regular(piece, domain) => {
+                let domain = domain.leaf(node.depth, i, j);
+                let over = Over::Regular(piece.quartic(), Cell(domain.corners()), domain);
+                self.visitor.triangle(&emitted, over, self.rules);
             }
             Surface::General(piece, _) => {
                 let over = Over::General(&mut Pieces::of(&piece.patch), piece.corners, piece);
-                self.beholder.triangle(&emitted, over, self.rules);
+                self.visitor.triangle(&emitted, over, self.rules);
             }
         }
     }
 
-    /// The leaf to the right of an upright one, which stands on its head: its first corner is the second one emitted.
-    fn headlong(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
+    /// The inverted leaf to the right of an upright one: its first corner is the second one emitted.
+    fn inverted(&mut self, node: &Node<'_>, (i, j): (usize, usize)) {
         let number = self.next;
         self.next += 1;
         if self.skips(node) {
             return;
         }
-        let Surface::Regular(piece, spot) = node.surface else {
+        let Surface::Regular(piece, domain) = node.surface else {
             return;
         };
         let [a, b, c] = self.triangles[number as usize];
@@ -334,14 +325,14 @@ impl<B: Beholder> Leaves<'_, B> {
             part: SubTriangle::Whole,
             open: [false; 3],
         };
-        if !self.beholder.wants_triangle(&emitted) {
+        if !self.visitor.wants_triangle(&emitted) {
             return;
         }
-        let spot = spot.row(node.depth, i, j, true);
-        let cell = Cell(spot.corners());
-        self.beholder.triangle(
+        let domain = domain.row(node.depth, i, j, true);
+        let cell = Cell(domain.corners());
+        self.visitor.triangle(
             &emitted,
-            Over::Regular(piece.ground(), cell, spot),
+            Over::Regular(piece.quartic(), cell, domain),
             self.rules,
         );
     }

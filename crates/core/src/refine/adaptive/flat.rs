@@ -49,7 +49,7 @@ use crate::vector::{DVec3, vector};
 /// How far they are is measured, and counted with every distance.
 const IN_PLANE: f64 = 2e-7;
 
-/// The same as a part of the tolerance.
+/// The distance within which a surface counts as flat, as a part of the tolerance.
 const OF_TOLERANCE: f64 = 1e-3;
 
 /// Faces whose unit normals differ by more than this are not looked at any closer.
@@ -130,17 +130,17 @@ impl FlatRegions {
                 }
                 let open = control.open(face);
                 for edge in (0..3u32).filter(|&edge| !open[edge as usize]) {
-                    let Some(beside) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
+                    let Some(adjacent) = control.edges.twin(3 * face + edge).map(|twin| twin / 3)
                     else {
                         continue;
                     };
-                    if !is_left[beside as usize] || control.kept.part(face, beside) {
+                    if !is_left[adjacent as usize] || control.kept.part(face, adjacent) {
                         continue;
                     }
-                    if let Some(found) = height(beside) {
-                        is_left[beside as usize] = false;
+                    if let Some(found) = height(adjacent) {
+                        is_left[adjacent as usize] = false;
                         off_plane = off_plane.max(found);
-                        faces.push(beside);
+                        faces.push(adjacent);
                     }
                 }
             }
@@ -207,7 +207,7 @@ impl FlatRegions {
             }
         }
         found.by_rim = found.by_rim(control, options, most, watch)?;
-        found.join(control, (most, size), watch)?;
+        found.join(control, most, size, watch)?;
         Ok(found)
     }
 
@@ -297,7 +297,7 @@ impl FlatRegions {
             .sum()
     }
 
-    /// Those that one face comes to, of which `own` are its own if it is not flat.
+    /// The triangles of one face, of which `own` are its own if it is not flat.
     pub(super) fn count_over(
         &self,
         control: &Control<'_>,
@@ -323,12 +323,12 @@ impl FlatRegions {
     /// Whether the surface goes on smoothly somewhere beyond the rim of a region.
     fn has_smooth_rim(&self, control: &Control<'_>, region: u32) -> bool {
         self.rim(control, region)
-            .any(|h| control.lasting.edge(HalfEdgeId(h)) <= 0.0)
+            .any(|h| control.infinitely_sharp.edge(HalfEdgeId(h)) <= 0.0)
     }
 
     /// Whether a half-edge of a flat face is on the rim of its region.
     fn is_rim(&self, control: &Control<'_>, h: u32) -> bool {
-        let is_sharp = control.lasting.edge(HalfEdgeId(h)) > 0.0;
+        let is_sharp = control.infinitely_sharp.edge(HalfEdgeId(h)) > 0.0;
         let ends_at = |twin: u32| {
             self.region(twin / 3) != self.region(h / 3) || control.kept.part(h / 3, twin / 3)
         };
@@ -336,7 +336,7 @@ impl FlatRegions {
     }
 }
 
-/// Whether a face may be flat: most are told apart by those beside them.
+/// Whether a face may be flat: the adjacent faces decide it for most.
 /// Faces that are turned over in one plane with others are flat where what the rim encloses is asked for: control points that were moved
 /// along the rim turn slivers over.
 fn may_be_flat(
@@ -347,10 +347,10 @@ fn may_be_flat(
 ) -> bool {
     let normal = normals[face as usize];
     let open = control.open(face);
-    let beside = (0..3u32)
+    let adjacent = (0..3u32)
         .filter(|&edge| !open[edge as usize])
         .filter_map(|edge| control.edges.twin(3 * face + edge));
-    let mut beside = beside.map(|twin| normals[twin as usize / 3]);
+    let mut adjacent = adjacent.map(|twin| normals[twin as usize / 3]);
     let is_alike = |other: DVec3| {
         let other = if may_be_turned_over && other.dot(normal) < 0.0 {
             -other
@@ -359,5 +359,5 @@ fn may_be_flat(
         };
         other.distance_squared(normal) <= ALIKE * ALIKE
     };
-    normal != DVec3::ZERO && beside.all(is_alike)
+    normal != DVec3::ZERO && adjacent.all(is_alike)
 }

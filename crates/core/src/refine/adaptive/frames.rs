@@ -23,7 +23,7 @@ use crate::scheme::Scheme;
 /// Rounds over all frames: in each, nothing is left to do but what dividing for other frames brought about.
 const MOST_ROUNDS: usize = 12;
 
-/// What several frames come to.
+/// The result of several frames.
 pub(in crate::refine) struct Found {
     /// With the vertices of the first frame.
     pub(in crate::refine) refined: Exact,
@@ -68,16 +68,13 @@ pub(in crate::refine) fn frames(
     for mesh in &meshes {
         replay.frame(mesh.positions(), &mut frame)?;
         all.push(task(mesh).with_engine(observer, |engine| {
-            proven(engine, &mut state, (&refined, &frame), options)
+            proven(engine, &mut state, &refined, &frame, options)
         })?);
     }
     replay.frame(meshes[0].positions(), &mut frame)?;
     let greatest = |of: fn(&Proven) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let (worst, open_cones) = (
-        greatest(|own| own.worst),
-        all.iter().map(|own| own.open_cones).max(),
-    );
-    let open_cones = open_cones.unwrap_or(0);
+    let worst = greatest(|own| own.worst);
+    let open_cones = all.iter().map(|own| own.open_cones).fold(0, usize::max);
     let stop = match () {
         () if state.has_failed || worst > 1.0 + f64::EPSILON => ExactStop::LevelCap,
         () if open_cones > 0 => ExactStop::Cones,
@@ -149,7 +146,7 @@ fn united(
     Ok(state)
 }
 
-/// What is proven of a frame.
+/// The bounds and normals of a frame.
 struct Proven {
     error: ErrorBounds,
     /// How many times over its worst triangle fails.
@@ -160,11 +157,12 @@ struct Proven {
     open_cones: usize,
 }
 
-/// What is proven of a frame of what was refined.
+/// Measures the refined mesh in the positions of a frame.
 fn proven(
     engine: &Engine<'_>,
     state: &mut State,
-    (refined, frame): (&Exact, &Frame),
+    refined: &Exact,
+    frame: &Frame,
     options: &ExactOptions,
 ) -> Result<Proven, RefineError> {
     let mut emission = engine.emit_all(state)?;

@@ -3,26 +3,28 @@
 //! A wrong guess costs time, never truth: [`super::measure`] proves each triangle among its neighbours as they are. Much of that is done here:
 //! what a triangle's bound needs to know of its neighbours (see [`crate::certificate`]) are the angles between their planes
 //! and its own and the angles at their corners. Neighbours share a corner and its limit normal, so the chord between two planes is at
-//! most the sum of the chords between each and that normal, their *tilts*. Each control face therefore has an
-//! [`Allowance`]: how far the triangles in it and adjacent to it may be tilted, and how acute they may be. Where a whole leaf is within the limit
+//! most the sum of the chords between each and that normal, their *normal deviations*. Each control face therefore has an
+//! [`Allowance`]: the greatest normal deviation and the least angle of the triangles in it and adjacent to it. Where a whole leaf is within the limit
 //! on that condition, its bound holds as soon as all these triangles keep the allowance.
 
 use super::back_faces::BackFaces;
 use super::backs::{Behind, Leaf};
 use super::control::Control;
-use super::seen::{ANY_SLOPES, Allowance, DIVISIONS, DRIFT_SHARE, Extent, Fate, HALVINGS, Seen};
-use super::surface::Ground;
+use super::seen::{
+    ANY_SLOPES, Allowance, DISPLACEMENT_SHARE, DIVISIONS, Extent, Fate, HALVINGS, Seen,
+};
+use super::surface::QuarticPiece;
 use super::trial::Trial;
 use crate::certificate::{
-    BesideEdges, Cell, Deviation, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle,
+    Cell, Deviation, EdgeBounds, Effort, Heights, NetPart, Pieces, RowTarget, SubTriangle,
     at_a_glance, exceeds,
 };
 use crate::criterion::Criteria;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{LimitPoint, Patch, Rules, Spot};
+use crate::patch::{LimitPoint, ParamTriangle, Patch, Rules};
 use crate::vector::{DVec3, Extremes};
 
-/// What rounding leaves of a height that is just good enough.
+/// The part of a height that is good enough in spite of rounding.
 pub(super) const ROUNDED: f64 = 1.0 - 1e-9;
 
 /// How far triangles may miss the surface before their corners are moved: by half that much afterwards at best.
@@ -34,7 +36,7 @@ pub(super) const HOPELESS: f64 = 2.0;
 /// The range of heights that a few points of a piece that need not be regular tell is about this part of what there is.
 const SEEN: f64 = 0.8;
 
-/// What is asked of the triangles of each control face. Values are distances between a triangle and its part of the surface
+/// The limits for the triangles of each control face. Values are distances between a triangle and its part of the surface
 /// where nothing else counts ([`super::control::Control::criteria`]), else how many times over the criteria fail.
 #[derive(Clone, Debug)]
 pub(super) enum Goal {
@@ -79,11 +81,11 @@ impl Goal {
     }
 }
 
-/// What is asked of the nodes of a control face.
+/// The limits for the nodes of a control face.
 #[derive(Clone, Copy)]
 pub(super) struct Judge<'a> {
     pub(super) rules: &'a Rules<'a>,
-    /// What is asked besides distances.
+    /// The criteria besides distances.
     pub(super) criteria: Option<&'a Criteria>,
     back_faces: &'a BackFaces,
     face: u32,
@@ -91,7 +93,7 @@ pub(super) struct Judge<'a> {
     rim_alone: bool,
     /// Greatest value: a distance where nothing else counts.
     pub(super) limit: f64,
-    /// Ranges of heights from one side to the other count by this, beside the greatest height on one side.
+    /// Ranges of heights from one side to the other count by this, as well as the greatest height on one side.
     range_share: f64,
     pub(super) allowance: Allowance,
 }
@@ -126,8 +128,8 @@ impl Judge<'_> {
     /// A node of a regular piece.
     pub(super) fn regular(
         &self,
-        ground: &Ground,
-        spot: Spot,
+        quartic: &QuarticPiece,
+        domain: ParamTriangle,
         level: u32,
         corners: &[LimitPoint; 3],
         open: [bool; 3],
@@ -136,7 +138,7 @@ impl Judge<'_> {
             return Verdict::FREE;
         }
         let seen = Seen::of(corners);
-        let net = || ground.net(spot, SubTriangle::Whole);
+        let net = || quartic.net(domain, SubTriangle::Whole);
         if self.rim_alone {
             return self.along_rim(net().deviation(
                 &seen.frame,
@@ -144,13 +146,13 @@ impl Judge<'_> {
                 Effort::along_rim(self.limit, open),
             ));
         }
-        let cell = Cell(spot.corners());
+        let cell = Cell(domain.corners());
         if let Some(criteria) = self.criteria {
-            let behind = self.behind(Leaf::Regular(ground, spot));
+            let behind = self.behind(Leaf::Regular(quartic, domain));
             let trial = Trial::of(criteria, self.limit, &seen, corners, &behind).at_level(level);
-            return Verdict::of(trial.regular(ground, net, &cell, open, self.rules));
+            return Verdict::of(trial.regular(quartic, net, &cell, open, self.rules));
         }
-        let heights = ground.jet().heights(&cell, seen.frame.normal());
+        let heights = quartic.jet().heights(&cell, seen.frame.normal());
         let (low, high) = heights.range();
         let counted = if self.range_share > 0.0 {
             low.larger(self.range_share * heights.least_range())
@@ -160,42 +162,36 @@ impl Judge<'_> {
         if exceeds(counted, self.limit) {
             return Verdict::of(Fate::Fails);
         }
-        let by_piece = ground.jet().beside(&cell, &seen.frame, open);
+        let by_piece = quartic.jet().edge_bounds(&cell, &seen.frame, open);
         let verdict = self.decided(&seen, by_piece.deviation(high));
         if verdict.is_proven() {
             return verdict;
         }
         // By what the part itself has, not all of its piece.
-        let beside = ground
+        let edges = quartic
             .jet()
-            .beside_closely(&by_piece, &cell, &seen.frame, open);
-        if beside.is_loose() {
+            .closer_edge_bounds(&by_piece, &cell, &seen.frame, open);
+        if edges.is_loose() {
             return self.by_net(&seen, &net(), &heights, high, open);
         }
-        let verdict = self.decided(&seen, beside.deviation(high));
+        let verdict = self.decided(&seen, edges.deviation(high));
         if verdict.is_proven() {
             return verdict;
         }
-        self.by_heights(&seen, &beside, &heights, low)
+        self.by_heights(&seen, &edges, &heights, low)
     }
 
     /// A node whose curves are known, by heights that are refined where the least of them would do.
-    fn by_heights(
-        &self,
-        seen: &Seen,
-        beside: &BesideEdges,
-        heights: &Heights,
-        low: f64,
-    ) -> Verdict {
-        let least = beside.deviation(low);
+    fn by_heights(&self, seen: &Seen, edges: &EdgeBounds, heights: &Heights, low: f64) -> Verdict {
+        let least = edges.deviation(low);
         if exceeds(least.bound(0.0, ANY_SLOPES), self.limit) {
             return Verdict::of(Fate::Fails);
         }
         let enough = ROUNDED * least.height_within(self.limit, self.allowed(seen).0);
-        self.decided(seen, beside.deviation(heights.refined(DIVISIONS, enough)))
+        self.decided(seen, edges.deviation(heights.refined(DIVISIONS, enough)))
     }
 
-    /// A node whose derivatives do not tell how far points drift: drifts by the net, heights by the
+    /// A node whose derivatives do not bound tangential displacements: displacements by the net, heights by the
     /// derivatives, since those of a net are a third too great.
     fn by_net(
         &self,
@@ -258,7 +254,7 @@ impl Judge<'_> {
         if exceeds(attained, self.limit) {
             return Some(Verdict::of(Fate::Fails));
         }
-        // Heights of both signs are not told apart.
+        // Heights of both signs count alike.
         let may_be_uneven = 2.0 * self.range_share * deviation.height > self.limit;
         Some(self.decided(seen, deviation)).filter(|verdict| verdict.is_proven() && !may_be_uneven)
     }
@@ -320,7 +316,7 @@ impl Judge<'_> {
         }
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
         let chord = self.allowed(seen).0;
         // A guess: neighbours have angles like the triangle's own.
@@ -332,7 +328,7 @@ impl Judge<'_> {
             rim_alone: false,
             chord,
             slopes,
-            // What will be divided needs no bound.
+            // A node that will be divided needs no bound.
             gives_up: true,
             least_chord: Some(0.0),
         }
@@ -344,7 +340,7 @@ impl Judge<'_> {
         let bound = deviation.bound(chord, slopes);
         if bound <= self.limit {
             // Drifts that are too steep are not counted on.
-            let drift_slope = if deviation.is_within(slopes) {
+            let displacement_slope = if deviation.is_within(slopes) {
                 deviation.steepest()
             } else {
                 0.0
@@ -353,7 +349,7 @@ impl Judge<'_> {
                 fate: Fate::Proven,
                 extent: Extent {
                     bound,
-                    drift_slope,
+                    displacement_slope,
                     ..seen.extent()
                 },
             };
@@ -362,25 +358,31 @@ impl Judge<'_> {
         Verdict::of(if fails { Fate::Fails } else { Fate::Likely })
     }
 
-    /// The chord of the angles to the neighbours and the greatest slopes of drifts, by edge, that the allowance makes certain.
+    /// The chord of the angles to the neighbours and the greatest slopes of tangential displacements, by edge, that the allowance makes certain.
     #[inline]
     fn allowed(&self, seen: &Seen) -> (f64, [f64; 3]) {
-        let Allowance { tilt, slope } = self.allowance;
+        let Allowance {
+            normal_deviation,
+            slope,
+        } = self.allowance;
         (
-            seen.tilt + tilt,
+            seen.normal_deviation + normal_deviation,
             seen.own_slopes().map(|own| own.min(slope)),
         )
     }
 
-    /// The same for rows of nodes.
+    /// The limits for rows of nodes.
     pub(super) fn row_target(&self) -> RowTarget {
-        let Allowance { tilt, slope } = self.allowance;
+        let Allowance {
+            normal_deviation,
+            slope,
+        } = self.allowance;
         RowTarget {
             distance: self.limit,
-            tilt,
+            normal_deviation,
             slope,
             range_share: self.range_share,
-            drift_share: DRIFT_SHARE,
+            displacement_share: DISPLACEMENT_SHARE,
         }
     }
 

@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use super::quadtree::{MOST_LEVELS, Place};
+use super::quadtree::{MOST_LEVELS, NodeAddress};
 use crate::certificate::SubTriangle;
 use crate::mesh::Mesh;
 use crate::refine::exact_result::Exact;
@@ -46,18 +46,18 @@ impl Covering {
     }
 }
 
-/// What goes down along with the triangles.
+/// Values that a descent computes for nodes.
 pub(super) trait Descent {
-    /// What is known of a node.
+    /// The value of a node.
     type Node;
 
-    /// What is known of a node's children.
+    /// The values of a node's children.
     fn children(&mut self, node: Self::Node) -> [Self::Node; 4];
 
     /// A leaf and the triangles that cover it.
-    fn leaf(&mut self, place: Place, node: Self::Node, covering: &[Covering]);
+    fn leaf(&mut self, place: NodeAddress, node: Self::Node, covering: &[Covering]);
 
-    /// Whether nobody wants the rest.
+    /// Whether the rest is not wanted.
     fn is_over(&self) -> bool;
 }
 
@@ -103,7 +103,7 @@ impl<'a> Leaves<'a> {
             })
         };
         let standing: Option<Vec<Standing>> = self.triangles(face).map(corners).collect();
-        standing.is_some_and(|standing| down(Place::root(face), standing, node, descent))
+        standing.is_some_and(|standing| down(NodeAddress::root(face), standing, node, descent))
     }
 
     /// Where a corner of a triangle is in the triangle's control face; `None` if that is not known.
@@ -120,7 +120,12 @@ impl<'a> Leaves<'a> {
     }
 }
 
-fn down<D: Descent>(place: Place, standing: Vec<Standing>, node: D::Node, descent: &mut D) -> bool {
+fn down<D: Descent>(
+    place: NodeAddress,
+    standing: Vec<Standing>,
+    node: D::Node,
+    descent: &mut D,
+) -> bool {
     if standing.is_empty() || descent.is_over() {
         return true;
     }

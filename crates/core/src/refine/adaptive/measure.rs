@@ -1,8 +1,8 @@
-//! The emitted triangles with their neighbours as they are: what each comes to, and which of them fail.
+//! Measures the emitted triangles among their neighbours as they are: a bound for each, and those that fail.
 //!
-//! Takes what was emitted, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
+//! Takes an emission, its vertices moved off the surface or not ([`super::offsets`]); gives, by control face, the
 //! greatest bound of a distance and where it is, and the leaves whose values are too much. Distances to moved triangles are
-//! bounded as [`crate::certificate::Deviation::off`] and [`BesideEdges::deviation_off`] say.
+//! bounded as [`crate::certificate::Deviation::off`] and [`EdgeBounds::deviation_off`] say.
 
 mod at_once;
 
@@ -16,22 +16,22 @@ use super::backs::{Behind, looks_away};
 use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
 use super::emit::Emission;
-use super::emitted::{Beholder, Emitted, Over, Sources};
+use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::{Goal, ROUNDED};
 use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use super::seen::{DIVISIONS, Seen};
 use super::surface::GeneralPiece;
 use crate::certificate::{
-    BesideEdges, Deviation, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
+    Deviation, EdgeBounds, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
 
-/// Halvings of a net: towards a corner at which points drift too fast, where only short pieces are near.
+/// Halvings of a net: towards a corner with too steep tangential displacements, where only short pieces are near.
 const MOST_HALVINGS: usize = 10;
 
 /// How triangles are looked at.
@@ -93,7 +93,7 @@ struct Measuring<'a> {
     rim_alone: bool,
     /// Whether proven leaves are not looked at, and somebody counts on what the others have.
     is_trusted: bool,
-    counts_tilts: bool,
+    counts_normal_deviations: bool,
     sharp: &'a HashSet<u32>,
     /// Others need not be looked at.
     changes: Option<&'a Changes>,
@@ -104,12 +104,12 @@ struct Measuring<'a> {
     limit: f64,
     length: f64,
     found: Measured,
-    /// The triangles that fail, their leaves, and what they come to.
-    failing: Vec<(u32, Place, f64)>,
+    /// The triangles that fail, their leaves, and their values.
+    failing: Vec<(u32, NodeAddress, f64)>,
 }
 
-impl Beholder for Measuring<'_> {
-    fn wants(&self, _: Place, triangles: Range<u32>) -> bool {
+impl TriangleVisitor for Measuring<'_> {
+    fn wants(&self, _: NodeAddress, triangles: Range<u32>) -> bool {
         let own = (triangles.start - self.first) as usize..(triangles.end - self.first) as usize;
         self.is_left
             .as_ref()
@@ -133,9 +133,9 @@ impl Beholder for Measuring<'_> {
         if self.rim_alone {
             return self.along_rim(emitted, over, rules);
         }
-        if self.counts_tilts {
+        if self.counts_normal_deviations {
             let extent = Seen::of(&over.corners()).extent();
-            self.found.tilt = self.found.tilt.max(extent.tilt);
+            self.found.normal_deviation = self.found.normal_deviation.max(extent.normal_deviation);
             self.found.slope = self.found.slope.min(extent.slope);
         }
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
@@ -154,8 +154,8 @@ impl Beholder for Measuring<'_> {
         };
         // Heights that are met, and about the greatest.
         let height = match &mut over {
-            Over::Regular(ground, cell, _) => {
-                let heights = ground.jet().heights(cell, among.frame.normal());
+            Over::Regular(quartic, cell, _) => {
+                let heights = quartic.jet().heights(cell, among.frame.normal());
                 Height::Regular(heights.lifted_range(among.lifts), heights)
             }
             Over::General(_, _, piece) => {
@@ -168,7 +168,7 @@ impl Beholder for Measuring<'_> {
                 value: height.least(),
                 pixels: 0.0,
             };
-            return self.take((emitted.number, emitted.place), value, 0.0);
+            return self.take(emitted, value, 0.0);
         }
         let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
@@ -178,20 +178,20 @@ impl Beholder for Measuring<'_> {
             value.value <= self.limit && value.bound <= self.length
         };
         let highest = match (over, height) {
-            (Over::Regular(ground, cell, spot), Height::Regular((height, rest), heights)) => {
-                let by_piece = ground.jet().beside(&cell, &among.frame, emitted.open);
-                let beside =
-                    ground
+            (Over::Regular(quartic, cell, domain), Height::Regular((height, rest), heights)) => {
+                let by_piece = quartic.jet().edge_bounds(&cell, &among.frame, emitted.open);
+                let edges =
+                    quartic
                         .jet()
-                        .beside_closely(&by_piece, &cell, &among.frame, emitted.open);
-                let off = |height| beside.deviation_off(height, among.moved, among.aside);
+                        .closer_edge_bounds(&by_piece, &cell, &among.frame, emitted.open);
+                let off = |height| edges.deviation_off(height, among.moved, among.aside);
                 let refined =
                     || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
                 // Nothing that is loose depends on heights.
-                let is_met = is_enough(off(height + rest))
-                    || !beside.is_loose() && is_enough(off(refined()));
-                if !is_met && !self.fails_by_height(&among, &beside, &off(height - rest)) {
-                    let net = ground.net(spot, emitted.part);
+                let is_met =
+                    is_enough(off(height + rest)) || !edges.is_loose() && is_enough(off(refined()));
+                if !is_met && !self.fails_by_height(&among, &edges, &off(height - rest)) {
+                    let net = quartic.net(domain, emitted.part);
                     let deviation =
                         net.deviation(&among.frame, rules, self.effort(&among, emitted));
                     is_enough(deviation.off(among.moved, among.aside));
@@ -201,7 +201,7 @@ impl Beholder for Measuring<'_> {
             (Over::General(pieces, ..), height) => {
                 let deviation = self.by_pieces(&among, emitted, pieces, rules);
                 is_enough(deviation);
-                // What counts alone has no height of its own.
+                // A triangle with a viewer's criterion alone has no height of its own.
                 height.least().max(deviation.height - deviation.across)
             }
             (Over::Regular(..), Height::General(height)) => height,
@@ -215,7 +215,7 @@ impl Beholder for Measuring<'_> {
             },
             ..value
         };
-        self.take((emitted.number, emitted.place), value, highest);
+        self.take(emitted, value, highest);
     }
 }
 
@@ -228,7 +228,7 @@ impl<'a> Measuring<'a> {
             back_faces: &control.back_faces,
             rim_alone: control.flat.is_its_rim(face),
             is_trusted: look.trusted.get(face as usize).copied().unwrap_or(false),
-            counts_tilts: !look.trusted.is_empty(),
+            counts_normal_deviations: !look.trusted.is_empty(),
             sharp,
             changes: look.changes,
             first: emission.triangles_of(face).start as u32,
@@ -240,7 +240,7 @@ impl<'a> Measuring<'a> {
         }
     }
 
-    /// What all come to.
+    /// The result for all triangles.
     fn found(mut self, bulge: Option<&Bulge>) -> Measured {
         let each = core::mem::take(&mut self.found.each);
         for (number, known) in each
@@ -281,8 +281,9 @@ impl<'a> Measuring<'a> {
         self.found
     }
 
-    /// Takes what a triangle comes to over which the surface is so high.
-    fn take(&mut self, (number, place): (u32, Place), value: Value, height: f64) {
+    /// Takes the value of a triangle and the height of the surface over it.
+    fn take(&mut self, emitted: &Emitted, value: Value, height: f64) {
+        let Emitted { number, place, .. } = *emitted;
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
             *known = FoundLast {
@@ -308,14 +309,14 @@ impl<'a> Measuring<'a> {
         let frame = TriangleFrame::new(emitted.vertices.map(at));
         let effort = Effort::along_rim(self.limit.min(self.length), emitted.open);
         let deviation = match over {
-            Over::Regular(ground, _, spot) => ground
-                .net(spot, emitted.part)
+            Over::Regular(quartic, _, domain) => quartic
+                .net(domain, emitted.part)
                 .deviation(&frame, rules, effort),
             Over::General(pieces, ..) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
         let bound = deviation.own;
         self.take(
-            (emitted.number, emitted.place),
+            emitted,
             Value {
                 bound,
                 value: bound,
@@ -326,16 +327,16 @@ impl<'a> Measuring<'a> {
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
-    /// divided. Nobody who asks for tight bounds or for more than distances is told that.
+    /// divided. It never does where tight bounds or more than distances are asked for.
     fn fails_for_sure(&self, height: f64) -> bool {
         self.length.is_infinite() && self.criteria.is_none() && height > self.limit
     }
 
-    /// Whether it is by its height alone that a triangle fails: it would pass with the least that this can be, so its drifts are good enough,
-    /// and nets tell heights no better than derivatives do. As above nobody else is told that.
-    fn fails_by_height(&self, among: &Among, beside: &BesideEdges, least: &Deviation) -> bool {
+    /// Whether a triangle fails by its height alone: it would pass with the least possible height, so its tangential displacements are good enough,
+    /// and nets bound heights no better than derivatives do. It never does where tight bounds or more than distances are asked for.
+    fn fails_by_height(&self, among: &Among, edges: &EdgeBounds, least: &Deviation) -> bool {
         let counts_alone = self.length.is_infinite() && self.criteria.is_none();
-        counts_alone && !beside.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
+        counts_alone && !edges.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
     }
 
     /// The greatest height of a few points of a piece that is not regular.
@@ -357,7 +358,7 @@ impl<'a> Measuring<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// The height over a triangle that is surely good enough, given the deviation for none: nobody needs to know it better. 0 where
+    /// The height over a triangle that is surely good enough, given the deviation for none: it need not be known better. 0 where
     /// there is none, or where more counts than distances.
     fn high_enough(&self, among: &Among, flat: &Deviation) -> f64 {
         let target = self.limit.min(self.length);
@@ -387,7 +388,7 @@ impl<'a> Measuring<'a> {
         deviation.off(among.moved, among.aside)
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, among: &Among, emitted: &Emitted) -> Effort {
         let allowed = match self.criteria {
             None => self.limit,
@@ -405,7 +406,7 @@ impl<'a> Measuring<'a> {
         }
     }
 
-    /// What the triangle comes to with this deviation.
+    /// The value of the triangle with this deviation.
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
         let bound = deviation.bound(among.chord, among.slopes);
         let Some(criteria) = self.criteria else {
@@ -432,7 +433,7 @@ impl<'a> Measuring<'a> {
 enum Height {
     /// That of the quadratic part, by how much it may be off, and all parts.
     Regular((f64, f64), Heights),
-    /// What is met in a few places.
+    /// The greatest height in a few places.
     General(f64),
 }
 
@@ -452,7 +453,7 @@ struct Among {
     frame: TriangleFrame,
     /// The greatest chord of the angles between its plane and its neighbours'.
     chord: f64,
-    /// The greatest slopes at which points may drift over its edges.
+    /// The greatest slopes of tangential displacements over its edges.
     slopes: [f64; 3],
     /// Heights of the surface's corners over the triangle's plane.
     lifts: [f64; 3],
@@ -460,7 +461,7 @@ struct Among {
     moved: f64,
     /// How far within the plane.
     aside: f64,
-    /// The triangles beside it, where anybody asks.
+    /// The adjacent triangles, where they are asked for.
     neighbours: Neighbours,
     /// Who sees nothing but its back and theirs.
     backs: Backs,
@@ -505,7 +506,7 @@ impl Among {
         }
     }
 
-    /// Who sees nothing but the back of the triangle, of those beside it, and of its piece.
+    /// The viewers that see nothing but the back of the triangle, of the adjacent ones, and of its piece.
     fn looks_away(
         &self,
         criteria: &Criteria,
@@ -522,13 +523,13 @@ impl Among {
     }
 
     /// How many times over the triangle of a leaf leaves its cones; not at all where these are given up.
-    fn cone(&self, criteria: &Criteria, place: Place, corners: &[LimitPoint; 3]) -> f64 {
+    fn cone(&self, criteria: &Criteria, place: NodeAddress, corners: &[LimitPoint; 3]) -> f64 {
         let (normal, normals) = (self.frame.normal(), corners.map(|corner| corner.normal));
-        let tilt = normals
+        let normal_deviation = normals
             .iter()
             .map(|corner| corner.distance(normal))
             .fold(0.0, f64::max);
-        let region = Region::around(self.corners, normal).turned(2.0 * tilt);
+        let region = Region::around(self.corners, normal).turned(2.0 * normal_deviation);
         let ratio = criteria.cone_ratio(normal, normals, &region, &self.backs);
         if place.level as usize >= criteria.deepest_cone() {
             ratio.min(1.0)

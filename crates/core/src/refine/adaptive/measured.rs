@@ -1,10 +1,10 @@
-//! What is found where emitted triangles are measured among their neighbours ([`super::measure`]): of one triangle, of one that was there
+//! The results of measuring emitted triangles among their neighbours ([`super::measure`]): of one triangle, of one that was there
 //! before, and of all of a control face.
 
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use crate::certificate::exceeds;
 
-/// What a triangle comes to.
+/// The values of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Value {
     /// Of the distance.
@@ -26,12 +26,12 @@ impl Value {
     }
 }
 
-/// What a triangle came to among its neighbours.
+/// The last measured values of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundLast {
     /// How far its corners were moved; not numbers as long as it was not measured.
     pub(super) offsets: [f64; 3],
-    /// The bound of its distance; what counts of that, which has one where the bound is infinite, too; and the height of the surface over it.
+    /// The bound of its distance; its value by the criteria, which may be finite where the bound is not; and the height of the surface over it.
     pub(super) bound: f64,
     pub(super) value: f64,
     pub(super) height: f64,
@@ -46,43 +46,43 @@ impl FoundLast {
     };
 }
 
-/// What the triangles of a control face come to.
+/// The values of a control face's triangles.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     /// The greatest bound of a distance, and the leaf that has it.
-    pub(super) worst: (f64, Place),
+    pub(super) worst: (f64, NodeAddress),
     /// The greatest height of the surface over a triangle, about, and the leaf.
-    pub(super) highest: (f64, Place),
+    pub(super) highest: (f64, NodeAddress),
     /// The greatest value.
     pub(super) value: f64,
     /// The greatest distance in the cameras' pictures, in pixels.
     pub(super) pixels: f64,
-    /// The greatest tilt of a triangle, and the least tangent of an angle.
-    pub(super) tilt: f64,
+    /// The greatest normal deviation of a triangle, and the least tangent of an angle.
+    pub(super) normal_deviation: f64,
     pub(super) slope: f64,
-    /// Leaves that fail, in the order of the walk, and what they come to.
-    pub(super) failing: Vec<(Place, f64)>,
-    /// What each triangle came to, this time or before, where that is kept.
+    /// Leaves that fail, in the order of the walk, and their values.
+    pub(super) failing: Vec<(NodeAddress, f64)>,
+    /// The last values of each triangle, this time's or earlier, where they are kept.
     pub(super) each: Vec<FoundLast>,
 }
 
 impl Measured {
     /// Before anything was measured.
     pub(super) fn nothing(face: u32) -> Self {
-        let nowhere = (0.0, Place::root(face));
+        let nowhere = (0.0, NodeAddress::root(face));
         Self {
             worst: nowhere,
             highest: nowhere,
             value: 0.0,
             pixels: 0.0,
-            tilt: 0.0,
+            normal_deviation: 0.0,
             slope: f64::INFINITY,
             failing: Vec::new(),
             each: Vec::new(),
         }
     }
 
-    pub(super) fn add(&mut self, place: Place, value: &Value, height: f64) {
+    pub(super) fn add(&mut self, place: NodeAddress, value: &Value, height: f64) {
         if exceeds(height, self.highest.0) {
             self.highest = (height, place);
         }
@@ -95,7 +95,7 @@ impl Measured {
         self.pixels = self.pixels.max(value.pixels);
     }
 
-    /// Takes what was found of all triangles of the control face, or adds what was of some while that of others is not kept.
+    /// Takes the values of all triangles of the control face, or adds those of some while those of others are not kept.
     pub(super) fn replace(&mut self, found: Self, is_all: bool) {
         if is_all {
             *self = found;
@@ -108,13 +108,16 @@ impl Measured {
             self.highest = found.highest;
         }
         (self.value, self.pixels) = (self.value.max(found.value), self.pixels.max(found.pixels));
-        (self.tilt, self.slope) = (self.tilt.max(found.tilt), self.slope.min(found.slope));
+        (self.normal_deviation, self.slope) = (
+            self.normal_deviation.max(found.normal_deviation),
+            self.slope.min(found.slope),
+        );
         self.failing.extend(found.failing);
     }
 }
 
-/// Adds a leaf that fails to a list in the order of the walk, or what another triangle of the last one comes to.
-pub(super) fn fail(failing: &mut Vec<(Place, f64)>, place: Place, value: f64) {
+/// Adds a leaf that fails to a list in the order of the walk, or the value of another triangle of the last leaf.
+pub(super) fn fail(failing: &mut Vec<(NodeAddress, f64)>, place: NodeAddress, value: f64) {
     match failing.last_mut() {
         Some((last, known)) if *last == place => *known = known.max(value),
         _ => failing.push((place, value)),

@@ -71,7 +71,7 @@ use control::Control;
 use demands::{Demands, Functions, Room, surfaces_of};
 use flat::regions::FlatRegions;
 use judge::Goal;
-use quadtree::{Edges, Place};
+use quadtree::{Edges, NodeAddress};
 
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
@@ -123,7 +123,7 @@ pub(super) fn adaptive(
         if found.stop != ExactStop::Met || is_met {
             return Ok(found);
         }
-        let deepest = |place: &Place| place.level as usize >= options.caps.levels;
+        let deepest = |place: &NodeAddress| place.level as usize >= options.caps.levels;
         let mut is_new = false;
         for place in held.failing.into_iter().filter(|place| !deepest(place)) {
             is_new |= demands.add(place);
@@ -170,12 +170,14 @@ pub(super) fn count(
     let functions = Functions::of(&options.goals.attributes, &surfaces).coarser(times);
     let room = Room::of(mesh, options, usize::MAX);
     let demands = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
-    let demands = demands.unwrap_or_default();
+    let Some(demands) = demands else {
+        return Ok(usize::MAX);
+    };
     let plain = options.clone().finish(Finish::OnSurface);
     // As in [`once`], angles that balanced vertices meet late are met with plain ones.
     let fewest = match options.is_balanced() && options.goals.angle.is_some() {
-        true => Some(count(mesh, scheme, &plain, times, observer)?),
-        false => None,
+        true => count(mesh, scheme, &plain, times, observer)?,
+        false => usize::MAX,
     };
     let most = options.budget().0;
     let task = Task {
@@ -197,21 +199,21 @@ pub(super) fn count(
             Goal::Within(limit)
         };
         let most = if engine.is_balanced {
-            fewest.unwrap_or(usize::MAX)
+            fewest
         } else {
             usize::MAX
         };
         let Some(found) = engine.refined(goal, most)? else {
-            return Ok(fewest.unwrap_or(0));
+            return Ok(fewest);
         };
         if engine.control.flat.are_none() {
             return Ok(found.state.triangles);
         }
-        // Which regions cannot be triangulated from their rims nobody knows before.
+        // Only a run shows which regions cannot be triangulated from their rims.
         Ok(engine.assemble(found.emission, gaps)?.mesh.face_count())
     })?;
-    let may_be_fewer = fewest.is_none() && options.is_balanced();
-    if may_be_fewer
+    if options.is_balanced()
+        && options.goals.angle.is_none()
         && may_do_with_fewer(
             Task {
                 options: &plain,
@@ -268,13 +270,13 @@ pub(super) fn count_over_first(
     })
 }
 
-/// What is refined, and what is asked.
+/// The control mesh, the options, and the nodes that are divided in any case.
 #[derive(Clone, Copy)]
 struct Task<'a> {
     mesh: &'a Mesh,
     scheme: &'a dyn Scheme,
     options: &'a ExactOptions,
-    /// What is divided in any case.
+    /// The nodes that are divided in any case.
     demands: &'a Demands,
 }
 
@@ -304,14 +306,14 @@ impl Task<'_> {
         drop(stencils);
         join_copies(&mut positions, &mesh.junctions().vertices);
         let sharpness = Sharpness::of(mesh);
-        let lasting = sharpness.lasting();
+        let infinitely_sharp = sharpness.infinitely_sharp();
         let kept = KeptFaces::of(mesh, &options.kept_edges)?;
         let mut control = Control {
             mesh,
             edges: Edges::of(mesh),
             sharpness: &sharpness,
             large: LargeRings::with_tags_polled(mesh, &sharpness, &rules, &mut |_| watch.poll())?,
-            lasting: &lasting,
+            infinitely_sharp: &infinitely_sharp,
             positions,
             sided,
             rules: &rules,
@@ -360,7 +362,7 @@ fn with_engine<T>(
     task.with_engine(&mut crate::progress::unobserved, run)
 }
 
-/// What the options ask for; `None` where that is nothing but distances and numbers of triangles.
+/// The criteria of the options; `None` where they ask for nothing but distances and numbers of triangles.
 fn criteria(
     mesh: &Mesh,
     options: &ExactOptions,
@@ -386,7 +388,7 @@ fn criteria(
     Ok(Some(Criteria::new(distance, cone, pixels, rounding)?))
 }
 
-/// What stays the same all the way.
+/// The settings of a run.
 #[derive(Clone, Copy)]
 struct Engine<'a> {
     control: &'a Control<'a>,
@@ -396,7 +398,7 @@ struct Engine<'a> {
     is_balanced: bool,
     /// Vertices tell where they came from.
     has_origins: bool,
-    /// What rounding may do to a distance.
+    /// The greatest rounding error of a distance.
     rounding: f64,
 }
 

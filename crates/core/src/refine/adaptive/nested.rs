@@ -6,9 +6,9 @@
 use super::coarser::on_coarser;
 use super::demands::{Demands, Functions, Room};
 use super::leaves::{Covering, Descent, Leaves};
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use super::{ADDED, Task, once, probe};
-use crate::certificate::{Sheet, exceeds};
+use crate::certificate::{ParamPatch, exceeds};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::Mesh;
@@ -22,7 +22,7 @@ use crate::refine::level::Level;
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 
-/// Place-by-place distances below this part of the tolerance need not be known better.
+/// NodeAddress-by-place distances below this part of the tolerance need not be known better.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// The level within `options`' tolerance in which `coarser` is nested; with geomorphs the tolerances hold place by place, the coarser
@@ -103,7 +103,7 @@ pub(in crate::refine) fn nested(
         if !with_geomorph || off.failing.is_empty() || level.exact.stop != ExactStop::Met {
             return Ok(level);
         }
-        let deepest = |place: &Place| place.level as usize >= options.caps.levels;
+        let deepest = |place: &NodeAddress| place.level as usize >= options.caps.levels;
         let mut is_new = false;
         for place in off.failing.into_iter().filter(|place| !deepest(place)) {
             is_new |= demands.add(place);
@@ -146,7 +146,7 @@ fn divide_as(
 
 /// Collects the nodes that leaves are children of.
 struct Parents<'a> {
-    found: Vec<Place>,
+    found: Vec<NodeAddress>,
     is_stopped: &'a IsStopped<'a>,
 }
 
@@ -157,7 +157,7 @@ impl Descent for Parents<'_> {
         [(); 4]
     }
 
-    fn leaf(&mut self, place: Place, (): (), _: &[Covering]) {
+    fn leaf(&mut self, place: NodeAddress, (): (), _: &[Covering]) {
         if let Some(parent) = place.parent()
             && self.found.last() != Some(&parent)
         {
@@ -173,7 +173,7 @@ impl Descent for Parents<'_> {
 /// Where the vertices of a mesh are, and how far it may be from the surface.
 type End<'a> = (&'a [[f64; 3]], f64);
 
-/// Triangles with their vertices in one place and another, beside the surface.
+/// Triangles with their vertices in one place and another, and their parts of the surface.
 struct Apart<'a> {
     surface: &'a LimitSurface<'a>,
     /// After a geomorph, and before.
@@ -185,7 +185,7 @@ struct Off {
     /// The greatest bounds, by end.
     greatest: [f64; 2],
     /// Leaves with triangles that are too far off.
-    failing: Vec<Place>,
+    failing: Vec<NodeAddress>,
 }
 
 impl Apart<'_> {
@@ -253,13 +253,13 @@ impl Looking<'_> {
 }
 
 impl Descent for Looking<'_> {
-    type Node = Sheet;
+    type Node = ParamPatch;
 
-    fn children(&mut self, sheet: Sheet) -> [Sheet; 4] {
+    fn children(&mut self, sheet: ParamPatch) -> [ParamPatch; 4] {
         sheet.children(self.rules)
     }
 
-    fn leaf(&mut self, place: Place, sheet: Sheet, covering: &[Covering]) {
+    fn leaf(&mut self, place: NodeAddress, sheet: ParamPatch, covering: &[Covering]) {
         let [a, b, c, d, e, f] = self.vertices(covering);
         let mut fails = false;
         for (end, &(positions, enough)) in self
@@ -275,7 +275,8 @@ impl Descent for Looking<'_> {
                 let target = greatest.max(NEGLIGIBLE * enough).min(enough);
                 let bound = sheet.off(
                     part,
-                    (part.corners(corners, middles), corners),
+                    part.corners(corners, middles),
+                    corners,
                     target,
                     self.rules,
                 );

@@ -4,11 +4,11 @@
 //! sides have e/2. Let heights over a triangle lie between l ≤ 0 ≤ h while its corners are on the surface. With all three moved by
 //! x they lie between l − x and h − x, so for errors of at most e each corner's x has to be between h − e and l + e. A vertex that is
 //! between these for all triangles around it stays so when some of them are divided: then the ranges shrink. Else a division would
-//! make the triangles beside fail, these those beside them, and so on, one a round. For the same reason it stays where it was put, as
+//! make the adjacent triangles fail, these their adjacent ones, and so on, one a round. For the same reason it stays where it was put, as
 //! long as that is good enough: then triangles that were measured need not be measured again.
 //!
 //! Where a surface bends both ways in the same way, and on boundaries and sharp edges, vertices stay. Triangles that no camera sees have no
-//! say: they may be much coarser than those beside them, which would not stand what these want.
+//! say: they may be much coarser than adjacent ones, which would fail where these pass.
 
 use super::bulges::Bulges;
 use super::control::Control;
@@ -59,7 +59,7 @@ impl Bulges {
         })?;
         // Corners and darts inside a face's reach; and copies, which would part.
         control
-            .lasting
+            .infinitely_sharp
             .tagged_vertices()
             .for_each(|vertex| offsets[vertex.index()] = 0.0);
         let copies = emission.junctions.vertices.iter().flatten();

@@ -15,7 +15,7 @@ use super::emitted::Sources;
 use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::measured::Measured;
-use super::quadtree::Place;
+use super::quadtree::NodeAddress;
 use super::state::State;
 use crate::certificate::TriangleFrame;
 use crate::index::VertexId;
@@ -51,13 +51,13 @@ const MOST_SAMPLED_LEVELS: usize = 6;
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
 
-/// The same where a tolerance is met.
+/// [`NARROW`] where a tolerance is met.
 const MET_NARROW: f64 = 0.9;
 
 /// Upper bounds so many times the lower one are taken again.
 const WIDE: f64 = 1.2;
 
-/// The same where a tolerance is met, and few may be.
+/// [`WIDE`] where a tolerance is met, and few may be.
 const MET_WIDE: f64 = 1.12;
 
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
@@ -83,18 +83,18 @@ const LOOKED_AT: usize = 1 << 14;
 struct Bound {
     value: f64,
     face: u32,
-    leaf: Option<Place>,
+    leaf: Option<NodeAddress>,
 }
 
-/// What was looked at for lower bounds.
+/// The leaves that were looked at for lower bounds.
 struct Probed {
     /// Control faces, and which known leaf of theirs.
-    leaves: HashSet<(u32, Option<Place>)>,
+    leaves: HashSet<(u32, Option<NodeAddress>)>,
     /// A lower bound beyond this part of the upper one is good enough.
     enough: f64,
 }
 
-/// The certified interval. Where a tolerance is met nobody waits for a tighter bound.
+/// The certified interval. It is less tight where a tolerance is met.
 pub(super) fn probe(
     engine: &Engine<'_>,
     state: &State,
@@ -120,7 +120,7 @@ pub(super) fn probe(
         leaves: HashSet::new(),
         enough,
     };
-    // Bounds may be large for lack of room to drift; heights tell the truth about the rest.
+    // Bounds may be large for lack of room for tangential displacement; heights are right elsewhere.
     let highest = state.measured.iter().map(Measured::highest_leaf);
     let highest = greatest(highest, PROBED, watch)?;
     lower(&sources, watch, &mesh, &highest, &mut probed, &mut best)?;
@@ -137,7 +137,7 @@ pub(super) fn probe(
         };
         measure(&sources, watch, faces, &look)
     };
-    // What failed for sure has no bound yet.
+    // Triangles that failed for sure have no bound yet.
     let unbounded: Vec<u32> = bounds
         .iter()
         .filter(|bound| bound.value.is_infinite())
@@ -381,7 +381,7 @@ impl ErrorBounds {
     }
 }
 
-/// What rounding can have done to a distance: positions are convex combinations of convex combinations, one for
+/// The greatest rounding error of a distance: positions are convex combinations of convex combinations, one for
 /// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
 /// each neighbour. Points near an edge of a triangle count as on it ([`TriangleFrame::on_edge`]), on either side.
 pub(super) fn rounding(
@@ -410,7 +410,7 @@ mod tests {
     use crate::progress::{Stage, unobserved};
     use crate::random::Random;
 
-    /// As sorting all of them tells, equal ones by their places.
+    /// The result is that of sorting all of them, equal ones by their places.
     #[test]
     fn the_greatest_are_those_of_the_sorted_list() {
         let mut unobserved = unobserved;

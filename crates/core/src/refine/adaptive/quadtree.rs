@@ -4,7 +4,7 @@
 //! Anything else is the index of four consecutive words, those of the children, which [`crate::node`] numbers.
 
 use crate::mesh::MeshError;
-pub(super) use crate::node::{Along, Beyond, Edges, Place, along_edge, beyond};
+pub(super) use crate::node::{Along, Beyond, Edges, NodeAddress, along_edge, beyond};
 use crate::progress::Cancelled;
 use crate::refine::{RefineError, exact_options};
 
@@ -17,7 +17,7 @@ pub(super) const PROVEN: u32 = 1 << 30;
 /// The depth of leaves below a node.
 const DEPTH: u32 = (1 << 5) - 1;
 
-/// Nodes whose indices have room beside the marks.
+/// Nodes whose indices leave room for the marks.
 pub(super) const MOST_NODES: usize = 1 << 28;
 
 /// Levels at most below a control face: paths take two bits a level, and places along an edge are counted in units of the
@@ -104,7 +104,7 @@ impl Trees {
         }
     }
 
-    /// What refuses `more` words than there are.
+    /// The error for `more` words than fit.
     pub(super) fn too_many(&self, more: usize) -> MeshError {
         MeshError::TooMany {
             what: "nodes",
@@ -126,12 +126,12 @@ impl Trees {
     }
 
     /// Whether there is a node at `place`.
-    pub(super) fn has(&self, place: Place) -> bool {
+    pub(super) fn has(&self, place: NodeAddress) -> bool {
         self.word_at(place).is_some()
     }
 
     /// The word of the node at a place, if there is one.
-    pub(super) fn word_at(&self, place: Place) -> Option<u32> {
+    pub(super) fn word_at(&self, place: NodeAddress) -> Option<u32> {
         let mut at = place.face as usize;
         for level in 0..place.level {
             let word = self.words[at];
@@ -146,9 +146,13 @@ impl Trees {
         Some(self.words[at])
     }
 
-    /// Splits whatever must be for the node at `place` to exist; `fresh` is told the places that were split. `false` if there
+    /// Splits whatever must be for the node at `place` to exist; `fresh` is called with the places that were split. `false` if there
     /// would be too many nodes.
-    pub(super) fn ensure(&mut self, place: Place, mut fresh: impl FnMut(Place)) -> bool {
+    pub(super) fn ensure(
+        &mut self,
+        place: NodeAddress,
+        mut fresh: impl FnMut(NodeAddress),
+    ) -> bool {
         let mut at = place.face as usize;
         for level in 0..place.level {
             let word = self.words[at];
@@ -160,7 +164,7 @@ impl Trees {
                     return true;
                 }
                 if !is_split(word) {
-                    fresh(Place {
+                    fresh(NodeAddress {
                         level,
                         path: place.path >> (2 * (place.level - level)),
                         ..place
@@ -180,7 +184,7 @@ impl Trees {
     }
 
     /// Splits the leaf at `place`. `false` if there would be too many nodes.
-    pub(super) fn split(&mut self, place: Place, fresh: impl FnMut(Place)) -> bool {
+    pub(super) fn split(&mut self, place: NodeAddress, fresh: impl FnMut(NodeAddress)) -> bool {
         self.ensure(place.child(0), fresh)
     }
 
@@ -227,7 +231,7 @@ impl Piece {
         self.irregular_node(children)
     }
 
-    /// The same where the surface is not regular: such nodes are kept one by one, so that what is kept as a whole is regular.
+    /// Adds a node where the surface is not regular: such nodes are kept one by one, so that all even blocks are regular.
     pub(super) fn irregular_node(&mut self, children: [u32; 4]) -> u32 {
         let at = self.words.len() as u32;
         self.words.extend(children);

@@ -1,4 +1,4 @@
-//! What is handed out: the emitted mesh with all that is known of it.
+//! The result: the emitted mesh with its error, origins and tags.
 
 use super::backs::shows_back;
 use super::emit::Emission;
@@ -17,7 +17,7 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop, Statistics};
 use crate::vector::vector;
 
-/// What rounding may do to an angle against its limit, relative: normals are taken anew from what is emitted.
+/// The relative rounding error of an angle against its limit: normals are taken anew from the emitted triangles.
 const CONE_ROUNDING: f64 = 1e-6;
 
 impl Verified {
@@ -134,11 +134,9 @@ impl Engine<'_> {
             sides,
             junctions,
         };
-        let corners = control.mesh.vertex_count();
-        let (whole, unfolded) =
-            control
-                .flat
-                .merge(control, whole, (&starts, &sharp), corners, gaps, watch)?;
+        let (whole, unfolded) = control
+            .flat
+            .merge(control, whole, &starts, &sharp, gaps, watch)?;
         let Assembled {
             positions,
             normals,
@@ -191,11 +189,11 @@ pub(super) fn open_cones(
         let normals = [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face as u32), corner));
         let normals = normals.map(|corner| vector(exact.corner_normal(corner)));
         let frame = TriangleFrame::new(corners);
-        let tilt = normals
+        let normal_deviation = normals
             .iter()
             .map(|normal| normal.distance(frame.normal()))
             .fold(0.0, f64::max);
-        let region = Region::around(corners, frame.normal()).turned(2.0 * tilt);
+        let region = Region::around(corners, frame.normal()).turned(2.0 * normal_deviation);
         // By equation (11) it is the triangle that counts.
         let backs = criteria.backs(&region, |_, viewpoint, _| {
             shows_back(&corners, viewpoint).then_some(0.0)

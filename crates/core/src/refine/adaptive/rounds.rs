@@ -13,7 +13,7 @@ use super::flat::Net;
 use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::neighbours::sharp_edges;
-use super::quadtree::{self, Place};
+use super::quadtree::{self, NodeAddress};
 use super::seen::Allowance;
 use super::state::State;
 use super::{Engine, sides};
@@ -35,7 +35,7 @@ const FIRST: f64 = 0.25;
 /// Around vertices of so many edges at most each division leaves a quarter of the distance, unless triangles are balanced.
 const REGULAR: u32 = 6;
 
-/// What fails by more times than this says nothing of those below it.
+/// A leaf that fails by more times than this does not show how its children fail.
 const MOST_TIMES: f64 = 64.0;
 
 /// A state whose triangles were all verified as they were emitted.
@@ -45,7 +45,7 @@ pub(super) struct Verified {
 }
 
 /// A leaf with a triangle that fails, and its value.
-type Failing = (Place, f64);
+type Failing = (NodeAddress, f64);
 
 impl Engine<'_> {
     /// Divides until all triangles are within a goal; `None` if there are more than `most`.
@@ -123,10 +123,10 @@ impl Engine<'_> {
             has_fixed_diagonals: state.has_fixed_diagonals,
         };
         let covers = watch.long_shares(faces.len(), |block, is_stopped| {
-            let mut knots = Vec::new();
+            let mut edge_vertices = Vec::new();
             let covers = faces[block]
                 .iter()
-                .map(|&face| covering.cover(face, &mut knots, is_stopped));
+                .map(|&face| covering.cover(face, &mut edge_vertices, is_stopped));
             covers.collect::<Vec<Cover>>()
         })?;
         let has_other_chain =
@@ -248,7 +248,8 @@ impl Engine<'_> {
                 &sources,
                 watch,
                 &marked(is_changed),
-                (allowed, self.max_levels),
+                allowed,
+                self.max_levels,
             )?;
             let (offsets, faces) = bulges.offsets(control, emission, allowed, watch)?;
             emission.shift(offsets, &faces, watch)?;
@@ -276,7 +277,7 @@ impl Engine<'_> {
             let is_all = bulges.keep(face, &mut found, emission) || is_other;
             state.measured[face as usize].replace(found, is_all);
         })?;
-        // What cannot be balanced was not measured.
+        // Leaves that cannot be balanced were not measured.
         let mut failing = if is_alone {
             bulges.failing()
         } else {
@@ -373,7 +374,7 @@ impl Engine<'_> {
     fn split_below(
         &self,
         state: &mut State,
-        place: Place,
+        place: NodeAddress,
         levels: u32,
         dirty: &mut Dirty,
     ) -> Result<bool, RefineError> {
@@ -391,7 +392,12 @@ impl Engine<'_> {
     }
 
     /// Splits a leaf; adds that to what is dirty.
-    fn split(&self, state: &mut State, place: Place, dirty: &mut Dirty) -> Result<(), RefineError> {
+    fn split(
+        &self,
+        state: &mut State,
+        place: NodeAddress,
+        dirty: &mut Dirty,
+    ) -> Result<(), RefineError> {
         let fits = state
             .trees
             .split(place, |place| dirty.add(&self.control.edges, place));
@@ -405,7 +411,7 @@ impl Engine<'_> {
     fn split_towards_corner(
         &self,
         state: &mut State,
-        place: Place,
+        place: NodeAddress,
         times: f64,
         dirty: &mut Dirty,
     ) -> Result<bool, RefineError> {
@@ -450,21 +456,22 @@ impl Engine<'_> {
 /// Whether the triangles of a control face and those adjacent to it keep what its proven leaves assume.
 fn is_kept(control: &Control<'_>, state: &State, face: u32) -> bool {
     let assumed = &state.proven[face as usize];
-    // What assumes nothing needs nothing.
+    // A proof that assumes nothing holds.
     if assumed.allowance == Allowance::NOTHING {
         return true;
     }
-    let own = [face].into_iter().chain(control.beside(face));
+    let own = [face].into_iter().chain(control.adjacent(face));
     own.into_iter().all(|face| {
         let (proven, measured) = (
             &state.proven[face as usize].extent,
             &state.measured[face as usize],
         );
-        let (tilt, slope) = (
-            proven.tilt.max(measured.tilt),
+        let (normal_deviation, slope) = (
+            proven.normal_deviation.max(measured.normal_deviation),
             proven.slope.min(measured.slope),
         );
-        tilt <= assumed.allowance.tilt && assumed.extent.drift_slope <= slope
+        normal_deviation <= assumed.allowance.normal_deviation
+            && assumed.extent.displacement_slope <= slope
     })
 }
 
@@ -472,13 +479,13 @@ fn is_kept(control: &Control<'_>, state: &State, face: u32) -> bool {
 #[derive(Debug, PartialEq, Eq)]
 struct TowardsCorner {
     /// The next leaf at the corner, which of its parent's children that is, and whether the leaf that was split is adjacent to it.
-    corner: Place,
+    corner: NodeAddress,
     child: usize,
     is_adjacent: bool,
 }
 
 /// The way on from a leaf that has been split at a corner of its control face, or adjacent to the leaf there.
-fn towards_corner(place: Place) -> Option<TowardsCorner> {
+fn towards_corner(place: NodeAddress) -> Option<TowardsCorner> {
     let parent = place.parent()?;
     let (first, last) = (place.digit(0), place.digit(place.level - 1));
     let is_at_corner = first < 3 && (0..parent.level).all(|level| parent.digit(level) == first);
@@ -499,7 +506,7 @@ fn towards_corner(place: Place) -> Option<TowardsCorner> {
 }
 
 /// Whether there is a node at a place that has no children.
-fn is_leaf(state: &State, place: Place) -> bool {
+fn is_leaf(state: &State, place: NodeAddress) -> bool {
     state
         .trees
         .word_at(place)

@@ -1,4 +1,4 @@
-//! A triangle as its neighbours see it: how far it is tilted, how acute it is, and what leaves may count on of their neighbours.
+//! A triangle as its neighbours see it: its normal deviation, how acute it is, and what leaves may count on of their neighbours.
 
 use crate::certificate::TriangleFrame;
 use crate::patch::LimitPoint;
@@ -10,25 +10,25 @@ pub(super) const HALVINGS: usize = 2;
 /// Divisions into four of the heights over a plane, to the same end.
 pub(super) const DIVISIONS: u32 = 2;
 
-/// Drifts over an edge are counted on up to this part of what a triangle's own angles there allow, or 1: those of the triangle beyond
+/// Tangential displacements over an edge are counted on up to this part of what a triangle's own angles there allow, or 1: those of the triangle beyond
 /// it may be more acute, closing triangles above all. No more than √2 − 1, so that half of what an angle α leaves of π allows it, too: its
 /// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
-pub(super) const DRIFT_SHARE: f64 = 0.41;
+pub(super) const DISPLACEMENT_SHARE: f64 = 0.41;
 
 /// Unit vectors are off by no more than this.
 const ROUNDING: f64 = 1e-12;
 
-/// The chord of all tilts that are possible.
-const ANY_TILT: f64 = 2.0;
+/// The greatest possible chord of a normal deviation.
+const ANY_DEVIATION: f64 = 2.0;
 
-/// Slopes that nothing exceeds whose drift is known: as if neighbours were as wide as can be.
+/// Slopes that no known tangential displacement exceeds: as if neighbours were as wide as can be.
 pub(super) const ANY_SLOPES: [f64; 3] = [9.0; 3];
 
-/// What leaves count on of the triangles in their control face and adjacent to it.
+/// Limits that leaves count on for the triangles in their control face and adjacent to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Allowance {
-    /// They are tilted by chords of at most this.
-    pub(super) tilt: f64,
+    /// The chords of their normal deviations are at most this.
+    pub(super) normal_deviation: f64,
     /// Tangents of their angles are at least this.
     pub(super) slope: f64,
 }
@@ -36,12 +36,12 @@ pub(super) struct Allowance {
 impl Allowance {
     /// Nothing is expected.
     pub(super) const NOTHING: Self = Self {
-        tilt: 2.0 * ANY_TILT,
+        normal_deviation: 2.0 * ANY_DEVIATION,
         slope: 0.0,
     };
 }
 
-/// What becomes of a node.
+/// The outcome for a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Fate {
     /// It stays whole, and is within the limit if the allowance is kept.
@@ -52,31 +52,31 @@ pub(super) enum Fate {
     Fails,
 }
 
-/// What triangles have at most.
+/// The extreme values of some triangles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
-    /// The greatest tilt.
-    pub(super) tilt: f64,
+    /// The greatest normal deviation.
+    pub(super) normal_deviation: f64,
     /// The least tangent of an angle.
     pub(super) slope: f64,
-    /// The greatest slope of a drift that bounds count on.
-    pub(super) drift_slope: f64,
+    /// The greatest slope of a tangential displacement that bounds count on.
+    pub(super) displacement_slope: f64,
     /// The greatest bound of a distance.
     pub(super) bound: f64,
 }
 
 impl Extent {
     pub(super) const NONE: Self = Self {
-        tilt: 0.0,
+        normal_deviation: 0.0,
         slope: f64::INFINITY,
-        drift_slope: 0.0,
+        displacement_slope: 0.0,
         bound: 0.0,
     };
 
     pub(super) fn add(&mut self, other: &Self) {
-        self.tilt = self.tilt.larger(other.tilt);
+        self.normal_deviation = self.normal_deviation.larger(other.normal_deviation);
         self.slope = self.slope.smaller(other.slope);
-        self.drift_slope = self.drift_slope.larger(other.drift_slope);
+        self.displacement_slope = self.displacement_slope.larger(other.displacement_slope);
         self.bound = self.bound.larger(other.bound);
     }
 }
@@ -84,7 +84,7 @@ impl Extent {
 /// A triangle as its neighbours see it.
 pub(super) struct Seen {
     pub(super) frame: TriangleFrame,
-    pub(super) tilt: f64,
+    pub(super) normal_deviation: f64,
 }
 
 impl Seen {
@@ -97,12 +97,15 @@ impl Seen {
             squared = squared.max(corner.normal.distance_squared(frame.normal()));
             count += 1;
         }
-        let tilt = if count < 2 || frame.is_flat() {
-            ANY_TILT
+        let normal_deviation = if count < 2 || frame.is_flat() {
+            ANY_DEVIATION
         } else {
             squared.sqrt() + ROUNDING
         };
-        Self { frame, tilt }
+        Self {
+            frame,
+            normal_deviation,
+        }
     }
 
     /// How high the highest of some points stands over the triangle.
@@ -113,7 +116,7 @@ impl Seen {
             .fold(0.0, f64::max)
     }
 
-    /// What its neighbours may count on.
+    /// The values on which its neighbours may count.
     pub(super) fn extent(&self) -> Extent {
         let slope = if self.frame.is_flat() {
             0.0
@@ -121,7 +124,7 @@ impl Seen {
             self.frame.least_slope()
         };
         Extent {
-            tilt: self.tilt,
+            normal_deviation: self.normal_deviation,
             slope,
             ..Extent::NONE
         }
@@ -130,6 +133,6 @@ impl Seen {
     /// By edge, the slopes that the triangle's own angles allow.
     #[inline]
     pub(super) fn own_slopes(&self) -> [f64; 3] {
-        [0, 1, 2].map(|edge| DRIFT_SHARE * self.frame.slope_at(edge).min(1.0))
+        [0, 1, 2].map(|edge| DISPLACEMENT_SHARE * self.frame.slope_at(edge).min(1.0))
     }
 }

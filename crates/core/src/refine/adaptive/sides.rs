@@ -1,4 +1,4 @@
-//! What of the emitted mesh lies along sharp and cut edges: normals by side, tags, copies.
+//! The emitted mesh along sharp and cut edges: normals by side, tags, copies.
 
 use super::chains::Chains;
 use super::control::Control;
@@ -16,7 +16,7 @@ pub(super) fn sides(
     emission: &Emission,
 ) -> Result<Vec<(u32, [f64; 3])>, Cancelled> {
     let mut sides = Vec::new();
-    if control.lasting.is_empty() {
+    if control.infinitely_sharp.is_empty() {
         return Ok(sides);
     }
     let mut around = |from: u32, to: u32, normal: [f64; 3]| {
@@ -43,7 +43,7 @@ pub(super) fn sides(
     let topology = control.mesh.topology();
     let mut is_tagged = vec![false; control.mesh.vertex_count()];
     control
-        .lasting
+        .infinitely_sharp
         .tagged_vertices()
         .for_each(|vertex| is_tagged[vertex.index()] = true);
     watch.each(
@@ -110,7 +110,10 @@ pub(super) fn junctions(
     let edges = &control.edges;
     watch.each(0..edges.group_count(), |group| {
         let members = edges.members(group);
-        let places = members.first().map_or(0, |&(h, _)| chains.own(h).1.len());
+        let Some(&(first, _)) = members.first() else {
+            return;
+        };
+        let places = chains.own(first).1.len();
         let at = |turned: bool, count: usize, place: usize| {
             if turned { count - 1 - place } else { place }
         };

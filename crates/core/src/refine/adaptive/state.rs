@@ -11,7 +11,7 @@ use super::emit::Emission;
 use super::emitted::Sources;
 use super::judge::Goal;
 use super::measured::Measured;
-use super::quadtree::{Piece, Place, Trees};
+use super::quadtree::{NodeAddress, Piece, Trees};
 use super::seen::{Allowance, Extent};
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
@@ -34,13 +34,13 @@ pub(super) struct State {
     pub(super) has_failed: bool,
     /// Control faces whose triangles may have changed since the last emission.
     pub(super) is_changed: Vec<bool>,
-    /// What was found of the triangles of each control face.
+    /// The measured bounds, by control face.
     pub(super) measured: Vec<Measured>,
     pub(super) bulges: Bulges,
 }
 
 impl State {
-    /// That of a division, which nobody has covered yet.
+    /// The state of a division that is not covered yet.
     pub(super) fn of(goal: Goal, division: Division) -> Self {
         let Division { trees, proven } = division;
         let faces = proven.len();
@@ -83,7 +83,7 @@ impl State {
         Ok(state)
     }
 
-    /// The same trees, of whose leaves nothing is known.
+    /// Keeps the trees, and forgets what is known of their leaves.
     pub(super) fn forget(&mut self) {
         self.is_trusted.fill(false);
         self.is_changed.fill(true);
@@ -103,7 +103,7 @@ impl State {
     /// Moves the leaves that fail to a list.
     pub(super) fn take_failing(
         &mut self,
-        failing: &mut Vec<(Place, f64)>,
+        failing: &mut Vec<(NodeAddress, f64)>,
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         watch.each(&mut self.measured, |face| failing.append(&mut face.failing))

@@ -7,7 +7,9 @@ use core::cell::OnceCell;
 use crate::certificate::{NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::RefinedExtraordinary;
-use crate::patch::{Limit, LimitPoint, Patch, Points, Quartic, Rules, Spot, child_corners};
+use crate::patch::{
+    Limit, LimitPoint, ParamTriangle, Patch, Points, Quartic, Rules, child_corners,
+};
 use crate::vector::DVec3;
 
 /// Points that are evaluated together.
@@ -15,12 +17,12 @@ const LANES: usize = 4;
 
 /// A regular piece as a polynomial.
 #[derive(Clone, Debug)]
-pub(super) struct Ground {
+pub(super) struct QuarticPiece {
     pub(super) piece: Quartic,
     jet: OnceCell<QuarticJet>,
 }
 
-impl Ground {
+impl QuarticPiece {
     pub(super) fn of(net: &BezierTriangle) -> Self {
         Self {
             piece: Quartic::of(net, 0),
@@ -28,7 +30,7 @@ impl Ground {
         }
     }
 
-    /// The same where parts are bounded for sure.
+    /// A piece with its jet, where parts are bounded for sure.
     pub(super) fn with_jet(net: &BezierTriangle) -> Self {
         let piece = Quartic::of(net, 0);
         Self {
@@ -37,17 +39,17 @@ impl Ground {
         }
     }
 
-    /// What bounds parts of it.
+    /// The jet that bounds parts of it.
     #[inline]
     pub(super) fn jet(&self) -> &QuarticJet {
         self.jet.get_or_init(|| QuarticJet::of(&self.piece))
     }
 
     /// The net of a part of a node.
-    pub(super) fn net(&self, spot: Spot, part: SubTriangle) -> NetPart {
+    pub(super) fn net(&self, domain: ParamTriangle, part: SubTriangle) -> NetPart {
         let (at, part) = match part {
-            SubTriangle::Child(child) => (spot.child(child), SubTriangle::Whole),
-            _ => (spot, part),
+            SubTriangle::Child(child) => (domain.child(child), SubTriangle::Whole),
+            _ => (domain, part),
         };
         NetPart::own(&self.piece.net([at.u, at.v], at.size), part)
     }
@@ -79,7 +81,7 @@ impl Ground {
 /// A piece of the limit surface, and what was derived from it so far: walks ask for some of it several times, and for much of it
 /// never.
 pub(super) enum SurfacePiece {
-    Regular(Points, OnceCell<Box<Ground>>),
+    Regular(Points, OnceCell<Box<QuarticPiece>>),
     General(GeneralPiece),
 }
 
@@ -87,7 +89,7 @@ pub(super) enum SurfacePiece {
 #[derive(Clone, Copy)]
 pub(super) struct RegularPiece<'a> {
     points: PointsOf<'a>,
-    ground: &'a OnceCell<Box<Ground>>,
+    quartic: &'a OnceCell<Box<QuarticPiece>>,
 }
 
 /// The points of a regular piece: its own, or those of a part of what was refined.
@@ -115,11 +117,11 @@ enum Refinement {
     },
 }
 
-/// Three regular pieces beside one at an irregular vertex. They stay part of what was refined, since of many of them nobody asks for anything.
+/// Three regular pieces and one at an irregular vertex. They stay part of the refined piece, since many of them are never asked for anything.
 struct AroundVertex {
     refined: RefinedExtraordinary,
     middles: OnceCell<[LimitPoint; 3]>,
-    grounds: [OnceCell<Box<Ground>>; 4],
+    quartics: [OnceCell<Box<QuarticPiece>>; 4],
     at_vertex: OnceCell<Box<GeneralPiece>>,
 }
 
@@ -134,12 +136,12 @@ impl SurfacePiece {
     /// All of it.
     pub(super) fn surface<'a>(&'a self, rules: &'a Rules<'a>) -> Surface<'a> {
         match self {
-            Self::Regular(points, ground) => Surface::Regular(
+            Self::Regular(points, quartic) => Surface::Regular(
                 RegularPiece {
                     points: PointsOf::Own(points),
-                    ground,
+                    quartic,
                 },
-                Spot::WHOLE,
+                ParamTriangle::WHOLE,
             ),
             Self::General(piece) => Surface::General(piece, rules),
         }
@@ -147,12 +149,13 @@ impl SurfacePiece {
 }
 
 impl<'a> RegularPiece<'a> {
-    pub(super) fn ground(self) -> &'a Ground {
+    pub(super) fn quartic(self) -> &'a QuarticPiece {
         let net = || match self.points {
             PointsOf::Own(points) => BezierTriangle::of(points),
             PointsOf::Part(refined, part) => BezierTriangle::of(&refined.regular_part(part)),
         };
-        self.ground.get_or_init(|| Box::new(Ground::of(&net())))
+        self.quartic
+            .get_or_init(|| Box::new(QuarticPiece::of(&net())))
     }
 }
 
@@ -171,7 +174,7 @@ impl GeneralPiece {
                 return Box::new(Refinement::Extraordinary(AroundVertex {
                     refined: patch.refined(rules.beta(patch.ring.len())),
                     middles: OnceCell::new(),
-                    grounds: Default::default(),
+                    quartics: Default::default(),
                     at_vertex: OnceCell::new(),
                 }));
             }
@@ -205,9 +208,9 @@ impl GeneralPiece {
             return Surface::Regular(
                 RegularPiece {
                     points,
-                    ground: &around.grounds[child],
+                    quartic: &around.quartics[child],
                 },
-                Spot::WHOLE,
+                ParamTriangle::WHOLE,
             );
         }
         let at_vertex = around.at_vertex.get_or_init(|| {
@@ -238,7 +241,7 @@ pub(super) enum Surface<'a> {
     /// Nobody asks.
     Unknown,
     /// Part of a regular piece.
-    Regular(RegularPiece<'a>, Spot),
+    Regular(RegularPiece<'a>, ParamTriangle),
     /// Any other piece.
     General(&'a GeneralPiece, &'a Rules<'a>),
 }
@@ -248,7 +251,7 @@ impl<'a> Surface<'a> {
     pub(super) fn child(self, child: usize) -> Self {
         match self {
             Surface::Unknown => Surface::Unknown,
-            Surface::Regular(piece, spot) => Surface::Regular(piece, spot.child(child)),
+            Surface::Regular(piece, domain) => Surface::Regular(piece, domain.child(child)),
             Surface::General(piece, rules) => piece.child(child, rules),
         }
     }
@@ -262,7 +265,7 @@ impl<'a> Surface<'a> {
                     normal: DVec3::ZERO,
                 }; 3]
             }
-            Surface::Regular(piece, spot) => piece.ground().at(spot.corners()),
+            Surface::Regular(piece, domain) => piece.quartic().at(domain.corners()),
             Surface::General(piece, _) => piece.corners,
         }
     }
@@ -276,9 +279,9 @@ impl<'a> Surface<'a> {
                     normal: DVec3::ZERO,
                 }; 3]
             }
-            Surface::Regular(piece, spot) => piece
-                .ground()
-                .at([0, 1, 2].map(|edge| spot.along(edge, 0.5))),
+            Surface::Regular(piece, domain) => piece
+                .quartic()
+                .at([0, 1, 2].map(|edge| domain.along(edge, 0.5))),
             Surface::General(piece, rules) => *piece.middles(rules),
         }
     }
@@ -309,18 +312,18 @@ impl<'a> Surface<'a> {
         }
         match self {
             Surface::Unknown => {}
-            Surface::Regular(piece, spot) => {
-                let ground = piece.ground();
-                let place = |at: usize| spot.along(edge, (places[at] - from) / length);
+            Surface::Regular(piece, domain) => {
+                let quartic = piece.quartic();
+                let place = |at: usize| domain.along(edge, (places[at] - from) / length);
                 let mut at = first;
                 while at < last {
                     let count = (last - at).min(LANES);
                     if count == 1 {
-                        let [point] = ground.at([place(at)]);
+                        let [point] = quartic.at([place(at)]);
                         found(at, point);
                     } else {
                         let points: [LimitPoint; LANES] =
-                            ground.at(from_fn(|l| place((at + l).min(last - 1))));
+                            quartic.at(from_fn(|l| place((at + l).min(last - 1))));
                         (at..last)
                             .zip(points)
                             .for_each(|(at, point)| found(at, point));

@@ -5,7 +5,7 @@
 
 use super::backs::{Behind, looks_away};
 use super::seen::{ANY_SLOPES, DIVISIONS, Fate, HALVINGS, Seen};
-use super::surface::Ground;
+use super::surface::QuarticPiece;
 use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
 use crate::criterion::{Apart, Backs, Criteria, Region};
 use crate::patch::{LimitPoint, Rules};
@@ -33,7 +33,7 @@ impl<'a> Trial<'a> {
     ) -> Self {
         let normal = seen.frame.normal();
         let triangle = corners.map(|corner| corner.position);
-        let region = Region::around(triangle, normal).turned(2.0 * seen.tilt);
+        let region = Region::around(triangle, normal).turned(2.0 * seen.normal_deviation);
         let backs = looks_away(criteria, &region, &[triangle], 0.0, |viewer, rest| {
             behind.is_back(corners, viewer, rest)
         });
@@ -49,7 +49,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The same for a node so many levels below its control face: cones are given up at last.
+    /// The trial of a node so many levels below its control face: cones are given up at last.
     pub(super) fn at_level(self, level: u32) -> Self {
         let is_given_up = level as usize >= self.criteria.deepest_cone();
         Self {
@@ -87,7 +87,7 @@ impl<'a> Trial<'a> {
 
     pub(super) fn regular(
         &self,
-        ground: &Ground,
+        quartic: &QuarticPiece,
         net: impl Fn() -> NetPart,
         cell: &Cell,
         open: [bool; 3],
@@ -96,17 +96,15 @@ impl<'a> Trial<'a> {
         if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
             return self.fate(true);
         }
-        let heights = ground.jet().heights(cell, self.seen.frame.normal());
+        let heights = quartic.jet().heights(cell, self.seen.frame.normal());
         let (low, high) = heights.range();
         if self.is_lost(low) {
             return Fate::Fails;
         }
-        let beside = ground.jet().beside(cell, &self.seen.frame, open);
-        let is_within = self.is_within(&beside.deviation(high))
-            || match self.is_within(&beside.deviation(low)) {
-                true => {
-                    self.is_within(&beside.deviation(heights.refined(DIVISIONS, 0.0).min(high)))
-                }
+        let edges = quartic.jet().edge_bounds(cell, &self.seen.frame, open);
+        let is_within = self.is_within(&edges.deviation(high))
+            || match self.is_within(&edges.deviation(low)) {
+                true => self.is_within(&edges.deviation(heights.refined(DIVISIONS, 0.0).min(high))),
                 false => {
                     self.is_within(&net().deviation(&self.seen.frame, rules, self.effort(open)))
                 }
@@ -141,7 +139,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// What is done for a bound.
+    /// The effort for a bound.
     fn effort(&self, open: [bool; 3]) -> Effort {
         Effort {
             target: self.limit * self.criteria.allowed_length(&self.region, &self.backs),

@@ -1,26 +1,28 @@
 //! A walk over the leaves of a control face, each with what its neighbours put on its edges.
 //!
-//! Along every edge of a node runs a chain of knots: its ends and the vertices that the nodes on either side have put
+//! Along every edge of a node runs a chain of edge vertices: its ends and the vertices that the nodes on either side have put
 //! between them. The chains of the control face's edges are given; those inside are the union of both sides' and are
-//! made on the way down, so vertices are numbered in the order of the walk. Each stretch between two knots also keeps the
+//! made on the way down, so vertices are numbered in the order of the walk. Each segment between two edge vertices also keeps the
 //! half-edge that was met there first, so that half-edges find their twins.
 
-use super::quadtree::{FULL, LEAF, Place, Trees, along_edge, even_depth, is_proven, is_split};
+use super::quadtree::{
+    FULL, LEAF, NodeAddress, Trees, along_edge, even_depth, is_proven, is_split,
+};
 use super::surface::Surface;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 
 /// A vertex on a chain, and the half-edge that was met first between it and the next one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Knot {
-    /// Place along the chain, from 0 to [`FULL`].
+pub(super) struct EdgeVertex {
+    /// NodeAddress along the chain, from 0 to [`FULL`].
     pub(super) at: u32,
     pub(super) vertex: u32,
     pub(super) half_edge: u32,
 }
 
-impl Knot {
+impl EdgeVertex {
     pub(super) fn new(at: u32, vertex: u32) -> Self {
         Self {
             at,
@@ -30,7 +32,7 @@ impl Knot {
     }
 }
 
-/// A stretch of a chain as an edge of a node: the numbers of its first and last knot, and whether the edge runs against
+/// A segment of a chain as an edge of a node: the numbers of its first and last edge vertex, and whether the edge runs against
 /// the chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
@@ -40,15 +42,15 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// Stretches between knots.
+    /// Segments between edge vertices.
     #[inline]
     pub(super) fn segments(&self) -> usize {
         self.last - self.first
     }
 
-    /// Number of the `i`-th knot from the edge's start.
+    /// Number of the `i`-th edge vertex from the edge's start.
     #[inline]
-    pub(super) fn knot(&self, i: usize) -> usize {
+    pub(super) fn edge_vertex(&self, i: usize) -> usize {
         if self.reversed {
             self.last - i
         } else {
@@ -56,9 +58,9 @@ impl Side {
         }
     }
 
-    /// Number of the knot that keeps the `i`-th stretch from the edge's start.
+    /// Number of the edge vertex that keeps the `i`-th segment from the edge's start.
     #[inline]
-    pub(super) fn stretch(&self, i: usize) -> usize {
+    pub(super) fn segment(&self, i: usize) -> usize {
         if self.reversed {
             self.last - 1 - i
         } else {
@@ -66,7 +68,7 @@ impl Side {
         }
     }
 
-    /// Both halves, given the number of the knot in the middle.
+    /// Both halves, given the number of the edge vertex in the middle.
     #[inline]
     fn halves(&self, middle: usize) -> [Self; 2] {
         let (lower, upper) = (
@@ -86,33 +88,42 @@ impl Side {
         }
     }
 
-    /// The number of the knot in the middle of a side that is split.
+    /// The number of the edge vertex in the middle of a side that is split.
     #[inline]
-    pub(super) fn middle(&self, knots: &[Knot]) -> usize {
+    pub(super) fn middle(&self, edge_vertices: &[EdgeVertex]) -> usize {
         if self.last - self.first == 2 {
             return self.first + 1;
         }
-        let at = knots[self.first].at + (knots[self.last].at - knots[self.first].at) / 2;
-        self.first + knots[self.first..self.last].partition_point(|knot| knot.at < at)
+        let at = edge_vertices[self.first].at
+            + (edge_vertices[self.last].at - edge_vertices[self.first].at) / 2;
+        self.first
+            + edge_vertices[self.first..self.last]
+                .partition_point(|edge_vertex| edge_vertex.at < at)
     }
 }
 
-/// What is done on the way.
+/// The visitor of a walk.
 pub(super) trait Visitor {
-    /// A chain inside the face was made; `knots` runs from its first to its last, `edge` is the edge of the middle child
+    /// A chain inside the face was made; `edge vertices` runs from its first to its last, `edge` is the edge of the middle child
     /// that it runs against, whose place in the face and surface are given.
-    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>);
+    fn chain(
+        &mut self,
+        edge_vertices: &[EdgeVertex],
+        edge: usize,
+        domain: ParamTriangle,
+        middle: Surface<'_>,
+    );
 
     /// A node whose leaves lie `depth` levels below it. `interior` is the first of the numbers kept for the vertices inside, in
     /// rows from edge 0 on. Surfaces that are not regular have depth 0.
-    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]);
+    fn leaves(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]);
 }
 
 /// A node whose leaves are equally deep.
 pub(super) struct Node<'a> {
-    pub(super) place: Place,
+    pub(super) place: NodeAddress,
     /// The place in the control face's domain.
-    pub(super) spot: Spot,
+    pub(super) domain: ParamTriangle,
     /// Levels from the node down to its leaves.
     pub(super) depth: u32,
     /// Whether its leaves are proven as long as none of their edges is split.
@@ -151,7 +162,7 @@ impl Node<'_> {
 /// A walk and what it keeps.
 pub(super) struct Walk<'a> {
     pub(super) trees: &'a Trees,
-    pub(super) knots: Vec<Knot>,
+    pub(super) edge_vertices: Vec<EdgeVertex>,
     /// The next vertex's number.
     pub(super) next: u32,
     is_stopped: &'a IsStopped<'a>,
@@ -165,13 +176,13 @@ const ASKED: u32 = 32;
 impl<'a> Walk<'a> {
     pub(super) fn new(
         trees: &'a Trees,
-        knots: Vec<Knot>,
+        edge_vertices: Vec<EdgeVertex>,
         next: u32,
         is_stopped: &'a IsStopped<'a>,
     ) -> Self {
         Self {
             trees,
-            knots,
+            edge_vertices,
             next,
             is_stopped,
             until_asked: ASKED,
@@ -188,11 +199,23 @@ impl<'a> Walk<'a> {
         self.until_asked == 0
     }
 
-    /// Walks over a node's leaves. What is left out once nobody wants the result any more is of no use to anybody.
-    pub(super) fn node<V: Visitor>(
+    /// Walks over a control face's leaves. A walk that is stopped leaves some out.
+    pub(super) fn face<V: Visitor>(
+        &mut self,
+        face: u32,
+        sides: [Side; 3],
+        surface: Surface<'_>,
+        visitor: &mut V,
+    ) {
+        let (word, place) = (self.trees.root(face), NodeAddress::root(face));
+        self.node(word, place, ParamTriangle::WHOLE, sides, surface, visitor);
+    }
+
+    fn node<V: Visitor>(
         &mut self,
         word: u32,
-        (place, spot): (Place, Spot),
+        place: NodeAddress,
+        domain: ParamTriangle,
         sides: [Side; 3],
         surface: Surface<'_>,
         visitor: &mut V,
@@ -206,38 +229,38 @@ impl<'a> Walk<'a> {
             self.next += if n > 2 { (n - 1) * (n - 2) / 2 } else { 0 };
             let node = Node {
                 place,
-                spot,
+                domain,
                 depth,
                 is_proven: is_proven(word),
                 sides,
                 interior,
                 surface,
             };
-            visitor.leaves(&node, &mut self.knots);
+            visitor.leaves(&node, &mut self.edge_vertices);
             return;
         }
         let children = [0, 1, 2, 3].map(|child| self.trees.child(word, child));
-        let middles = sides.map(|side| side.middle(&self.knots));
-        let floor = self.knots.len();
+        let middles = sides.map(|side| side.middle(&self.edge_vertices));
+        let floor = self.edge_vertices.len();
         // Chain e runs from the middle of edge e + 2 to that of edge e + 1.
         let chains = [0, 1, 2].map(|edge| {
-            let [from, to] = [2, 1].map(|i| self.knots[middles[(edge + i) % 3]].vertex);
-            let first = self.knots.len();
-            self.knots.push(Knot::new(0, from));
+            let [from, to] = [2, 1].map(|i| self.edge_vertices[middles[(edge + i) % 3]].vertex);
+            let first = self.edge_vertices.len();
+            self.edge_vertices.push(EdgeVertex::new(0, from));
             let pair = [(children[(edge + 2) % 3], false), (children[3], true)];
-            self.next = merge(self.trees, edge, &pair, self.next, &mut self.knots);
-            self.knots.push(Knot::new(FULL, to));
+            self.next = merge(self.trees, edge, &pair, self.next, &mut self.edge_vertices);
+            self.edge_vertices.push(EdgeVertex::new(FULL, to));
             Side {
                 first,
-                last: self.knots.len() - 1,
+                last: self.edge_vertices.len() - 1,
                 reversed: false,
             }
         });
         let halves = [0, 1, 2].map(|edge| sides[edge].halves(middles[edge]));
         // The middle one knows the chains' points.
         for (edge, chain) in chains.iter().enumerate() {
-            let knots = &self.knots[chain.first..=chain.last];
-            visitor.chain(knots, edge, spot.child(3), surface.child(3));
+            let edge_vertices = &self.edge_vertices[chain.first..=chain.last];
+            visitor.chain(edge_vertices, edge, domain.child(3), surface.child(3));
         }
         for child in 0..4 {
             let own = if child == 3 {
@@ -251,26 +274,27 @@ impl<'a> Walk<'a> {
                 own[(child + 2) % 3] = halves[(child + 2) % 3][1];
                 own
             };
-            let at = (place.child(child), spot.child(child));
-            self.node(children[child], at, own, surface.child(child), visitor);
+            let (place, domain) = (place.child(child), domain.child(child));
+            let surface = surface.child(child);
+            self.node(children[child], place, domain, own, surface, visitor);
         }
-        self.knots.truncate(floor);
+        self.edge_vertices.truncate(floor);
     }
 }
 
-/// Appends the knots strictly inside an edge: the union of what the nodes along it have split. Each node comes with whether
+/// Appends the edge vertices strictly inside an edge: the union of what the nodes along it have split. Each node comes with whether
 /// the edge, which has this number in all of them, runs the other way there. Gives the next free vertex number.
 fn merge(
     trees: &Trees,
     edge: usize,
     pair: &[(u32, bool); 2],
     next: u32,
-    knots: &mut Vec<Knot>,
+    edge_vertices: &mut Vec<EdgeVertex>,
 ) -> u32 {
     let members = pair.map(|(word, turned)| (word, edge, turned));
     let mut next = next;
     merged(trees, &members, 0, FULL, &mut |at| {
-        knots.push(Knot::new(at, next));
+        edge_vertices.push(EdgeVertex::new(at, next));
         next += 1;
     });
     next
@@ -307,7 +331,7 @@ pub(super) fn merged<const N: usize>(
     merged(trees, &half(true), from + length / 2, length / 2, found);
 }
 
-/// The same for any number of members.
+/// [`merged`] for any number of members.
 pub(super) fn merged_all(
     trees: &Trees,
     members: &[(u32, usize, bool)],

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use super::ReplayError;
 use super::table::{COEFFICIENTS, Job, LANES, Piece, SUMS, Table, WHOLE, groups};
 use super::wanted::{EvalPoint, Wants};
-use super::weights::{Place, Probe, Standing, Wanted};
+use super::weights::{ParamPoint, Probe, Standing, Wanted};
 use crate::index::{FaceId, VertexId};
 use crate::limit::{VertexStencil, VertexStencils};
 use crate::mesh::{Mesh, Sharpness};
@@ -55,9 +55,10 @@ struct Member {
 
 /// The faces whose surfaces are the same function of their control points.
 struct Shape {
+    /// One at least.
     members: Vec<Member>,
     /// The places of all, each once.
-    places: Vec<Place>,
+    places: Vec<ParamPoint>,
 }
 
 /// Weights of a shape, and the rows that its members use.
@@ -120,12 +121,7 @@ pub(super) fn build(
         },
     )?;
     for (shape, weighed) in shapes.iter().zip(weighed.into_iter().flatten()) {
-        let face = || {
-            shape
-                .members
-                .first()
-                .map_or(0, |member| faces[member.group].of)
-        };
+        let face = || faces[shape.members[0].group].of;
         building.shape(
             shape,
             weighed.ok_or_else(|| ReplayError::NoPolynomial { face: face() })?,
@@ -223,7 +219,7 @@ fn shapes(
 fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighed> {
     let first = shape.members.first()?;
     let face = FaceId(faces[first.group].of);
-    let (standing, pieces) = probe.standing((&first.support, face), &shape.places)?;
+    let (standing, pieces) = probe.standing(&first.support, face, &shape.places)?;
     let mut rows = vec![None; shape.places.len()];
     let mut blocks = vec![None; pieces as usize];
     let (mut row_count, mut block_count) = (0u32, 0u32);
@@ -291,7 +287,7 @@ fn next(count: &mut u32) -> u32 {
 }
 
 /// A place in whole steps, if it is one of these.
-fn coded(at: Place) -> Option<[u16; 2]> {
+fn coded(at: ParamPoint) -> Option<[u16; 2]> {
     let steps = at.map(|weight| weight * WHOLE);
     let is_whole = steps
         .iter()
@@ -354,9 +350,10 @@ impl Building {
         let mut starts: Vec<Option<Vec<u32>>> = vec![None; control.stencils.list.len()];
         for corner in corners {
             let number = control.stencils.by_vertex[corner.of as usize] as usize;
-            if starts[number].is_none() {
-                starts[number] = Some(self.stencil(&control.stencils.list[number])?);
-            }
+            let starts = match &mut starts[number] {
+                Some(known) => known,
+                unknown => unknown.insert(self.stencil(&control.stencils.list[number])?),
+            };
             let ring = control
                 .mesh
                 .topology()
@@ -374,10 +371,7 @@ impl Building {
                     self.slots[point as usize] = slot;
                     continue;
                 }
-                let start = starts[number]
-                    .as_ref()
-                    .and_then(|starts| starts.get(side as usize));
-                self.table.rows.push(start.copied().unwrap_or(0));
+                self.table.rows.push(starts[side as usize]);
                 slots.push((side, self.next));
                 self.take_slot(point);
             }

@@ -233,7 +233,7 @@ struct Pending {
 
 impl Pending {
     #[inline]
-    fn add(&mut self, slot: usize, (cross, square): ([f64; 3], f64), normals: &mut [[f64; 3]]) {
+    fn add(&mut self, slot: usize, cross: [f64; 3], square: f64, normals: &mut [[f64; 3]]) {
         let at = self.count % TOGETHER;
         self.slots[at] = slot;
         self.squares[at] = square;
@@ -334,8 +334,8 @@ impl Table {
         }
         let run =
             |(at, last, positions, normals): (At, usize, &mut [_], &mut [_])| match with_normals {
-                true => self.run::<true>(inputs, (at, last), positions, normals),
-                false => self.run::<false>(inputs, (at, last), positions, normals),
+                true => self.run::<true>(inputs, at, last, positions, normals),
+                false => self.run::<false>(inputs, at, last, positions, normals),
             };
         uncancelled(|_| parallel::each_polled(runs, &mut |_| Ok(()), run));
     }
@@ -343,7 +343,8 @@ impl Table {
     fn run<const NORMALS: bool>(
         &self,
         inputs: &Inputs,
-        (from, last): (At, usize),
+        from: At,
+        last: usize,
         positions: &mut [[f64; 3]],
         normals: &mut [[f64; 3]],
     ) {
@@ -358,7 +359,7 @@ impl Table {
                 positions[slot] = sums.position();
                 if NORMALS {
                     match sums.cross_product() {
-                        Some(cross) => pending.add(slot, cross, normals),
+                        Some((cross, square)) => pending.add(slot, cross, square, normals),
                         None if number < self.corner_jobs => {
                             normals[slot] = self
                                 .average(row, &points[..job.points as usize], inputs)

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::ReplayError;
-use super::weights::Place;
+use super::weights::ParamPoint;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::VertexStencils;
 use crate::mesh::Mesh;
@@ -33,7 +33,7 @@ pub(super) struct Wants {
 
 impl EvalPoint {
     /// The weights of the second and the third corner.
-    pub(super) fn place(bits: [u64; 2]) -> Place {
+    pub(super) fn place(bits: [u64; 2]) -> ParamPoint {
         bits.map(f64::from_bits)
     }
 

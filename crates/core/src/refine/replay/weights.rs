@@ -16,7 +16,7 @@ use crate::vector::DVec3;
 const DEEPEST: u32 = 64;
 
 /// A place over the face, by its weights of the second and the third corner; in the order of a support's corners.
-pub(super) type Place = [f64; 2];
+pub(super) type ParamPoint = [f64; 2];
 
 /// Where a place stands.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub(super) struct Standing {
     /// The number of the regular piece.
     pub(super) piece: u32,
     /// The place there.
-    pub(super) at: Place,
+    pub(super) at: ParamPoint,
 }
 
 /// A mesh whose control points are moved to measure the effect.
@@ -40,7 +40,7 @@ pub(super) struct Wanted<'a> {
     pub(super) support: &'a Support,
     pub(super) face: FaceId,
     /// Places.
-    pub(super) places: &'a [Place],
+    pub(super) places: &'a [ParamPoint],
     /// By place, the number of its row.
     pub(super) rows: &'a [Option<u32>],
     /// By regular piece, the number of its block of coefficients.
@@ -82,8 +82,9 @@ impl<'a> Probe<'a> {
     /// The pieces of the places, and the number of regular pieces; `None` where a place is on none.
     pub(super) fn standing(
         &self,
-        (support, face): (&Support, FaceId),
-        places: &[Place],
+        support: &Support,
+        face: FaceId,
+        places: &[ParamPoint],
     ) -> Option<(Vec<Standing>, u32)> {
         let mut found = vec![None; places.len()];
         let mut count = 0;
@@ -114,8 +115,7 @@ impl<'a> Probe<'a> {
         let block_start = row_count * SUMS * groups;
         let blocks = pieces.iter().flatten().count() * COEFFICIENTS * groups;
         let mut weights = vec![[0.0; LANES]; block_start + blocks];
-        let others = support.points.get(1..).unwrap_or_default();
-        for (three, points) in others.chunks(3).enumerate() {
+        for (three, points) in support.points[1..].chunks(3).enumerate() {
             let axes = [DVec3::X, DVec3::Y, DVec3::Z];
             points
                 .iter()
@@ -207,14 +207,14 @@ fn scale(tangents: &mut [[f64; LANES]]) {
 #[derive(Clone, Copy)]
 struct Standpoint {
     number: usize,
-    at: Place,
+    at: ParamPoint,
     /// The part that it is in.
     part: usize,
 }
 
 /// Places as the face counts its corners.
-fn on_face(support: &Support, places: &[Place]) -> Vec<Standpoint> {
-    let turned = |(number, &[u, v]): (usize, &Place)| {
+fn on_face(support: &Support, places: &[ParamPoint]) -> Vec<Standpoint> {
+    let turned = |(number, &[u, v]): (usize, &ParamPoint)| {
         let mut weights = [0.0; 3];
         for (corner, weight) in [1.0 - u - v, u, v].into_iter().enumerate() {
             weights[(support.turn + corner) % 3] = weight;

@@ -110,15 +110,13 @@ impl<'m> Forest<'m> {
     fn add_dart(&mut self, sharp: &SharpEdges<'_>, v: VertexId, at: DVec3) -> u32 {
         let topology = self.control.topology();
         let place = |h: HalfEdgeId| vector(self.control.positions()[topology.target(h).index()]);
-        let outgoing: Vec<HalfEdgeId> = topology.outgoing_ring(v).collect();
-        let first = outgoing
-            .iter()
-            .position(|&h| sharp.is_sharp(h))
-            .unwrap_or(0);
-        let ring = outgoing[first..]
-            .iter()
-            .chain(&outgoing[..first])
-            .map(|&h| place(h))
+        // The one sharp edge comes first.
+        let is_before = |h: &HalfEdgeId| !sharp.is_sharp(*h);
+        let outgoing = || topology.outgoing_ring(v);
+        let ring = outgoing()
+            .skip_while(is_before)
+            .chain(outgoing().take_while(is_before))
+            .map(place)
             .collect();
         self.darts.push(Dart {
             rings: vec![(at, ring)],

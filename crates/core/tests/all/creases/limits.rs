@@ -233,7 +233,7 @@ fn check(name: &str, mesh: &Mesh, scheme: &dyn Scheme, steps: usize, tolerance: 
         "{name}"
     );
     let lasting = Sharpness::of(mesh);
-    let lasting = lasting.lasting();
+    let lasting = lasting.infinitely_sharp();
     for sector in lasting.sectors(CENTRE) {
         let first = mesh.topology().target(sector.first).0;
         let expected = iterated_normal(mesh, scheme, first, sector.shape.faces() as usize, steps);

@@ -40,12 +40,12 @@ pub(crate) fn model(name: &str) -> Mesh {
 pub(crate) fn from_limits(found: &Interpolated, scheme: &dyn Scheme, vertices: &Mesh) -> f64 {
     let may_be = beside_long_edges(vertices);
     assert!(
-        found.passed_by.iter().all(|v| may_be.contains(&v.0)),
+        found.relaxed.iter().all(|v| may_be.contains(&v.0)),
         "{:?} of {may_be:?}",
-        found.passed_by
+        found.relaxed
     );
     let limits = LimitTable::new(scheme).positions(&found.mesh).unwrap();
-    let through = |v: &usize| !found.passed_by.contains(&VertexId(*v as u32));
+    let through = |v: &usize| !found.relaxed.contains(&VertexId(*v as u32));
     let distances = (0..limits.len())
         .filter(through)
         .map(|v| distance(limits[v], vertices.positions()[v]));

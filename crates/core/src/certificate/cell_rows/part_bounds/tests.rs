@@ -45,8 +45,8 @@ impl Part {
             let [x, y] = directions.map(|direction| direction.dot(edge));
             size * ((x * x + less * y * y) * normal + x * y * aside)
         });
-        let tilt = 0.05 * random.signed();
-        let normals = [0; 3].map(|_| (normal + tilt * random.vector()).normalize());
+        let normal_deviation = 0.05 * random.signed();
+        let normals = [0; 3].map(|_| (normal + normal_deviation * random.vector()).normalize());
         Self {
             corners,
             normals,
@@ -114,9 +114,9 @@ fn single_precision_is_on_the_safe_side() {
         let target = RowTarget {
             distance: 1.0,
             range_share: 0.0,
-            tilt: 0.1,
+            normal_deviation: 0.1,
             slope: f64::INFINITY,
-            drift_share: 0.41,
+            displacement_share: 0.41,
         };
         let mut found = Found::default();
         measure(8, &input, &rest, &target, &mut found);
@@ -131,29 +131,29 @@ fn single_precision_is_on_the_safe_side() {
         {
             let frame = TriangleFrame::new(*corners);
             let height = quadratic_height(bends.map(|bend| bend.dot(frame.normal())));
-            let tilt = normals
+            let normal_deviation = normals
                 .iter()
                 .map(|n| n.distance(frame.normal()))
                 .fold(0.0, f64::max);
-            let (mut drift, mut drift_slope, mut reach) = (0.0f64, 0.0f64, 0.0f64);
+            let (mut displacement, mut displacement_slope, mut reach) = (0.0f64, 0.0f64, 0.0f64);
             for (edge, bend) in bends.iter().enumerate() {
                 let out = -bend.dot(frame.outward(edge));
                 let along = bend.dot(frame.along(edge)).abs();
                 let steep = f64::from(rest.steep);
                 let room = frame.length(edge) - 0.5 * along - steep;
-                drift = drift.max(0.125 * out);
+                displacement = displacement.max(0.125 * out);
                 reach = reach.max(0.125 * out * frame.length(edge));
                 let slope = if room > 0.0 {
                     (0.5 * out.abs() + steep) / room
                 } else {
                     f64::INFINITY
                 };
-                drift_slope = drift_slope.max(slope);
+                displacement_slope = displacement_slope.max(slope);
             }
-            let chord = tilt + target.tilt;
-            let value = |drift: f64| {
+            let chord = normal_deviation + target.normal_deviation;
+            let value = |displacement: f64| {
                 (height + f64::from(rest.height)) * (1.0 + 0.5 * chord * chord)
-                    + chord * (drift + f64::from(rest.curve))
+                    + chord * (displacement + f64::from(rest.curve))
             };
             let shortest = (0..3)
                 .map(|edge| frame.length(edge))
@@ -163,17 +163,17 @@ fn single_precision_is_on_the_safe_side() {
                 continue;
             }
             compared += 1;
-            let least = value(drift);
+            let least = value(displacement);
             assert!(
                 bound >= least,
                 "round {round}, {i}: {bound:e}, not {least:e}"
             );
             assert!(
-                f64::from(found.tilt[i]) >= tilt
+                f64::from(found.normal_deviation[i]) >= normal_deviation
                     && f64::from(found.slope[i]) <= frame.least_slope()
             );
             assert!(
-                f64::from(found.drift_slope[i]) >= drift_slope,
+                f64::from(found.displacement_slope[i]) >= displacement_slope,
                 "round {round}, {i}"
             );
             // And not far off.
@@ -221,14 +221,14 @@ fn what_has_no_bound_is_within_nothing() {
         let target = RowTarget {
             distance,
             range_share: 0.0,
-            tilt: 0.1,
+            normal_deviation: 0.1,
             slope: f64::INFINITY,
-            drift_share: 0.41,
+            displacement_share: 0.41,
         };
         let mut found = Found::default();
         (found.bound[0], found.bound[1]) = (f32::INFINITY, f32::NAN);
         let (mut extent, mut marks) = (RowExtent::NONE, [Mark::Passes; 3]);
-        found.mark((3, 1e30), &target, &mut extent, &mut marks);
+        found.mark(1e30, &target, &mut extent, &mut marks);
         assert_eq!(marks, [Mark::Open, Mark::Open, Mark::Passes], "{distance}");
     }
 }

@@ -8,7 +8,7 @@ use crate::patch::large_rings::tests::{fan, limits};
 use crate::patch::{Patch, root_patch};
 use crate::scheme::{Loop, LoopWarren, Scheme};
 
-/// A fan of so many faces around vertex 0 with tags of each kind: on the vertex, on edges at it, on the rim, fading, lasting and both.
+/// A fan of so many faces around vertex 0 with tags of each kind: on the vertex, on edges at it, on the rim, semi-sharp, infinitely sharp and both.
 pub(in super::super) fn tagged_fans(faces: usize) -> Vec<(&'static str, Mesh)> {
     let spoke = |i: usize, sharpness: f64| CreaseTag {
         vertices: [0, 1 + i as u32],
@@ -107,7 +107,7 @@ fn is_held(patch: &Patch, surface: &[DVec3], what: &str) {
     }
 }
 
-/// The same surface, the same bounds of what fading does, at every level; and few points.
+/// Surfaces and bounds equal those of whole rings at every level, with few points.
 #[test]
 fn pieces_do_not_ask_for_neighbours_far_away() {
     let mut twins = 0;
@@ -154,7 +154,10 @@ fn pieces_do_not_ask_for_neighbours_far_away() {
                     let [Patch::SemiSharp(found), Patch::SemiSharp(expected)] = &patches else {
                         break;
                     };
-                    let both = [found.lasting_twin(&rules), expected.lasting_twin(&rules)];
+                    let both = [
+                        found.infinitely_sharp_twin(&rules),
+                        expected.infinitely_sharp_twin(&rules),
+                    ];
                     assert_eq!(both[0].is_some(), both[1].is_some(), "{what}");
                     if let [Some((found, apart)), Some((expected, whole_apart))] = both {
                         assert!(

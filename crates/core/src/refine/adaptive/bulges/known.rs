@@ -1,4 +1,4 @@
-//! What is known of triangles that are there again after others were divided: they are told by their leaves and by which part of these they
+//! Results of triangles that are there again after others were divided: they are known by their leaves and by which part of these they
 //! cover.
 
 use super::super::measured::FoundLast;
@@ -41,7 +41,7 @@ impl Key {
 /// The triangles of a control face before, as they are looked for one after the other.
 pub(super) struct Known<'a> {
     before: Option<&'a Bulge>,
-    /// What came to more than this failed.
+    /// Triangles with a greater bound than this failed.
     allowed: f64,
     /// Walks mostly go on where they were.
     next: usize,
@@ -68,7 +68,7 @@ impl<'a> Known<'a> {
             return false;
         };
         self.next = at + 1;
-        // What failed is there again where its face was divided anew.
+        // A triangle that failed is there again where its face was divided anew.
         let known = before.found.get(at);
         if before.ranges[at] == ENDS || known.is_some_and(|known| known.value > self.allowed) {
             return false;

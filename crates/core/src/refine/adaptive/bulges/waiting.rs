@@ -4,10 +4,10 @@ use core::array::from_fn;
 
 use super::super::emit::Emission;
 use super::super::emitted::Emitted;
-use super::super::surface::Ground;
+use super::super::surface::QuarticPiece;
 use super::Bulge;
 use crate::certificate::{Bender, Bent, Cell, FOUR, QuarticJet, SubTriangle, normals};
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 use crate::vector::{unit_or_zero, vector};
 use wide::f64x4;
 
@@ -21,10 +21,10 @@ const MOST: usize = 32;
 #[derive(Default)]
 pub(super) struct Waiting {
     /// The piece, by its place in memory: it stays there while somebody walks over its control face.
-    ground: Option<*const Ground>,
+    quartic: Option<*const QuarticPiece>,
     jet: Option<QuarticJet>,
     /// Whole leaves.
-    even: Vec<Part<Spot>>,
+    even: Vec<Part<ParamTriangle>>,
     /// Parts of leaves with split edges.
     other: Vec<Part<Cell>>,
 }
@@ -39,28 +39,30 @@ struct Part<T> {
 
 impl Waiting {
     /// Whether others have to be looked at before another part of a piece can wait.
-    pub(super) fn is_full(&self, ground: &Ground) -> bool {
+    pub(super) fn is_full(&self, quartic: &QuarticPiece) -> bool {
         let is_other = self
-            .ground
-            .is_some_and(|known| !core::ptr::eq(known, ground));
+            .quartic
+            .is_some_and(|known| !core::ptr::eq(known, quartic));
         is_other || self.even.len() == MOST || self.other.len() == MOST
     }
 
     /// Lets another part wait, where there is room.
     pub(super) fn push(
         &mut self,
-        ground: &Ground,
-        (emitted, turn): (&Emitted, u32),
-        (cell, spot): (Cell, Spot),
+        quartic: &QuarticPiece,
+        emitted: &Emitted,
+        turn: u32,
+        cell: Cell,
+        domain: ParamTriangle,
     ) {
-        if self.ground.is_none() {
-            self.ground = Some(core::ptr::from_ref(ground));
-            self.jet = Some(ground.jet().clone());
+        if self.quartic.is_none() {
+            self.quartic = Some(core::ptr::from_ref(quartic));
+            self.jet = Some(quartic.jet().clone());
         }
         let number = emitted.number;
         if emitted.part == SubTriangle::Whole {
             self.even.push(Part {
-                at: spot,
+                at: domain,
                 number,
                 turn,
             });
@@ -75,7 +77,7 @@ impl Waiting {
 
     /// Looks at all that wait.
     pub(super) fn look(&mut self, emission: &Emission, first: u32, found: &mut Bulge) {
-        self.ground = None;
+        self.quartic = None;
         let Some(jet) = self.jet.take() else { return };
         let bender = Bender::of(&jet);
         let mut look = Look {
@@ -107,17 +109,17 @@ struct Look<'a> {
 }
 
 /// A part as a cell of its piece's domain.
-trait Place: Copy {
+trait AsCell: Copy {
     fn cell(self) -> Cell;
 }
 
-impl Place for Spot {
+impl AsCell for ParamTriangle {
     fn cell(self) -> Cell {
         Cell(self.corners())
     }
 }
 
-impl Place for Cell {
+impl AsCell for Cell {
     fn cell(self) -> Cell {
         self
     }
@@ -126,7 +128,7 @@ impl Place for Cell {
 impl Look<'_> {
     /// Looks at some parts, four at a time.
     #[inline]
-    fn each<T: Place>(&mut self, parts: &[Part<T>], bend: impl Fn([T; FOUR]) -> Bent) {
+    fn each<T: AsCell>(&mut self, parts: &[Part<T>], bend: impl Fn([T; FOUR]) -> Bent) {
         for some in parts.chunks(FOUR) {
             let four: [&Part<T>; FOUR] = from_fn(|l| &some[l.min(some.len() - 1)]);
             let [mut a, mut b] = [[[0.0; FOUR]; 3]; 2];
@@ -161,7 +163,7 @@ impl Look<'_> {
 
     /// The least and the greatest height over a triangle, by the quadratic part or in a few places.
     #[cold]
-    fn range<T: Place>(&self, part: &Part<T>) -> [f64; 2] {
+    fn range<T: AsCell>(&self, part: &Part<T>) -> [f64; 2] {
         let [a, b, c] = self.corners(part.number).map(vector);
         let heights = self
             .jet

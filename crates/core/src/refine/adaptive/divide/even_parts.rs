@@ -1,11 +1,11 @@
 //! Even parts of regular pieces: all nodes of a level are tested at once, and single ones only where that leaves something open.
 
-use super::super::quadtree::{LEAF, PROVEN, Place};
+use super::super::quadtree::{LEAF, NodeAddress, PROVEN};
 use super::super::seen::{Extent, Fate};
-use super::super::surface::Ground;
+use super::super::surface::QuarticPiece;
 use super::{Divider, Part};
 use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent};
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 
 /// Levels below the first that are tested at most.
 const MOST_SPREAD: u32 = 2;
@@ -23,9 +23,9 @@ pub(super) enum AtOnce {
 
 /// A node whose rows were tested.
 struct Rows<'a> {
-    ground: &'a Ground,
-    place: Place,
-    spot: Spot,
+    quartic: &'a QuarticPiece,
+    place: NodeAddress,
+    domain: ParamTriangle,
     /// By level from `first` below the node on.
     marks: &'a [Marks],
     first: u32,
@@ -33,9 +33,19 @@ struct Rows<'a> {
 
 impl Divider<'_> {
     /// Divides a part of a regular piece by testing all nodes of some levels at once, where that is worth while.
-    pub(super) fn rows(&mut self, ground: &Ground, spot: Spot, place: Place) -> AtOnce {
+    pub(super) fn rows(
+        &mut self,
+        quartic: &QuarticPiece,
+        domain: ParamTriangle,
+        place: NodeAddress,
+    ) -> AtOnce {
         let target = self.judge.row_target();
-        let block = RowBlock::of(&ground.piece, ground.jet(), [spot.u, spot.v], spot.size);
+        let block = RowBlock::of(
+            &quartic.piece,
+            quartic.jet(),
+            [domain.u, domain.v],
+            domain.size,
+        );
         let (least, most) = block.levels(&target);
         let fails = least > 0;
         if !fails {
@@ -76,15 +86,15 @@ impl Divider<'_> {
             }
         }
         let RowExtent {
-            tilt,
+            normal_deviation,
             slope,
-            drift_slope,
+            displacement_slope,
             bound,
         } = extent;
         self.extent.add(&Extent {
-            tilt,
+            normal_deviation,
             slope,
-            drift_slope,
+            displacement_slope,
             bound,
         });
         let word = if tested == 1 && levels[0].are_all_passing() {
@@ -92,13 +102,13 @@ impl Divider<'_> {
             (LEAF | PROVEN) + least
         } else {
             let found = Rows {
-                ground,
+                quartic,
                 place,
-                spot,
+                domain,
                 marks: &levels[..tested],
                 first: least,
             };
-            self.row_node(&found, (0, 0, false), 0)
+            self.row_node(&found, 0, 0, false, 0)
         };
         self.marks = levels;
         AtOnce::Decided(word)
@@ -108,7 +118,9 @@ impl Divider<'_> {
     fn row_node(
         &mut self,
         rows: &Rows<'_>,
-        (i, j, is_inverted): (usize, usize, bool),
+        i: usize,
+        j: usize,
+        is_inverted: bool,
         level: u32,
     ) -> u32 {
         if level >= rows.first {
@@ -120,15 +132,15 @@ impl Divider<'_> {
             }
             let is_last = tested + 1 == rows.marks.len();
             if is_last || mark == Mark::Open {
-                let ground = rows.ground;
-                let spot = rows.spot.row(level, i, j, is_inverted);
+                let quartic = rows.quartic;
+                let domain = rows.domain.row(level, i, j, is_inverted);
                 let place = rows.place.leaf(level, (i, j), is_inverted);
-                let (corners, open) = (ground.at(spot.corners()), [false; 3]);
+                let (corners, open) = (quartic.at(domain.corners()), [false; 3]);
                 if is_last {
                     return self.part(
                         Part {
-                            ground,
-                            spot,
+                            quartic,
+                            domain,
                             place,
                             corners,
                             open,
@@ -139,7 +151,7 @@ impl Divider<'_> {
                 }
                 let verdict = self
                     .judge
-                    .regular(ground, spot, place.level, &corners, open);
+                    .regular(quartic, domain, place.level, &corners, open);
                 if verdict.fate != Fate::Fails {
                     return self.leaf(&verdict);
                 }
@@ -162,8 +174,8 @@ impl Divider<'_> {
             ]
         };
         let mut children = [LEAF; 4];
-        for (word, at) in children.iter_mut().zip(below) {
-            *word = self.row_node(rows, at, level + 1);
+        for (word, (i, j, is_inverted)) in children.iter_mut().zip(below) {
+            *word = self.row_node(rows, i, j, is_inverted, level + 1);
         }
         self.piece.node(children)
     }

@@ -1,5 +1,5 @@
-//! What the triangles of a control face are expected to have before anything is divided, for those around them to count on. Where the result
-//! has less, [`super::super::measure`] looks at each triangle by itself.
+//! The expected normal deviation and least angle of a control face's triangles before anything is divided, on which those around them count. Where the result
+//! misses them, [`super::super::measure`] looks at each triangle by itself.
 
 use super::super::Engine;
 use super::super::control::Control;
@@ -14,20 +14,20 @@ use crate::vector::{DVec3, Extremes, unit_normal};
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
 
-/// The least tilt that neighbours are allowed: it costs next to nothing.
-const LEAST_TILT: f64 = 0.01;
+/// The least normal deviation that neighbours are allowed: it costs next to nothing.
+const LEAST_DEVIATION: f64 = 0.01;
 
 /// Room for triangles that bend more than their control face does on the whole.
 const GENEROUS: f64 = 2.2;
 
-/// What is left of the least angle of the control faces when triangles close gaps, as tangents: they may halve it.
+/// The part of the control faces' least tangent that is left when triangles close gaps: they may halve the angle.
 const SLOPE_LEFT: f64 = 0.3;
 
-/// What is expected of the triangles of a control face by its corners and their normals.
+/// The expectation for the triangles of a control face by its corners and their normals.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Expected {
-    /// The greatest tilt; 0 where the normals tell nothing.
-    tilt: f64,
+    /// The greatest normal deviation; 0 where the normals do not bound it.
+    normal_deviation: f64,
     /// The tangent of the least angle.
     slope: f64,
 }
@@ -48,37 +48,40 @@ impl Expected {
         let corners = control.corners(face);
         let slope = least_slope(corners.map(|at| at.position));
         Self {
-            tilt: tilt_by_normals(&corners, goal.allowed(face)),
+            normal_deviation: normal_deviation_of(&corners, goal.allowed(face)),
             slope,
         }
     }
 }
 
 impl Divider<'_> {
-    /// What the leaves of a control face count on: the greatest tilts and the least angles that are expected
+    /// The allowance of a control face: the greatest normal deviations and the least angles that are expected
     /// there and in the faces adjacent to it. Angles between planes shrink with the size of triangles, heights with its square; those of the face
     /// are known at some points of its piece. Nothing where more than distances counts.
     pub(super) fn allowance(&self, face: u32, seen: &Seen, points: &[LimitPoint]) -> Allowance {
         if self.judge.criteria.is_some() {
             return Allowance::NOTHING;
         }
-        let (mut tilt, mut slope) = (
-            seen.tilt * shrunk(seen.highest(points), self.judge.limit),
+        let (mut normal_deviation, mut slope) = (
+            seen.normal_deviation * shrunk(seen.highest(points), self.judge.limit),
             seen.frame.least_slope(),
         );
-        for adjacent in self.control.beside(face) {
+        for adjacent in self.control.adjacent(face) {
             let other = self.expected[adjacent as usize];
-            (tilt, slope) = (tilt.larger(other.tilt), slope.min(other.slope));
+            (normal_deviation, slope) = (
+                normal_deviation.larger(other.normal_deviation),
+                slope.min(other.slope),
+            );
         }
         Allowance {
-            tilt: (GENEROUS * tilt).max(LEAST_TILT),
+            normal_deviation: (GENEROUS * normal_deviation).max(LEAST_DEVIATION),
             slope: SLOPE_LEFT * slope,
         }
     }
 }
 
-/// The tilt that is expected of triangles in a face by the normals at its corners, divided down to a limit; 0 where they tell nothing.
-fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
+/// The normal deviation that is expected of triangles in a face by the normals at its corners, divided down to a limit; 0 where they do not bound it.
+fn normal_deviation_of(corners: &[LimitPoint; 3], limit: f64) -> f64 {
     let normal = unit_normal(corners.each_ref().map(|corner| corner.position));
     if normal == DVec3::ZERO || corners.iter().any(|corner| corner.normal == DVec3::ZERO) {
         return 0.0;
@@ -96,7 +99,7 @@ fn tilt_by_normals(corners: &[LimitPoint; 3], limit: f64) -> f64 {
     chord(0).larger(chord(1)).larger(chord(2)).sqrt() * shrunk(height, limit)
 }
 
-/// What is left of angles where heights like this one are divided down to the limit.
+/// The part of angles that is left where heights like this one are divided down to the limit.
 fn shrunk(height: f64, limit: f64) -> f64 {
     if height > limit {
         (limit / height).sqrt()

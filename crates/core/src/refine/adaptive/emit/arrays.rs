@@ -1,5 +1,5 @@
 //! The arrays that an emission is written into: fresh ones, or those of the emission before, in which what is kept of it is moved to
-//! where it belongs now, so that no second ones stand beside them.
+//! where it belongs now, so that there is no second copy of them.
 
 use core::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::refine::exact_result::Origin;
 /// Origins that are written together: some milliseconds.
 const FILLED: usize = 1 << 17;
 
-/// What is written of each vertex and triangle.
+/// The arrays that are written, by vertex, half-edge and triangle.
 #[derive(Default)]
 pub(super) struct Arrays {
     pub(super) positions: Vec<[f64; 3]>,
@@ -60,7 +60,7 @@ impl Shifts {
         }
     }
 
-    /// The same for elements of which there are `times` as many.
+    /// Multiplies all numbers, for elements of which there are `times` as many.
     fn times(&self, times: usize) -> Self {
         let multiplied = |one: &Shift| Shift {
             before: times * one.before.start..times * one.before.end,
@@ -121,7 +121,8 @@ impl Arrays {
     pub(super) fn rearrange(
         &mut self,
         length: Lengths,
-        (vertices, triangles): (&Shifts, &Shifts),
+        vertices: &Shifts,
+        triangles: &Shifts,
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let twins = triangles.times(3);
@@ -140,36 +141,31 @@ impl Arrays {
             Box::new(|is_stopped| {
                 // Nobody may have asked for them.
                 if !origins.is_empty() {
-                    rearrange(origins, (NOWHERE, length.vertices), vertices, is_stopped);
+                    rearrange(origins, NOWHERE, length.vertices, vertices, is_stopped);
                 }
             }),
             Box::new(|is_stopped| {
-                rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped)
+                rearrange(positions, [0.0; 3], length.vertices, vertices, is_stopped)
             }),
             Box::new(|is_stopped| {
-                rearrange(normals, ([0.0; 3], length.vertices), vertices, is_stopped)
+                rearrange(normals, [0.0; 3], length.vertices, vertices, is_stopped)
             }),
             Box::new(|is_stopped| {
-                rearrange(corners, ([0; 3], length.triangles), triangles, is_stopped)
+                rearrange(corners, [0; 3], length.triangles, triangles, is_stopped)
             }),
-            Box::new(|is_stopped| rearrange(beyond, (0, 3 * length.triangles), &twins, is_stopped)),
+            Box::new(|is_stopped| rearrange(beyond, 0, 3 * length.triangles, &twins, is_stopped)),
             // These are written anew.
             Box::new(|is_stopped| {
-                rearrange(
-                    parents,
-                    (0, length.triangles),
-                    &Shifts::default(),
-                    is_stopped,
-                )
+                rearrange(parents, 0, length.triangles, &Shifts::default(), is_stopped)
             }),
         ];
         if !moves.offsets.is_empty() {
             let Moves { offsets, positions } = moves;
             tasks.push(Box::new(|is_stopped| {
-                rearrange(offsets, (0.0, length.vertices), vertices, is_stopped);
+                rearrange(offsets, 0.0, length.vertices, vertices, is_stopped);
             }));
             tasks.push(Box::new(|is_stopped| {
-                rearrange(positions, ([0.0; 3], length.vertices), vertices, is_stopped);
+                rearrange(positions, [0.0; 3], length.vertices, vertices, is_stopped);
             }));
         }
         parallel::each_long_polled(tasks, &mut |_| watch.poll(), |task, is_stopped| {
@@ -195,7 +191,8 @@ fn extend_origins(
 /// Makes an array so long, its elements moved; what is of no use any more is left unfinished.
 fn rearrange<T: Copy>(
     array: &mut Vec<T>,
-    (filling, length): (T, usize),
+    filling: T,
+    length: usize,
     moves: &Shifts,
     is_stopped: &IsStopped<'_>,
 ) {
@@ -267,7 +264,7 @@ mod tests {
             let array: Vec<u32> = (0..(before + random.below(100)) as u32).collect();
             let mut moved = array.clone();
             let length = now + random.below(100);
-            rearrange(&mut moved, (u32::MAX, length), &moves, &|| false);
+            rearrange(&mut moved, u32::MAX, length, &moves, &|| false);
             assert_eq!(moved.len(), length);
             for (before, now, count) in all {
                 assert_eq!(moved[now..now + count], array[before..before + count]);

@@ -13,7 +13,7 @@ use crate::vector::{DVec3, vector};
 pub(in super::super) struct Emission {
     pub(in super::super) positions: Vec<[f64; 3]>,
     pub(in super::super) normals: Vec<[f64; 3]>,
-    /// Empty where nobody asks for them.
+    /// Empty where they are not wanted.
     pub(in super::super) origins: Vec<Origin>,
     pub(in super::super) triangles: Vec<[u32; 3]>,
     pub(in super::super) twins: Vec<u32>,

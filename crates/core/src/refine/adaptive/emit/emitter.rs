@@ -1,11 +1,11 @@
-//! What is emitted, and how.
+//! The settings of an emission.
 
 use super::super::chains::Chains;
 use super::super::control::Control;
 use super::super::cover::Cover;
 use super::super::quadtree::Trees;
 
-/// What is emitted, and how.
+/// The settings of an emission.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Emitter<'a> {
     pub(in super::super) control: &'a Control<'a>,

@@ -1,6 +1,6 @@
 //! The faces of an emission in shares, each with the parts of the arrays that are its own, and how a share is written.
 
-use super::super::quadtree::{Place, is_split};
+use super::super::quadtree::is_split;
 use super::super::rim::Rim;
 use super::super::surface::Surface;
 use super::super::walk::Walk;
@@ -11,7 +11,7 @@ use super::kept::Kept;
 use super::leaf_writer::Writer;
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
-use crate::patch::{LimitPoint, Spot};
+use crate::patch::LimitPoint;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
 
@@ -126,15 +126,14 @@ pub(super) fn write(
             (first..).zip(own).for_each(|(h, border)| *border = h);
             continue;
         }
-        walk.knots.clear();
-        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.knots);
+        walk.edge_vertices.clear();
+        let sides = chains.sides(control.mesh, &control.edges, face, &mut walk.edge_vertices);
         (writer.face, writer.diagonals) = (face, &covers[face as usize].diagonals);
         let before = writer.next_triangle - job.first_triangle;
-        let at = (Place::root(face), Spot::WHOLE);
         let own = [0, 1, 2].map(|edge| chains.own(3 * face + edge));
         if !is_split(word) && own.iter().all(|(_, places)| places.is_empty()) {
             // No vertex is its own.
-            walk.node(word, at, sides, Surface::Unknown, &mut writer);
+            walk.face(face, sides, Surface::Unknown, &mut writer);
         } else {
             let piece = control.piece(face);
             let surface = piece.surface(control.rules);
@@ -143,14 +142,14 @@ pub(super) fn write(
                     job.on_edges.set(number + i as u32, point, origin);
                 });
             }
-            walk.node(word, at, sides, surface, &mut writer);
+            walk.face(face, sides, surface, &mut writer);
         }
         let after = writer.next_triangle - job.first_triangle;
         job.parents[before as usize..after as usize].fill(face);
         for side in sides {
             let own = split_off(&mut job.borders, side.segments());
             for (i, border) in own.iter_mut().enumerate() {
-                *border = walk.knots[side.stretch(i)].half_edge;
+                *border = walk.edge_vertices[side.segment(i)].half_edge;
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::parallel::IsStopped;
 /// Vertices and triangles that are moved between two questions whether that is still of use.
 pub(super) const COPIED: usize = 1 << 16;
 
-/// What was emitted before.
+/// The last emission, of which unchanged faces are kept.
 pub(super) struct Kept<'a> {
     pub(super) before: &'a Emission,
     pub(super) control: &'a Control<'a>,

@@ -3,13 +3,13 @@
 
 use super::super::rim::{Rim, bits};
 use super::super::surface::Surface;
-use super::super::walk::{Knot, Node, Visitor};
+use super::super::walk::{EdgeVertex, Node, Visitor};
 use super::emission::fraction;
 use super::job::Vertices;
 use crate::closure::{Diagonal, closure};
 use crate::mesh::NONE;
 use crate::parallel::IsStopped;
-use crate::patch::Spot;
+use crate::patch::ParamTriangle;
 use crate::refine::exact_result::Origin;
 
 /// Rows that are written between two questions whether that is still of use.
@@ -35,8 +35,14 @@ pub(super) struct Writer<'a> {
 }
 
 impl Visitor for Writer<'_> {
-    fn chain(&mut self, knots: &[Knot], edge: usize, spot: Spot, middle: Surface<'_>) {
-        let last = knots.len() - 1;
+    fn chain(
+        &mut self,
+        edge_vertices: &[EdgeVertex],
+        edge: usize,
+        domain: ParamTriangle,
+        middle: Surface<'_>,
+    ) {
+        let last = edge_vertices.len() - 1;
         if last < 2 {
             return;
         }
@@ -44,25 +50,26 @@ impl Visitor for Writer<'_> {
         places.clear();
         // The middle child's edge runs the other way.
         places.extend(
-            knots[1..last]
+            edge_vertices[1..last]
                 .iter()
                 .rev()
-                .map(|knot| 1.0 - fraction(knot.at)),
+                .map(|edge_vertex| 1.0 - fraction(edge_vertex.at)),
         );
         middle.along(edge, &places, &mut |i, point| {
-            let origin = self.origin(spot.along(edge, places[i]));
-            self.inside.set(knots[last - 1 - i].vertex, point, origin);
+            let origin = self.origin(domain.along(edge, places[i]));
+            self.inside
+                .set(edge_vertices[last - 1 - i].vertex, point, origin);
         });
         self.places = places;
     }
 
-    fn leaves(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+    fn leaves(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         self.interior(node);
         if node.is_plain() {
-            return self.cover_plain(node, knots);
+            return self.cover_plain(node, edge_vertices);
         }
-        self.rim.set(node, knots);
-        self.cover(node, knots);
+        self.rim.set(node, edge_vertices);
+        self.cover(node, edge_vertices);
     }
 }
 
@@ -77,17 +84,17 @@ impl Writer<'_> {
     /// The vertices inside a node, row by row.
     fn interior(&mut self, node: &Node<'_>) {
         let n = 1usize << node.depth;
-        let Surface::Regular(piece, spot) = node.surface else {
+        let Surface::Regular(piece, domain) = node.surface else {
             return;
         };
         let mut at = (node.interior - self.inside.first) as usize;
-        let (step, own) = (spot.size / n as f64, node.spot);
+        let (step, own) = (domain.size / n as f64, node.domain);
         for j in 1..n.max(2) - 1 {
             let count = n - 1 - j;
             let row = at..at + count;
-            piece.ground().piece.points_and_normals_along(
-                spot.v + step * j as f64,
-                spot.u + step,
+            piece.quartic().piece.points_and_normals_along(
+                domain.v + step * j as f64,
+                domain.u + step,
                 step,
                 &mut self.inside.positions[row.clone()],
                 &mut self.inside.normals[row],
@@ -112,14 +119,14 @@ impl Writer<'_> {
     }
 
     /// The vertex at a corner of the leaves.
-    fn vertex(&self, node: &Node<'_>, knots: &[Knot], i: usize, j: usize) -> u32 {
+    fn vertex(&self, node: &Node<'_>, edge_vertices: &[EdgeVertex], i: usize, j: usize) -> u32 {
         let n = 1usize << node.depth;
         if j == 0 {
-            knots[self.rim.corner(0, i)].vertex
+            edge_vertices[self.rim.corner(0, i)].vertex
         } else if i == 0 {
-            knots[self.rim.corner(2, n - j)].vertex
+            edge_vertices[self.rim.corner(2, n - j)].vertex
         } else if i + j == n {
-            knots[self.rim.corner(1, j)].vertex
+            edge_vertices[self.rim.corner(1, j)].vertex
         } else {
             node.inside(i, j)
         }
@@ -127,35 +134,40 @@ impl Writer<'_> {
 
     /// [`Self::cover`] where no leaf has split edges: what stands where, and what is beyond inner edges, follows from the numbers
     /// of rows and columns.
-    fn cover_plain(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+    fn cover_plain(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         let n = 1usize << node.depth;
         let [bottom, right, left] = &node.sides;
         let mut at = (self.next_triangle - self.first_triangle) as usize;
         let [mut lower, mut upper] = core::mem::take(&mut self.rows);
         lower.clear();
-        lower.extend((0..=n).map(|i| knots[bottom.knot(i)].vertex));
+        lower.extend((0..=n).map(|i| edge_vertices[bottom.edge_vertex(i)].vertex));
         for j in 0..n {
             let count = n - j;
             upper.clear();
-            upper.push(knots[left.knot(count - 1)].vertex);
+            upper.push(edge_vertices[left.edge_vertex(count - 1)].vertex);
             if count > 2 {
                 let inside = node.inside(1, j + 1);
                 upper.extend(inside..inside + count as u32 - 2);
             }
             if count > 1 {
-                upper.push(knots[right.knot(j + 1)].vertex);
+                upper.push(edge_vertices[right.edge_vertex(j + 1)].vertex);
             }
             let own = 3 * self.next_triangle;
             self.write_row(&lower, &upper, own, at);
             if j == 0 {
-                (0..count).for_each(|i| self.meet(knots, bottom.stretch(i), own + 6 * i as u32));
+                (0..count)
+                    .for_each(|i| self.meet(edge_vertices, bottom.segment(i), own + 6 * i as u32));
             } else {
                 // The row below has two triangles more.
                 let beneath = own - 3 * (2 * count as u32 + 1);
                 (0..count as u32).for_each(|i| self.pair(own + 6 * i, beneath + 6 * i + 4));
             }
-            self.meet(knots, left.stretch(count - 1), own + 2);
-            self.meet(knots, right.stretch(j), own + 6 * (count as u32 - 1) + 1);
+            self.meet(edge_vertices, left.segment(count - 1), own + 2);
+            self.meet(
+                edge_vertices,
+                right.segment(j),
+                own + 6 * (count as u32 - 1) + 1,
+            );
             at += 2 * count - 1;
             self.next_triangle += 2 * count as u32 - 1;
             core::mem::swap(&mut lower, &mut upper);
@@ -191,8 +203,8 @@ impl Writer<'_> {
     }
 
     /// The triangles of all leaves below a node, row by row: each leaf that stands upright is followed by the one to its right
-    /// that stands on its head.
-    fn cover(&mut self, node: &Node<'_>, knots: &mut [Knot]) {
+    /// that is inverted.
+    fn cover(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
         let n = 1usize << node.depth;
         self.below.clear();
         self.below.resize(n, NONE);
@@ -202,11 +214,11 @@ impl Writer<'_> {
                 if i == 1 && j > 0 {
                     (i, left) = self.inner(node, j, left);
                 }
-                let corners =
-                    [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| self.vertex(node, knots, i, j));
-                let right = self.upright(node, knots, (i, j), corners, left);
+                let corners = [(i, j), (i + 1, j), (i, j + 1)]
+                    .map(|(i, j)| self.vertex(node, edge_vertices, i, j));
+                let right = self.upright(node, edge_vertices, (i, j), corners, left);
                 if i + j + 1 < n {
-                    let far = self.vertex(node, knots, i + 1, j + 1);
+                    let far = self.vertex(node, edge_vertices, i + 1, j + 1);
                     let first = self.push([corners[1], far, corners[2]]);
                     self.pair(first + 2, right);
                     left = first;
@@ -264,7 +276,7 @@ impl Writer<'_> {
     fn upright(
         &mut self,
         node: &Node<'_>,
-        knots: &mut [Knot],
+        edge_vertices: &mut [EdgeVertex],
         (i, j): (usize, usize),
         [a, b, c]: [u32; 3],
         left: u32,
@@ -289,7 +301,9 @@ impl Writer<'_> {
             };
         }
         let pattern = closure(bits, diagonal);
-        let [d, e, f] = split.map(|knot| knot.map_or(NONE, |knot| knots[knot].vertex));
+        let [d, e, f] = split.map(|edge_vertex| {
+            edge_vertex.map_or(NONE, |edge_vertex| edge_vertices[edge_vertex].vertex)
+        });
         let labels = [a, b, c, d, e, f];
         let first = 3 * self.next_triangle;
         for triangle in pattern.triangles() {
@@ -307,10 +321,10 @@ impl Writer<'_> {
             if on_side[edge] {
                 let [start, end] = [0, 1].map(|step| self.rim.corner(edge, place[edge] + step));
                 match split[edge] {
-                    None => self.meet(knots, start.min(end), border[0]),
+                    None => self.meet(edge_vertices, start.min(end), border[0]),
                     Some(middle) => {
-                        self.meet(knots, start.min(middle), border[0]);
-                        self.meet(knots, middle.min(end), border[1]);
+                        self.meet(edge_vertices, start.min(middle), border[0]);
+                        self.meet(edge_vertices, middle.min(end), border[1]);
                     }
                 }
             } else if edge == 0 {
@@ -337,12 +351,12 @@ impl Writer<'_> {
         self.twins[(b - first) as usize] = a;
     }
 
-    /// A half-edge along a stretch of a chain: the twin of the one that was there before, if there was.
+    /// A half-edge along a segment of a chain: the twin of the one that was there before, if there was.
     #[inline]
-    fn meet(&mut self, knots: &mut [Knot], stretch: usize, half_edge: u32) {
-        let other = knots[stretch].half_edge;
+    fn meet(&mut self, edge_vertices: &mut [EdgeVertex], segment: usize, half_edge: u32) {
+        let other = edge_vertices[segment].half_edge;
         if other == NONE {
-            knots[stretch].half_edge = half_edge;
+            edge_vertices[segment].half_edge = half_edge;
         } else {
             self.pair(half_edge, other);
         }

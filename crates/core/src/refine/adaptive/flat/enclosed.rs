@@ -1,4 +1,4 @@
-//! Whether what is around a flat region encloses something that can stand for its surface, also where that folds.
+//! Whether the rim of a flat region encloses an area that can approximate its surface, also where the surface folds.
 //!
 //! The limit curves of its rim are looked at, each divided into as many chords whatever else is asked for: so it is the same surface at
 //! each tolerance, and for those who measure against it.
@@ -116,7 +116,7 @@ fn curve_over(control: &Control<'_>, h: u32, levels: u32, rounding: f64) -> Vec<
     let mut points = Vec::new();
     let triangle = control.mesh.triangles()[h as usize / 3];
     let ends = [0, 1].map(|end| triangle[(h as usize + end) % 3] as usize);
-    // Corners stay, and elsewhere the vertices beside one are on the same line, as far on either side.
+    // Corners stay, and elsewhere the two adjacent vertices are on one line, equally far on either side.
     if ends
         .iter()
         .all(|&end| control.positions[end] == control.mesh.positions()[end])

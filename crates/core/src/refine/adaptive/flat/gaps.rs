@@ -12,7 +12,7 @@ use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::adaptive::control::Control;
 use crate::refine::adaptive::demands::Demands;
 use crate::refine::adaptive::divide::child_open;
-use crate::refine::adaptive::quadtree::Place;
+use crate::refine::adaptive::quadtree::NodeAddress;
 
 /// How often rims are divided once more.
 const MOST_DIVISIONS: usize = 3;
@@ -26,7 +26,7 @@ const MOST_ALONG: usize = 1 << 20;
 /// Regions with gaps, and the nodes along their rims down to those that are no deeper than the rim was divided evenly; none where dividing it
 /// is of no use.
 #[derive(Debug, Default)]
-pub(in super::super) struct Gaps(BTreeMap<u32, Vec<Place>>);
+pub(in super::super) struct Gaps(BTreeMap<u32, Vec<NodeAddress>>);
 
 impl Gaps {
     pub(in super::super) fn are_none(&self) -> bool {
@@ -68,7 +68,7 @@ impl RimGaps {
         self.0.is_empty()
     }
 
-    /// What may close them, at this attempt.
+    /// The nodes that are divided to close them at this attempt.
     pub(in super::super) fn at_attempt(
         &self,
         attempt: usize,
@@ -94,7 +94,7 @@ impl RimGaps {
                     .next_power_of_two()
                     .ilog2();
                 let levels = levels.max(least.saturating_sub(1));
-                along_rim(Place::root(face), open, levels, along);
+                along_rim(NodeAddress::root(face), open, levels, along);
             })?;
         }
         Ok(gaps)
@@ -128,7 +128,7 @@ pub(super) fn chords(
 }
 
 /// The nodes along the open edges of one, down to so many levels below it.
-fn along_rim(place: Place, open: [bool; 3], levels: u32, found: &mut Vec<Place>) {
+fn along_rim(place: NodeAddress, open: [bool; 3], levels: u32, found: &mut Vec<NodeAddress>) {
     if open == [false; 3] {
         return;
     }

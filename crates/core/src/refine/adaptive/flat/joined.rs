@@ -1,6 +1,6 @@
 //! Regions in one plane side by side, such as the parts of a face that sharp edges divide at its concave corners.
 //!
-//! Where both are what their rims enclose, and so are the triangles that stand for them, what counts is what encloses them
+//! Where both are what their rims enclose, and so are the triangles that approximate them, what counts is what encloses them
 //! together: a point of the surface and not of the triangles, or the other way round, is one round which their rims, taken together, wind
 //! but not the chords of these, or the other way round. What two regions share runs the one way for the one and the other way for the
 //! other, so it winds round nothing. That takes regions round whose points rims wind forwards alone, or one could undo what the other does: those
@@ -18,7 +18,8 @@ impl FlatRegions {
     pub(super) fn join(
         &mut self,
         control: &Control<'_>,
-        (most, size): (f64, f64),
+        most: f64,
+        size: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<(), Cancelled> {
         let count = self.regions.len() as u32;
@@ -228,7 +229,7 @@ mod tests {
                 let planned = |face: u32| found.state.proven[face as usize].extent.bound;
                 let measured = measure(&sources, engine.watch, &faces, &look)?;
                 let topology = mesh.topology();
-                let is_beside = |face: &u32| {
+                let is_adjacent = |face: &u32| {
                     let corners = topology.triangles()[*face as usize].map(VertexId);
                     corners
                         .iter()
@@ -241,7 +242,7 @@ mod tests {
                     .iter()
                     .copied()
                     .filter(|&face| flat.region(face).is_some())
-                    .filter(is_beside);
+                    .filter(is_adjacent);
                 let (mut counted, mut assumed) = (0.0f64, 0.0f64);
                 for face in rims {
                     (counted, assumed) = (counted.max(worst(face)), assumed.max(planned(face)));

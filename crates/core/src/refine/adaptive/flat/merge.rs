@@ -1,5 +1,5 @@
-//! What becomes of flat regions: their rims are triangulated anew, and what that gives is checked against what was emitted there. The module `replace`
-//! puts it in the place of that.
+//! Triangulates the rims of flat regions anew and checks the result against the emitted triangles. The module `replace`
+//! replaces these by the result.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -24,7 +24,7 @@ pub(super) const SAME_AREA: f64 = 1e-9;
 /// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
 const MOST_ROUNDS: usize = 8;
 
-/// What is done with a region.
+/// The outcome for a region.
 enum Fate {
     /// Its triangles stay.
     Stays,
@@ -45,21 +45,22 @@ impl Fate {
 
 impl FlatRegions {
     /// Triangulates the regions and strips anew; gives how many of them were folded, too. `starts` has the first triangle of each control
-    /// face and one more, `sharp` the half-edges along sharp edges, and `corners` is the number of control vertices, which all stay. Notes
+    /// face and one more, `sharp` the half-edges along sharp edges. Control vertices stay. Notes
     /// regions that should have been triangulated and could not be.
     pub(in super::super) fn merge(
         &self,
         control: &Control<'_>,
         whole: Assembled,
-        (starts, sharp): (&[u32], &HashSet<u32>),
-        corners: usize,
+        starts: &[u32],
+        sharp: &HashSet<u32>,
         gaps: &mut RimGaps,
         watch: &SharedWatch<'_>,
     ) -> Result<(Assembled, usize), Cancelled> {
         if self.regions.is_empty() && self.straight.is_empty() {
             return Ok((whole, 0));
         }
-        let net = whole.net((starts, sharp), control.kept, corners);
+        let corners = control.mesh.vertex_count();
+        let net = whole.net(starts, sharp, control.kept, corners);
         let mut regions = self.regions(&net, watch)?;
         let coverings = self.coverings(control, &net, &mut regions, gaps, watch)?;
         if coverings.iter().all(Option::is_none) {
@@ -92,7 +93,7 @@ impl FlatRegions {
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
             let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
-                let fate = |region| self.fate(region, control, (net, regions), is_stopped);
+                let fate = |region| self.fate(region, control, net, regions, is_stopped);
                 block.map(fate).collect::<Vec<_>>()
             })?;
             let fates: Vec<Fate> = fates.into_iter().flatten().collect();
@@ -146,13 +147,14 @@ impl FlatRegions {
         region.flat.is_some_and(|flat| self.by_rim[flat as usize])
     }
 
-    /// What becomes of a region: its triangles give way if there can be fewer, if they are those of its rim alone, or if they fold and
+    /// The outcome for a region: its triangles give way if there can be fewer, if they are those of its rim alone, or if they fold and
     /// what is around them is asked for.
     fn fate(
         &self,
         region: usize,
         control: &Control<'_>,
-        (net, regions): (&Net<'_>, &Regions),
+        net: &Net<'_>,
+        regions: &Regions,
         is_stopped: &IsStopped<'_>,
     ) -> Fate {
         let own = &regions.list[region];
@@ -166,7 +168,7 @@ impl FlatRegions {
             return Fate::Stays;
         }
         let mut flat = Flattened::new(&own.plane, self.off_planes, net.positions);
-        let Some(outline) = Outline::of(own, net, regions, (&mut flat, is_stopped)) else {
+        let Some(outline) = Outline::of(own, net, regions, &mut flat, is_stopped) else {
             return if by_rim { Fate::Fails } else { Fate::Stays };
         };
         let has_turned = outline.has_turned
@@ -178,8 +180,11 @@ impl FlatRegions {
         }
         let is_wanted = by_rim || was_folded;
         let covering = Self::covering(
-            (outline, flat),
-            (before, is_wanted, was_folded),
+            outline,
+            flat,
+            before,
+            is_wanted,
+            was_folded,
             self.off_planes,
             is_stopped,
         );
@@ -190,10 +195,13 @@ impl FlatRegions {
         }
     }
 
-    /// What an outline encloses, triangulated, if that is what the triangles `before` cover, with fewer of them if it is not wanted in any case.
+    /// Triangulates the inside of an outline. `None` unless it has the area of the triangles `before`, and fewer triangles or `is_wanted`.
     fn covering(
-        (outline, mut flat): (Outline, Flattened<'_>),
-        (before, is_wanted, was_folded): (&[u32], bool, bool),
+        outline: Outline,
+        mut flat: Flattened<'_>,
+        before: &[u32],
+        is_wanted: bool,
+        was_folded: bool,
         off_planes: f64,
         is_stopped: &IsStopped<'_>,
     ) -> Option<Covering> {
@@ -231,11 +239,11 @@ impl FlatRegions {
 /// An edge on a rim, and the control face of its triangle.
 type RimEdge = ([u32; 2], u32);
 
-/// What is around a region.
+/// The rim of a region.
 struct Outline {
     /// The edges from vertices that stay.
     rim: Vec<RimEdge>,
-    /// What follows a vertex that need not.
+    /// The next vertex after each vertex that may be left out.
     after: HashMap<u32, u32>,
     /// Twice the area.
     area: f64,
@@ -251,7 +259,8 @@ impl Outline {
         own: &Region,
         net: &Net<'_>,
         regions: &Regions,
-        (flat, is_stopped): (&mut Flattened<'_>, &IsStopped<'_>),
+        flat: &mut Flattened<'_>,
+        is_stopped: &IsStopped<'_>,
     ) -> Option<Self> {
         let (rim, after) = (Vec::new(), HashMap::new());
         let mut found = Self {
@@ -385,7 +394,7 @@ fn without_shared_edges(
     Ok(coverings)
 }
 
-/// Gives each triangle a control face: that of a rim edge of its own, else that of a triangle beside it. `None` where one is
+/// Gives each triangle a control face: that of a rim edge of its own, else that of an adjacent triangle. `None` where one is
 /// reached from no rim.
 fn by_face(
     triangles: Vec<[u32; 3]>,
@@ -415,11 +424,11 @@ fn by_face(
             if along.contains_key(&[from, to]) {
                 continue;
             }
-            if let Some(&beside) = by_edge.get(&[to, from])
-                && faces[beside].is_none()
+            if let Some(&adjacent) = by_edge.get(&[to, from])
+                && faces[adjacent].is_none()
             {
-                faces[beside] = faces[at];
-                known.push(beside);
+                faces[adjacent] = faces[at];
+                known.push(adjacent);
             }
         }
     }

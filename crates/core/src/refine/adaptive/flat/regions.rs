@@ -26,13 +26,13 @@ pub(in super::super) struct FlatRegions {
     pub(super) regions: Vec<(Vec<u32>, Plane)>,
     /// The control faces over which there may be strips.
     pub(super) straight: Vec<u32>,
-    /// How far the surface, and so what stands for it, is off the planes at most.
+    /// How far the surface and its triangles are off the planes at most.
     pub(super) off_planes: f64,
     /// Whether regions are what their rims enclose, also where the surface folds.
     pub(super) unfolds: bool,
     /// By region, whether its triangles are judged by the rim alone.
     pub(super) by_rim: Vec<bool>,
-    /// By region, whether what its limit curves enclose is its surface, or stands for it where that folds; none unless that is asked for.
+    /// By region, whether what its limit curves enclose is its surface, or approximates it where that folds; none unless that is asked for.
     pub(super) is_enclosed: Vec<bool>,
     /// By region, the first of those with which it is judged together.
     pub(super) joined: Vec<u32>,
@@ -52,7 +52,7 @@ impl FlatRegions {
     }
 
     /// Whether nothing but its rim is certainly part of the surface over a face: its region is judged by that alone, or what the rim encloses
-    /// stands for it wherever that can be triangulated.
+    /// approximates it wherever that can be triangulated.
     pub(in super::super) fn is_within_rim(&self, face: u32) -> bool {
         self.is_its_rim(face)
             || self
@@ -79,7 +79,7 @@ impl FlatRegions {
         3.0 * self.off_planes + self.beyond_rims
     }
 
-    /// How far the surface, and what stands for it, is off the planes at most.
+    /// How far the surface and its triangles may be off the planes at most.
     pub(in super::super) fn off_planes(&self) -> f64 {
         self.off_planes
     }
@@ -89,7 +89,7 @@ impl FlatRegions {
         self.regions.is_empty() && self.straight.is_empty()
     }
 
-    /// Whether there may be strips, so that only what is emitted tells how many triangles stay.
+    /// Whether there may be strips, so that only the emitted triangles show how many stay.
     pub(in super::super) fn has_strips(&self) -> bool {
         !self.straight.is_empty()
     }

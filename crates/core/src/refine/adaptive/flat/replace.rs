@@ -1,4 +1,4 @@
-//! Puts the triangles that regions come to in the place of those that give way: all that belongs to triangles, half-edges and vertices is
+//! Replaces the triangles of regions by those of their triangulations: all that belongs to triangles, half-edges and vertices is
 //! numbered anew.
 
 use super::strips::{Net, Region};
@@ -12,11 +12,11 @@ use std::collections::{HashMap, HashSet};
 /// Triangles and half-edges that are numbered anew together: less than a millisecond.
 const RENAMED: usize = 1 << 14;
 
-/// What the emitted mesh consists of.
+/// The arrays of an emitted mesh.
 pub(in super::super) struct Assembled {
     pub(in super::super) positions: Vec<[f64; 3]>,
     pub(in super::super) normals: Vec<[f64; 3]>,
-    /// Empty where nobody asks for them.
+    /// Empty where they are not wanted.
     pub(in super::super) origins: Vec<Origin>,
     pub(in super::super) triangles: Vec<[u32; 3]>,
     pub(in super::super) twins: Vec<u32>,
@@ -30,7 +30,8 @@ pub(in super::super) struct Assembled {
 impl Assembled {
     pub(super) fn net<'a>(
         &'a self,
-        (starts, sharp): (&'a [u32], &'a HashSet<u32>),
+        starts: &'a [u32],
+        sharp: &'a HashSet<u32>,
         kept: &'a KeptFaces,
         corners: usize,
     ) -> Net<'a> {
@@ -54,7 +55,7 @@ impl Assembled {
     }
 }
 
-/// What a region's rim encloses.
+/// A region's new triangles.
 pub(super) struct Covering {
     /// Triangles with their control faces, by control face.
     pub(super) triangles: Vec<([u32; 3], u32)>,
@@ -224,7 +225,7 @@ impl Merged<'_> {
         Ok(found)
     }
 
-    /// What is beyond the new half-edges along rims, where somebody is.
+    /// New half-edges along rims, each with its twin where it has one.
     fn rims(
         &self,
         numbers: &Numbers<'_>,
@@ -379,11 +380,11 @@ struct Fresh {
     region: u32,
 }
 
-/// What stands in an array in the end.
+/// A step that writes an array.
 enum Step {
-    /// What stood there.
+    /// Copies these elements of the old array.
     Keep(core::ops::Range<u32>),
-    /// So many new ones.
+    /// Adds so many new elements.
     Add(u32),
 }
 
@@ -503,7 +504,9 @@ impl Numbers<'_> {
         let shares = (0..faces).step_by(share).map(|first| {
             let faces = first..(first + share).min(faces);
             let count = 3 * (self.starts[faces.end] - self.starts[faces.start]) as usize;
-            (faces, twins.split_off_mut(..count).unwrap_or_default())
+            let (own, rest) = core::mem::take(&mut twins).split_at_mut(count);
+            twins = rest;
+            (faces, own)
         });
         let shares: Vec<_> = shares.collect();
         parallel::each_long_polled(
@@ -514,7 +517,8 @@ impl Numbers<'_> {
                     let own = 3 * self.starts[face]..3 * self.starts[face + 1];
                     let now = self.exchange.starts[face];
                     let moved = (now != NONE).then(|| (3 * now).wrapping_sub(own.start));
-                    let of_face = twins.split_off_mut(..own.len()).unwrap_or_default();
+                    let (of_face, rest) = core::mem::take(&mut twins).split_at_mut(own.len());
+                    twins = rest;
                     for twins in of_face.chunks_mut(RENAMED) {
                         twins.iter_mut().for_each(|twin| match moved {
                             Some(by) if own.contains(twin) => *twin = twin.wrapping_add(by),

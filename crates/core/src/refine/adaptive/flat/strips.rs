@@ -6,7 +6,7 @@
 //! are off ([`FlatRegions::off_planes`]).
 //!
 //! Only control faces over which the surface may go on in one direction all alike are looked at: regular pieces of which a derivative is the
-//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces beside creases whose vertices
+//! same everywhere, as over the quadrilaterals of an extruded profile, each two faces in one plane; and pieces at creases whose vertices
 //! are irregular, as where the quadrilaterals are cut now this way and now that.
 
 use limitmesh_pages::filled;
@@ -27,12 +27,12 @@ use std::collections::{HashMap, HashSet};
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
 
-/// Triangles are looked at where one beside them is so many times as far off their plane as it may be: that of a sliver is not known well.
+/// A triangle is looked at where an adjacent one is so many times as far off its plane as it may be: the plane of a sliver is not known well.
 const NEARLY: f64 = 1024.0;
 
 /// Where the coefficients of a regular piece's derivative along an edge, a quarter of them, are within a distance of the first, the vertex opposite
 /// that edge is within half of so many times this distance of the middle between the vertices beyond the two other edges: the second
-/// difference of these three is a sum of differences from the first, with weights that together come to 24. A third more for rounding.
+/// difference of these three is a sum of differences from the first, with weights whose sum is 24. A third more for rounding.
 const BENT: f64 = 32.0;
 
 /// Fewer triangles than this are not put together.
@@ -180,7 +180,7 @@ pub(super) fn straight_faces(
         flat.get(face as usize)
             .is_some_and(|&region| region != NONE)
     };
-    let is_beside_its_like = |face: u32| {
+    let has_a_like_neighbour = |face: u32| {
         let first = mesh.triangles()[face as usize][0];
         let plane = Plane {
             point: vector(mesh.positions()[first as usize]),
@@ -192,7 +192,7 @@ pub(super) fn straight_faces(
                 let twin = control
                     .edges
                     .twin(h)
-                    .filter(|_| control.lasting.edge(HalfEdgeId(h)) <= 0.0);
+                    .filter(|_| control.infinitely_sharp.edge(HalfEdgeId(h)) <= 0.0);
                 twin.is_some_and(|twin| {
                     !is_flat(twin / 3)
                         && plane.height(control.opposite(twin)).abs() <= most
@@ -203,14 +203,14 @@ pub(super) fn straight_faces(
     let found = watch.pieces(mesh.face_count(), super::BLOCK, |block| {
         let faces = block.map(|face| face as u32);
         faces
-            .filter(|&face| is_beside_its_like(face) && may_have_direction(control, face, most))
+            .filter(|&face| has_a_like_neighbour(face) && may_have_direction(control, face, most))
             .filter(|&face| has_direction(control, face, most))
             .collect::<Vec<u32>>()
     })?;
     Ok(found.concat())
 }
 
-/// Whether the surface over a face may be straight in a direction, as far as the vertices beside it tell ([`BENT`]).
+/// Whether the surface over a face may be straight in a direction, by its adjacent vertices ([`BENT`]).
 fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     let Control {
         mesh, sharpness, ..
@@ -221,14 +221,15 @@ fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     if corners.iter().any(|&vertex| is_edged(VertexId(vertex))) {
         return true;
     }
-    let beside = [0, 1, 2].map(|edge| {
+    let adjacent = [0, 1, 2].map(|edge| {
         control
             .edges
             .twin(3 * face + edge)
             .map(|twin| control.opposite(twin))
     });
     (0..3).any(|edge| {
-        let (Some(before), Some(after)) = (beside[(edge + 1) % 3], beside[(edge + 2) % 3]) else {
+        let (Some(before), Some(after)) = (adjacent[(edge + 1) % 3], adjacent[(edge + 2) % 3])
+        else {
             return true;
         };
         let middle = vector(mesh.positions()[corners[(edge + 2) % 3] as usize]);
@@ -237,7 +238,7 @@ fn may_have_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
 }
 
 /// Whether the surface over a face is a regular piece that has the same derivative everywhere along one of the face's edges, or may be
-/// straight beside creases whose vertices are irregular.
+/// straight at creases whose vertices are irregular.
 fn has_direction(control: &Control<'_>, face: u32, most: f64) -> bool {
     let points = match control.patch(face) {
         Patch::Regular(points) => points,
@@ -288,7 +289,7 @@ impl FlatRegions {
         Ok(regions)
     }
 
-    /// Triangles that these come to once they are put together, less than there are.
+    /// How many triangles fewer there are once these are joined.
     pub(in super::super) fn saved(
         &self,
         net: &Net<'_>,

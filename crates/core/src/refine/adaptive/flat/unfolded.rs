@@ -92,7 +92,7 @@ pub(super) fn height_over(
     plane: &Plane,
     most: f64,
 ) -> Option<f64> {
-    // Nearly all faces are told apart by the vertices around them, which are among the control points.
+    // The vertices around a face, which are among its control points, decide nearly all faces.
     let open = control.open(face);
     let is_off = |h: u32| {
         let twin = control.edges.twin(h).filter(|_| !open[h as usize % 3]);

@@ -70,7 +70,7 @@ impl Measuring<'_> {
         };
     }
 
-    /// Puts a triangle and those beside it at a place among four; `false` if it has an edge without a neighbour.
+    /// Puts a triangle and the adjacent ones at a place among four; `false` if it has an edge without a neighbour.
     #[inline]
     fn gather(&self, number: usize, at: usize, four: &mut MovedFour) -> bool {
         let emission = self.emission;

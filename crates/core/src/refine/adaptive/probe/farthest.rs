@@ -1,14 +1,14 @@
 //! The points of the surface that are likely to be farthest from the mesh: what lower bounds are found with.
 //!
-//! What was said of leaves is of no use here: neighbours may have had them split since, so that vertices of the mesh lie where the
+//! Heights over leaves are of no use here: neighbours may have had leaves split since, so that vertices of the mesh lie where the
 //! surface stood highest over them.
 
 use core::ops::Range;
 
 use super::super::divide::child_open;
 use super::super::emit::Emission;
-use super::super::emitted::{Beholder, Emitted, Over, Sources};
-use super::super::quadtree::Place;
+use super::super::emitted::{Emitted, Over, Sources, TriangleVisitor};
+use super::super::quadtree::NodeAddress;
 use super::super::surface::Surface;
 use crate::certificate::TriangleFrame;
 use crate::geometry::nearer;
@@ -28,7 +28,7 @@ const LOOKED_AT: usize = 1 << 14;
 pub(super) fn farthest(
     sources: &Sources<'_>,
     face: u32,
-    leaf: Option<Place>,
+    leaf: Option<NodeAddress>,
     is_stopped: &IsStopped<'_>,
 ) -> Vec<DVec3> {
     let Sources {
@@ -42,7 +42,7 @@ pub(super) fn farthest(
                 Some(place) => Wanted::Leaf(place),
                 None => Wanted::LeafOf(most_bent(emission, face, is_stopped)),
             };
-            let place = Place::root(face);
+            let place = NodeAddress::root(face);
             let mut found = Finder {
                 wanted,
                 is_found: false,
@@ -90,7 +90,7 @@ pub(super) fn farthest(
         let most = farthest.map_or(-1.0, |(squared, _)| squared);
         let mut least = f64::INFINITY;
         for corners in &triangles {
-            // One that is near enough tells that the point is not the farthest.
+            // If one is near enough, the point is not the farthest.
             if least <= most {
                 break;
             }
@@ -163,7 +163,7 @@ fn most_bent(emission: &Emission, face: u32, is_stopped: &IsStopped<'_>) -> u32 
 /// Which leaf is looked for.
 #[derive(Clone, Copy)]
 enum Wanted {
-    Leaf(Place),
+    Leaf(NodeAddress),
     /// That of a triangle.
     LeafOf(u32),
 }
@@ -173,12 +173,12 @@ struct Finder {
     wanted: Wanted,
     is_found: bool,
     /// The leaf at hand, or that one.
-    place: Place,
+    place: NodeAddress,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Beholder for Finder {
-    fn wants(&self, node: Place, triangles: Range<u32>) -> bool {
+impl TriangleVisitor for Finder {
+    fn wants(&self, node: NodeAddress, triangles: Range<u32>) -> bool {
         match self.wanted {
             Wanted::Leaf(leaf) => node.holds(leaf),
             Wanted::LeafOf(triangle) => triangles.contains(&triangle),
@@ -210,15 +210,15 @@ mod tests {
     use crate::refine::ExactOptions;
 
     /// All triangles with their leaves.
-    struct Listing(Vec<(u32, Place)>);
+    struct Listing(Vec<(u32, NodeAddress)>);
 
-    impl Beholder for Listing {
+    impl TriangleVisitor for Listing {
         fn triangle<'p>(&mut self, emitted: &Emitted, _: Over<'_, 'p>, _: &'p Rules<'p>) {
             self.0.push((emitted.number, emitted.place));
         }
     }
 
-    /// Nodes that are passed over take nothing with them: what is found is what a list of all tells.
+    /// Nodes that are skipped hold no farther point: the result is that of a list of all.
     #[test]
     fn the_leaf_of_a_triangle_is_found_with_all_of_its_triangles() {
         let mut found_in_parts = 0;
@@ -247,7 +247,7 @@ mod tests {
                             .map(|&(number, _)| emission.triangles[number as usize])
                             .collect();
                         for wanted in [Wanted::Leaf(leaf), Wanted::LeafOf(number)] {
-                            let place = Place::root(face);
+                            let place = NodeAddress::root(face);
                             let mut found = Finder {
                                 wanted,
                                 is_found: false,

@@ -53,7 +53,7 @@ impl<'a> Nearest<'a> {
         })
     }
 
-    /// The distance of a point to the mesh, or more where nobody needs it any more; `face` is likely to be nearest.
+    /// The distance of a point to the mesh, or more where it is no longer needed; `face` is likely to be nearest.
     pub(super) fn distance(&self, point: DVec3, face: u32, is_stopped: &IsStopped<'_>) -> f64 {
         let mut least = f64::INFINITY;
         self.within(face, point, &mut least, is_stopped);

@@ -1,4 +1,4 @@
-//! What was not looked at again, and what was proven by assumption, holds when all triangles are measured in the end.
+//! Bounds that were kept, and bounds that were proven by assumption, hold when all triangles are measured in the end.
 
 use super::super::measured::Measured;
 use super::super::with_engine;
@@ -7,9 +7,9 @@ use crate::models::{book, stirred};
 use crate::refine::{ExactOptions, Finish};
 
 /// A leaf by its path below its control face.
-fn leaf(path: &[usize]) -> Place {
+fn leaf(path: &[usize]) -> NodeAddress {
     path.iter()
-        .fold(Place::root(0), |place, &child| place.child(child))
+        .fold(NodeAddress::root(0), |place, &child| place.child(child))
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn leaves_at_corners_are_distinguished_from_others() {
 /// Bounds of pieces at irregular vertices depend on when the search for them ends.
 const MEASURED_OTHERWISE: f64 = 1.05;
 
-/// What was found holds what is found with all measured anew; what is kept of parts is rounded.
+/// The bounds hold those of a new measurement of all triangles; kept parts are rounded.
 fn assert_holds(state: &State, anew: &[Measured], is_trusting: bool, name: &str) {
     for (face, anew) in (0..).zip(anew) {
         let found = &state.measured[face as usize];

@@ -1,11 +1,11 @@
-//! Faces over which the surface is straight are among those that the vertices beside them let through.
+//! The test by adjacent vertices lets all faces through over which the surface is straight.
 
 use super::*;
 use crate::models::stirred;
 use crate::refine::ExactOptions;
 use crate::refine::adaptive::with_engine;
 
-/// For each face the least distance within which its derivative along an edge is one, by halving what [`has_direction`] tells of the whole
+/// For each face the least distance within which its derivative along an edge is one, by halving what [`has_direction`] reports of the whole
 /// net, lets it through; a much lesser one does not let through all.
 #[test]
 fn what_has_a_direction_may_have_one() {
