@@ -55,44 +55,24 @@ pub mod carry;
 mod certificate;
 pub mod closure;
 pub mod criterion;
-mod facing;
 pub mod front;
-mod geometry;
 pub mod guide;
-pub mod index;
-pub mod interpolate;
-pub mod limit;
-mod limit_surface;
-mod masks;
-pub mod measure;
-pub mod mesh;
-#[cfg(test)]
-mod models;
 mod node;
-mod options;
-mod parallel;
 pub mod part;
-mod patch;
-pub mod progress;
-mod proximity;
-#[cfg(test)]
-mod random;
-mod rays;
 pub mod refine;
-pub mod ring;
-pub mod scheme;
-pub mod simplify;
 pub mod sqrt3;
-mod vector;
 
-pub use facing::{Facing, NormalCone};
-pub use index::{FaceId, HalfEdgeId, VertexId};
-pub use limit_surface::{
-    BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,
+use limitmesh_mesh::{geometry, options, parallel, vector};
+pub use limitmesh_mesh::{index, measure, mesh, progress, ring, simplify};
+use limitmesh_surface::{facing, limit_surface, masks, patch};
+pub use limitmesh_surface::{interpolate, limit, scheme};
+
+pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};
+pub use limitmesh_surface::{
+    BarycentricError, Closest, Crossing, Curvature, Derivatives, Facing, Hit, LimitSurface,
+    Membership, NormalCone, Proximity, ProximityError, Ray, RayCaster, RayError, RayOptions,
+    SurfacePoint, barycentric,
 };
-pub use mesh::{Mesh, PolygonSoup, Triangles};
-pub use proximity::{Closest, Membership, Proximity, ProximityError};
-pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};
 
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]

@@ -16,7 +16,7 @@ mod shoe;
 #[cfg(test)]
 mod tests;
 
-use limitmesh::PolygonSoup;
+use limitmesh_mesh::PolygonSoup;
 
 /// A built-in model.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 
 use super::sculpt::Surface;
 use glam::DVec3;
-use limitmesh::PolygonSoup;
-use limitmesh::mesh::PolygonFaces;
+use limitmesh_mesh::PolygonSoup;
+use limitmesh_mesh::mesh::PolygonFaces;
 
 /// Regular, 4 triangles, on the unit sphere; the smallest closed mesh, all valences 3.
 pub(super) fn tetrahedron() -> PolygonSoup {

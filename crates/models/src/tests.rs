@@ -3,8 +3,8 @@
 use std::sync::OnceLock;
 
 use super::{all, find};
-use limitmesh::Mesh;
-use limitmesh::mesh::BuildOptions;
+use limitmesh_mesh::Mesh;
+use limitmesh_mesh::mesh::BuildOptions;
 
 /// What is promised of a model.
 struct Promise {
@@ -134,7 +134,7 @@ fn volume(mesh: &Mesh) -> f64 {
         let [a, b, c] = mesh.as_triangles().corners(face);
         sixfold += dot(a, cross(b, c));
     }
-    let position = |v: limitmesh::VertexId| mesh.positions()[v.index()];
+    let position = |v: limitmesh_mesh::VertexId| mesh.positions()[v.index()];
     let rim: Vec<_> = topology
         .half_edges()
         .filter(|&h| topology.twin(h).is_none())
@@ -205,7 +205,7 @@ fn triangles_are_well_shaped_and_look_outwards() {
                 .triangles()
                 .iter()
                 .enumerate()
-                .map(|(face, _)| mesh.face_normal(limitmesh::FaceId(face as u32))[1])
+                .map(|(face, _)| mesh.face_normal(limitmesh_mesh::FaceId(face as u32))[1])
                 .sum();
             assert!(up > 0.0);
         } else {
@@ -236,7 +236,7 @@ fn sizes_are_about_one() {
 fn repeated_generation_gives_the_same_bits() {
     for model in all() {
         let (first, second) = (model.soup(), model.soup());
-        let bits = |soup: &limitmesh::PolygonSoup| -> Vec<u64> {
+        let bits = |soup: &limitmesh_mesh::PolygonSoup| -> Vec<u64> {
             soup.positions
                 .as_flattened()
                 .iter()

@@ -90,22 +90,14 @@ fn one(
             .iter()
             .map(|&face| channel.indices[face as usize])
             .collect();
-        return Ok(Channel {
-            indices,
-            ..channel.clone()
-        });
+        let mut by_face = channel.clone();
+        by_face.indices = indices;
+        return Ok(by_face);
     }
     if channel.is_constant() {
-        let indices = vec![0; places.corners().len()];
-        let one = Channel {
-            values: channel.value(0).to_vec(),
-            indices,
-            ..channel.clone()
-        };
-        return Ok(Channel {
-            domain: Domain::Corner,
-            ..one
-        });
+        let mut by_corner = channel.clone();
+        by_corner.domain = Domain::Corner;
+        return Ok(by_corner.with(channel.value(0).to_vec(), vec![0; places.corners().len()]));
     }
     let by_corner = by_corner(channel, control);
     match by_corner.interpolation {
@@ -113,20 +105,12 @@ fn one(
         Interpolation::Linear => {
             let sites = Sites::of(&by_corner, places)?;
             let values = linear(&by_corner, &sites);
-            Ok(Channel {
-                indices: sites.indices,
-                values,
-                ..by_corner
-            })
+            Ok(by_corner.with(values, sites.indices))
         }
         Interpolation::Smooth(rule) => {
             let sites = Sites::of(&by_corner, places)?;
             let values = smooth(&by_corner, rule, control, scheme, &sites)?;
-            Ok(Channel {
-                indices: sites.indices,
-                values,
-                ..by_corner
-            })
+            Ok(by_corner.with(values, sites.indices))
         }
     }
 }
@@ -162,25 +146,17 @@ pub fn goal(
 
 /// A channel of vertices as one of corners.
 fn by_corner(channel: &Channel, control: &Mesh) -> Channel {
-    match channel.domain {
-        Domain::Vertex => {
-            let vertices = control.triangles().as_flattened();
-            let indices = vertices
-                .iter()
-                .map(|&vertex| channel.indices[vertex as usize])
-                .collect();
-            Channel {
-                indices,
-                domain: Domain::Corner,
-                ..channel.clone()
-            }
-        }
-        _ => channel.clone(),
+    let mut by_corner = channel.clone();
+    if channel.domain == Domain::Vertex {
+        let vertices = control.triangles().as_flattened().iter();
+        by_corner.domain = Domain::Corner;
+        by_corner.indices = vertices.map(|&v| channel.indices[v as usize]).collect();
     }
+    by_corner
 }
 
 /// Each corner has the value of the nearest corner of its control face, the first of those that are as near.
-fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelError> {
+fn nearest(mut channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelError> {
     let of_corner = |corner: usize| {
         let Origin { face, barycentric } = places.known_place(corner)?;
         let mut first = 0;
@@ -191,10 +167,10 @@ fn nearest(channel: Channel, places: &Places<'_>) -> Result<Channel, ChannelErro
         }
         Ok(channel.indices[3 * face as usize + first])
     };
-    let indices = (0..places.corners().len())
+    channel.indices = (0..places.corners().len())
         .map(of_corner)
         .collect::<Result<_, _>>()?;
-    Ok(Channel { indices, ..channel })
+    Ok(channel)
 }
 
 /// Values on the plane of the control faces.

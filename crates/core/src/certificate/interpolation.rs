@@ -9,6 +9,8 @@
 use super::greater;
 use super::net_part::NetPart;
 use super::sub_triangle::SubTriangle;
+use crate::index::FaceId;
+use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::{Patch, Rules, child_corners};
 use crate::vector::DVec3;
@@ -33,6 +35,16 @@ pub(crate) struct ParamPatch {
 }
 
 impl ParamPatch {
+    /// The surface over a control face, and the rules by which it is refined.
+    pub(crate) fn over<'s, 'a>(
+        surface: &'s LimitSurface<'a>,
+        face: FaceId,
+    ) -> (Self, &'s Rules<'a>) {
+        let corners = surface.corner_positions(face);
+        let patch = surface.patch(face);
+        (Self { patch, corners }, surface.rules())
+    }
+
     /// The bounds over the four parts.
     pub(crate) fn children(&self, rules: &Rules<'_>) -> [Self; 4] {
         let refined = self.patch.refined(rules);

@@ -116,7 +116,7 @@ impl LimitNormal {
 mod tests {
     use super::*;
     use crate::criterion::Viewpoint;
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     fn region(random: &mut Random) -> Region {
         let (centre, axis) = (random.signed() * random.direction(), random.direction());

@@ -14,6 +14,7 @@ mod pixels;
 mod region;
 mod view;
 
+pub use crate::facing::Viewpoint;
 pub use cone::LimitNormal;
 pub(crate) use cone::ratio as cone_ratio;
 pub(crate) use criteria::{Apart, Criteria};
@@ -22,7 +23,7 @@ pub use neighbour::NeighbourNormal;
 pub use pixels::Camera;
 pub(crate) use pixels::{Backs, Lens, Pixels};
 pub(crate) use region::Region;
-pub use view::{AngleLimit, View, Viewpoint};
+pub use view::{AngleLimit, View};
 
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::Mesh;

@@ -388,7 +388,7 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     fn camera(random: &mut Random) -> Camera {
         let eye = 3.0 * random.vector();

@@ -4,16 +4,8 @@ use core::f64::consts::PI;
 
 use super::region::{cosine_of, sum_of_angles};
 use super::{CriterionError, Region};
+use crate::facing::Viewpoint;
 use crate::vector::{DVec3, unit_or_zero, vector};
-
-/// The position of the viewer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Viewpoint {
-    /// Parallel projection: the direction of sight `N_view`, from the viewer into the scene; any length but 0.
-    Direction([f64; 3]),
-    /// Perspective: the eye point; each face has the direction from the eye to its centroid.
-    Eye([f64; 3]),
-}
 
 /// A view, and the additional tolerance of faces towards the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -156,7 +156,7 @@ impl Agenda {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     #[test]
     fn a_ladder_gives_what_is_between() {

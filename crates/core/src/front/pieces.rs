@@ -108,7 +108,7 @@ impl<'a> Pieces<'a> {
     }
 
     fn control_sampled(&self, face: u32) -> Sampled {
-        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        let (sheet, rules) = ParamPatch::over(&self.surface, FaceId(face));
         Sampled::of(sheet.patch, self.surface.corner_points(FaceId(face)), rules)
     }
 
@@ -117,7 +117,7 @@ impl<'a> Pieces<'a> {
         if self.measure != Measure::Distance {
             return self.control_sampled(face).value(self.measure);
         }
-        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        let (sheet, rules) = ParamPatch::over(&self.surface, FaceId(face));
         match &sheet.patch {
             Patch::Regular(points) => SecondDerivatives::of(&quartic(points))
                 .off_triangles(ParamTriangle::WHOLE.corners(), 1.0),
@@ -143,7 +143,7 @@ impl<'a> Pieces<'a> {
             let own = self.control_sampled(face);
             return PieceRef::Sampled(self.sampled.put(Box::new(own)));
         }
-        let (sheet, rules) = self.surface.sheet(FaceId(face));
+        let (sheet, rules) = ParamPatch::over(&self.surface, FaceId(face));
         match &sheet.patch {
             Patch::Regular(points) => PieceRef::Regular(
                 self.regular.put(Box::new(quartic(points))),
@@ -222,7 +222,7 @@ impl<'a> Pieces<'a> {
     pub(super) fn middle(&self, piece: Option<PieceRef>, face: u32, edge: usize) -> DVec3 {
         match piece {
             None => {
-                let (sheet, rules) = self.surface.sheet(FaceId(face));
+                let (sheet, rules) = ParamPatch::over(&self.surface, FaceId(face));
                 match &sheet.patch {
                     Patch::Regular(points) if self.measure == Measure::Distance => {
                         at(&quartic(points), ParamTriangle::WHOLE.along(edge, 0.5))

@@ -10,7 +10,7 @@ use crate::measure::{
     Bvh, CertifiedHausdorff, CertifiedOptions, certified_hausdorff_between_observed,
 };
 use crate::mesh::{Mesh, MeshError, Triangles};
-use crate::options::options;
+use crate::options;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;
 

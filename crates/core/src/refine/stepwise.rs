@@ -8,7 +8,7 @@ use crate::criterion::Criterion;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::limit::LimitTable;
 use crate::mesh::Mesh;
-use crate::options::options;
+use crate::options;
 use crate::parallel;
 use crate::progress::{Observer, unobserved};
 use crate::scheme::Scheme;

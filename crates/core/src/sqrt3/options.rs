@@ -1,7 +1,7 @@
 //! The options of adaptive √3-subdivision.
 
 use crate::mesh::MeshError;
-use crate::options::options;
+use crate::options;
 use crate::refine::RefineError;
 
 /// Steps that a control face can be divided by at most.

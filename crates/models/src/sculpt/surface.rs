@@ -1,8 +1,8 @@
 //! The triangle surface that the sculpting steps hand on: positions, triangles, and who touches whom.
 
 use glam::DVec3;
-use limitmesh::PolygonSoup;
-use limitmesh::mesh::PolygonFaces;
+use limitmesh_mesh::PolygonSoup;
+use limitmesh_mesh::mesh::PolygonFaces;
 
 /// Triangles over positions, consistently oriented. Vertices with x = 0 exactly lie in the mirror plane.
 #[derive(Clone, Debug, Default)]

@@ -6,7 +6,7 @@ use super::field::{at, ball, blade, difference, ellipsoid, limb, rod, union};
 use super::polish::{polish, project};
 use super::{Grid, Surface, mirrored_with_limit_through, sculpt};
 use glam::DVec3;
-use limitmesh::Mesh;
+use limitmesh_mesh::Mesh;
 
 const RADIUS: f64 = 0.7;
 

@@ -5,7 +5,7 @@ use super::*;
 use crate::certificate::{Cell, TriangleFrame, around};
 use crate::patch::Quartic;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::random::Random;
+use limitmesh_testing::Random;
 
 /// A piece whose points are a triangle's, stirred and bent, in a unit of its own.
 fn piece(random: &mut Random, noise: f64, unit: f64) -> Quartic {

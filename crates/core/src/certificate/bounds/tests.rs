@@ -4,8 +4,8 @@ use super::*;
 use crate::certificate::exceeds;
 use crate::patch::characteristic::Characteristic;
 use crate::patch::extraordinary::ExtraordinaryPatch;
-use crate::random::Random;
 use crate::scheme::Loop;
+use limitmesh_testing::Random;
 
 /// A face with one irregular corner: the characteristic map, sheared, stirred and bent.
 fn piece(random: &mut Random, valence: usize, noise: f64) -> ExtraordinaryPatch {

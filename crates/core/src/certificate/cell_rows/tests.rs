@@ -3,7 +3,7 @@
 use super::*;
 use crate::certificate::TriangleFrame;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::random::Random;
+use limitmesh_testing::Random;
 
 /// A bent piece over a sheared triangle.
 fn piece(random: &mut Random, noise: f64) -> Quartic {

@@ -3,7 +3,7 @@
 use super::heights::halved;
 use super::*;
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::random::Random;
+use limitmesh_testing::Random;
 
 /// A piece whose points are the unit triangle's, stirred and bent.
 fn piece(random: &mut Random, noise: f64) -> Quartic {

@@ -178,18 +178,9 @@ fn ensure_along(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Mesh;
-    use crate::random::Random;
     use crate::refine::adaptive::quadtree::{LEAF, Piece, is_split};
-
-    fn model(name: &str) -> Mesh {
-        Mesh::from_soup(
-            &crate::models::find(name).unwrap().soup(),
-            &Default::default(),
-        )
-        .unwrap()
-        .0
-    }
+    use limitmesh_testing::Random;
+    use limitmesh_testing::models::model;
 
     /// The places of all leaves.
     fn leaves(trees: &Trees, word: u32, place: NodeAddress, found: &mut Vec<NodeAddress>) {

@@ -272,7 +272,7 @@ impl<'a> Functions<'a> {
         let of_goal = |goal: &Goal<'a>| {
             goal.surfaces
                 .iter()
-                .map(|surface| surface.sheet(face))
+                .map(|surface| ParamPatch::over(surface, face))
                 .collect()
         };
         self.goals.iter().map(of_goal).collect()

@@ -199,7 +199,7 @@ impl Apart<'_> {
                 failing: Vec::new(),
             };
             for face in block {
-                let (sheet, rules) = self.surface.sheet(FaceId(face as u32));
+                let (sheet, rules) = ParamPatch::over(self.surface, FaceId(face as u32));
                 let mut looking = Looking {
                     rules,
                     triangles,

@@ -408,7 +408,7 @@ pub(super) fn rounding(
 mod tests {
     use super::*;
     use crate::progress::{Stage, unobserved};
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     /// The result is that of sorting all of them, equal ones by their places.
     #[test]

@@ -50,7 +50,7 @@ use super::{Exact, ExactOptions, RefineError, exact_observed, is_certified};
 use crate::geometry::closest_to_origin;
 use crate::interpolate::NearVertices;
 use crate::mesh::{FaceParts, Mesh, MeshError};
-use crate::options::options;
+use crate::options;
 use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, Observer, Stage, Watch, unobserved};
 use crate::scheme::Scheme;

@@ -4,8 +4,8 @@
 use super::*;
 use crate::certificate::TriangleFrame;
 use crate::certificate::quartic_cell::quadratic_height;
-use crate::random::Random;
 use crate::vector::DVec3;
+use limitmesh_testing::Random;
 
 /// A part: its corners, the limit normals there, and the second derivatives along its edges.
 struct Part {

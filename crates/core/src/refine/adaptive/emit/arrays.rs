@@ -242,7 +242,7 @@ fn rearrange<T: Copy>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     /// Against a copy.
     #[test]

@@ -561,7 +561,7 @@ fn keep<T>(of_vertices: &mut Vec<T>, renamed: &[u32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
+    use limitmesh_testing::Random;
 
     /// Where more comes than goes, too.
     #[test]

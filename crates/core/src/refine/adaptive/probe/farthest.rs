@@ -206,8 +206,8 @@ mod tests {
     use super::super::super::judge::Goal;
     use super::super::super::with_engine;
     use super::*;
-    use crate::models::stirred;
     use crate::refine::ExactOptions;
+    use limitmesh_testing::models::stirred;
 
     /// All triangles with their leaves.
     struct Listing(Vec<(u32, NodeAddress)>);

@@ -3,8 +3,8 @@
 use super::super::measured::Measured;
 use super::super::with_engine;
 use super::*;
-use crate::models::{book, stirred};
 use crate::refine::{ExactOptions, Finish};
+use limitmesh_testing::models::{book, stirred};
 
 /// A leaf by its path below its control face.
 fn leaf(path: &[usize]) -> NodeAddress {

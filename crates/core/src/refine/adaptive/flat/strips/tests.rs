@@ -1,9 +1,9 @@
 //! The test by adjacent vertices lets all faces through over which the surface is straight.
 
 use super::*;
-use crate::models::stirred;
 use crate::refine::ExactOptions;
 use crate::refine::adaptive::with_engine;
+use limitmesh_testing::models::stirred;
 
 /// For each face the least distance within which its derivative along an edge is one, by halving what [`has_direction`] reports of the whole
 /// net, lets it through; a much lesser one does not let through all.
