@@ -305,7 +305,7 @@ pub(crate) fn interpolate_but(
         method,
         iterations: moved.steps,
         residual,
-        relaxed: relaxed,
+        relaxed,
         displacement,
         most_displaced,
         fairness: moved.energies.map(|energies| energies.fairness()),

@@ -128,7 +128,7 @@ fn is_soon_known(plain: Task<'_>, count: usize) -> bool {
 }
 
 /// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are
-/// merged afterwards nobody can.
+/// merged afterwards that is not known before.
 fn needs_more(
     task: Task<'_>,
     count: usize,
