@@ -467,10 +467,8 @@ impl<'a> Forest<'a> {
             let extent = &mut self.extents[child as usize];
             extent.stamp = extent.stamp.wrapping_add(1);
         }
-        if is_root {
-            if let Some(piece) = self.node_mut(node).piece.take() {
-                self.pieces.give_back(piece);
-            }
+        if is_root && let Some(piece) = self.node_mut(node).piece.take() {
+            self.pieces.give_back(piece);
         }
         self.free.push(first);
         for edge in 0..3u8 {

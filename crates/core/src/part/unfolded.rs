@@ -33,7 +33,7 @@ const TOLERANCE: f64 = 1e-3;
 const ALIKE: f64 = 1e-3;
 const IN_PLANE: f64 = 2e-7;
 
-/// Triangles beside whose share of their face this part is turned over are flat to rounding.
+/// A triangle whose area against the normal is no more than this part of its share of the face is flat to rounding.
 const ROUNDING: f64 = 1e-7;
 
 /// Why there are no control points.

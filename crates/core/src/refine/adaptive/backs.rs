@@ -27,12 +27,6 @@ use crate::patch::{LimitPoint, ParamTriangle, Patch, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// The rounding error of a place's height over a triangle's plane, as a part of the product of the lengths.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Control faces times viewers for which that is kept: where there are more, leaves are looked at one by one.
-const MOST_KEPT: usize = 1 << 23;
-
 impl BackFaces {
     /// Where vertices move, only faces that face away all over: it is not known how far a control face's corners move.
     pub(super) fn of(
@@ -45,7 +39,8 @@ impl BackFaces {
         };
         let viewers = criteria.viewers();
         let faces = control.mesh.face_count();
-        if viewers == 0 || faces > MOST_KEPT / viewers || !control.rules.is_certified() {
+        // Where there are more control faces times viewers, leaves are looked at one by one.
+        if viewers == 0 || faces > (1 << 23) / viewers || !control.rules.is_certified() {
             return Ok(Self::default());
         }
         let nobody = Self::default();
@@ -175,7 +170,9 @@ fn shows_front(points: &[LimitPoint], viewpoint: &Viewpoint) -> bool {
 pub(super) fn shows_back(&[a, b, c]: &[DVec3; 3], viewpoint: &Viewpoint) -> bool {
     let (along, across) = (b - a, c - a);
     let sight = -towards(viewpoint, a);
-    sight.dot(along.cross(across)) > ROUNDING * along.length() * across.length() * sight.length()
+    // Rounding changes this by no more than 16 units in the last place of the product of the lengths.
+    sight.dot(along.cross(across))
+        > 16.0 * f64::EPSILON * along.length() * across.length() * sight.length()
 }
 
 /// A vector from a point towards the viewer.

@@ -9,9 +9,6 @@ use std::collections::HashSet;
 use super::quadtree::{Along, Beyond, Edges, NodeAddress, Trees, beyond, even_depth};
 use crate::progress::Cancelled;
 
-/// Nodes between two calls of the observer.
-const STEPS: usize = 1 << 12;
-
 /// Nodes with children whose neighbours must exist, by level.
 #[derive(Default)]
 pub(super) struct Pending(Vec<Vec<NodeAddress>>);
@@ -119,7 +116,7 @@ pub(super) fn balance(
     for level in (1..pending.0.len()).rev() {
         while let Some(place) = pending.0[level].pop() {
             steps += 1;
-            if steps.is_multiple_of(STEPS) {
+            if steps.is_multiple_of(1 << 12) {
                 poll()?;
             }
             for edge in (0..3).filter(|&edge| !place.has_sibling_beyond(edge)) {

@@ -12,61 +12,10 @@ use crate::mesh::MeshError;
 use crate::refine::RefineError;
 use crate::refine::exact_result::ExactStop;
 
-/// Values that are verified, and those whose triangles are guessed before.
-const MOST_TRIES: usize = 16;
-const MOST_GUESSES: usize = 8;
-
-/// The part of the budget that may be left (one in so many), that of what undivided faces leave of it, and fewer triangles than this in any case.
-const LEFT: usize = 32;
-const LEFT_OF_ROOM: usize = 8;
 const LEFT_AT_LEAST: usize = 12;
-
-/// Values nearer to each other than this, as a ratio, are as good as each other: bounds are within some per cent of the truth.
-const NEAR: f64 = 1.01;
-
-/// Once hardly anything is left of a small budget, the value is at most so many times one that does not fit.
-const PROMISED: f64 = 1.04;
-
-/// The part of the budget that is aimed at, or of what undivided faces leave of it.
-const AIM: f64 = 0.985;
-const AIM_OF_ROOM: f64 = 0.9;
-
-/// A guess that is off what is aimed at by no more than this part of it is good enough.
-const AIMED: f64 = 0.02;
-
-/// Results beyond the budget are counted up to so many more triangles (one in so many), guesses up to so many times as many.
-const COUNTED_BEYOND: usize = 2;
-const GUESSED_BEYOND: usize = 4;
-
-/// A mesh with too many triangles to count has about so many times the budget.
-const UNCOUNTED: f64 = 2.0;
-
-/// A verified mesh has about so many triangles for each that was guessed.
-const FOR_A_GUESS: f64 = 1.05;
-
-/// From one value to the next they change by so many times at most.
-const MOST_APART: f64 = 16.0;
-
-/// A triangle that fails so many times over counts as one without a number.
-const COARSEST: f64 = 1e12;
-
-/// Faces are divided evenly only where that takes all of the budget but for so many triangles (one in so many).
-const NEARLY_ALL: usize = 16;
 
 /// Budgets below this are spent to the last face.
 const EXACT: usize = 20_000;
-
-/// Triangles that a face takes on which some of the budget is spent, at most on the average.
-const FOR_A_FACE: usize = 3;
-
-/// Results that are made to spend what is left.
-const MOST_FILLS: usize = 6;
-
-/// They may leave this part of the budget (one in so many).
-const LEFT_UNFILLED: usize = 64;
-
-/// Faces on which that is spent come within a value that is less by this at least: a difference that takes triangles.
-const FILLED_APART: f64 = 1.1;
 
 /// A value, and how many triangles it takes.
 #[derive(Clone, Copy)]
@@ -91,7 +40,8 @@ pub(super) fn search(
     search.narrow()?;
     let Between { high, low, .. } = search.between;
     let best = if most < EXACT && low > 0.0 {
-        let less = low.min(high / FILLED_APART).max(floor);
+        // A value that is less by a tenth takes more triangles.
+        let less = low.min(high / 1.1).max(floor);
         fill(engine, search.best, high, less, most)?
     } else {
         search.best
@@ -103,7 +53,7 @@ pub(super) fn search(
 pub(super) fn even(engine: &Engine<'_>, most: usize) -> Result<Option<Verified>, RefineError> {
     let faces = engine.control.mesh.face_count();
     let levels = ((most / faces.max(1)).max(1).ilog2() / 2).min(engine.max_levels);
-    if levels == 0 || faces << (2 * levels) < most - most / NEARLY_ALL {
+    if levels == 0 || faces << (2 * levels) < most - most / 16 {
         return Ok(None);
     }
     let goal = Goal::Within(f64::INFINITY);
@@ -126,7 +76,8 @@ impl Between {
     fn next(&self, aim: f64) -> f64 {
         let divided = |triangles: f64| (triangles - self.undivided).max(1.0);
         let times = divided(aim) / divided(self.last.triangles);
-        let value = self.last.value / times.clamp(1.0 / MOST_APART, MOST_APART);
+        // From one value to the next they change by 16 times at most.
+        let value = self.last.value / times.clamp(1.0 / 16.0, 16.0);
         if self.holds(value) {
             value
         } else {
@@ -175,7 +126,8 @@ impl<'e, 'a> Search<'e, 'a> {
         let value = if worst.is_finite() || !has_criteria {
             worst
         } else {
-            COARSEST
+            // A triangle without a number counts as one that fails so many times over.
+            1e12
         };
         let triangles = best.state.triangles as f64;
         let rounding = if has_criteria { 0.0 } else { engine.rounding };
@@ -197,12 +149,17 @@ impl<'e, 'a> Search<'e, 'a> {
     fn narrow(&mut self) -> Result<(), RefineError> {
         let undivided = self.between.undivided;
         let most = self.most as f64;
-        let aim = (AIM * most).max(undivided + AIM_OF_ROOM * (most - undivided));
-        let counted = self.most.saturating_add(self.most / COUNTED_BEYOND);
-        let mut first = self.guess(aim / FOR_A_GUESS)?;
-        for _ in 0..MOST_TRIES {
+        // Aims a little below the budget, or below what undivided faces leave of it.
+        let aim = (0.985 * most).max(undivided + 0.9 * (most - undivided));
+        // Results beyond the budget are counted up to half as many again.
+        let counted = self.most.saturating_add(self.most / 2);
+        // Verifying adds some five per cent.
+        let mut first = self.guess(aim / 1.05)?;
+        // Values that are verified at most.
+        for _ in 0..16 {
             let is_full = self.is_full();
-            let near = if is_full { PROMISED } else { NEAR };
+            // Bounds are within some per cent of the truth: values that differ by 1 % are as good as each other, by 4 % where hardly anything is left.
+            let near = if is_full { 1.04 } else { 1.01 };
             let is_near = self.between.high <= (near * self.between.low).max(self.least);
             if is_near || is_full && self.most >= EXACT {
                 return Ok(());
@@ -219,7 +176,8 @@ impl<'e, 'a> Search<'e, 'a> {
                 }
             };
             let triangles = found.as_ref().map(|found| found.state.triangles as f64);
-            let triangles = triangles.unwrap_or(UNCOUNTED * most);
+            // A mesh with too many triangles to count has about twice the budget.
+            let triangles = triangles.unwrap_or(2.0 * most);
             let tried = Tried { value, triangles };
             let found = found.filter(|found| found.state.triangles <= self.most);
             self.between.take(tried, found.is_some());
@@ -233,15 +191,17 @@ impl<'e, 'a> Search<'e, 'a> {
     /// Whether hardly anything is left of the budget.
     fn is_full(&self) -> bool {
         let room = self.most.saturating_sub(self.between.undivided as usize);
-        let left = (self.most / LEFT).min(room / LEFT_OF_ROOM);
+        // A 32nd of the budget may be left, or an eighth of what undivided faces leave of it.
+        let left = (self.most / 32).min(room / 8);
         self.best.state.triangles + left.max(LEFT_AT_LEAST) >= self.most
     }
 
     /// The division for about the number of triangles that is aimed at, and its value; `None` where there are none between.
     fn guess(&self, aim: f64) -> Result<Option<(f64, State)>, RefineError> {
-        let counted = self.most.saturating_mul(GUESSED_BEYOND);
+        // Guesses are counted up to four times the budget.
+        let counted = self.most.saturating_mul(4);
         let (mut between, mut last) = (self.between.clone(), None);
-        for _ in 0..MOST_GUESSES {
+        for _ in 0..8 {
             let value = between.next(aim);
             if !between.holds(value) {
                 break;
@@ -250,7 +210,8 @@ impl<'e, 'a> Search<'e, 'a> {
             let triangles = found.as_ref().map_or(counted, |state| state.triangles) as f64;
             let tried = Tried { value, triangles };
             last = found.map(|state| (value, state));
-            if (triangles / aim - 1.0).abs() < AIMED || value <= self.least {
+            // Two per cent off is good enough for a guess.
+            if (triangles / aim - 1.0).abs() < 0.02 || value <= self.least {
                 break;
             }
             between.take(tried, triangles <= aim);
@@ -273,10 +234,12 @@ fn fill(
         .collect();
     order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let (mut best, mut fits, mut fails) = (best, 0, order.len() + 1);
-    for _ in 0..MOST_FILLS {
+    // The range of faces is halved each time.
+    for _ in 0..6 {
         let left = most - best.state.triangles;
-        let next = (fits + left / FOR_A_FACE).min(fits.midpoint(fails));
-        if left < (most / LEFT_UNFILLED).max(LEFT_AT_LEAST) || next == fits {
+        // A face takes three triangles at most, on the average.
+        let next = (fits + left / 3).min(fits.midpoint(fails));
+        if left < (most / 64).max(LEFT_AT_LEAST) || next == fits {
             break;
         }
         let mut is_marked = vec![false; order.len()];

@@ -23,9 +23,6 @@ use crate::vector::{DVec3, vector};
 use known::{Key, Known};
 use waiting::Waiting;
 
-/// Levels below a leaf whose vertices are sampled where a piece is not regular.
-const SAMPLED_LEVELS: usize = 2;
-
 /// The range of heights over a triangle that is divided in any case.
 pub(super) const ENDS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -226,7 +223,7 @@ impl TriangleVisitor for Looking<'_> {
             }
             Over::General(pieces, ..) => {
                 let frame = TriangleFrame::new(self.corners(emitted));
-                let points = pieces.points(SAMPLED_LEVELS, rules).into_iter();
+                let points = pieces.points(2, rules).into_iter();
                 let inside = points.filter(|&point| {
                     (0..3).all(|edge| frame.edge_position(edge, point).outside <= 0.0)
                 });

@@ -14,31 +14,6 @@ use crate::refine::exact_options::{ExactOptions, Finish};
 use crate::refine::exact_result::{Exact, ExactStop};
 use crate::scheme::Scheme;
 
-/// Balanced results of fewer triangles are compared with those of vertices on the surface.
-const FEW_BALANCED: usize = 5_000;
-
-/// So are those of meshes of which so many faces (one in so many) are part of flat regions or strips.
-const MERGED_SHARE: usize = 16;
-
-/// How often a budget is tried that flat regions overrun, each time with less by so many times what that was.
-const MOST_NARROWER: usize = 4;
-const OVERRUN: f64 = 1.5;
-
-/// That leaves no less than this part of the triangles beyond the control mesh's own that there was room for.
-const LEAST_ROOM: f64 = 0.25;
-
-/// An even division that is nearer is taken where what is proven of it is at most so many times as far.
-const PROVEN_ALIKE: f64 = 1.25;
-
-/// The distance of a balanced mesh as a part of a plain one's, at equal triangles, about.
-const BALANCED: f64 = 0.65;
-
-/// Values that are tried under a budget.
-const MOST_TRIES: usize = 8;
-
-/// Values nearer to each other than this part make no difference any more: the budget is spent but for some per cent.
-const NEAR: f64 = 0.98;
-
 /// Refines with some nodes divided in any case.
 pub(super) fn once(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, RefineError> {
     let options = task.options;
@@ -69,8 +44,8 @@ pub(super) fn once(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact,
         return Ok(found);
     }
     // Of many triangles only those of meshes that are merged afterwards come so far.
-    let is_told = found.stop == ExactStop::Met && is_soon_told(plain_task, count);
-    if is_told && needs_more(plain_task, count, observer)? {
+    let is_known = found.stop == ExactStop::Met && is_soon_known(plain_task, count);
+    if is_known && needs_more(plain_task, count, observer)? {
         return Ok(found);
     }
     Ok(better(within_caps(plain_task, observer)?, found))
@@ -141,21 +116,22 @@ pub(super) fn may_do_with_fewer(
     count: usize,
     observer: &mut Observer<'_>,
 ) -> Result<bool, RefineError> {
-    if is_soon_told(plain, count) {
+    if is_soon_known(plain, count) {
         return Ok(true);
     }
     plain.with_engine(observer, |engine| {
-        Ok(MERGED_SHARE * engine.control.flat.merged_faces() >= plain.mesh.face_count())
+        Ok(16 * engine.control.flat.merged_faces() >= plain.mesh.face_count())
     })
 }
 
 /// Whether it takes little to tell, or normals decide.
-fn is_soon_told(plain: Task<'_>, count: usize) -> bool {
-    plain.options.goals.angle.is_some() || count < FEW_BALANCED.max(2 * plain.mesh.face_count())
+fn is_soon_known(plain: Task<'_>, count: usize) -> bool {
+    // Balanced results of few triangles are compared with those of vertices on the surface.
+    plain.options.goals.angle.is_some() || count < (2 * plain.mesh.face_count()).max(5_000)
 }
 
 /// Whether it certainly takes more triangles than this to meet a distance, or an angle: nothing is emitted to tell, and where triangles are
-/// merged afterwards nobody can.
+/// merged afterwards that is not known before.
 fn needs_more(
     task: Task<'_>,
     count: usize,
@@ -163,8 +139,8 @@ fn needs_more(
 ) -> Result<bool, RefineError> {
     task.with_engine(observer, |engine| {
         let floor = engine.floor(task.options.goals.tolerance);
-        let is_told = floor > 0.0 && engine.control.flat.merged_faces() == 0;
-        Ok(is_told && engine.refined(Goal::Within(floor), count)?.is_none())
+        let is_known = floor > 0.0 && engine.control.flat.merged_faces() == 0;
+        Ok(is_known && engine.refined(Goal::Within(floor), count)?.is_none())
     })
 }
 
@@ -173,15 +149,16 @@ fn within_caps(task: Task<'_>, observer: &mut Observer<'_>) -> Result<Exact, Ref
     let (mesh, options) = (task.mesh, task.options);
     let most = options.budget().0.max(mesh.face_count());
     let mut room = most;
-    for _ in 0..MOST_NARROWER {
+    for _ in 0..4 {
         let found = within_room(task, room, observer)?;
         let count = found.mesh.face_count();
         if !options.flat_regions || count <= most {
             return Ok(found);
         }
         // Flat regions whose rims cross, or that share edges, keep more triangles than were counted.
-        let over = (OVERRUN * count.saturating_sub(room) as f64) as usize;
-        let least = (LEAST_ROOM * room.saturating_sub(mesh.face_count()) as f64) as usize;
+        let over = (1.5 * count.saturating_sub(room) as f64) as usize;
+        // A quarter is left of the triangles beyond the control mesh's own that there was room for.
+        let least = (0.25 * room.saturating_sub(mesh.face_count()) as f64) as usize;
         room = most.saturating_sub(over).max(mesh.face_count() + least);
     }
     let options = options.clone().flat_regions(false);
@@ -219,7 +196,8 @@ fn within_room(
             && let Some(even) = budget::even(plain, most)?
         {
             let even = even.finish(plain, stop, options, gaps)?;
-            let is_proven = even.error.upper <= PROVEN_ALIKE * found.error.upper;
+            // An even division that is nearer is taken where its proven distance is at most a quarter greater.
+            let is_proven = even.error.upper <= 1.25 * found.error.upper;
             if is_proven && even.error.lower < found.error.lower {
                 found = even;
             }
@@ -250,9 +228,12 @@ impl Engine<'_> {
             plain.error.upper
         };
         let (mut low, mut best) = (floor, None);
-        for _ in 0..MOST_TRIES {
-            let next = (BALANCED * high).max((low * high).sqrt());
-            if !(low < next && next < high && low < NEAR * high) {
+        // Values that are tried under a budget.
+        for _ in 0..8 {
+            // A balanced mesh has about 0.65 of a plain one's distance, at equal triangles.
+            let next = (0.65 * high).max((low * high).sqrt());
+            // Values within 2 % make no difference any more: the budget is spent but for some per cent.
+            if !(low < next && next < high && low < 0.98 * high) {
                 break;
             }
             match self.refined(Goal::Balanced(next), most)? {

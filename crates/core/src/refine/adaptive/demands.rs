@@ -23,12 +23,6 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::Exact;
 use crate::scheme::Scheme;
 
-/// Halvings of a net where surfaces are compared.
-const HALVINGS: usize = 2;
-
-/// The chord of angles at which neighbours do not help: none that counts is as great.
-const ALONE: f64 = 4.0;
-
 /// The nodes for which there is room.
 #[derive(Clone, Copy)]
 pub(super) struct Room {
@@ -362,10 +356,11 @@ fn bound(goal: &Goal<'_>, sheets: &[(ParamPatch, &Rules<'_>)], part: SubTriangle
                 let frame = TriangleFrame::new(sheet.corners_of(part, rules));
                 let effort = Effort {
                     target: goal.tolerance,
-                    halvings: HALVINGS,
+                    halvings: 2,
                     open: [false; 3],
                     rim_alone: false,
-                    chord: ALONE,
+                    // No chord that counts is as great.
+                    chord: 4.0,
                     slopes: [0.0; 3],
                     gives_up: false,
                     least_chord: None,

@@ -22,9 +22,6 @@ use crate::vector::DVec3;
 use even_parts::{AtOnce, MOST_TESTED};
 use expected::Expected;
 
-/// Leaves that are added to the common count together.
-const COUNTED: usize = 256;
-
 /// The proven leaves of a control face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Proven {
@@ -323,7 +320,8 @@ impl Divider<'_> {
 
     fn count_leaves(&mut self, count: usize) {
         self.leaves += count;
-        if self.leaves >= COUNTED {
+        // Leaves are added to the common count together.
+        if self.leaves >= 256 {
             self.add_count();
             if (self.is_stopped)() {
                 self.count.stop();

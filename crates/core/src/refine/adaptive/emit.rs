@@ -30,14 +30,6 @@ pub(super) use emitter::Emitter;
 use jobs::{jobs, on_edge, write};
 use kept::Kept;
 
-/// Control faces that are passed over together: some milliseconds.
-const POLLED: u32 = 1 << 12;
-
-/// The part of arrays (one in so many) that is kept free behind them, for what is divided later; and with balanced vertices, where that is a sixth
-/// of all: arrays that become too short are copied. Nobody touches what is not used.
-const SPARE: usize = 32;
-const SPARE_BALANCED: usize = 4;
-
 impl Emitter<'_> {
     /// Emits the leaves into the arrays of what was emitted before, if anything was.
     pub(super) fn emit(
@@ -92,11 +84,8 @@ impl Emitter<'_> {
                 arrays
             }
             None => {
-                let spare = if self.is_balanced {
-                    SPARE_BALANCED
-                } else {
-                    SPARE
-                };
+                // One in so many elements is kept free for later divisions, since arrays that become too short are copied. With balanced vertices a sixth is divided later.
+                let spare = if self.is_balanced { 4 } else { 32 };
                 Arrays::fresh(length, spare, self.has_origins, watch)?
             }
         };
@@ -234,7 +223,7 @@ impl Emitter<'_> {
         }
         for face in 0..control.mesh.face_count() as u32 {
             let open = control.open(face);
-            if open != [false; 3] || face.is_multiple_of(POLLED) {
+            if open != [false; 3] || face.is_multiple_of(1 << 12) {
                 watch.poll()?;
             }
             for edge in (0..3).filter(|&edge| open[edge]) {

@@ -49,21 +49,11 @@ use crate::vector::{DVec3, vector};
 /// How far they are is measured, and counted with every distance.
 const IN_PLANE: f64 = 2e-7;
 
-/// The distance within which a surface counts as flat, as a part of the tolerance.
-const OF_TOLERANCE: f64 = 1e-3;
-
 /// Faces whose unit normals differ by more than this are not looked at any closer.
 const ALIKE: f64 = 1e-3;
 
-/// So many leaves of a flat face count as one where memory is not limited: along a rim that is divided into hundreds of parts, half
-/// of them lie within a few parts of it.
-const WEIGHT: usize = 16;
-
 /// Control faces that one call takes together.
 const BLOCK: usize = 1024;
-
-/// Faces that one call takes together where each takes some tenths of a millisecond.
-const UNFOLDED: usize = 16;
 
 impl FlatRegions {
     /// Finds the regions.
@@ -81,7 +71,8 @@ impl FlatRegions {
         let share = options
             .goals
             .tolerance
-            .map_or(f64::INFINITY, |tolerance| OF_TOLERANCE * tolerance);
+            // A surface counts as flat within a thousandth of the tolerance.
+            .map_or(f64::INFINITY, |tolerance| 1e-3 * tolerance);
         let most = share.min(IN_PLANE * size);
         let normals: Vec<DVec3> =
             watch.map(mesh.face_count(), BLOCK, |face| mesh.unit_face_normal(face))?;
@@ -166,7 +157,9 @@ impl FlatRegions {
         let weight = if options.caps.memory.is_some() {
             1
         } else {
-            WEIGHT
+            // Sixteen leaves of a flat face count as one where memory is not limited: along a rim that is divided into hundreds of parts, half
+            // of them lie within a few parts of it.
+            16
         };
         let straight = match options.strips && !options.is_balanced() {
             true => strips::straight_faces(control, &normals, &of_face, most, watch)?,
@@ -268,7 +261,8 @@ impl FlatRegions {
             by_rim.fill(false);
             return Ok(by_rim);
         }
-        let folded = watch.pieces(faces.len(), UNFOLDED, |block| {
+        // Each takes some tenths of a millisecond.
+        let folded = watch.pieces(faces.len(), 16, |block| {
             let region = |face: u32| self.of_face[face as usize] as usize;
             let is_folded =
                 |&face: &u32| !is_unfolded(control, face, &self.regions[region(face)].1, most);

@@ -20,9 +20,6 @@ use crate::refine::replay::{Frame, Replay, ReplayError};
 use crate::refine::{RefineError, adaptive::probe};
 use crate::scheme::Scheme;
 
-/// Rounds over all frames: in each, nothing is left to do but what dividing for other frames brought about.
-const MOST_ROUNDS: usize = 12;
-
 /// The result of several frames.
 pub(in crate::refine) struct Found {
     /// With the vertices of the first frame.
@@ -124,7 +121,8 @@ fn united(
     let (most, _) = task.options.budget();
     // Frames in a row for which nothing had to be divided.
     let mut settled = 0;
-    for frame in (0..meshes.len()).cycle().take(MOST_ROUNDS * meshes.len()) {
+    // Twelve rounds over all frames: each does nothing but what dividing for other frames brought about.
+    for frame in (0..meshes.len()).cycle().take(12 * meshes.len()) {
         if settled == meshes.len() {
             break;
         }

@@ -33,9 +33,6 @@ pub(super) const UNBALANCED: f64 = 1.9;
 /// Heights in a range of so many times what is allowed on either side are too much, however corners are moved.
 pub(super) const HOPELESS: f64 = 2.0;
 
-/// The range of heights that a few points of a piece that need not be regular tell is about this part of what there is.
-const SEEN: f64 = 0.8;
-
 /// The limits for the triangles of each control face. Values are distances between a triangle and its part of the surface
 /// where nothing else counts ([`super::control::Control::criteria`]), else how many times over the criteria fail.
 #[derive(Clone, Debug)]
@@ -237,7 +234,8 @@ impl Judge<'_> {
             (low.smaller(height), high.larger(height))
         });
         high.larger(-low)
-            .larger(self.range_share / SEEN * (high - low))
+            // The range of heights at a few points of a piece is about 0.8 of the whole range.
+            .larger(self.range_share / 0.8 * (high - low))
     }
 
     /// A regular piece, as far as its net decides at a glance.

@@ -31,9 +31,6 @@ use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
 
-/// Halvings of a net: towards a corner with too steep tangential displacements, where only short pieces are near.
-const MOST_HALVINGS: usize = 10;
-
 /// How triangles are looked at.
 #[derive(Clone, Copy)]
 pub(super) struct Look<'a> {
@@ -396,7 +393,8 @@ impl<'a> Measuring<'a> {
         };
         Effort {
             target: allowed.min(self.length),
-            halvings: MOST_HALVINGS,
+            // A net is halved often towards a corner with too steep tangential displacements, where only short pieces are near.
+            halvings: 10,
             open: emitted.open,
             chord: among.chord,
             slopes: among.slopes,

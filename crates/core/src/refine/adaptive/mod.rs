@@ -76,9 +76,6 @@ use quadtree::{Edges, NodeAddress};
 /// Triangles that splitting a leaf adds, closing included, on the average.
 const ADDED: usize = 6;
 
-/// Goals for attributes are tried up to 2 to the power of this times as coarse where there is no room for what they ask.
-const COARSEST: u32 = 64;
-
 /// Refines until the goals are met, or as far as the caps allow.
 pub(super) fn adaptive(
     mesh: &Mesh,
@@ -147,7 +144,8 @@ fn fitting(
     room: Room,
     observer: &mut Observer<'_>,
 ) -> Result<Demands, RefineError> {
-    for halvings in 1..=COARSEST {
+    // Goals that are 2⁶⁴ times as coarse fit any mesh.
+    for halvings in 1..=64 {
         let coarser = functions.coarser(f64::from(halvings).exp2());
         let found = coarser.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         if let Some(demands) = found {

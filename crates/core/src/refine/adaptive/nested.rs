@@ -22,9 +22,6 @@ use crate::refine::level::Level;
 use crate::scheme::Scheme;
 use crate::vector::{DVec3, vector};
 
-/// NodeAddress-by-place distances below this part of the tolerance need not be known better.
-const NEGLIGIBLE: f64 = 1e-3;
-
 /// The level within `options`' tolerance in which `coarser` is nested; with geomorphs the tolerances hold place by place, the coarser
 /// level's from the start. `surface` is the limit surface of the mesh that the level is one of.
 pub(in crate::refine) fn nested(
@@ -272,7 +269,8 @@ impl Descent for Looking<'_> {
             let (corners, middles): ([DVec3; 3], [DVec3; 3]) = (at([a, b, c]), at([d, e, f]));
             let greatest = &mut self.off.greatest[end];
             for &Covering { part, .. } in covering {
-                let target = greatest.max(NEGLIGIBLE * enough).min(enough);
+                // Distances below a thousandth of the tolerance need not be known better.
+                let target = greatest.max(1e-3 * enough).min(enough);
                 let bound = sheet.off(
                     part,
                     part.corners(corners, middles),

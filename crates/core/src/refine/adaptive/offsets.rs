@@ -16,12 +16,6 @@ use super::emit::Emission;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::Extremes;
 
-/// Where all heights around can be within this part of what is allowed, vertices move no farther than they have to for that.
-const EASY: f64 = 0.5;
-
-/// Where all heights around are within this part of what is allowed, vertices stay where they were moved before.
-const STAYS: f64 = 0.75;
-
 impl Bulges {
     /// How far each vertex is to be moved along its normal: by the mean of the middles around, or as near to that as leaves all
     /// heights around well within `allowed`; where nothing does, to the middle of them all; or as far as before. With the control faces
@@ -197,11 +191,13 @@ impl Around {
 
     /// How far to move the vertex.
     fn offset(&self, allowed: f64) -> f64 {
-        let (stays, before) = (STAYS * allowed, self.before);
+        // They stay where they were moved before where all heights around are within three quarters.
+        let (stays, before) = (0.75 * allowed, self.before);
         if self.high - stays <= before && before <= self.low + stays {
             return before;
         }
-        let easy = EASY * allowed;
+        // Vertices move no farther than they have to where all heights around can be within half of what is allowed.
+        let easy = 0.5 * allowed;
         let (least, most) = (self.high - easy, self.low + easy);
         if least <= most {
             (0.5 * self.sum / f64::from(self.triangles.max(1)))

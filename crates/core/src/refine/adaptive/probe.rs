@@ -32,51 +32,14 @@ use nearest_triangle::Nearest;
 /// Leaves with the greatest bounds that are looked at for a lower bound.
 const PROBED: usize = 64;
 
-/// Leaves that are looked at however many control faces there are, and the boxes of control faces that may be looked at for others.
-const FEWEST_PROBED: usize = 8;
-const MOST_BOXES: usize = 2_000_000;
-
-/// Leaves that each of several threads looks at before it is known which are of use.
-const AT_ONCE: usize = 4;
-
-/// Levels below which edges have no length left.
-const MOST_LEVELS: usize = 64;
-
-/// Points that are measured where nothing is certain, give or take those of a control face: some seconds.
-const MOST_MEASURED: usize = 1_000_000;
-
-/// Levels that are sampled there.
-const MOST_SAMPLED_LEVELS: usize = 6;
-
 /// A lower bound beyond this part of the upper one is good enough.
 const NARROW: f64 = 0.99;
-
-/// [`NARROW`] where a tolerance is met.
-const MET_NARROW: f64 = 0.9;
 
 /// Upper bounds so many times the lower one are taken again.
 const WIDE: f64 = 1.2;
 
-/// [`WIDE`] where a tolerance is met, and few may be.
-const MET_WIDE: f64 = 1.12;
-
 /// Control faces that are looked at together for tighter bounds at first, then twice as many each time.
 const TIGHTENED: usize = 64;
-
-/// The share of the triangles (one in so many) that are looked at again where the tolerance is met.
-const MET_SHARE: usize = 64;
-
-/// How many of them may be in any case.
-const MET_AT_LEAST: usize = 6_000;
-
-/// Bounds are taken again only if the greatest that there is no room for is below this part of the upper bound.
-const WORTH_WHILE: f64 = 0.95;
-
-/// How often that is done.
-const MOST_TIGHTENINGS: usize = 6;
-
-/// Vertices that are looked at between two calls of the observer.
-const LOOKED_AT: usize = 1 << 14;
 
 /// A control face, a bound of the distance over it, and the leaf that has it, where that is known.
 #[derive(Clone, Copy)]
@@ -111,11 +74,7 @@ pub(super) fn probe(
     };
     let sources = engine.sources(state, emission);
     let mesh = Nearest::of(sources, watch)?;
-    let (enough, wide) = if is_met {
-        (MET_NARROW, MET_WIDE)
-    } else {
-        (NARROW, WIDE)
-    };
+    let (enough, wide) = if is_met { (0.9, 1.12) } else { (NARROW, WIDE) };
     let mut probed = Probed {
         leaves: HashSet::new(),
         enough,
@@ -148,7 +107,7 @@ pub(super) fn probe(
     }
     // A tolerance that is met is proven already: what else there is to know must not take longer than to meet it.
     let mut room = if is_met {
-        emission.triangles.len() / MET_SHARE + MET_AT_LEAST
+        emission.triangles.len() / 64 + 6_000
     } else {
         usize::MAX
     };
@@ -161,7 +120,7 @@ pub(super) fn probe(
         )?;
         best.upper = order.first().map_or(0.0, |bound| bound.value);
         lower(&sources, watch, &mesh, &order, &mut probed, &mut best)?;
-        if !certified || best.upper <= wide * best.lower || round >= MOST_TIGHTENINGS {
+        if !certified || best.upper <= wide * best.lower || round >= 6 {
             break;
         }
         let is_loose = |bound: &&Bound| {
@@ -179,7 +138,8 @@ pub(super) fn probe(
             loose.push(bound.face);
         }
         // Where one stays as it is the others are of no use.
-        if loose.is_empty() || stays > WORTH_WHILE * best.upper {
+        // Bounds are taken again only if that lowers the upper bound by five per cent.
+        if loose.is_empty() || stays > 0.95 * best.upper {
             break;
         }
         let found = again(NARROW * best.lower, &loose)?;
@@ -277,7 +237,8 @@ fn lower(
     best: &mut ErrorBounds,
 ) -> Result<(), Cancelled> {
     let most = order.first().map_or(0.0, |bound| bound.value);
-    let most_probed = PROBED.min(FEWEST_PROBED + MOST_BOXES / sources.covers.len().max(1));
+    // Eight leaves are looked at in any case, and more where that takes few boxes of control faces.
+    let most_probed = PROBED.min(8 + 2_000_000 / sources.covers.len().max(1));
     let mut left = order
         .iter()
         .take(most_probed)
@@ -287,7 +248,7 @@ fn lower(
     let is_enough = |best: &ErrorBounds| best.lower > enough;
     // Some are looked at together, by all threads, so many that these need not be woken for each; what is not needed any more is forgotten.
     let most_at_once = if parallel::threads() > 1 {
-        AT_ONCE * parallel::threads()
+        4 * parallel::threads()
     } else {
         1
     };
@@ -344,14 +305,15 @@ fn estimated(
     let mut order = bounds.to_vec();
     order.sort_unstable_by(by_bound);
     for Bound { value, face, .. } in order {
-        if value <= best.lower || count >= MOST_MEASURED {
+        // That takes some seconds.
+        if value <= best.lower || count >= 1_000_000 {
             return Ok(value.max(best.lower));
         }
         let levels = state.trees.depth(state.trees.root(face)) as usize + SAMPLED_LEVELS;
         let mut points = Vec::new();
         sample(
             control.piece(face).surface(control.rules),
-            levels.min(MOST_SAMPLED_LEVELS),
+            levels.min(6),
             &mut points,
         );
         count += points.len();
@@ -396,11 +358,12 @@ pub(super) fn rounding(
         .fold(0.0f64, |size, x| size.max(x.abs()));
     let topology = control.topology();
     let valence = |v: usize| topology.valence_and_openness(VertexId(v as u32)).0;
-    let most = watch.pieces(control.vertex_count(), LOOKED_AT, |piece| {
+    let most = watch.pieces(control.vertex_count(), 1 << 14, |piece| {
         piece.map(valence).max()
     });
     let most = most?.into_iter().flatten().max().unwrap_or(0);
-    let units = 32.0 + 8.0 * max_levels.min(MOST_LEVELS) as f64 + f64::from(most);
+    // Edges have no length left below 64 levels.
+    let units = 32.0 + 8.0 * max_levels.min(64) as f64 + f64::from(most);
     Ok((units * f64::EPSILON + 4.0 * TriangleFrame::ROUNDING) * size)
 }
 

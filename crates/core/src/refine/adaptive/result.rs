@@ -17,9 +17,6 @@ use crate::refine::exact_options::ExactOptions;
 use crate::refine::exact_result::{ErrorBounds, Exact, ExactStop, Statistics};
 use crate::vector::vector;
 
-/// The relative rounding error of an angle against its limit: normals are taken anew from the emitted triangles.
-const CONE_ROUNDING: f64 = 1e-6;
-
 impl Verified {
     /// Measures the mesh as a whole, and hands it out.
     pub(super) fn finish(
@@ -198,7 +195,8 @@ pub(super) fn open_cones(
         let backs = criteria.backs(&region, |_, viewpoint, _| {
             shows_back(&corners, viewpoint).then_some(0.0)
         });
-        criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + CONE_ROUNDING
+        // Normals are taken anew from the emitted triangles, which rounds angles.
+        criteria.cone_ratio(frame.normal(), normals, &region, &backs) > 1.0 + 1e-6
     };
     let open = watch.pieces(
         exact.mesh.face_count(),

@@ -23,21 +23,6 @@ use crate::progress::{Cancelled, Stage};
 use crate::refine::RefineError;
 use crate::refine::junctions::join_copies;
 
-/// Heights of parts are at most so many times what they should be, a quarter.
-const SURELY: f64 = 1.5;
-
-/// Distances at irregular vertices fall by this part each time at least.
-const HALVED: f64 = 0.5;
-
-/// The first split there is counted on for this part: what is left of the distance is then mostly due to the corner.
-const FIRST: f64 = 0.25;
-
-/// Around vertices of so many edges at most each division leaves a quarter of the distance, unless triangles are balanced.
-const REGULAR: u32 = 6;
-
-/// A leaf that fails by more times than this does not show how its children fail.
-const MOST_TIMES: f64 = 64.0;
-
 /// A state whose triangles were all verified as they were emitted.
 pub(super) struct Verified {
     pub(super) state: State,
@@ -350,7 +335,8 @@ impl Engine<'_> {
             }
             // Each division leaves a quarter of the height.
             let times = if has_heights {
-                value / (4.0 * SURELY * goal.allowed(place.face))
+                // Heights of parts should be a quarter, and are half as much again at most.
+                value / (6.0 * goal.allowed(place.face))
             } else {
                 0.0
             };
@@ -425,12 +411,15 @@ impl Engine<'_> {
         };
         let vertex = VertexId(self.control.mesh.triangles()[place.face as usize][child]);
         let (valence, _) = self.control.mesh.topology().valence_and_openness(vertex);
-        if !self.is_balanced && valence <= REGULAR {
+        // Around vertices of six edges at most each division leaves a quarter of the distance, unless triangles are balanced.
+        if !self.is_balanced && valence <= 6 {
             return Ok(false);
         }
         let mut is_split = false;
-        let mut left = if times <= MOST_TIMES {
-            FIRST * times
+        // A leaf that fails by more than 64 times does not show how its children fail.
+        let mut left = if times <= 64.0 {
+            // The first split there leaves a quarter: the rest of the distance is then mostly due to the corner.
+            0.25 * times
         } else {
             0.0
         };
@@ -447,7 +436,8 @@ impl Engine<'_> {
                 }
             }
             corner = corner.child(child);
-            left *= HALVED;
+            // Distances at irregular vertices are halved each time at least.
+            left *= 0.5;
         }
         Ok(is_split)
     }

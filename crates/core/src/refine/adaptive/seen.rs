@@ -15,9 +15,6 @@ pub(super) const DIVISIONS: u32 = 2;
 /// tangent is 1 at least where α ≤ π/2, else tan(π − α) times 1/(1 + √(1 + tan²)).
 pub(super) const DISPLACEMENT_SHARE: f64 = 0.41;
 
-/// Unit vectors are off by no more than this.
-const ROUNDING: f64 = 1e-12;
-
 /// The greatest possible chord of a normal deviation.
 const ANY_DEVIATION: f64 = 2.0;
 
@@ -100,7 +97,8 @@ impl Seen {
         let normal_deviation = if count < 2 || frame.is_flat() {
             ANY_DEVIATION
         } else {
-            squared.sqrt() + ROUNDING
+            // Unit vectors are off by no more than 1e-12.
+            squared.sqrt() + 1e-12
         };
         Self {
             frame,

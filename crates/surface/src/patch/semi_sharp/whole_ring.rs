@@ -3,7 +3,7 @@
 //! Takes a vertex; gives, for each of its faces, the neighbours near the face with what the rules ask of the others on every level: where the
 //! vertex goes, and, once nothing is semi-sharp any more, the mean of its neighbours or the ends of the sector that the face is in. So a face takes no
 //! more than at any other vertex. See [`crate::patch::pole`] for why the neighbours near a face are enough; sharp edges make that only better, as nothing
-//! comes to their new points from their adjacent neighbours.
+//! enters their new points from their adjacent neighbours.
 
 use std::sync::Arc;
 

@@ -7,11 +7,8 @@ use super::{Divider, Part};
 use crate::certificate::{MOST_DIVISIONS, Mark, Marks, RowBlock, RowExtent};
 use crate::patch::ParamTriangle;
 
-/// Levels below the first that are tested at most.
-const MOST_SPREAD: u32 = 2;
-
 /// Levels tested at most.
-pub(super) const MOST_TESTED: usize = MOST_SPREAD as usize + 1;
+pub(super) const MOST_TESTED: usize = 3;
 
 /// The outcome of testing all nodes of some levels below a node at once.
 pub(super) enum AtOnce {
@@ -54,7 +51,7 @@ impl Divider<'_> {
                 may_be_below: most > 1,
             };
         }
-        let last = most.min(least + MOST_SPREAD);
+        let last = most.min(least + MOST_TESTED as u32 - 1);
         if least > MOST_DIVISIONS || most > last || !block.is_fine(least, target.distance) {
             return AtOnce::NotHere {
                 fails,

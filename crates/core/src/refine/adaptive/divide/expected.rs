@@ -11,18 +11,6 @@ use crate::patch::LimitPoint;
 use crate::progress::Cancelled;
 use crate::vector::{DVec3, Extremes, unit_normal};
 
-/// Control faces that one call takes together.
-const BLOCK: usize = 1024;
-
-/// The least normal deviation that neighbours are allowed: it costs next to nothing.
-const LEAST_DEVIATION: f64 = 0.01;
-
-/// Room for triangles that bend more than their control face does on the whole.
-const GENEROUS: f64 = 2.2;
-
-/// The part of the control faces' least tangent that is left when triangles close gaps: they may halve the angle.
-const SLOPE_LEFT: f64 = 0.3;
-
 /// The expectation for the triangles of a control face by its corners and their normals.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Expected {
@@ -39,7 +27,7 @@ impl Expected {
         if control.criteria.is_some() {
             return Ok(Vec::new());
         }
-        engine.watch.map(control.mesh.face_count(), BLOCK, |face| {
+        engine.watch.map(control.mesh.face_count(), 1024, |face| {
             Self::of(control, goal, face as u32)
         })
     }
@@ -74,8 +62,10 @@ impl Divider<'_> {
             );
         }
         Allowance {
-            normal_deviation: (GENEROUS * normal_deviation).max(LEAST_DEVIATION),
-            slope: SLOPE_LEFT * slope,
+            // Triangles may bend more than their control face does on the whole; a hundredth costs next to nothing.
+            normal_deviation: (2.2 * normal_deviation).max(0.01),
+            // Triangles that close gaps may halve the least angle.
+            slope: 0.3 * slope,
         }
     }
 }

@@ -15,9 +15,6 @@ use crate::patch::LimitPoint;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::exact_result::Origin;
 
-/// Triangles that one call writes, about.
-const JOB: u32 = 8192;
-
 pub(super) fn jobs<'a>(
     emitter: &Emitter<'_>,
     emission: &'a mut Emission,
@@ -64,7 +61,8 @@ pub(super) fn jobs<'a>(
         }
         let own_is_new = is_new[face as usize];
         let is_last = face + 1 == faces || own_is_new != is_new[face as usize + 1];
-        if triangles >= JOB || is_last {
+        // A call writes about so many triangles.
+        if triangles >= 8192 || is_last {
             jobs.push(Job {
                 is_new: own_is_new,
                 faces: from..face + 1,

@@ -16,13 +16,6 @@ use crate::parallel::{IsStopped, asking};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
-/// Curves are divided so many times at most, and into so many chords all together, about.
-const MOST_DIVISIONS: u32 = 4;
-const MOST_CHORDS: usize = 1 << 16;
-
-/// Regions that one call takes together.
-const BLOCK: usize = 16;
-
 impl FlatRegions {
     /// By region, whether the limit curves around it, none of which is smooth and which do not cross then, enclose all of its vertices, and
     /// nothing twice. What is off a straight line by less than `rounding` is none.
@@ -32,7 +25,7 @@ impl FlatRegions {
         rounding: f64,
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<bool>, Cancelled> {
-        let found = watch.long_pieces(self.regions.len(), BLOCK, |block, is_stopped| {
+        let found = watch.long_pieces(self.regions.len(), 16, |block, is_stopped| {
             let is_enclosed = |region| {
                 self.encloses(control, region as u32, rounding, is_stopped)
                     .is_some()
@@ -44,10 +37,8 @@ impl FlatRegions {
 
     /// How often curves of so many edges are divided for that.
     pub(super) fn divisions(rim: usize) -> u32 {
-        (MOST_CHORDS / rim.max(1))
-            .max(1)
-            .ilog2()
-            .min(MOST_DIVISIONS)
+        // Curves are divided four times at most, and into 65,536 chords all together, about.
+        ((1 << 16) / rim.max(1)).max(1).ilog2().min(4)
     }
 
     fn encloses(

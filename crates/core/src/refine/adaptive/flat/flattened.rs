@@ -7,9 +7,6 @@ use crate::geometry::planar;
 use crate::parallel::{IsStopped, asking};
 use crate::vector::{DVec3, vector};
 
-/// Twice the area of a triangle may be as far below zero by rounding, where the region is as large as one.
-const AREA_ROUNDING: f64 = 1e-14;
-
 /// The vertices of a region in its plane.
 pub(super) struct Flattened<'a> {
     plane: &'a Plane,
@@ -62,7 +59,8 @@ impl<'a> Flattened<'a> {
 
     /// Whether such an area is above zero, but for rounding.
     pub(super) fn is_positive(&self, area: f64) -> bool {
-        area >= -AREA_ROUNDING * self.size * self.size
+        // Rounding takes twice the area of a triangle below zero by no more than this part of the region's squared size.
+        area >= -1e-14 * self.size * self.size
     }
 
     /// The number of a vertex among those of the region.

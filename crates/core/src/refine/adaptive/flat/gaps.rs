@@ -17,12 +17,6 @@ use crate::refine::adaptive::quadtree::NodeAddress;
 /// How often rims are divided once more.
 const MOST_DIVISIONS: usize = 3;
 
-/// After so many attempts all regions are judged by their triangles.
-const MOST_ATTEMPTS: usize = 6;
-
-/// Nodes at most that are divided for the sake of gaps.
-const MOST_ALONG: usize = 1 << 20;
-
 /// Regions with gaps, and the nodes along their rims down to those that are no deeper than the rim was divided evenly; none where dividing it
 /// is of no use.
 #[derive(Debug, Default)]
@@ -36,11 +30,12 @@ impl Gaps {
     /// Asks for what may close the gaps; `attempt` counts from zero, and there may be so many triangles more. After finitely many
     /// of them there are no gaps.
     pub(in super::super) fn close(self, demands: &mut Demands, attempt: usize, room: usize) {
-        if attempt >= MOST_ATTEMPTS {
+        // After so many attempts all regions are judged by their triangles.
+        if attempt >= 6 {
             return demands.judge_all_by_triangles();
         }
         let mut room = if attempt < MOST_DIVISIONS {
-            room.min(MOST_ALONG)
+            room.min(1 << 20)
         } else {
             0
         };

@@ -12,17 +12,8 @@ use super::strips::{Net, Region, Regions};
 use crate::parallel::{IsStopped, asking, sort_asking};
 use crate::progress::{Cancelled, SharedWatch};
 
-/// Regions that one call takes together.
-const BLOCK: usize = 1;
-
-/// Triangles whose edges one call looks at together: less than a millisecond.
-const EDGES: usize = 1 << 14;
-
 /// Areas before and after may differ by this part.
 pub(super) const SAME_AREA: f64 = 1e-9;
-
-/// How often what regions have in common may be left to one that keeps its triangles, before all keep it.
-const MOST_ROUNDS: usize = 8;
 
 /// The outcome for a region.
 enum Fate {
@@ -92,7 +83,7 @@ impl FlatRegions {
         watch: &SharedWatch<'_>,
     ) -> Result<Vec<Option<Covering>>, Cancelled> {
         for round in 0.. {
-            let fates = watch.long_pieces(regions.list.len(), BLOCK, |block, is_stopped| {
+            let fates = watch.long_pieces(regions.list.len(), 1, |block, is_stopped| {
                 let fate = |region| self.fate(region, control, net, regions, is_stopped);
                 block.map(fate).collect::<Vec<_>>()
             })?;
@@ -121,7 +112,8 @@ impl FlatRegions {
                 }
             })?;
             if is_kept {
-                if round >= MOST_ROUNDS {
+                // After eight rounds all of them keep what they have in common.
+                if round >= 8 {
                     regions.is_dropped.clear();
                 }
                 continue;
@@ -334,7 +326,7 @@ fn without_shared_edges(
         .sum();
     // With room for the edges before and after: maps that grow move all that they have at once.
     let mut owners = HashMap::with_capacity(3 * covered);
-    let touched = watch.pieces(net.triangles.len(), EDGES, |block| {
+    let touched = watch.pieces(net.triangles.len(), 1 << 14, |block| {
         let all =
             block.flat_map(|number| edges(net.triangles[number]).map(|ends| (ends, number as u32)));
         let touched =

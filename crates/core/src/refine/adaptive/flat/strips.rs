@@ -27,16 +27,10 @@ use std::collections::{HashMap, HashSet};
 /// Control faces that one call takes together.
 const BLOCK: usize = 64;
 
-/// A triangle is looked at where an adjacent one is so many times as far off its plane as it may be: the plane of a sliver is not known well.
-const NEARLY: f64 = 1024.0;
-
 /// Where the coefficients of a regular piece's derivative along an edge, a quarter of them, are within a distance of the first, the vertex opposite
 /// that edge is within half of so many times this distance of the middle between the vertices beyond the two other edges: the second
 /// difference of these three is a sum of differences from the first, with weights whose sum is 24. A third more for rounding.
 const BENT: f64 = 32.0;
-
-/// Fewer triangles than this are not put together.
-const FEWEST: usize = 3;
 
 /// Triangles as they were emitted.
 #[derive(Clone, Copy)]
@@ -339,7 +333,8 @@ impl FlatRegions {
                 .filter_map(|h| net.beyond(h))
                 .any(|twin| {
                     let opposite = net.triangles[twin as usize / 3][(twin as usize + 2) % 3];
-                    plane.height(net.at(opposite)).abs() <= NEARLY * self.off_planes
+                    // The plane of a sliver is not known well.
+                    plane.height(net.at(opposite)).abs() <= 1024.0 * self.off_planes
                 })
         };
         let found = watch.pieces(self.straight.len(), BLOCK, |block| {
@@ -382,7 +377,7 @@ impl FlatRegions {
                     }
                 }
             }
-            if triangles.len() >= FEWEST {
+            if triangles.len() >= 3 {
                 let number = regions.list.len() as u32;
                 triangles.sort_unstable();
                 triangles

@@ -21,15 +21,13 @@ pub(super) const HEIGHT_ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Halvings of a regular piece whose coefficients are not all above zero.
 const HALVINGS: usize = 4;
 
-/// Refinements of a piece at an irregular vertex.
-const MOST_LEVELS: usize = 40;
-
 /// Coefficients may be as far below zero as this part of the greatest: rounding does that.
 const ROUNDING: f64 = 1e-12;
 
 /// Whether the surface over a face is turned over nowhere, but for pieces smaller than `least`.
 pub(super) fn is_unfolded(control: &Control<'_>, face: u32, plane: &Plane, least: f64) -> bool {
-    is_piece_unfolded(control, &control.patch(face), plane, least, MOST_LEVELS)
+    // Pieces at irregular vertices are refined 40 times at most.
+    is_piece_unfolded(control, &control.patch(face), plane, least, 40)
 }
 
 fn is_piece_unfolded(

@@ -12,14 +12,6 @@ use crate::vector::{DVec3, vector};
 /// Control faces whose boxes are looked at together: those with consecutive numbers are often near each other.
 const GROUP: usize = 64;
 
-/// Where control faces have so many triangles in the mean, their boxes are kept as they are found first; others are found anew where points
-/// come near.
-const MANY_TRIANGLES: usize = 16;
-
-/// Groups of boxes, and triangles, that are looked at between two questions whether that is still of use.
-const GROUPS_LOOKED_AT: usize = 1 << 8;
-const LOOKED_AT: u32 = 1 << 14;
-
 /// The nearest points of the emitted triangles.
 pub(super) struct Nearest<'a> {
     sources: Sources<'a>,
@@ -33,7 +25,9 @@ impl<'a> Nearest<'a> {
     pub(super) fn of(sources: Sources<'a>, watch: &SharedWatch<'_>) -> Result<Self, Cancelled> {
         let faces = sources.covers.len();
         let joined = |a: Bounds, [low, high]: Bounds| grown(grown(a, low), high);
-        let is_kept = sources.emission.triangles.len() >= MANY_TRIANGLES * faces;
+        // Where control faces have 16 triangles in the mean, their boxes are kept as they are found first; others are found anew where points
+        // come near.
+        let is_kept = sources.emission.triangles.len() >= 16 * faces;
         let found = watch.pieces(faces, GROUP, |group| {
             let boxes = group.map(|face| bounds(&sources, face as u32));
             if is_kept {
@@ -58,7 +52,7 @@ impl<'a> Nearest<'a> {
         let mut least = f64::INFINITY;
         self.within(face, point, &mut least, is_stopped);
         for (group, bounds) in self.groups.iter().enumerate() {
-            if group.is_multiple_of(GROUPS_LOOKED_AT) && is_stopped() {
+            if group.is_multiple_of(1 << 8) && is_stopped() {
                 break;
             }
             if distance_squared_to(bounds, point) < least {
@@ -86,7 +80,7 @@ impl<'a> Nearest<'a> {
     fn within(&self, face: u32, point: DVec3, least: &mut f64, is_stopped: &IsStopped<'_>) {
         let emission = self.sources.emission;
         for (i, triangle) in (1u32..).zip(&emission.triangles[emission.triangles_of(face)]) {
-            if i.is_multiple_of(LOOKED_AT) && is_stopped() {
+            if i.is_multiple_of(1 << 14) && is_stopped() {
                 return;
             }
             let corners =
