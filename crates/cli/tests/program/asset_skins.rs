@@ -119,10 +119,8 @@ fn weights_that_are_linear_in_space_stay_so() {
                     .map(|own| own.1)
                     .sum::<f64>()
             };
-            assert!(
-                (of(0) - (0.5 - 0.2 * p[2])).abs() < 1e-6
-                    && (of(2) - (0.5 + 0.2 * p[2])).abs() < 1e-6
-            );
+            below!((of(0) - (0.5 - 0.2 * p[2])).abs(), 1e-6);
+            below!((of(2) - (0.5 + 0.2 * p[2])).abs(), 1e-6);
         }
     }
 }

@@ -9,7 +9,7 @@ use limitmesh_check::proof::Proof;
 use limitmesh_check::{read, verdict};
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, json_of, usage_error};
+use crate::common::{done, file, folder, json_of, refuses, usage_error};
 
 /// Triangles that are refused, the files being as they are.
 fn refused(control: Option<&Path>, result: &Path, proof: &Path, times: f64) -> usize {
@@ -110,15 +110,11 @@ fn what_has_no_proof_is_refused_by_name() {
             ".ply",
         );
     }
-    usage_error(
-        "refine builtin:cube -o - --to ply --ascii --proof {}",
-        &[&proof],
-        "file",
-    );
-    usage_error(
-        "refine builtin:cube -o {} --proof {}",
-        &[&result, &result],
-        "twice",
+    refuses(
+        &[("proof", &proof), ("result", &result)],
+        "
+        2 | refine builtin:cube -o - --to ply --ascii --proof {proof} | file
+        2 | refine builtin:cube -o {result} --proof {result} | twice",
     );
 }
 

@@ -2,11 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, json_of};
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
-}
+use crate::common::{done, file, folder, json_of, number};
 
 /// The reported distance to the input, and the certified measurement of the two files.
 fn distances(input: &str, options: &str) -> ([f64; 2], [f64; 2]) {
@@ -46,15 +42,11 @@ fn the_distance_to_the_input_is_what_measuring_both_finds() {
     ];
     for (input, options) in cases {
         let ([low, high], [least, most]) = distances(input, options);
-        assert!(
-            low <= high && low <= most && least <= high,
-            "{input} {options}: {low}, {high}; {least}, {most}"
-        );
+        at_most!(low, high, "{input} {options}");
+        at_most!(low, most, "{input} {options}");
+        at_most!(least, high, "{input} {options}");
         // Half of it is found: the vertices that are looked at are not just any.
-        assert!(
-            low >= 0.5 * least,
-            "{input} {options}: {low}, {high}; {least}, {most}"
-        );
+        at_least!(low, 0.5 * least, "{input} {options}, {high}, {most}");
     }
 }
 
@@ -70,11 +62,8 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         .saying("volume 1 to ");
     let kept = done("refine builtin:cube -o {} --crease-angle 30", &[&output])
         .saying("volume 1 to 1 (+0.00 %)");
-    assert!(
-        !kept.stderr.contains("moved by") && !kept.stderr.contains("would keep"),
-        "{}",
-        kept.stderr
-    );
+    silent!(kept.stderr, "moved by");
+    silent!(kept.stderr, "would keep");
     let square = file(
         &folder,
         "square.obj",
@@ -124,10 +113,8 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         .saying("(--boundary fixed would keep the outline)");
     assert!(!flat.stderr.contains("--crease-angle"), "{}", flat.stderr);
     let plain = done("refine {} -o {}", &[&square, &output]).stderr;
-    assert!(
-        plain.contains("--boundary fixed") && !plain.contains("--interpolate would"),
-        "{plain}"
-    );
+    says!(plain, "--boundary fixed");
+    silent!(plain, "--interpolate would");
     let folded = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 2 2 0\nv 3 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n";
     let folded = file(&folder, "folded.obj", folded);
     let said = done(
