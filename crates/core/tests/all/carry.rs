@@ -14,7 +14,7 @@ use limitmesh::mesh::{
     PolygonSoup, SeamRule, Semantic, Tags,
 };
 use limitmesh::refine::{
-    Exact, ExactOptions, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
+    Exact, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
@@ -141,10 +141,7 @@ fn other_implementation(
 
 /// Every face divided twice.
 fn twice_divided(mesh: &Mesh) -> Exact {
-    let options = ExactOptions::default()
-        .tolerance(1e-9)
-        .max_levels(2)
-        .flat_regions(false);
+    let options = within(1e-9).max_levels(2).flat_regions(false);
     exact(mesh, &Loop, &options).unwrap()
 }
 
@@ -239,12 +236,7 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
 #[test]
 fn positions_as_a_channel_are_positions() {
     for (name, mesh) in samples() {
-        let fine = exact(
-            &mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
-        )
-        .unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-2).flat_regions(false)).unwrap();
         let values = mesh.positions().as_flattened().to_vec();
         let channel = Channel::new("positions", Semantic::Displacement, Domain::Vertex, 3)
             .with(values, (0..mesh.vertex_count() as u32).collect());
@@ -263,12 +255,7 @@ fn positions_as_a_channel_are_positions() {
 #[test]
 fn linear_channels_are_exact() {
     for (name, mesh) in samples() {
-        let fine = exact(
-            &mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
-        )
-        .unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-2).flat_regions(false)).unwrap();
         let channel = with_seams(&mesh, 3, 7).interpolated(Interpolation::Linear);
         let found = carried(core::slice::from_ref(&channel), &mesh, &Loop, &fine)
             .unwrap()
@@ -336,12 +323,7 @@ fn affine_coordinates_of_a_disc_stay_affine() {
     let channel = Channel::new("uv", Semantic::TextureCoordinates, Domain::Vertex, 2)
         .with(values, (0..mesh.vertex_count() as u32).collect())
         .interpolated(Interpolation::Smooth(SeamRule::None));
-    let fine = exact(
-        &mesh,
-        &Loop,
-        &ExactOptions::default().tolerance(1e-3).flat_regions(false),
-    )
-    .unwrap();
+    let fine = exact(&mesh, &Loop, &within(1e-3).flat_regions(false)).unwrap();
     let found = carried(&[channel], &mesh, &Loop, &fine).unwrap().remove(0);
     for (corner, &vertex) in fine.mesh.triangles().as_flattened().iter().enumerate() {
         let expected = affine(fine.mesh.positions()[vertex as usize]);
@@ -354,9 +336,7 @@ fn affine_coordinates_of_a_disc_stay_affine() {
 #[test]
 fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
     for (name, mesh) in samples() {
-        let stepped = uniform(&mesh, &Loop, &UniformOptions::default().levels(2))
-            .unwrap()
-            .mesh;
+        let stepped = divided(&mesh, &Loop, 2);
         let limits = LimitTable::new(&Loop).positions(&stepped).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let mut met = vec![false; limits.len()];
@@ -368,11 +348,7 @@ fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
                 let nearest = (0..limits.len())
                     .min_by(|a, b| off(a).total_cmp(&off(b)))
                     .unwrap();
-                assert!(
-                    off(&nearest) < 1e-12,
-                    "{name}, {place:?} of face {face}: {}",
-                    off(&nearest)
-                );
+                below!(off(&nearest), 1e-12, "{name}, {place:?} of face {face}");
                 met[nearest] = true;
             }
         }
@@ -384,7 +360,7 @@ fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
 #[test]
 fn the_surface_between_vertices_is_near_a_certified_mesh() {
     for (name, mesh) in samples() {
-        let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-4)).unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-4)).unwrap();
         let tree = Bvh::new(fine.mesh.as_triangles()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let mut random = Random::new(11);

@@ -695,12 +695,8 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
                 assert!(dot(cross, at.normal) > 0.0, "{valence}");
                 // The rest of the next pattern falls by a constant factor a level.
                 let off = |levels: i32| 1.0 - dot(along, towards(0.5f64.powi(levels), 1));
-                assert!(
-                    off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9,
-                    "{valence}: {} {}",
-                    off(8),
-                    off(16)
-                );
+                below!(off(16), 1e-4, "{valence}");
+                below!(off(16), 0.6 * off(8) + 1e-9, "{valence}");
                 // The other edge of the face leaves to the left of the first.
                 assert!(dot(across, towards(0.5f64.powi(16), 2)) > 0.0, "{valence}");
             }

@@ -10,7 +10,7 @@ use limitmesh::criterion::Camera;
 use limitmesh::front::{Demand, Front, Measure, Snapshot};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{CreaseTag, Tags};
-use limitmesh::refine::{Traced, UniformOptions, uniform};
+use limitmesh::refine::Traced;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh, VertexId};
 
@@ -65,9 +65,7 @@ struct Level {
 
 fn tower(control: &Mesh, scheme: &dyn Scheme) -> Vec<Level> {
     let level = |levels: usize| {
-        let mesh = uniform(control, scheme, &UniformOptions::default().levels(levels))
-            .unwrap()
-            .mesh;
+        let mesh = crate::support::divided(control, scheme, levels);
         let table = LimitTable::new(scheme);
         let sided = table.sided_normals(&mesh).unwrap();
         let normals = (0..mesh.face_count())

@@ -240,10 +240,9 @@ fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
     println!(
         "{name}: {count} rays, {hit} hits, {grazed} grazing, {close} at outlines where the counts differ"
     );
-    assert!(
-        hit > count / 10 && close <= count / 100 && grazed == 0,
-        "{name}: {hit} {close} {grazed}"
-    );
+    above!(hit, count / 10, "{name}");
+    at_most!(close, count / 100, "{name}");
+    assert_eq!(grazed, 0, "{name}");
 }
 
 /// In all.
@@ -423,10 +422,8 @@ fn what_is_grazed_is_told() {
         direction: [1.0, 0.013, 0.0],
     };
     let hits = rays.intersections(&ray, &RayOptions::default());
-    assert!(
-        !hits.is_empty() && hits.iter().all(|hit| hit.crossing == Crossing::Grazing),
-        "{hits:?}"
-    );
+    assert!(!hits.is_empty());
+    assert!(hits.iter().all(|hit| hit.crossing == Crossing::Grazing));
     let above = Ray {
         origin: [-5.0, 1.43, 1e-6],
         direction: [1.0, 0.013, 0.0],

@@ -47,9 +47,7 @@ impl Criterion for Arbitrary {
 }
 
 fn refined(mesh: &Mesh, levels: usize) -> Mesh {
-    uniform(mesh, &Loop, &UniformOptions::default().levels(levels))
-        .unwrap()
-        .mesh
+    divided(mesh, &Loop, levels)
 }
 
 #[test]

@@ -2,12 +2,52 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use limitmesh::Mesh;
+use limitmesh::measure::{
+    CertifiedHausdorff, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff,
+};
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, RefineError};
+use limitmesh::refine::{Exact, ExactOptions, RefineError, UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
+use limitmesh::{HalfEdgeId, Mesh};
+
+/// Compares two values; shows both, and the case they belong to, where the comparison fails.
+macro_rules! ordered {
+    ($a:expr, $order:tt, $b:expr, $($case:tt)+) => {
+        match (&$a, &$b) {
+            (a, b) => assert!(
+                *a $order *b,
+                "{}: {} is {a:?}, and not {} {b:?}",
+                format_args!($($case)+),
+                stringify!($a),
+                stringify!($order)
+            ),
+        }
+    };
+}
+
+macro_rules! at_most {
+    ($a:expr, $b:expr) => { ordered!($a, <=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <=, $b, $($case)+) };
+}
+
+macro_rules! at_least {
+    ($a:expr, $b:expr) => { ordered!($a, >=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >=, $b, $($case)+) };
+}
+
+macro_rules! below {
+    ($a:expr, $b:expr) => { ordered!($a, <, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <, $b, $($case)+) };
+}
+
+macro_rules! above {
+    ($a:expr, $b:expr) => { ordered!($a, >, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >, $b, $($case)+) };
+}
 
 pub type Point = [f64; 3];
 
@@ -412,4 +452,79 @@ pub fn exact(
         crate::certificate::proofs::check(control, scheme, &found).unwrap();
     }
     Ok(found)
+}
+
+/// A built-in model.
+pub fn model(name: &str) -> Mesh {
+    let soup = limitmesh_models::find(name).unwrap().soup();
+    Mesh::from_soup(&soup, &Default::default()).unwrap().0
+}
+
+/// The folder of shared models; says that a test is skipped where there is none.
+pub fn shared_models() -> Option<PathBuf> {
+    let folder = std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from);
+    if folder.is_none() {
+        // Written directly: the test harness keeps what macros print to itself.
+        let said = std::io::stderr().write_all(b"skipped: LIMITMESH_MODELS is not set\n");
+        said.unwrap();
+    }
+    folder
+}
+
+/// A shared model of triangles, as OBJ.
+pub fn shared_model(folder: &Path, name: &str) -> Mesh {
+    tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap())
+}
+
+/// Refinement to a tolerance.
+pub fn within(tolerance: f64) -> ExactOptions {
+    ExactOptions::default().tolerance(tolerance)
+}
+
+/// The distance of two meshes by so many samples.
+pub fn sampled(a: &Mesh, b: &Mesh, samples: usize) -> f64 {
+    let options = SamplingOptions::default().samples(samples);
+    let found = hausdorff(a.as_triangles(), b.as_triangles(), &options);
+    found.unwrap().symmetric()
+}
+
+/// The distance of two meshes, enclosed.
+pub fn enclosed(a: &Mesh, b: &Mesh, options: &CertifiedOptions) -> CertifiedHausdorff {
+    certified_hausdorff(a.as_triangles(), b.as_triangles(), options).unwrap()
+}
+
+/// So many threads.
+pub fn pool(threads: usize) -> rayon::ThreadPool {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap()
+}
+
+/// Tags on edges and vertices: those for which there is a sharpness, of one in so many.
+pub fn tagged_by(
+    mesh: Mesh,
+    [edges, vertices]: [usize; 2],
+    mut sharpness: impl FnMut(usize) -> Option<f64>,
+) -> Mesh {
+    let mut tags = Tags::default();
+    let topology = mesh.topology();
+    let is_first = |&h: &HalfEdgeId| topology.twin(h).is_some_and(|twin| h < twin);
+    for h in topology.half_edges().filter(is_first) {
+        let vertices = topology.ends(h).map(|v| v.0);
+        let tag = |sharpness| CreaseTag {
+            vertices,
+            sharpness,
+        };
+        tags.creases.extend(sharpness(edges).map(tag));
+    }
+    for vertex in 0..mesh.vertex_count() as u32 {
+        let tag = |sharpness| CornerTag { vertex, sharpness };
+        tags.corners.extend(sharpness(vertices).map(tag));
+    }
+    mesh.with_tags(tags).unwrap()
+}
+
+/// So many levels of uniform refinement.
+pub fn divided(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
+    let options = UniformOptions::default().levels(levels);
+    uniform(mesh, scheme, &options).unwrap().mesh
 }

@@ -1,6 +1,6 @@
 //! Results by `limitmesh-check`, which shares nothing with the library: it confirms what is certified, and nothing below what was found.
 
-use limitmesh::refine::{Exact, ExactOptions, Origin, exact};
+use limitmesh::refine::{Exact, Origin, exact};
 use limitmesh::scheme::{Loop, Scheme};
 use limitmesh::{Mesh, Triangles};
 use limitmesh_check::mesh::Mesh as Plain;
@@ -9,7 +9,7 @@ use limitmesh_check::tiling::Refusal;
 use limitmesh_check::verdict;
 use limitmesh_io::{Proof, ProofError};
 
-use crate::support::{Random, cross, minus};
+use crate::support::{Random, cross, minus, within};
 
 fn plain(mesh: &Mesh) -> Plain {
     Plain {
@@ -174,9 +174,7 @@ fn faults_are_refused() {
         )
         .unwrap()
         .0;
-        let options = ExactOptions::default()
-            .tolerance(2e-3 * control.diagonal())
-            .flat_regions(false);
+        let options = within(2e-3 * control.diagonal()).flat_regions(false);
         let found = exact(&control, &Loop, &options).unwrap();
         let within = found.error.upper;
         let result = Changed {

@@ -9,7 +9,7 @@ use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{
     BoundaryRule, BuildOptions, ConcaveCorners, CornerTag, CreaseTag, PolygonFaces, Tags,
 };
-use limitmesh::refine::{Exact, ExactOptions, UniformOptions, uniform};
+use limitmesh::refine::{Exact, UniformOptions, limit_reference, uniform};
 
 use crate::support::exact;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
@@ -140,12 +140,7 @@ fn creased(mesh: Mesh) -> Mesh {
 }
 
 fn refined(mesh: &Mesh) -> Exact {
-    exact(
-        mesh,
-        &Loop,
-        &ExactOptions::default().tolerance(1e-3 * mesh.diagonal()),
-    )
-    .unwrap()
+    exact(mesh, &Loop, &within(1e-3 * mesh.diagonal())).unwrap()
 }
 
 fn l_shape() -> Outline {
@@ -220,13 +215,7 @@ fn prisms_over_random_polygons_stay_themselves() {
         let control = prism(&outline).with_creases_above(1e-3).unwrap();
         let (control, concave) = divided(control);
         concave_corners += concave.corners.count;
-        let mesh = uniform(
-            &control,
-            &Loop,
-            &UniformOptions::default().levels(3).limit(true),
-        )
-        .unwrap()
-        .mesh;
+        let mesh = limit_reference(&control, &Loop, 3).unwrap();
         assert_is_prism(&mesh, &outline, &format!("trial {trial}"));
     }
     assert!(concave_corners > 200, "{concave_corners}");
@@ -325,13 +314,7 @@ fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
         assert!(distance(before, now) < 1e-15, "vertex {v}");
     }
     // Nothing is turned over.
-    let mesh = uniform(
-        &control,
-        &Loop,
-        &UniformOptions::default().levels(5).limit(true),
-    )
-    .unwrap()
-    .mesh;
+    let mesh = limit_reference(&control, &Loop, 5).unwrap();
     let least = mesh.triangles().iter().map(|t| {
         let p = t.map(|v| mesh.positions()[v as usize]);
         twice_area(&p.map(|p| [p[0], p[1]]))

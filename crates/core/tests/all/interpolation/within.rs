@@ -47,17 +47,12 @@ fn limits_stay_within_and_the_net_gets_fairer() {
             let options = InterpolateOptions::default().within(within);
             let found = interpolate_within(&mesh, &Loop, &options).unwrap();
             let away = from_limits(&found, &Loop, &mesh);
-            assert!(
-                away <= within + 1e-12 * size && away > 0.3 * within,
-                "{away} of {within}"
-            );
+            at_most!(away, within + 1e-12 * size);
+            above!(away, 0.3 * within);
             assert!((away - found.residual).abs() < 1e-12 * size);
             let fairness = found.fairness.unwrap();
             assert!(fairness.least_energy <= fairness.energy && fairness.energy < share);
-            assert!(
-                fairness.least_energy > 0.99 * fairness.energy,
-                "{fairness:?}"
-            );
+            above!(fairness.least_energy, 0.99 * fairness.energy);
             share = fairness.energy;
             if mesh.tags().is_empty() {
                 let now = thin_plate(&found.mesh);

@@ -221,10 +221,8 @@ fn tolerances_hold_about() {
         let tolerance = 0.003 * mesh.diagonal();
         let found = adaptive(&mesh, &Sqrt3Options::default().tolerance(Some(tolerance))).unwrap();
         let estimate = found.estimated_distance.unwrap();
-        assert!(
-            estimate <= tolerance && estimate > 0.2 * tolerance,
-            "{name}"
-        );
+        at_most!(estimate, tolerance, "{name}");
+        above!(estimate, 0.2 * tolerance, "{name}");
         let fine = uniform(&mesh, &UniformOptions::default().levels(7).limit(true))
             .unwrap()
             .mesh;
@@ -233,10 +231,8 @@ fn tolerances_hold_about() {
             limitmesh::measure::hausdorff(found.mesh.as_triangles(), fine.as_triangles(), &options)
                 .unwrap();
         let measured = measured.symmetric();
-        assert!(
-            measured < 1.3 * estimate && measured > 0.7 * estimate,
-            "{name}: {measured} {estimate}"
-        );
+        below!(measured, 1.3 * estimate, "{name}");
+        above!(measured, 0.7 * estimate, "{name}");
     }
 }
 
@@ -247,10 +243,8 @@ fn caps_and_budgets_are_not_passed() {
         let found = adaptive(&mesh, &Sqrt3Options::default().triangles(Some(triangles))).unwrap();
         assert_eq!(found.stop, ExactStop::Triangles);
         let count = found.mesh.face_count();
-        assert!(
-            count <= triangles && count + 12 > triangles.min(1000),
-            "{count} of {triangles}"
-        );
+        at_most!(count, triangles);
+        above!(count + 12, triangles.min(1000));
         found.mesh.validate().unwrap();
     }
     let options = Sqrt3Options::default()

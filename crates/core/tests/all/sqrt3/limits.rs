@@ -144,10 +144,7 @@ fn limits_do_not_change_with_the_level() {
                 distance(limit, deep.positions()[v]),
                 distance(limit, mesh.positions()[v]),
             );
-            assert!(
-                near <= 0.06 * far + 1e-13,
-                "{name}, vertex {v}: {near} of {far}"
-            );
+            at_most!(near, 0.06 * far + 1e-13, "{name}, vertex {v}");
         }
     }
 }

@@ -200,10 +200,7 @@ fn origins_are_places_in_control_faces() {
                 if level % 2 == 0 {
                     let [a, b, c] = own.map(|origin| origin.unwrap().barycentric);
                     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                    assert!(
-                        (area - share).abs() < 1e-12,
-                        "{name}, level {level}: {area}"
-                    );
+                    below!((area - share).abs(), 1e-12, "{name}, level {level}: {area}");
                 } else {
                     assert!(own.iter().flatten().count() >= 2, "{name}, level {level}");
                 }
