@@ -138,10 +138,8 @@ fn materials_keep_their_border_and_stay_joined() {
         ("sharp.gltf", "--tolerance 2% --crease-angle 30"),
     ] {
         let output = folder.path().join(output);
-        done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        done(&line, &[&input, &output]);
         // Read back, joined again along the border: closed.
         let whole = json_of("info {} --json", &[&output]);
         assert_eq!(whole["mesh"]["watertight"], true);
@@ -192,11 +190,8 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
     let output = folder.path().join("out.glb");
     let refused = |options: &str, words: &str| {
-        usage_error(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-            words,
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        usage_error(&line, &[&input, &output], words);
     };
     refused("--view 0,0,5,0,0,0,0,1,0,45,100x100", "look at one mesh");
     refused("--angle 5 --view 0,0,1", "look at one mesh");

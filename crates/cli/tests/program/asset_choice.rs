@@ -92,19 +92,13 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
         ("--material lid", vec![(0, 1)]),
         ("--material body --mesh Box", vec![(0, 0)]),
     ] {
-        done(
-            &format!("refine {{}} -o {{}} --tolerance 1% {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} --tolerance 1% {options}");
+        done(&line, &[&input, &output]);
         assert_eq!(replaced(&input, &output), expected, "{options}");
     }
     let refused = |options: &str, words: &str| {
-        run(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .expect(1)
-        .saying(words);
+        let line = format!("refine {{}} -o {{}} {options}");
+        run(&line, &[&input, &output]).expect(1).saying(words);
     };
     refused(
         "--mesh box",

@@ -106,10 +106,8 @@ fn weights_that_are_linear_in_space_stay_so() {
         "--boundary corners",
         "--crease-angle 95",
     ] {
-        done(
-            &format!("refine {{}} -o {{}} --tolerance 0.5% {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} --tolerance 0.5% {options}");
+        done(&line, &[&input, &output]);
         let glb = Glb::read(&output);
         let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
         for (p, list) in points.iter().zip(influences(&glb)) {

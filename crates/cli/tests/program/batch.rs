@@ -8,11 +8,9 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use crate::common::{
-    Running, bytes, command, done, file, folder, json_of, names, run, text, usage_error,
+    Running, TETRAHEDRON, bytes, command, done, file, folder, json_of, names, run, text,
+    usage_error,
 };
-
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 /// Writes jobs, a line each.
 fn jobs(folder: &TempDir, jobs: &[Value]) -> std::path::PathBuf {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{bytes, count, done, file, folder, list, number, refuses, run, usage_error};
+use crate::common::{bytes, count, done, file, folder, list, number, refuses, run};
 use crate::glb::{Builder, Glb, distances, limit};
 
 /// A flat square of 5 × 5 vertices whose texture is as wrinkled as can be, and a number for each vertex.
@@ -158,10 +158,8 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
         .collect();
     let reference = limit(&moved, &before.triangles(0), 2e-5);
     let apart = |options: &str| {
-        done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        done(&line, &[&input, &output]);
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);

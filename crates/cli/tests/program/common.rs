@@ -64,6 +64,13 @@ macro_rules! silent {
 /// Longer than any command takes here, and short enough to notice one that hangs.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
 
+/// Corners in the order of the axes, faces counter-clockwise from outside.
+pub(crate) const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
+    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+
+pub(crate) const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
 /// The result of a run of the program.
 #[derive(Debug)]
 pub(crate) struct Run {

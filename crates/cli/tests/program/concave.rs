@@ -76,10 +76,8 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
     let report = |options: &str| {
-        json_of(
-            &format!("refine {{}} -o {{}} --report - {options}"),
-            &[&input, &output],
-        )
+        let line = format!("refine {{}} -o {{}} --report - {options}");
+        json_of(&line, &[&input, &output])
     };
     let tagged = report("");
     assert_eq!(tagged["parameters"]["concave_corners"], "smooth");

@@ -59,10 +59,8 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let mut last = f64::INFINITY;
     for levels in 0..4 {
         let options = format!("--method uniform --limit --levels {levels}");
-        done(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&refined],
-        );
+        let line = format!("refine builtin:torus -o {{}} {options}");
+        done(&line, &[&refined]);
         let report = measure("{} --limit-of builtin:torus", &[&refined]);
         let percent = number(&report["hausdorff"]["symmetric_percent"]);
         // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.

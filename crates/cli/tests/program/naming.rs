@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use crate::common::{bytes, done, file, folder, names, text, usage_error};
-
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+use crate::common::{TETRAHEDRON, bytes, done, file, folder, names, text, usage_error};
 
 fn is_unchanged(input: &Path) -> bool {
     text(input) == TETRAHEDRON

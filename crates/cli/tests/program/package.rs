@@ -379,9 +379,7 @@ fn units_come_out_as_they_were_said() {
         let source = limitmesh_io::threemf::Package::open(&output).expect("a package");
         assert_eq!(format!("{:?}", source.unit()).to_lowercase(), unit);
         let again = folder.path().join("again.3mf");
-        done(
-            &format!("refine {{}} -o {{}} --tolerance 0.5{of_length}"),
-            &[&output, &again],
-        );
+        let line = format!("refine {{}} -o {{}} --tolerance 0.5{of_length}");
+        done(&line, &[&output, &again]);
     }
 }

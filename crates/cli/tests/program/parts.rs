@@ -89,10 +89,8 @@ fn volume(soup: &PolygonSoup) -> f64 {
 
 fn refine(input: &Path, options: &str) -> (Run, PolygonSoup, Value) {
     let output = input.with_extension("out.ply");
-    let run = done(
-        &format!("refine {{}} -o {{}} --report - {options}"),
-        &[input, &output],
-    );
+    let line = format!("refine {{}} -o {{}} --report - {options}");
+    let run = done(&line, &[input, &output]);
     let report = run.json();
     (run, soup(&output), report)
 }
@@ -220,10 +218,8 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
     for (name, unit) in [("box.3mf", "--unit mm"), ("box.glb", "")] {
         let [plain, fine] =
             [name.to_owned(), format!("fine_{name}")].map(|name| folder.path().join(name));
-        done(
-            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
-            &[&input, &plain],
-        );
+        let line = format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}");
+        done(&line, &[&input, &plain]);
         done("refine {} -o {}", &[&plain, &fine]).saying("looks like a part: 12 edges");
         let found = json_of("info {} --json", &[&fine]);
         assert!(

@@ -1,10 +1,6 @@
 //! `project`: points against the limit surface, in text, JSON and files.
 
-use crate::common::{done, file, folder, is_png, json_of, number, run, text};
-
-/// Corners in the order of the axes, faces counter-clockwise from outside.
-const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
-    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+use crate::common::{OCTAHEDRON, done, file, folder, is_png, json_of, number, run, text};
 
 #[track_caller]
 fn near(found: &serde_json::Value, expected: f64) {

@@ -96,11 +96,8 @@ fn what_has_no_proof_is_refused_by_name() {
         ("--scheme sqrt3", "loop"),
         ("--method uniform", "--method exact"),
     ] {
-        usage_error(
-            &format!("refine builtin:cube -o {{}} {options} --proof {{}}"),
-            &[&result, &proof],
-            words,
-        );
+        let line = format!("refine builtin:cube -o {{}} {options} --proof {{}}");
+        usage_error(&line, &[&result, &proof], words);
         assert!(!proof.exists() && !result.exists(), "{options}");
     }
     for name in ["result.stl", "result.glb", "result.3mf"] {

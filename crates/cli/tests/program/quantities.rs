@@ -27,11 +27,8 @@ fn lengths_may_have_a_unit_where_the_mesh_has_one() {
         ("--tolerance 0.05furlongs", "not a number"),
         ("--tolerance 0.05mm --unit furlong", "furlong"),
     ] {
-        usage_error(
-            &format!("refine builtin:cube -o out.ply {options}"),
-            &[],
-            words,
-        );
+        let line = format!("refine builtin:cube -o out.ply {options}");
+        usage_error(&line, &[], words);
     }
     let gap = "measure builtin:cube builtin:tetrahedron --certified --gap 1mm";
     usage_error(gap, &[], "--unit mm");

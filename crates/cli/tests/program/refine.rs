@@ -11,10 +11,8 @@ use crate::common::{
 /// The keys that users of the report may rely on.
 /// Refines and gives the report, after checking that it fits the file.
 fn refine(input: &str, output: &Path, options: &str) -> Value {
-    let run = done(
-        &format!("refine {input} -o {{}} --report - {options}"),
-        &[output],
-    );
+    let line = format!("refine {input} -o {{}} --report - {options}");
+    let run = done(&line, &[output]);
     let report = run.json();
     assert_eq!(
         claimed(&report["output"]),
@@ -126,10 +124,8 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
     let folder = folder();
     let bytes = |threads: usize, options: &str| {
         let output = folder.path().join(format!("out{threads}.ply"));
-        done(
-            &format!("refine builtin:shoe -o {{}} --threads {threads} {options}"),
-            &[&output],
-        );
+        let line = format!("refine builtin:shoe -o {{}} --threads {threads} {options}");
+        done(&line, &[&output]);
         bytes(&output)
     };
     // Large enough that the loops do run in parallel.
@@ -214,18 +210,14 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let distance = told
         .unwrap_or_else(|| panic!("no distance in {}", first.stderr))
         .to_owned();
-    let second = done(
-        &format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"),
-        &[&input, &output],
-    );
+    let line = format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}");
+    let second = done(&line, &[&input, &output]);
     silent!(second.stderr, "--weld");
     says!(second.stderr, ", closed (");
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
-    done(
-        &format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"),
-        &[&output, &input],
-    );
+    let line = format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000");
+    done(&line, &[&output, &input]);
 }
 
 #[test]
@@ -234,11 +226,8 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
     let output = folder.path().join("out.ply");
     for (name, option) in [("in.obj", "--report"), ("in.png", "--picture")] {
         let input = file(&folder, name, NEARLY_CLOSED);
-        let run = run(
-            &format!("refine {{}} -o {{}} {option} {{}}"),
-            &[&input, &output, &input],
-        )
-        .expect(2);
+        let line = format!("refine {{}} -o {{}} {option} {{}}");
+        let run = run(&line, &[&input, &output, &input]).expect(2);
         assert!(run.stderr.contains("is an input"), "{}", run.stderr);
         assert_eq!(text(&input), NEARLY_CLOSED);
     }
@@ -274,11 +263,8 @@ fn what_is_left_out_is_told() {
         "--method uniform --levels 1",
         "--method limit-normal",
     ] {
-        let told = done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .stderr;
+        let line = format!("refine {{}} -o {{}} {options}");
+        let told = done(&line, &[&input, &output]).stderr;
         assert!(!told.contains("left out"), "{options}: {told}");
     }
 }

@@ -22,10 +22,8 @@ fn pictures_differ_by_what_is_asked_for() {
         "--view 1,0,0",
         "--flat --wireframe --view 0,1,0",
     ] {
-        done(
-            &format!("render builtin:head -o {{}} --size 160x120 {options}"),
-            &[&path],
-        );
+        let line = format!("render builtin:head -o {{}} --size 160x120 {options}");
+        done(&line, &[&path]);
         let png = bytes(&path);
         assert_eq!(size(&png), [160, 120]);
         assert!(!pictures.contains(&png), "{options}");
@@ -102,10 +100,8 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     )
     .expect("written");
     let drawn = |options: &str| {
-        done(
-            &format!("render {{}} -o {{}} --size 160x120 {options}"),
-            &[&mesh, &path],
-        );
+        let line = format!("render {{}} -o {{}} --size 160x120 {options}");
+        done(&line, &[&mesh, &path]);
         bytes(&path)
     };
     let none = drawn("");
@@ -135,10 +131,8 @@ fn limit_surfaces_are_drawn_by_rays() {
     let folder = folder();
     let path = folder.path().join("exact.png");
     let draw = |options: &str| {
-        done(
-            &format!("render builtin:cube -o {{}} --size 120x90 {options}"),
-            &[&path],
-        );
+        let line = format!("render builtin:cube -o {{}} --size 120x90 {options}");
+        done(&line, &[&path]);
         bytes(&path)
     };
     let exact = draw("--exact");

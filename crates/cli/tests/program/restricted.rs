@@ -6,10 +6,8 @@ use crate::common::{count, done, folder, json_of, refuses, run, usage_error};
 fn refined(words: &str) -> (u64, serde_json::Value) {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let report = json_of(
-        &format!("refine builtin:head -o {{}} --report - {words}"),
-        &[&output],
-    );
+    let line = format!("refine builtin:head -o {{}} --report - {words}");
+    let report = json_of(&line, &[&output]);
     (count(&report["output"]["triangles"]), report)
 }
 

@@ -67,10 +67,8 @@ fn each_side_of_a_rim_has_its_normals() {
         ["out.obj", "out.ply", "split.ply", "out.stl"].map(|name| folder.path().join(name));
     let options = "--crease-angle 40 --tolerance 0.01 --quiet --ascii";
     for method in ["", "--optimize"] {
-        done(
-            &format!("refine {{}} -o {{}} {options} {method}"),
-            &[&input, &obj],
-        );
+        let line = format!("refine {{}} -o {{}} {options} {method}");
+        done(&line, &[&input, &obj]);
         let text = text(&obj);
         let list = |key: &str| -> Vec<Vec<f64>> {
             text.lines()
@@ -97,17 +95,13 @@ fn each_side_of_a_rim_has_its_normals() {
         assert!(flat > 20, "{flat}");
     }
 
-    let said = run(
-        &format!("refine {{}} -o {{}} {}", options.replace("--quiet", "")),
-        &[&input, &ply],
-    );
+    let line = format!("refine {{}} -o {{}} {}", options.replace("--quiet", ""));
+    let said = run(&line, &[&input, &ply]);
     said.expect(0).saying("--split-normals");
     assert!(!text(&ply).contains(" nx\n"));
     let options = format!("{options} --split-normals");
-    done(
-        &format!("refine {{}} -o {{}} {options} --provenance"),
-        &[&input, &split],
-    );
+    let line = format!("refine {{}} -o {{}} {options} --provenance");
+    done(&line, &[&input, &split]);
     let text = text(&split);
     let (header, body) = text.split_once("end_header\n").expect("a header");
     assert!(header.contains("nx\n") && header.contains("parent_a\n"));
@@ -122,9 +116,6 @@ fn each_side_of_a_rim_has_its_normals() {
             assert!(dot(&own, &corner[3..6]) > 0.9, "{own:?} {corner:?}");
         }
     }
-    usage_error(
-        &format!("refine {{}} -o {{}} {options}"),
-        &[&input, &stl],
-        "--split-normals",
-    );
+    let line = format!("refine {{}} -o {{}} {options}");
+    usage_error(&line, &[&input, &stl], "--split-normals");
 }

@@ -8,20 +8,16 @@ use crate::common::{done, file, folder, json_of, number};
 fn distances(input: &str, options: &str) -> ([f64; 2], [f64; 2]) {
     let folder = folder();
     let output = folder.path().join("out.off");
-    let report = json_of(
-        &format!("refine {input} -o {{}} --report - {options}"),
-        &[&output],
-    );
+    let line = format!("refine {input} -o {{}} --report - {options}");
+    let report = json_of(&line, &[&output]);
     let told = &report["input_distance"];
     let diagonal = number(&report["error"]["diagonal"]);
     for end in ["lower", "upper"] {
         let percent = number(&told[format!("{end}_percent")]);
         assert!((percent - 100.0 * number(&told[end]) / diagonal).abs() < 1e-9);
     }
-    let found = json_of(
-        &format!("measure {{}} {input} --certified --gap 0.5% --json"),
-        &[&output],
-    );
+    let line = format!("measure {{}} {input} --certified --gap 0.5% --json");
+    let found = json_of(&line, &[&output]);
     let ends = |of: &Value| ["lower", "upper"].map(|end| number(&of[end]));
     (ends(told), ends(&found["hausdorff"]))
 }

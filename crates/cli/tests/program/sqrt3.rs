@@ -10,10 +10,8 @@ fn steps_triple_the_triangles() {
     for (levels, limit) in [(0, ""), (1, "--limit"), (3, ""), (4, "--limit")] {
         let options =
             format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
-        let run = done(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&output],
-        );
+        let line = format!("refine builtin:torus -o {{}} {options}");
+        let run = done(&line, &[&output]);
         let report = run.json();
         let triangles = count(&report["output"]["triangles"]);
         assert_eq!(
@@ -53,11 +51,8 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--view 0,0,1 --angle 5", "--view"),
         ("--levels 0", "goals need 1"),
     ] {
-        let run = run(
-            &format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"),
-            &[&output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}");
+        let run = run(&line, &[&output]).expect(2);
         assert!(run.stderr.contains(word), "{options}: {}", run.stderr);
     }
 }

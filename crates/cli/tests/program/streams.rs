@@ -8,7 +8,8 @@ use std::process::{Output, Stdio};
 use serde_json::Value;
 
 use crate::common::{
-    bytes, command, count, done, file, folder, json_file, names, run, soup, usage_error, words,
+    TETRAHEDRON, bytes, command, count, done, file, folder, json_file, names, run, soup,
+    usage_error, words,
 };
 
 /// Runs the program with bytes on standard input.
@@ -27,9 +28,6 @@ fn fed(bytes: &[u8], arguments: &str, paths: &[&Path]) -> Output {
     writer.join().expect("written");
     output
 }
-
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 #[test]
 fn a_mesh_goes_from_standard_input_to_standard_output() {

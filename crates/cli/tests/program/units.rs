@@ -63,11 +63,8 @@ fn every_command_knows_the_unit_of_a_package() {
     for (command, paths) in commands {
         let paths: Vec<&Path> = paths.iter().map(|path| path.as_path()).collect();
         done(command, &paths);
-        usage_error(
-            &format!("{command} --unit mm"),
-            &paths,
-            "says that it is in in",
-        );
+        let line = format!("{command} --unit mm");
+        usage_error(&line, &paths, "says that it is in in");
     }
     let scale = &Glb::read(&levels).json["nodes"][0]["scale"];
     assert_eq!(scale, &serde_json::json!([0.0254, 0.0254, 0.0254]));

@@ -84,11 +84,8 @@ fn help_offers_the_schemes_that_there_are() {
         let help = done(&format!("{name} --help"), &[]).stdout;
         says!(help, "loop-warren");
         silent!(help, "butterfly");
-        usage_error(
-            &format!("{command} --scheme butterfly"),
-            &[],
-            "loop, loop-warren]",
-        );
+        let line = format!("{command} --scheme butterfly");
+        usage_error(&line, &[], "loop, loop-warren]");
     }
 }
 
@@ -121,11 +118,8 @@ fn slips_are_answered_with_what_was_meant() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for unit in ["mm", "in", "%"] {
-        let said = run(
-            &format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02"),
-            &[&output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02");
+        let said = run(&line, &[&output]).expect(2);
         said.saying(&format!("such as 0.1{unit}"));
     }
     usage_error(
@@ -180,11 +174,8 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--threads 100000", "at most"),
     ];
     for (options, words) in wrong {
-        usage_error(
-            &format!("refine builtin:head -o {{}} {options}"),
-            &[&output],
-            words,
-        );
+        let line = format!("refine builtin:head -o {{}} {options}");
+        usage_error(&line, &[&output], words);
     }
     usage_error(
         "refine builtin:head -o {} --provenance",

@@ -177,10 +177,7 @@ fn what_does_not_go_with_it_is_refused() {
         usage_error(&line, &[output], "--within");
     }
     for length in ["0", "-1", "nonsense", "0%", "101%"] {
-        run(
-            &format!("refine builtin:cup -o {{}} --within {length}"),
-            &[output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup -o {{}} --within {length}");
+        run(&line, &[output]).expect(2);
     }
 }

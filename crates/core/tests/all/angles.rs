@@ -52,12 +52,8 @@ fn a_view_never_costs_triangles() {
                     viewpoint,
                     dilatation,
                 };
-                let seen = exact(
-                    &control,
-                    &Loop,
-                    &ExactOptions::default().angle(angle).view(view),
-                )
-                .unwrap();
+                let options = ExactOptions::default().angle(angle).view(view);
+                let seen = exact(&control, &Loop, &options).unwrap();
                 assert_eq!(seen.stop, ExactStop::Met, "{name}, {view:?}");
                 let count = seen.mesh.face_count();
                 at_most!(count, fewest, "{name}, {view:?}");

@@ -11,7 +11,7 @@ use limitmesh::limit::LimitTable;
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{
     BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces,
-    PolygonSoup, SeamRule, Semantic, Tags,
+    PolygonSoup, SeamRule, Semantic,
 };
 use limitmesh::refine::{
     Exact, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
@@ -214,17 +214,11 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
                 .half_edges()
                 .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin));
             let creases = creases.filter(|_| random.below(5) == 0);
-            let tag = |h| CreaseTag {
-                vertices: topology.ends(h).map(|v| v.0),
-                sharpness: INFINITELY_SHARP,
-            };
+            let tag = |h| crease(topology.ends(h).map(|v| v.0), INFINITELY_SHARP);
             let creases: Vec<CreaseTag> = creases.map(tag).collect();
             let creased = mesh
                 .clone()
-                .with_tags(Tags {
-                    creases,
-                    ..Tags::default()
-                })
+                .with_tags(crate::support::creases(creases))
                 .unwrap();
             let whole = with_seams(&creased, usize::MAX, seed);
             check_against_other(&format!("{name}, creased, {seed}"), &creased, &whole);
@@ -312,12 +306,7 @@ fn linear_channels_are_exact() {
 #[test]
 fn affine_coordinates_of_a_disc_stay_affine() {
     let mesh = sheet(4, 5, 3);
-    let flat = mesh
-        .positions()
-        .iter()
-        .map(|&[x, y, _]| [x, y, 0.0])
-        .collect();
-    let mesh = mesh.with_positions(flat).unwrap();
+    let mesh = mapped(&mesh, |&[x, y, _]| [x, y, 0.0]);
     let affine = |[x, y, _]: [f64; 3]| [0.3 * x - 0.8 * y + 0.1, 1.7 * x + 0.4 * y - 2.0];
     let values = mesh.positions().iter().flat_map(|&p| affine(p)).collect();
     let channel = Channel::new("uv", Semantic::TextureCoordinates, Domain::Vertex, 2)
@@ -418,12 +407,8 @@ fn channels_of_a_soup_reach_the_mesh() {
 #[test]
 fn an_empty_mesh_carries_nothing() {
     let mesh = Mesh::from_triangles(Vec::new(), Vec::new()).unwrap();
-    let fine = uniform(
-        &mesh,
-        &Loop,
-        &UniformOptions::default().levels(1).origins(true),
-    )
-    .unwrap();
+    let options = UniformOptions::default().levels(1).origins(true);
+    let fine = uniform(&mesh, &Loop, &options).unwrap();
     for semantic in [
         Semantic::TextureCoordinates,
         Semantic::Displacement,

@@ -200,12 +200,8 @@ fn cameras_spare_what_they_do_not_see() {
         height: 1000,
     };
     // At depth 10 a pixel is 0.00536 long.
-    let seen = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![camera]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![camera]);
+    let seen = exact(&control, &Loop, &options).unwrap();
     assert_eq!(seen.stop, ExactStop::Met);
     assert!(seen.worst <= 1.0 && seen.mesh.face_count() < plain.mesh.face_count());
     let faces = |front: bool| {
@@ -223,23 +219,15 @@ fn cameras_spare_what_they_do_not_see() {
         eye: [0.0, 0.0, -10.0],
         ..camera
     };
-    let both = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![camera, behind]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![camera, behind]);
+    let both = exact(&control, &Loop, &options).unwrap();
     assert!(both.mesh.face_count() > seen.mesh.face_count());
     let away = Camera {
         target: [0.0, 0.0, 20.0],
         ..camera
     };
-    let unseen = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![away]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![away]);
+    let unseen = exact(&control, &Loop, &options).unwrap();
     assert_eq!(unseen.mesh.triangles(), control.triangles());
     for broken in [
         Camera {

@@ -38,6 +38,20 @@ fn off(control: &Mesh, scheme: &dyn Scheme, mesh: &Mesh, levels: usize) -> f64 {
     )
 }
 
+/// Refinement to a share of the size is certified, as samples of so many levels have it, too.
+fn is_followed(control: &Mesh, scheme: &dyn Scheme, share: f64, levels: usize, name: &str) {
+    let tolerance = share * control.diagonal();
+    let result = exact(control, scheme, &within(tolerance)).unwrap();
+    result.mesh.validate().unwrap();
+    assert_eq!(result.stop, ExactStop::Met);
+    assert!(result.error.certified, "{name}");
+    at_most!(result.error.upper, tolerance, "{name}");
+    vertices_are_of_uniform_refinement(control, scheme, &result, name);
+    let found = off(control, scheme, &result.mesh, levels);
+    // The reference's own chords leave the surface by less than this.
+    at_most!(found, result.error.upper + 0.05 * tolerance, "{name}");
+}
+
 #[test]
 fn fading_tags_are_followed_to_the_limit() {
     for (seed, name) in ["tetrahedron", "cube", "octahedron", "spike", "sheet"]
@@ -46,16 +60,7 @@ fn fading_tags_are_followed_to_the_limit() {
     {
         for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
             let control = tagged(named(name), seed as u64 + 1);
-            let tolerance = 0.004 * control.diagonal();
-            let result = exact(&control, scheme, &within(tolerance)).unwrap();
-            result.mesh.validate().unwrap();
-            assert_eq!(result.stop, ExactStop::Met);
-            assert!(result.error.certified, "{name}");
-            at_most!(result.error.upper, tolerance, "{name}");
-            vertices_are_of_uniform_refinement(&control, scheme, &result, name);
-            let found = off(&control, scheme, &result.mesh, 5);
-            // The reference's own chords leave the surface by less than this.
-            at_most!(found, result.error.upper + 0.05 * tolerance, "{name}");
+            is_followed(&control, scheme, 0.004, 5, name);
         }
     }
 }
@@ -122,12 +127,8 @@ fn tagged_butterfly_meshes_are_refined_too() {
 #[test]
 fn budgets_hold_for_butterfly() {
     let control = model("cube");
-    let result = exact(
-        &control,
-        &ModifiedButterfly,
-        &ExactOptions::default().triangles(400),
-    )
-    .unwrap();
+    let options = ExactOptions::default().triangles(400);
+    let result = exact(&control, &ModifiedButterfly, &options).unwrap();
     let count = result.mesh.face_count();
     assert!((340..=400).contains(&count), "{count}");
 }
@@ -204,13 +205,6 @@ fn shared_models_with_fading_creases_are_followed() {
     };
     for (name, levels) in [("loop_icos_semisharp.obj", 6), ("rook_creased.obj", 4)] {
         let control = shared_model(&folder, name);
-        let tolerance = 0.001 * control.diagonal();
-        let result = exact(&control, &Loop, &within(tolerance)).unwrap();
-        assert_eq!(result.stop, ExactStop::Met);
-        assert!(result.error.certified, "{name}");
-        at_most!(result.error.upper, tolerance, "{name}");
-        vertices_are_of_uniform_refinement(&control, &Loop, &result, name);
-        let found = off(&control, &Loop, &result.mesh, levels);
-        at_most!(found, result.error.upper + 0.05 * tolerance, "{name}");
+        is_followed(&control, &Loop, 0.001, levels, name);
     }
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::support::{Random, dot, lumpy, octahedron, samples};
 use limitmesh::criterion::Viewpoint;
-use limitmesh::mesh::{CreaseTag, Tags};
+use limitmesh::mesh::CreaseTag;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly};
 use limitmesh::{FaceId, Facing, LimitSurface, Mesh, SurfacePoint};
 
@@ -16,10 +16,8 @@ const SIDE: u32 = 16;
 /// A mesh with some of its edges sharp, for ever and for a while.
 fn creased() -> Mesh {
     let mesh = lumpy(9, 3);
-    let crease = |[a, b]: [u32; 2], sharpness| CreaseTag {
-        vertices: [a.min(b), a.max(b)],
-        sharpness,
-    };
+    let crease =
+        |[a, b]: [u32; 2], sharpness| crate::support::crease([a.min(b), a.max(b)], sharpness);
     let edges = [[0, 2], [1, 2], [1, 3], [0, 3], [0, 4]];
     let is_edge = |[a, b]: [u32; 2]| {
         mesh.triangles()
@@ -34,11 +32,7 @@ fn creased() -> Mesh {
         .collect();
     assert!(creases.len() > 2);
     creases.sort_by_key(|crease| crease.vertices);
-    mesh.with_tags(Tags {
-        creases,
-        ..Tags::default()
-    })
-    .unwrap()
+    mesh.with_tags(crate::support::creases(creases)).unwrap()
 }
 
 fn models() -> Vec<(&'static str, Mesh)> {

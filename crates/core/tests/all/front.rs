@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::ControlFlow;
 
-use crate::support::{Random, lumpy, octahedron, sheet, tagged_obj, torus};
+use crate::support::{Random, lumpy, mapped, octahedron, sheet, tagged_obj, torus};
 use limitmesh::criterion::Camera;
 use limitmesh::front::{Demand, Front, FrontError, Measure};
 use limitmesh::mesh::PolygonSoup;
@@ -258,12 +258,7 @@ fn cameras_that_move_a_little() {
 #[test]
 fn lengths_of_a_cameras_directions_do_not_count() {
     let control = lumpy(9, 7);
-    let away = control
-        .positions()
-        .iter()
-        .map(|&[x, y, z]| [x, y, z - 2.0])
-        .collect();
-    let control = control.with_positions(away).unwrap();
+    let control = mapped(&control, |&[x, y, z]| [x, y, z - 2.0]);
     let camera = |length: f64| Camera {
         eye: [0.0; 3],
         target: [0.1 * length, 0.2 * length, -length],

@@ -6,6 +6,7 @@
 use std::ops::ControlFlow;
 
 use crate::support::*;
+use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, LimitNormal};
 use limitmesh::interpolate::{
     InterpolateError, InterpolateOptions, interpolate, interpolate_observed,
@@ -18,7 +19,6 @@ use limitmesh::refine::{
     stepwise_observed, uniform, uniform_observed,
 };
 use limitmesh::scheme::Loop;
-use limitmesh::{Mesh, Triangles};
 
 /// Runs a function to its end and checks its reports, then cancels it at the first, third, … call.
 fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
@@ -149,10 +149,7 @@ fn measurement_is_observed() {
 fn watertightness_is_observed() {
     // Open at one face, so that T-junctions are looked for as well.
     let fine = sphere(6);
-    let open = Triangles {
-        positions: fine.positions(),
-        triangles: &fine.triangles()[1..],
-    };
+    let open = surface(fine.positions(), &fine.triangles()[1..]);
     let plain = watertightness(open);
     assert_eq!(plain.boundary_edges, 3);
     watch(

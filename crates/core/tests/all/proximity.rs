@@ -4,12 +4,12 @@
 
 use core::ops::ControlFlow;
 
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Closest, FaceId, LimitSurface, Membership, Mesh, Proximity, ProximityError};
 
-use crate::support::{Point, cross, distance, dot, minus, model, octahedron};
+use crate::support::{Point, corner, crease, cross, distance, dot, minus, model, octahedron};
 
 /// A double cone over a polygon: tips of any valence, the others of four.
 fn spindle(valence: u32) -> Mesh {
@@ -33,14 +33,8 @@ fn tagged(mesh: &Mesh) -> Mesh {
         ([b, c], f64::INFINITY),
         ([d, e], 1.4),
     ]
-    .map(|(vertices, sharpness)| CreaseTag {
-        vertices,
-        sharpness,
-    });
-    let corners = vec![CornerTag {
-        vertex: c,
-        sharpness: f64::INFINITY,
-    }];
+    .map(|(vertices, sharpness)| crease(vertices, sharpness));
+    let corners = vec![corner(c, f64::INFINITY)];
     mesh.clone()
         .with_tags(Tags {
             creases: creases.to_vec(),

@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use crate::support::*;
-use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Tags};
+use limitmesh::mesh::{PolygonSoup, Tags};
 use limitmesh::refine::{
     Exact, ExactOptions, Frame, Frames, LimitDistanceOptions, RefineError, Replay, ReplayError,
     Traced, exact, exact_frames, limit_distance,
@@ -56,20 +56,16 @@ fn tagged(mesh: Mesh, one_in: usize, seed: u64) -> Mesh {
     {
         if random.below(one_in) == 0 {
             let vertices = topology.ends(h).map(|v| v.0);
-            tags.creases.push(CreaseTag {
-                vertices,
-                sharpness: sharp[random.below(sharp.len())],
-            });
+            tags.creases
+                .push(crease(vertices, sharp[random.below(sharp.len())]));
         }
     }
     for vertex in topology.vertices() {
         if random.below(3 * one_in) > 0 {
             continue;
         }
-        tags.corners.push(CornerTag {
-            vertex: vertex.0,
-            sharpness: sharp[random.below(sharp.len())],
-        });
+        tags.corners
+            .push(corner(vertex.0, sharp[random.below(sharp.len())]));
     }
     mesh.clone().with_tags(tags).unwrap()
 }
@@ -274,12 +270,8 @@ fn what_cannot_be_replayed_is_refused() {
         Err(ReplayError::NoOrigins { origins: 0, .. })
     ));
     let refined = of(ExactOptions::default());
-    let other = exact(
-        &mesh,
-        &ModifiedButterfly,
-        &ExactOptions::default().triangles(60),
-    )
-    .unwrap();
+    let options = ExactOptions::default().triangles(60);
+    let other = exact(&mesh, &ModifiedButterfly, &options).unwrap();
     let refusal = Replay::new(&mesh, &ModifiedButterfly, &other);
     assert!(matches!(refusal, Err(ReplayError::Scheme { .. })));
     let few = Mesh::from_triangles(mesh.positions()[..3].to_vec(), vec![[0, 1, 2]]).unwrap();

@@ -6,7 +6,6 @@ use crate::flat::washer;
 use crate::support::{enclosed, exact, model, shared_model, shared_models, within};
 use limitmesh::Mesh;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, hausdorff};
-use limitmesh::mesh::{CreaseTag, Tags};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
@@ -90,17 +89,11 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
             let edges = topology
                 .half_edges()
                 .filter(|&h| topology.twin(h).is_some_and(|twin| h.0 < twin.0));
-            let crease = |h| CreaseTag {
-                vertices: topology.ends(h).map(|v| v.0),
-                sharpness: 2.4,
-            };
+            let crease = |h| crate::support::crease(topology.ends(h).map(|v| v.0), 2.4);
             let creases = edges.step_by(3).map(crease).collect();
             control = control
                 .clone()
-                .with_tags(Tags {
-                    creases,
-                    ..Tags::default()
-                })
+                .with_tags(crate::support::creases(creases))
                 .unwrap();
         }
         for share in shares {

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support::{
-    Point, Random, creased, cross, distance, dot, exact, minus, peg, pool, sampled,
+    Point, Random, creased, cross, distance, dot, exact, mapped, minus, peg, pool, sampled,
 };
 use limitmesh::Mesh;
 use limitmesh::mesh::{BoundaryRule, PolygonSoup};
@@ -248,12 +248,7 @@ fn flat_sides_may_go_over_into_round_ones() {
 #[test]
 fn rounded_coordinates_have_strips_too() {
     let mesh = peg(16);
-    let rounded = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| f64::from(x as f32)))
-        .collect();
-    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let rounded = mapped(&mesh, |p| p.map(|x| f64::from(x as f32)));
     let [exactly, single] =
         [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &within(1e-3)).unwrap());
     assert_eq!(single.mesh.face_count(), exactly.mesh.face_count());

@@ -12,7 +12,7 @@ use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, RefineError, UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
-use limitmesh::{HalfEdgeId, Mesh};
+use limitmesh::{HalfEdgeId, Mesh, Triangles};
 
 /// Compares two values; shows both, and the case they belong to, where the comparison fails.
 macro_rules! ordered {
@@ -327,16 +327,10 @@ pub fn tagged_obj(text: &str) -> Mesh {
             }
             Some(&"t") if words[1] == "crease" => {
                 let vertices = [number(3) as u32, number(4) as u32];
-                tags.creases.push(CreaseTag {
-                    vertices,
-                    sharpness: number(5),
-                });
+                tags.creases.push(crease(vertices, number(5)));
             }
             Some(&"t") if words[1] == "corner" => {
-                tags.corners.push(CornerTag {
-                    vertex: number(3) as u32,
-                    sharpness: number(4),
-                });
+                tags.corners.push(corner(number(3) as u32, number(4)));
             }
             _ => {}
         }
@@ -397,10 +391,7 @@ pub fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
         let [a, b] = [h, twin].map(|h| unit(h.face()));
         if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
             let [from, to] = topology.ends(h);
-            creases.push(CreaseTag {
-                vertices: [from.0, to.0],
-                sharpness: INFINITELY_SHARP,
-            });
+            creases.push(crease([from.0, to.0], INFINITELY_SHARP));
         }
     }
     mesh.with_tags(Tags {
@@ -510,10 +501,7 @@ pub fn tagged_by(
     let is_first = |&h: &HalfEdgeId| topology.twin(h).is_some_and(|twin| h < twin);
     for h in topology.half_edges().filter(is_first) {
         let vertices = topology.ends(h).map(|v| v.0);
-        let tag = |sharpness| CreaseTag {
-            vertices,
-            sharpness,
-        };
+        let tag = |sharpness| crease(vertices, sharpness);
         tags.creases.extend(sharpness(edges).map(tag));
     }
     for vertex in 0..mesh.vertex_count() as u32 {
@@ -527,4 +515,44 @@ pub fn tagged_by(
 pub fn divided(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
     let options = UniformOptions::default().levels(levels);
     uniform(mesh, scheme, &options).unwrap().mesh
+}
+
+pub fn crease(vertices: [u32; 2], sharpness: f64) -> CreaseTag {
+    CreaseTag {
+        vertices,
+        sharpness,
+    }
+}
+
+pub fn corner(vertex: u32, sharpness: f64) -> CornerTag {
+    CornerTag { vertex, sharpness }
+}
+
+/// Creases alone.
+pub fn creases(creases: Vec<CreaseTag>) -> Tags {
+    Tags {
+        creases,
+        ..Tags::default()
+    }
+}
+
+/// Corners alone.
+pub fn corners(corners: Vec<CornerTag>) -> Tags {
+    Tags {
+        corners,
+        ..Tags::default()
+    }
+}
+
+pub fn surface<'a>(positions: &'a [[f64; 3]], triangles: &'a [[u32; 3]]) -> Triangles<'a> {
+    Triangles {
+        positions,
+        triangles,
+    }
+}
+
+/// A mesh with its vertices elsewhere.
+pub fn mapped(mesh: &Mesh, place: impl FnMut(&Point) -> Point) -> Mesh {
+    let positions = mesh.positions().iter().map(place).collect();
+    mesh.clone().with_positions(positions).unwrap()
 }

@@ -476,16 +476,10 @@ fn what_makes_no_sense_is_refused() {
         let refused = within(&mesh, &Loop, &WithinOptions::default().within(length));
         assert!(matches!(refused, Err(RefineError::Mesh(_))), "{length}");
     }
-    let refused = within(
-        &mesh,
-        &Loop,
-        &WithinOptions::default().within(0.1).tolerance(Some(0.2)),
-    );
+    let options = WithinOptions::default().within(0.1).tolerance(Some(0.2));
+    let refused = within(&mesh, &Loop, &options);
     assert!(matches!(refused, Err(RefineError::Mesh(_))));
-    let refused = within(
-        &mesh,
-        &ModifiedButterfly,
-        &WithinOptions::default().within(0.1),
-    );
+    let options = WithinOptions::default().within(0.1);
+    let refused = within(&mesh, &ModifiedButterfly, &options);
     assert!(refused.is_err_and(|error| error.to_string().contains("butterfly")));
 }

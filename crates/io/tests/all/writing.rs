@@ -514,11 +514,8 @@ fn places_that_cannot_be_written_to() {
     fs::create_dir(&is_folder).unwrap();
     let message = write_whole(&is_folder, b"").unwrap_err().to_string();
     assert!(message.contains("directory"), "{message}");
-    let unknown = write(
-        &folder.path().join("mesh.xyz"),
-        &triangle(),
-        &WriteOptions::default(),
-    );
+    let options = WriteOptions::default();
+    let unknown = write(&folder.path().join("mesh.xyz"), &triangle(), &options);
     assert!(matches!(unknown, Err(WriteError::UnknownFormat(_))));
     assert_eq!(names(folder.path()), ["folder.ply"]);
 }

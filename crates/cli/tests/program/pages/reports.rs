@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{folder, json_file, json_of, run, text};
+use crate::common::{folder, json_file, json_of, run};
 use crate::kept::root;
 
 #[test]

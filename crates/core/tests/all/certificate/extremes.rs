@@ -6,7 +6,7 @@ use limitmesh::mesh::Mesh;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop};
 use limitmesh::scheme::Loop;
 
-use crate::support::{Point, exact, octahedron, sheet, within};
+use crate::support::{Point, corner, exact, octahedron, sheet, within};
 
 /// More than enough for each of these, for an unoptimised build on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -192,10 +192,7 @@ fn flat_meshes_are_divided_only_along_their_outlines() {
     let creases = |mesh: &Mesh| {
         let tags = limitmesh::mesh::Tags {
             corners: (0..mesh.vertex_count() as u32)
-                .map(|vertex| limitmesh::mesh::CornerTag {
-                    vertex,
-                    sharpness: f64::INFINITY,
-                })
+                .map(|vertex| corner(vertex, f64::INFINITY))
                 .collect(),
             ..Default::default()
         };
@@ -271,10 +268,8 @@ fn thousands_of_faces_around_a_vertex_are_refined() {
         positions.push([angle.cos(), angle.sin(), 0.0]);
         triangles.push([0, 1 + i, 1 + (i + 1) % n]);
     }
-    let result = refined(
-        &mesh(&positions, &triangles),
-        &ExactOptions::default().triangles(4_000),
-    );
+    let options = ExactOptions::default().triangles(4_000);
+    let result = refined(&mesh(&positions, &triangles), &options);
     assert!(result.mesh.face_count() <= 4_000);
 }
 

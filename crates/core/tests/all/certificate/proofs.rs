@@ -1,15 +1,15 @@
 //! Results by `limitmesh-check`, which shares nothing with the library: it confirms what is certified, and nothing below what was found.
 
+use limitmesh::Mesh;
 use limitmesh::refine::{Exact, Origin, exact};
 use limitmesh::scheme::{Loop, Scheme};
-use limitmesh::{Mesh, Triangles};
 use limitmesh_check::mesh::Mesh as Plain;
 use limitmesh_check::proof::Proof as Claim;
 use limitmesh_check::tiling::Refusal;
 use limitmesh_check::verdict;
 use limitmesh_io::{Proof, ProofError};
 
-use crate::support::{Random, cross, minus, within};
+use crate::support::{Random, cross, minus, surface, within};
 
 fn plain(mesh: &Mesh) -> Plain {
     Plain {
@@ -93,10 +93,7 @@ impl Changed {
             control,
             holds_control: true,
             scheme: Loop,
-            result: Triangles {
-                positions: &self.mesh.positions,
-                triangles: &self.mesh.triangles,
-            },
+            result: surface(&self.mesh.positions, &self.mesh.triangles),
             origins: &self.origins,
             parents: &self.parents,
         };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use limitmesh::mesh::{BoundaryRule, BuildOptions, CreaseTag, PolygonFaces, Tags};
+use limitmesh::mesh::{BoundaryRule, BuildOptions, PolygonFaces};
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use limitmesh::{Mesh, PolygonSoup};
@@ -244,10 +244,7 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
             faces.push(&[i, first + i + 1, first + i]);
         }
     }
-    let crease = |a: u32, b: u32, sharpness| CreaseTag {
-        vertices: [a, b],
-        sharpness,
-    };
+    let crease = |a: u32, b: u32, sharpness| crate::support::crease([a, b], sharpness);
     let creases = vec![
         crease(1, 6, 0.5),
         crease(1, 7, 1.7),
@@ -285,10 +282,9 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
             }
         }
     }
-    let tagged = mesh.clone().with_tags(Tags {
-        creases: vec![crease(1, 6, 2.5)],
-        ..Tags::default()
-    });
+    let tagged = mesh
+        .clone()
+        .with_tags(crate::support::creases(vec![crease(1, 6, 2.5)]));
     refined(&tagged.unwrap_or(mesh), &Loop, 2);
 }
 

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, CreaseTag, Sharpness, Tags};
+use limitmesh::mesh::{Sharpness, Tags};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{HalfEdgeId, Mesh, VertexId};
 
@@ -62,16 +62,10 @@ fn tagged(k: u32, open: bool, spokes: &[(u32, f64)], corner: f64) -> Mesh {
             } else {
                 1 + (circle - 1) * k + slot
             };
-            CreaseTag {
-                vertices: [from, 1 + circle * k + slot],
-                sharpness,
-            }
+            crate::support::crease([from, 1 + circle * k + slot], sharpness)
         })
     };
-    let corners = vec![CornerTag {
-        vertex: 0,
-        sharpness: corner,
-    }];
+    let corners = vec![crate::support::corner(0, corner)];
     fan(k, open)
         .with_tags(Tags {
             creases: spokes.iter().flat_map(out).collect(),

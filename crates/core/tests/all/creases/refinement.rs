@@ -1,7 +1,7 @@
 //! Uniform refinement of tagged meshes.
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 
 use crate::creases::plain::{Plain, randomly_tagged};
@@ -146,14 +146,8 @@ fn the_shared_models_with_tags_are_the_other_implementation_s() {
 #[test]
 fn tags_of_sharpness_zero_change_nothing() {
     for (_, mesh) in samples() {
-        let creases = mesh.triangles().iter().map(|t| CreaseTag {
-            vertices: [t[0], t[1]],
-            sharpness: 0.0,
-        });
-        let corners = (0..mesh.vertex_count() as u32).map(|vertex| CornerTag {
-            vertex,
-            sharpness: 0.0,
-        });
+        let creases = mesh.triangles().iter().map(|t| crease([t[0], t[1]], 0.0));
+        let corners = (0..mesh.vertex_count() as u32).map(|vertex| corner(vertex, 0.0));
         let tags = Tags {
             creases: creases.collect(),
             corners: corners.collect(),

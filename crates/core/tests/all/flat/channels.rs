@@ -47,12 +47,8 @@ fn channel(domain: Domain, values: Vec<f64>) -> Channel {
 }
 
 fn refined(mesh: &Mesh, channels: &[Channel]) -> Exact {
-    exact(
-        mesh,
-        &Loop,
-        &within(TOLERANCE).kept_edges(borders(channels, mesh)),
-    )
-    .unwrap()
+    let options = within(TOLERANCE).kept_edges(borders(channels, mesh));
+    exact(mesh, &Loop, &options).unwrap()
 }
 
 #[test]

@@ -6,11 +6,13 @@ use std::f64::consts::TAU;
 use limitmesh::Mesh;
 use limitmesh::index::FaceId;
 use limitmesh::measure::{CertifiedOptions, SamplingOptions, hausdorff};
-use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::mesh::{INFINITELY_SHARP, Tags};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
-use crate::support::{Random, creased, distance, dot, enclosed, exact, grid, minus, within};
+use crate::support::{
+    Random, corner, creased, distance, dot, enclosed, exact, grid, minus, within,
+};
 
 /// A plate with a round hole whose triangles are slivers, as programs for design write them: the rules turn some over where two
 /// fans meet. The hole's vertices are those from the seventh on.
@@ -37,18 +39,10 @@ fn plate_of_slivers(facets: u32) -> Mesh {
         triangles.extend([[3 + i, i, next], [3 + i, next, 3 + next]]);
     }
     let corners = (0..3)
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: INFINITELY_SHARP,
-        })
+        .map(|vertex| corner(vertex, INFINITELY_SHARP))
         .collect();
     let plate = Mesh::from_triangles(positions, triangles).unwrap();
-    plate
-        .with_tags(Tags {
-            corners,
-            ..Tags::default()
-        })
-        .unwrap()
+    plate.with_tags(crate::support::corners(corners)).unwrap()
 }
 
 /// The triangles cover the inside of the rims, once.
@@ -300,10 +294,7 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
     let inner = rows[1..rows.len() - 1]
         .iter()
         .flat_map(|row| row.windows(2));
-    let creases = inner.map(|edge| CreaseTag {
-        vertices: [edge[0], edge[1]],
-        sharpness: INFINITELY_SHARP,
-    });
+    let creases = inner.map(|edge| crate::support::crease([edge[0], edge[1]], INFINITELY_SHARP));
     let is_inside = |vertex: &u32| {
         rows[1..rows.len() - 1]
             .iter()
@@ -311,10 +302,7 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
     };
     let around = (0..mesh.vertex_count() as u32).filter(|vertex| !is_inside(vertex));
     let corners = around
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: INFINITELY_SHARP,
-        })
+        .map(|vertex| corner(vertex, INFINITELY_SHARP))
         .collect();
     mesh.with_tags(Tags {
         creases: creases.collect(),
@@ -486,15 +474,9 @@ fn what_two_rims_undo_counts() {
         [2, 11, 10],
     ];
     let mesh = Mesh::from_triangles(positions, triangles.to_vec()).unwrap();
-    let crease = |first| CreaseTag {
-        vertices: [first, first + 1],
-        sharpness: INFINITELY_SHARP,
-    };
+    let crease = |first| crate::support::crease([first, first + 1], INFINITELY_SHARP);
     let mesh = mesh
-        .with_tags(Tags {
-            creases: (0..5).map(crease).collect(),
-            corners: Vec::new(),
-        })
+        .with_tags(crate::support::creases((0..5).map(crease).collect()))
         .unwrap();
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
     for options in [

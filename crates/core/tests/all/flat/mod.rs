@@ -6,7 +6,7 @@ mod channels;
 mod folding;
 use std::f64::consts::TAU;
 
-use crate::support::{creased, cross, dot, exact, peg, sampled, within};
+use crate::support::{creased, cross, dot, exact, mapped, peg, sampled, within};
 use limitmesh::Mesh;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
@@ -255,12 +255,7 @@ fn what_is_flat_is_optimised_with_proof() {
 #[test]
 fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     let mesh = peg(16);
-    let rounded = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| f64::from(x as f32)))
-        .collect();
-    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let rounded = mapped(&mesh, |p| p.map(|x| f64::from(x as f32)));
     let options = within(1e-3);
     let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &options).unwrap());
     assert!(single.mesh.face_count() <= exactly.mesh.face_count() + 20);

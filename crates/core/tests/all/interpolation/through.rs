@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate as interpolate_within,
 };
-use limitmesh::mesh::{BoundaryRule, CreaseTag, PolygonSoup, Tags};
+use limitmesh::mesh::{BoundaryRule, PolygonSoup, Tags};
 use limitmesh::refine::ExactOptions;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
@@ -164,10 +164,8 @@ fn corners_keep_their_place_and_lines_know_nothing_of_their_sides() {
     // A crease round a torus does not depend on the adjacent points.
     let (m, n) = (12, 8);
     let line: Vec<u32> = (0..m).map(|i| i * n).collect();
-    let crease = |i: usize| CreaseTag {
-        vertices: [line[i], line[(i + 1) % line.len()]],
-        sharpness: f64::INFINITY,
-    };
+    let crease =
+        |i: usize| crate::support::crease([line[i], line[(i + 1) % line.len()]], f64::INFINITY);
     let tags = Tags {
         creases: (0..line.len()).map(crease).collect(),
         ..Tags::default()

@@ -4,12 +4,12 @@ use limitmesh::interpolate::{
     InterpolateError, InterpolateOptions, interpolate as interpolate_within,
 };
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, VertexId};
 
 use crate::interpolation::{dense, dense_solution, from_limits, interpolate, loop_beta, tagged};
-use crate::support::{Point, Random, distance, lumpy, octahedron, sheet, torus};
+use crate::support::{Point, Random, corner, distance, lumpy, octahedron, sheet, torus};
 
 /// The energy that the documentation names, on a mesh without tags.
 fn thin_plate(mesh: &Mesh) -> f64 {
@@ -116,10 +116,7 @@ fn lines_within_reach_of_straight_ones_get_straight() {
     positions[0][2] = 0.0;
     positions[10][2] = 0.0;
     let corners = [0, 10, 11, 21]
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: f64::INFINITY,
-        })
+        .map(|vertex| corner(vertex, f64::INFINITY))
         .to_vec();
     let tags = Tags {
         corners,

@@ -1,19 +1,15 @@
-use limitmesh::mesh::Tags;
 use limitmesh::refine::{ExactStop, RefineError, UniformOptions};
 use limitmesh::sqrt3::{Sqrt3, Sqrt3Options, adaptive, uniform};
 use limitmesh::{HalfEdgeId, Mesh};
 
 use crate::sqrt3::models::{icosahedron, junction, sharp, smooth, tetrahedron};
-use crate::support::{Point, distance, octahedron, unnumbered};
+use crate::support::{Point, crease, distance, octahedron, unnumbered};
 
 fn cone(mesh: &Mesh, degrees: f64) -> Sqrt3 {
-    adaptive(
-        mesh,
-        &Sqrt3Options::default()
-            .angle(Some(degrees.to_radians()))
-            .origins(true),
-    )
-    .unwrap()
+    let options = Sqrt3Options::default()
+        .angle(Some(degrees.to_radians()))
+        .origins(true);
+    adaptive(mesh, &options).unwrap()
 }
 
 /// Icosahedron, octahedron, tetrahedron, and the icosahedron three times as high.
@@ -278,15 +274,9 @@ fn options_that_mean_nothing_are_errors() {
     assert!(refused(
         Sqrt3Options::default().triangles(Some(9)).max_levels(49)
     ));
-    let creases = vec![limitmesh::mesh::CreaseTag {
-        vertices: [0, 2],
-        sharpness: 1.0,
-    }];
+    let creases = vec![crease([0, 2], 1.0)];
     let fading = octahedron()
-        .with_tags(Tags {
-            creases,
-            corners: Vec::new(),
-        })
+        .with_tags(crate::support::creases(creases))
         .unwrap();
     let error = adaptive(&fading, &Sqrt3Options::default().angle(Some(0.1))).unwrap_err();
     assert!(matches!(error, RefineError::FadingTag { .. }));
