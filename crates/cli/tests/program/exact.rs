@@ -73,6 +73,23 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
 }
 
 #[test]
+fn the_interval_holds_what_samples_find() {
+    let folder = folder();
+    let output = folder.path().join("out.ply");
+    let report = refine(0, "builtin:head", &output, "--tolerance 0.5%");
+    let measured = json_of("measure {} --limit-of builtin:head --json", &[&output]);
+    let sampled = number(&measured["hausdorff"]["symmetric"]);
+    let (lower, upper) = (
+        number(&report["error"]["lower"]),
+        number(&report["error"]["upper"]),
+    );
+    // Five levels of uniform refinement approximate the surface: a few hundredths of a per cent of the error off.
+    assert!(sampled <= 1.01 * upper, "{sampled} {upper}");
+    assert!(sampled >= 0.9 * lower, "{sampled} {lower}");
+    assert!(upper <= number(&report["parameters"]["exact"]["tolerance"]));
+}
+
+#[test]
 fn a_number_of_triangles_is_used_up_and_not_passed() {
     let folder = folder();
     let output = folder.path().join("out.ply");
