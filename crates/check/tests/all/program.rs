@@ -63,90 +63,64 @@ fn three_files_are_confirmed_or_refused() {
     std::fs::create_dir_all(&folder).unwrap();
     let (within, cage) = (0.09, Cage::new(octahedron()).refined().refined().settled(4));
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
+    // Runs the program, which ends with a code and says something.
+    let ends = |words: &str, code: i32, what: &str| {
+        let words: Vec<&str> = words.split(' ').collect();
+        let (found, said) = run(&folder, &words);
+        assert_eq!(found, Some(code), "{words:?}: {said}");
+        assert!(said.contains(what), "{words:?}: no '{what}' in {said}");
+        said
+    };
     write("control.obj", obj(&cage.control).as_bytes());
     write("result.obj", obj(&cage.mesh).as_bytes());
     write("result.proof", &cage.proof(within));
-    let files = ["control.obj", "result.obj", "result.proof"];
-    let (code, said) = run(&folder, &files);
-    assert_eq!(code, Some(0), "{said}");
-    assert!(
-        said.starts_with("confirmed: 128 triangles") && said.contains("0.09"),
-        "{said}"
-    );
-    let (code, said) = run(&folder, &[&files[..], &["--at", "0.01"]].concat());
-    assert_eq!(code, Some(1), "{said}");
-    assert!(
-        said.starts_with("refused: ") && said.contains("\n  triangle "),
-        "{said}"
-    );
+    let files = "control.obj result.obj result.proof";
+    let said = ends(files, 0, "0.09");
+    assert!(said.starts_with("confirmed: 128 triangles"), "{said}");
+    let said = ends(&format!("{files} --at 0.01"), 1, "\n  triangle ");
+    assert!(said.starts_with("refused: "), "{said}");
     // One vertex moved by twice the length is refused by name; moved by next to nothing it is near enough, but another result.
     let mut moved = cage.clone();
+    let other = "control.obj moved.obj result.proof";
     moved.mesh.positions[20][2] += 1e-6;
     write("moved.obj", obj(&moved.mesh).as_bytes());
-    let (code, said) = run(&folder, &["control.obj", "moved.obj", "result.proof"]);
-    assert!(code == Some(0) && said.contains("not the one"), "{said}");
+    ends(other, 0, "not the one");
     moved.mesh.positions[20][2] += 2.0 * within;
     write("moved.obj", obj(&moved.mesh).as_bytes());
-    let (code, said) = run(&folder, &["control.obj", "moved.obj", "result.proof"]);
-    assert!(code == Some(1) && said.contains("not the one"), "{said}");
+    let said = ends(other, 1, "not the one");
     let named = |t: usize| said.contains(&format!("\n  triangle {t} "));
     let at_20 = (0..cage.mesh.triangles.len()).filter(|&t| cage.mesh.triangles[t].contains(&20));
     assert!(at_20.into_iter().any(named), "{said}");
     for (words, what) in [
-        (&["result.obj", "result.proof"][..], "name its file first"),
-        (&["control.obj", "result.obj", "control.obj"], "is no proof"),
-        (&["none.obj", "result.obj", "result.proof"], "none.obj"),
-        (&["control.obj"], "usage"),
+        ("result.obj result.proof", "name its file first"),
+        ("control.obj result.obj control.obj", "is no proof"),
+        ("none.obj result.obj result.proof", "none.obj"),
+        ("control.obj", "usage"),
+        ("control.obj result.obj result.proof --at x", "not a number"),
+        ("control.obj result.obj result.proof --at 0", "too small"),
         (
-            &["control.obj", "result.obj", "result.proof", "--at", "x"],
-            "not a number",
-        ),
-        (
-            &["control.obj", "result.obj", "result.proof", "--at", "0"],
-            "too small",
-        ),
-        (
-            &["control.obj", "result.obj", "result.proof", "--at"],
+            "control.obj result.obj result.proof --at",
             "lacks its value",
         ),
-        (
-            &["result.obj", "control.obj", "result.proof"],
-            "the order is",
-        ),
+        ("result.obj control.obj result.proof", "the order is"),
     ] {
-        let (code, said) = run(&folder, words);
-        assert!(
-            code == Some(2) && said.contains(what),
-            "{words:?}: {code:?}, {said}"
-        );
+        ends(words, 2, what);
     }
     // A control mesh that the proof holds can be looked at, in a file that was not there before.
-    let (code, said) = run(&folder, &[&files[..], &["--control", "shown.obj"]].concat());
-    assert!(
-        code == Some(2) && said.contains("holds no control mesh"),
-        "{said}"
+    ends(
+        &format!("{files} --control shown.obj"),
+        2,
+        "holds no control mesh",
     );
     write("held.proof", &holding(&cage.control, &cage.proof(within)));
-    let held = ["result.obj", "held.proof", "--control"];
-    let (code, said) = run(&folder, &[&held[..], &["result.obj"]].concat());
-    assert!(code == Some(2) && said.contains("result.obj: "), "{said}");
-    assert_eq!(
-        std::fs::read(folder.join("result.obj")).unwrap(),
-        obj(&cage.mesh).as_bytes()
-    );
-    let (code, said) = run(&folder, &[&held[..], &["shown.obj"]].concat());
-    assert_eq!(code, Some(0), "{said}");
-    let shown = limitmesh_check::read::mesh(
-        "shown.obj",
-        &std::fs::read(folder.join("shown.obj")).unwrap(),
-    );
+    let held = "result.obj held.proof --control";
+    ends(&format!("{held} result.obj"), 2, "result.obj: ");
+    let bytes = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert_eq!(bytes("result.obj"), obj(&cage.mesh).as_bytes());
+    ends(&format!("{held} shown.obj"), 0, "");
+    let shown = limitmesh_check::read::mesh("shown.obj", &bytes("shown.obj"));
     assert_eq!(shown.unwrap(), cage.control);
-    for (word, what) in [
-        ("--help", "usage"),
-        ("--version", env!("CARGO_PKG_VERSION")),
-    ] {
-        let (code, said) = run(&folder, &[word]);
-        assert!(code == Some(0) && said.contains(what), "{said}");
-    }
+    ends("--help", 0, "usage");
+    ends("--version", 0, env!("CARGO_PKG_VERSION"));
     std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::{counts, done, file, folder, json_of, run, soup, usage_error};
+use crate::common::{
+    count, counts, done, file, folder, is_png, json_of, number, run, soup, usage_error,
+};
 
 /// A text document with its buffer in it: positions of eight corners of a cube (accessor 0), and indices of its sides but the top,
 /// of the top, and of a line; joints and weights of the corners (4 and 5), which are the first joint's below and the second's above.
@@ -90,26 +92,22 @@ fn tolerances_are_the_scenes() {
             &[&input, &output],
         );
         let mesh = &report["meshes"][0];
-        triangles.push(mesh["output"]["triangles"].as_u64().expect("a number"));
-        let upper = mesh["error"]["upper"].as_f64().expect("a number");
+        triangles.push(count(&mesh["output"]["triangles"]));
+        let upper = number(&mesh["error"]["upper"]);
         // The file's scene as another command reads it.
         let measured = json_of(
             "measure {} --limit-of {} --certified --json --crease-angle none",
             &[&output, &input],
         );
-        let found = measured["hausdorff"]["lower"].as_f64().expect("a number");
-        let most = measured["hausdorff"]["upper"].as_f64().expect("a number");
-        assert!(
-            found <= upper && most >= 0.5 * upper,
-            "{found} to {most}, told {upper}"
-        );
-        let size = mesh["error"]["diagonal"].as_f64().expect("a number");
+        let found = number(&measured["hausdorff"]["lower"]);
+        let most = number(&measured["hausdorff"]["upper"]);
+        at_most!(found, upper);
+        at_least!(most, 0.5 * upper);
+        let size = number(&mesh["error"]["diagonal"]);
         assert!(upper <= 0.01 * size * (1.0 + 1e-9), "{upper} of {size}");
     }
-    assert!(
-        triangles[0] == triangles[1] && triangles[1] == triangles[2],
-        "{triangles:?}"
-    );
+    assert!(triangles[0] == triangles[1]);
+    assert!(triangles[1] == triangles[2]);
     // A length holds in the scene, too: 1000 times larger needs more triangles for the same.
     let small = cube(&folder, "small.gltf", r#"{"mesh":0}"#, "");
     let large = cube(
@@ -140,10 +138,8 @@ fn materials_keep_their_border_and_stay_joined() {
         ("sharp.gltf", "--tolerance 2% --crease-angle 30"),
     ] {
         let output = folder.path().join(output);
-        done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        done(&line, &[&input, &output]);
         // Read back, joined again along the border: closed.
         let whole = json_of("info {} --json", &[&output]);
         assert_eq!(whole["mesh"]["watertight"], true);
@@ -194,11 +190,8 @@ fn what_has_no_meaning_for_a_scene_is_refused() {
     let input = cube(&folder, "in.gltf", r#"{"mesh":0}"#, "");
     let output = folder.path().join("out.glb");
     let refused = |options: &str, words: &str| {
-        usage_error(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-            words,
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        usage_error(&line, &[&input, &output], words);
     };
     refused("--view 0,0,5,0,0,0,0,1,0,45,100x100", "look at one mesh");
     refused("--angle 5 --view 0,0,1", "look at one mesh");
@@ -228,20 +221,14 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
         "",
     );
     let run_dry = done("refine {} --tolerance 1% --dry-run", &[&input]);
-    assert!(
-        run_dry.stdout.contains("meshes[0] 'Box': ")
-            && run_dry.stdout.contains("nothing was written")
-    );
+    says!(run_dry.stdout, "meshes[0] 'Box': ");
+    says!(run_dry.stdout, "nothing was written");
     let (output, picture) = (
         folder.path().join("out.gltf"),
         folder.path().join("out.png"),
     );
     done("refine {} -o {} --picture {}", &[&input, &output, &picture]);
-    assert!(
-        std::fs::read(&picture)
-            .expect("a picture")
-            .starts_with(b"\x89PNG")
-    );
+    is_png(&picture);
     // To a format without scenes: what is shown, in the scene's coordinates.
     let plain = folder.path().join("out.ply");
     done("refine {} -o {}", &[&input, &plain]);
@@ -264,8 +251,6 @@ fn assets_are_predicted_drawn_and_stand_for_meshes() {
 fn measured_within(path: &Path, control: &str, share: f64) {
     let command = format!("measure {{}} --limit-of {control} --certified --json");
     let report: Value = json_of(&command, &[path]);
-    let percent = report["hausdorff"]["upper_percent"]
-        .as_f64()
-        .expect("a number");
+    let percent = number(&report["hausdorff"]["upper_percent"]);
     assert!(percent <= 100.0 * share * 1.02, "{percent} %");
 }

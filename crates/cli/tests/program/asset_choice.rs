@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{done, folder, run, usage_error};
+use crate::common::{bytes, done, folder, list, run, text, usage_error, words};
 use crate::glb::{Builder, Glb};
 
 /// A cube of which the top has another material than the rest, and a second mesh, an octahedron ten times as large.
@@ -71,18 +71,8 @@ fn asset(folder: &TempDir) -> PathBuf {
 fn replaced(input: &Path, output: &Path) -> Vec<(usize, usize)> {
     let [before, after] = [input, output].map(|path| Glb::read(path).json);
     let mut found = Vec::new();
-    for (mesh, old) in before["meshes"]
-        .as_array()
-        .expect("meshes")
-        .iter()
-        .enumerate()
-    {
-        for (i, old) in old["primitives"]
-            .as_array()
-            .expect("primitives")
-            .iter()
-            .enumerate()
-        {
+    for (mesh, old) in list(&before["meshes"]).iter().enumerate() {
+        for (i, old) in list(&old["primitives"]).iter().enumerate() {
             if after["meshes"][mesh]["primitives"][i] != *old {
                 found.push((mesh, i));
             }
@@ -102,19 +92,13 @@ fn what_has_a_name_is_refined_and_all_else_stays() {
         ("--material lid", vec![(0, 1)]),
         ("--material body --mesh Box", vec![(0, 0)]),
     ] {
-        done(
-            &format!("refine {{}} -o {{}} --tolerance 1% {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} --tolerance 1% {options}");
+        done(&line, &[&input, &output]);
         assert_eq!(replaced(&input, &output), expected, "{options}");
     }
     let refused = |options: &str, words: &str| {
-        run(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .expect(1)
-        .saying(words);
+        let line = format!("refine {{}} -o {{}} {options}");
+        run(&line, &[&input, &output]).expect(1).saying(words);
     };
     refused(
         "--mesh box",
@@ -153,10 +137,10 @@ fn images_are_copied_or_linked() {
     std::fs::write(from.join("pictures/a b.png"), b"a picture").expect("writable");
     let output = to.join("out.gltf");
     let uri = |output: &Path| -> String {
-        let text = std::fs::read_to_string(output).expect("text");
+        let text = text(output);
         let json: Value = serde_json::from_str(&text).expect("JSON");
         assert_eq!(json["images"][1]["uri"], "data:image/png;base64,AAAA");
-        json["images"][0]["uri"].as_str().expect("a URI").to_owned()
+        words(&json["images"][0]["uri"]).to_owned()
     };
     done(
         "refine {} -o {} --tolerance 5% --link-resources",
@@ -174,10 +158,7 @@ fn images_are_copied_or_linked() {
     assert_eq!(uri(&beside), "pictures/a%20b.png");
     done("refine {} -o {} --tolerance 5%", &[&input, &output]);
     assert_eq!(uri(&output), "pictures/a%20b.png");
-    assert_eq!(
-        std::fs::read(to.join("pictures/a b.png")).expect("a copy"),
-        b"a picture"
-    );
+    assert_eq!(bytes(to.join("pictures/a b.png")), b"a picture");
     done(
         "refine {} -o {} --tolerance 5% --link-resources",
         &[&input, &to.join("out.glb")],

@@ -6,7 +6,7 @@ use limitmesh::Triangles;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{done, folder, usage_error};
+use crate::common::{count, done, folder, list, usage_error};
 use crate::glb::{Builder, Glb, distances, limit};
 
 type Points = Vec<[f32; 3]>;
@@ -120,7 +120,7 @@ fn refined_morphs_are_limits_of_morphs() {
     .saying("left out: TANGENT of morph targets");
     let glb = Glb::read(&output);
     let primitive = glb.primitive(0);
-    let targets = primitive["targets"].as_array().expect("targets");
+    let targets = list(&primitive["targets"]);
     let names = |target: &Value| {
         target
             .as_object()
@@ -178,14 +178,8 @@ fn refined_morphs_are_limits_of_morphs() {
         let [from, to] = distances(surface, reference.as_triangles());
         // Vertices are on the limit, and triangles come near all of it: the base's are within 0.002 of its size.
         let diagonal = reference.diagonal();
-        assert!(
-            from < 2.1e-5 * diagonal,
-            "{weights:?}: a vertex is {from} off the limit"
-        );
-        assert!(
-            to < 0.004 * diagonal,
-            "{weights:?}: {to} of the limit's {diagonal}"
-        );
+        below!(from, 2.1e-5 * diagonal, "{weights:?}");
+        below!(to, 0.004 * diagonal, "{weights:?}");
     }
     // Texture coordinates slide as said: linear in what is carried with positions, constant along u.
     let slide = glb.numbers(&targets[0]["TEXCOORD_0"]);
@@ -242,9 +236,7 @@ fn what_moves_apart_is_told_and_can_be_joined() {
             "{}",
             run.stderr
         );
-        run.json()["meshes"][0]["output"]["boundary_edges"]
-            .as_u64()
-            .expect("a number")
+        count(&run.json()["meshes"][0]["output"]["boundary_edges"])
     };
     // Vertex 0 has both another displacement and another weight; 1 and 2 another weight.
     let all = "3 vertices kept apart where others stand, because of their joints and weights";

@@ -7,19 +7,15 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{Running, command, done, file, folder, json_of, names, run, usage_error};
-
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+use crate::common::{
+    Running, TETRAHEDRON, bytes, command, done, file, folder, json_of, names, run, text,
+    usage_error,
+};
 
 /// Writes jobs, a line each.
 fn jobs(folder: &TempDir, jobs: &[Value]) -> std::path::PathBuf {
     let lines: Vec<String> = jobs.iter().map(Value::to_string).collect();
     file(folder, "jobs.jsonl", &(lines.join("\n") + "\n"))
-}
-
-fn text(path: &Path) -> String {
-    std::fs::read_to_string(path).expect("a file")
 }
 
 /// The results by their order.
@@ -76,21 +72,18 @@ fn a_job_is_what_refine_does_with_its_options() {
         let own = folder.path().join(name);
         let mut report = json_of(&format!("{words} --report -"), &[&own]);
         without_seconds(&mut report);
-        let bytes = std::fs::read(out(name)).expect("a mesh");
-        assert!(bytes == std::fs::read(&own).expect("a mesh"), "{name}");
+        let mesh = bytes(out(name));
+        assert!(mesh == bytes(&own), "{name}");
         report["output"]["path"] = out(name).into();
         assert_eq!(told[i]["report"], report, "{name}");
         assert_eq!(
             (&told[i]["line"], &told[i]["status"]),
             (&(i + 1).into(), &"done".into())
         );
-        assert_eq!(told[i]["output_bytes"], bytes.len());
+        assert_eq!(told[i]["output_bytes"], mesh.len());
         assert_eq!(told[i]["key"].as_str().map(str::len), Some(64));
     }
-    assert!(
-        std::fs::read(out("a.png")).expect("a picture")
-            == std::fs::read(below(&folder, "p.png")).expect("one")
-    );
+    assert!(bytes(out("a.png")) == bytes(below(&folder, "p.png")));
     assert!(told[3]["report"]["estimate"]["triangles"].as_u64() > Some(100));
     assert_eq!(told[3]["output"], Value::Null);
     assert_eq!(
@@ -349,12 +342,8 @@ fn killed_twice_and_resumed_it_gives_the_same_bytes() {
         folder.path().join("again.jsonl"),
     );
     done("batch {} -o {} --jobs 1", &[&list, &found]);
-    let meshes = |outputs: &[String]| -> Vec<Vec<u8>> {
-        outputs
-            .iter()
-            .map(|path| std::fs::read(path).expect("a mesh"))
-            .collect()
-    };
+    let meshes =
+        |outputs: &[String]| -> Vec<Vec<u8>> { outputs.iter().map(|path| bytes(path)).collect() };
     let whole = meshes(&outputs);
     std::fs::remove_dir_all(below(&folder, "out")).expect("meshes");
     for (lines, processes) in [(2, 2), (5, 3)] {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{done, file, folder, run, usage_error};
+use crate::common::{bytes, count, done, file, folder, list, number, refuses, run};
 use crate::glb::{Builder, Glb, distances, limit};
 
 /// A flat square of 5 × 5 vertices whose texture is as wrinkled as can be, and a number for each vertex.
@@ -30,7 +30,7 @@ fn wrinkled(folder: &TempDir) -> PathBuf {
 }
 
 fn report(folder: &TempDir) -> Value {
-    let text = std::fs::read(folder.path().join("report.json")).expect("a report");
+    let text = bytes(folder.path().join("report.json"));
     serde_json::from_slice(&text).expect("JSON")
 }
 
@@ -47,25 +47,20 @@ fn texture_coordinates_are_within_their_tolerance() {
         )
         .saying("s,t: within ");
         let report = report(&folder);
-        let [goal] = &report["attributes"].as_array().expect("goals")[..] else {
+        let [goal] = &list(&report["attributes"])[..] else {
             panic!("{report:#}")
         };
         assert_eq!(goal["name"], "s,t");
-        let (asked, upper) = (
-            goal["tolerance"].as_f64().expect("a number"),
-            goal["upper"].as_f64(),
-        );
+        let (asked, upper) = (number(&goal["tolerance"]), goal["upper"].as_f64());
         assert!(
             upper.is_some_and(|upper| upper > 0.1 * asked && upper <= asked),
             "{goal}"
         );
-        triangles.push(report["output"]["triangles"].as_u64().expect("a number"));
+        triangles.push(count(&report["output"]["triangles"]));
     }
     // The square is flat: all of this is for the texture's sake.
-    assert!(
-        triangles[0] > 4 * 32 && 2 * triangles[2] > 3 * triangles[1],
-        "{triangles:?}"
-    );
+    above!(triangles[0], 4 * 32);
+    above!(2 * triangles[2], 3 * triangles[1]);
     assert!(triangles[1] >= triangles[0]);
     done(
         "refine {} -o {} --channel uv=linear --attribute-tolerance uv=1e-6",
@@ -84,19 +79,9 @@ fn texture_coordinates_are_within_their_tolerance() {
     )
     .expect(3)
     .saying("was reached before the channels' tolerances");
-    assert!(
-        report(&folder)["attributes"][0]["upper"]
-            .as_f64()
-            .expect("a bound")
-            > 1e-4
-    );
+    assert!(number(&report(&folder)["attributes"][0]["upper"]) > 1e-4);
     // As far as there is room: not a coarse mesh because a fine one is too much.
-    assert!(
-        report(&folder)["output"]["triangles"]
-            .as_u64()
-            .expect("a number")
-            > 500
-    );
+    assert!(count(&report(&folder)["output"]["triangles"]) > 500);
     done(
         "refine {} --dry-run -o {} --attribute-tolerance uv=0.005",
         &[&input, &output],
@@ -108,53 +93,20 @@ fn tolerances_that_nothing_can_meet_are_refused() {
     let folder = folder();
     let (input, output) = (wrinkled(&folder), folder.path().join("out.ply"));
     let stl = folder.path().join("out.stl");
-    for (options, words) in [
-        (
-            "--attribute-tolerance uv=0.01 --optimize",
-            "--attribute-tolerance divides until it is met",
-        ),
-        (
-            "--attribute-tolerance uv=0.01 --triangles 500",
-            "that does not go with --triangles",
-        ),
-        (
-            "--attribute-tolerance s,t=0.01 --balance",
-            "--attribute-tolerance divides until it is met",
-        ),
-        (
-            "--attribute-tolerance uv=0.01 --method uniform",
-            "--attribute-tolerance",
-        ),
-        (
-            "--attribute-tolerance cold=1",
-            "has no channel 'cold'; those that come out are: s,t; heat; part",
-        ),
-        ("--attribute-tolerance part=1", "'part' is inherited"),
-        (
-            "--attribute-tolerance uv=0.01 --channel s,t=drop",
-            "has no channel 'uv'; those that come out are",
-        ),
-        (
-            "--morph-tolerance 1%",
-            "--morph-tolerance is for glTF assets",
-        ),
-    ] {
-        usage_error(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-            words,
-        );
-    }
-    usage_error(
-        "refine {} -o {} --attribute-tolerance uv=0.01",
-        &[&input, &stl],
-        "none comes out",
+    refuses(
+        &[("input", &input), ("stl", &stl), ("output", &output)],
+        "
+        2 | refine {input} -o {output} --attribute-tolerance uv=0.01 --optimize | --attribute-tolerance divides until it is met
+        2 | refine {input} -o {output} --attribute-tolerance uv=0.01 --triangles 500 | that does not go with --triangles
+        2 | refine {input} -o {output} --attribute-tolerance s,t=0.01 --balance | --attribute-tolerance divides until it is met
+        2 | refine {input} -o {output} --attribute-tolerance uv=0.01 --method uniform | --attribute-tolerance
+        2 | refine {input} -o {output} --attribute-tolerance cold=1 | has no channel 'cold'; those that come out are: s,t; heat; part
+        2 | refine {input} -o {output} --attribute-tolerance part=1 | 'part' is inherited
+        2 | refine {input} -o {output} --attribute-tolerance uv=0.01 --channel s,t=drop | has no channel 'uv'; those that come out are
+        2 | refine {input} -o {output} --morph-tolerance 1% | --morph-tolerance is for glTF assets
+        2 | refine {input} -o {stl} --attribute-tolerance uv=0.01 | none comes out
+        2 | refine {input} -o {output} --attribute-tolerance uv=1@0 |",
     );
-    run(
-        "refine {} -o {} --attribute-tolerance uv=1@0",
-        &[&input, &output],
-    )
-    .expect(2);
 }
 
 /// A flat square, and a target that makes a wave of it.
@@ -206,10 +158,8 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
         .collect();
     let reference = limit(&moved, &before.triangles(0), 2e-5);
     let apart = |options: &str| {
-        done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        );
+        let line = format!("refine {{}} -o {{}} {options}");
+        done(&line, &[&input, &output]);
         let glb = Glb::read(&output);
         let primitive = glb.primitive(0);
         let base = glb.points(&primitive["attributes"]["POSITION"]);
@@ -232,13 +182,9 @@ fn morph_targets_are_within_the_tolerance_unless_something_else_is_said() {
     let (usual, _) = apart("--tolerance 0.5%");
     assert!(usual < (0.005 + 3e-5) * diagonal, "{usual}");
     let (finer, more) = apart("--tolerance 0.5% --morph-tolerance 0.1%");
-    assert!(
-        finer < (0.001 + 3e-5) * diagonal && finer < usual,
-        "{finer}"
-    );
+    below!(finer, (0.001 + 3e-5) * diagonal);
+    below!(finer, usual);
     let (flat, least) = apart("--tolerance 0.5% --morph-tolerance none");
-    assert!(
-        flat > 0.006 * diagonal && 4 * least < more,
-        "{flat}, {least}"
-    );
+    above!(flat, 0.006 * diagonal);
+    below!(4 * least, more);
 }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::asset::{cube, first_mesh};
-use crate::common::{done, file, folder, json_of, soup, usage_error};
+use crate::common::{done, file, folder, json_of, refuses, soup, text, usage_error};
 
 /// An octahedron in PLY, whose vertices have their x as `heat` and twice that as the whole number `id`.
 fn octahedron(folder: &TempDir) -> PathBuf {
@@ -148,7 +148,7 @@ fn channels_are_left_out_on_demand() {
         "refine {} -o {} --crease-angle 30 --channel materials=drop",
         &[&cube, &output],
     );
-    let written = std::fs::read_to_string(&output).expect("a file");
+    let written = text(&output);
     assert!(!written.contains("usemtl"), "{written}");
 }
 
@@ -157,30 +157,14 @@ fn what_cannot_be_done_is_refused() {
     let folder = folder();
     let input = octahedron(&folder);
     let output = folder.path().join("out.ply");
-    usage_error(
-        "refine {} -o {} --channel hat=drop",
-        &[&input, &output],
-        "octahedron.ply has no channel 'hat'; there are: heat; id",
-    );
-    usage_error(
-        "refine {} --dry-run --channel hat=drop",
-        &[&input],
-        "no channel 'hat'",
-    );
-    usage_error(
-        "refine builtin:cup -o {} --channel heat=drop",
-        &[&output],
-        "there is none",
-    );
-    usage_error(
-        "refine {} -o {} --channel heat",
-        &[&input, &output],
-        "has no =",
-    );
-    usage_error(
-        "refine {} -o {} --channel heat=blend",
-        &[&input, &output],
-        "'blend' is none of",
+    refuses(
+        &[("input", &input), ("output", &output)],
+        "
+        2 | refine {input} -o {output} --channel hat=drop | octahedron.ply has no channel 'hat'; there are: heat; id
+        2 | refine {input} --dry-run --channel hat=drop | no channel 'hat'
+        2 | refine builtin:cup -o {output} --channel heat=drop | there is none
+        2 | refine {input} -o {output} --channel heat | has no =
+        2 | refine {input} -o {output} --channel heat=blend | 'blend' is none of",
     );
     let labelled = file(
         &folder,

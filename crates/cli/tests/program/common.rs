@@ -12,8 +12,64 @@ use limitmesh::PolygonSoup;
 use serde_json::Value;
 use tempfile::TempDir;
 
+/// Compares two values; shows both, and the case they belong to, where the comparison fails.
+macro_rules! ordered {
+    ($a:expr, $order:tt, $b:expr, $($case:tt)+) => {
+        match (&$a, &$b) {
+            (a, b) => assert!(
+                *a $order *b,
+                "{}: {} is {a:?}, and not {} {b:?}",
+                format_args!($($case)+),
+                stringify!($a),
+                stringify!($order)
+            ),
+        }
+    };
+}
+
+macro_rules! at_most {
+    ($a:expr, $b:expr) => { ordered!($a, <=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <=, $b, $($case)+) };
+}
+
+macro_rules! at_least {
+    ($a:expr, $b:expr) => { ordered!($a, >=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >=, $b, $($case)+) };
+}
+
+macro_rules! below {
+    ($a:expr, $b:expr) => { ordered!($a, <, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <, $b, $($case)+) };
+}
+
+macro_rules! above {
+    ($a:expr, $b:expr) => { ordered!($a, >, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >, $b, $($case)+) };
+}
+
+/// A text that has words in it; it is shown where it has not.
+macro_rules! says {
+    ($text:expr, $words:expr) => {
+        assert!($text.contains($words), "no '{}' in:\n{}", $words, $text)
+    };
+}
+
+/// A text that has not the words in it.
+macro_rules! silent {
+    ($text:expr, $words:expr) => {
+        assert!(!$text.contains($words), "'{}' in:\n{}", $words, $text)
+    };
+}
+
 /// Longer than any command takes here, and short enough to notice one that hangs.
 const TIME_LIMIT: Duration = Duration::from_secs(120);
+
+/// Corners in the order of the axes, faces counter-clockwise from outside.
+pub(crate) const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
+    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+
+pub(crate) const TETRAHEDRON: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 
 /// The result of a run of the program.
 #[derive(Debug)]
@@ -106,6 +162,26 @@ pub(crate) fn json_of(arguments: &str, paths: &[&Path]) -> Value {
 #[track_caller]
 pub(crate) fn usage_error(arguments: &str, paths: &[&Path], words: &str) -> Run {
     run(arguments, paths).expect(2).saying(words)
+}
+
+/// Runs command lines that are refused, one a row: the exit code, the command with names of paths in braces, and words that are said.
+#[track_caller]
+pub(crate) fn refuses(paths: &[(&str, &Path)], table: &str) {
+    for row in table.lines().filter(|row| !row.trim().is_empty()) {
+        let columns: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [code, line, said] = columns[..] else {
+            panic!("three columns in {row}")
+        };
+        let own = line.split(['{', '}']).skip(1).step_by(2);
+        let named = |name: &str| paths.iter().find(|own| own.0 == name).expect("a path").1;
+        let own: Vec<&Path> = own.map(named).collect();
+        let line = paths.iter().fold(line.to_owned(), |line, (name, _)| {
+            line.replace(&format!("{{{name}}}"), "{}")
+        });
+        run(&line, &own)
+            .expect(code.parse().expect("a code"))
+            .saying(said);
+    }
 }
 
 /// The program at work; it is killed when this goes.
@@ -220,6 +296,47 @@ pub(crate) fn file(folder: &TempDir, name: &str, content: &str) -> PathBuf {
     let path = folder.path().join(name);
     std::fs::write(&path, content).expect("writable");
     path
+}
+
+/// The text of a file.
+#[track_caller]
+pub(crate) fn text(path: impl AsRef<Path>) -> String {
+    String::from_utf8(bytes(path)).expect("text")
+}
+
+#[track_caller]
+pub(crate) fn bytes(path: impl AsRef<Path>) -> Vec<u8> {
+    std::fs::read(path.as_ref()).unwrap_or_else(|e| panic!("{}: {e}", path.as_ref().display()))
+}
+
+#[track_caller]
+pub(crate) fn json_file(path: impl AsRef<Path>) -> Value {
+    serde_json::from_slice(&bytes(path)).expect("JSON")
+}
+
+#[track_caller]
+pub(crate) fn is_png(path: &Path) {
+    assert!(bytes(path).starts_with(b"\x89PNG"), "{}", path.display());
+}
+
+#[track_caller]
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[track_caller]
+pub(crate) fn count(value: &Value) -> u64 {
+    value.as_u64().expect("a count")
+}
+
+#[track_caller]
+pub(crate) fn words(value: &Value) -> &str {
+    value.as_str().expect("words")
+}
+
+#[track_caller]
+pub(crate) fn list(value: &Value) -> &[Value] {
+    value.as_array().expect("a list")
 }
 
 /// The topology of a mesh file by its own indices, counted here from scratch.

@@ -2,16 +2,13 @@
 
 use serde_json::Value;
 
-use crate::common::json_of;
+use crate::common::{count, json_of, list, number, words};
 
 #[test]
 fn methods_stand_side_by_side_at_nearly_equal_counts() {
-    let list = json_of("compare builtin:head --json --samples 20000", &[]);
-    let list = list.as_array().expect("a list");
-    let names: Vec<_> = list
-        .iter()
-        .map(|m| m["method"].as_str().expect("a name"))
-        .collect();
+    let report = json_of("compare builtin:head --json --samples 20000", &[]);
+    let list = list(&report);
+    let names: Vec<_> = list.iter().map(|m| words(&m["method"])).collect();
     assert_eq!(
         names,
         [
@@ -29,16 +26,16 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
         ]
     );
     for method in list {
-        let percent = method["symmetric_percent"].as_f64().expect("a number");
+        let percent = number(&method["symmetric_percent"]);
         assert!(percent > 0.0 && percent < 5.0, "{method}");
-        assert!(method["mean_percent"].as_f64().expect("a number") <= percent);
+        assert!(number(&method["mean_percent"]) <= percent);
     }
-    let triangles = |i: usize| list[i]["triangles"].as_f64().expect("a count");
+    let triangles = |i: usize| number(&list[i]["triangles"]);
     assert!(
         (triangles(0) - triangles(1)).abs() <= 0.02 * triangles(0),
         "{list:?}"
     );
-    let levels = list[2]["levels"].as_u64().expect("a count");
+    let levels = count(&list[2]["levels"]);
     for uniform in &list[2..4] {
         assert_eq!(
             uniform["triangles"].as_u64(),
@@ -49,22 +46,14 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
     // At no more triangles, the exact method is nearer to the limit surface than all others, and its bound holds.
     let exact = &list[4];
     assert!(triangles(4) <= triangles(0) && triangles(4) > 0.9 * triangles(0));
-    let percent = |method: &Value| method["symmetric_percent"].as_f64().expect("a number");
+    let percent = |method: &Value| number(&method["symmetric_percent"]);
     assert!(percent(exact) < percent(&list[0]) && percent(exact) < percent(&list[1]));
-    assert!(
-        percent(exact)
-            <= 1.02
-                * exact["certified"]["upper_percent"]
-                    .as_f64()
-                    .expect("a number")
-    );
-    let proven = |method: &Value| method["certified"]["upper"].as_f64().expect("a number");
+    assert!(percent(exact) <= 1.02 * number(&exact["certified"]["upper_percent"]));
+    let proven = |method: &Value| number(&method["certified"]["upper"]);
     for better in &list[5..7] {
         assert!(better["triangles"].as_f64() <= Some(triangles(0)));
-        assert!(
-            percent(better) < percent(&list[0]) && proven(better) < proven(exact),
-            "{better}"
-        );
+        below!(percent(better), percent(&list[0]), "{better}");
+        below!(proven(better), proven(exact), "{better}");
     }
     assert!(
         list[..4]
@@ -73,7 +62,7 @@ fn methods_stand_side_by_side_at_nearly_equal_counts() {
             .all(|method| method["certified"].is_null())
     );
     for other in &list[7..] {
-        let own = other["triangles"].as_f64().expect("a count");
+        let own = number(&other["triangles"]);
         assert!(own <= triangles(0) && own > 0.9 * triangles(0), "{other}");
         assert_eq!(
             other["reference"]["scheme"] == "sqrt3",

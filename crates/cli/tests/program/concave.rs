@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, json_of, run};
+use crate::common::{count, done, file, folder, json_of, number, run};
 
 /// An L of height 1: two caps of four triangles round a corner, and six sides.
 const L: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 1\nv 2 0 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n\
@@ -24,7 +24,7 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     };
     let off = || {
         let run = done("measure {} {} --certified --json", &[&output, &input]);
-        run.json()["hausdorff"]["upper"].as_f64().expect("a number")
+        number(&run.json()["hausdorff"]["upper"])
     };
     let (report, told) = refine("");
     assert_eq!(
@@ -40,26 +40,15 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
         ),
         (&json!(0), &json!(20))
     );
-    assert!(
-        told.contains("2 sharp edges divide 2 corners of 180° or more"),
-        "{told}"
-    );
+    says!(told, "2 sharp edges divide 2 corners of 180° or more");
     assert!(!told.contains("turned over"), "{told}");
     assert!(off() < 1e-9);
 
     let (report, told) = refine("--concave-corners smooth");
     assert_eq!(report["diagnosis"]["concave_corners"]["count"], 0);
     assert_eq!(report["parameters"]["concave_corners"], "smooth");
-    assert!(
-        report["output"]["inverted_triangles"]
-            .as_u64()
-            .expect("a count")
-            > 0
-    );
-    assert!(
-        told.contains("triangles are turned over against the limit surface"),
-        "{told}"
-    );
+    assert!(count(&report["output"]["inverted_triangles"]) > 0);
+    says!(told, "triangles are turned over against the limit surface");
     assert!(off() > 0.02);
     let (report, _) = refine("--method uniform --levels 2");
     assert_eq!(report["output"]["inverted_triangles"], Value::Null);
@@ -77,7 +66,7 @@ fn creases_by_angle_keep_flat_faces_flat_and_what_that_took_is_told() {
     refine("");
     let measure = "measure {} --limit-of {} --crease-angle 30 --certified --json";
     let measured = json_of(measure, &[&output, &input]);
-    assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-6);
+    assert!(number(&measured["hausdorff"]["upper"]) < 1e-6);
     assert_eq!(measured["reference"]["limit"]["concave_corners"], "fixed");
 }
 
@@ -87,10 +76,8 @@ fn tags_of_files_are_followed_as_they_are_unless_asked() {
     let input = file(&folder, "tagged.obj", TAGGED);
     let output = folder.path().join("out.ply");
     let report = |options: &str| {
-        json_of(
-            &format!("refine {{}} -o {{}} --report - {options}"),
-            &[&input, &output],
-        )
+        let line = format!("refine {{}} -o {{}} --report - {options}");
+        json_of(&line, &[&input, &output])
     };
     let tagged = report("");
     assert_eq!(tagged["parameters"]["concave_corners"], "smooth");

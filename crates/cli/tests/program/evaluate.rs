@@ -1,14 +1,10 @@
 //! `evaluate`: the limit surface itself, at places.
 
-use crate::common::{done, file, folder, json_of, run, usage_error};
-
-/// Corners in the order of the axes, faces counter-clockwise from outside.
-const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
-    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+use crate::common::{OCTAHEDRON, done, file, folder, json_of, list, number, refuses};
 
 #[track_caller]
 fn near(found: &serde_json::Value, expected: f64) {
-    let found = found.as_f64().expect("a number");
+    let found = number(found);
     assert!((found - expected).abs() < 1e-9, "{found} and {expected}");
 }
 
@@ -24,7 +20,7 @@ fn places_of_an_octahedron() {
     );
     let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
     let found = json_of(command, &[&control, &places]);
-    let [place, corner, edge, centre] = &found.as_array().expect("a list")[..] else {
+    let [place, corner, edge, centre] = &list(&found)[..] else {
         panic!("{found}")
     };
     assert_eq!(
@@ -56,18 +52,12 @@ fn places_of_an_octahedron() {
     ] {
         near(&found["curvature"]["gaussian"], gaussian);
         near(&found["curvature"]["mean"], mean);
-        let [most, least] = [0, 1].map(|i| {
-            found["curvature"]["principal"][i]
-                .as_f64()
-                .expect("a number")
-        });
+        let [most, least] = [0, 1].map(|i| number(&found["curvature"]["principal"][i]));
         assert!(most >= least && (most * least - gaussian).abs() < 1e-9);
     }
     let text = done("evaluate {} --at 0,0.5,0.3,0.2", &[&control]).stdout;
-    assert!(
-        text.contains("0.326") && text.contains("Gaussian"),
-        "{text}"
-    );
+    says!(text, "0.326");
+    says!(text, "Gaussian");
 }
 
 #[test]
@@ -77,9 +67,7 @@ fn sharp_edges_have_a_normal_on_each_side() {
     let mut normals = Vec::new();
     for face in 0..12 {
         let found = json_of(&format!("{cube} {face},0.25,0.25,0.5"), &[]);
-        let normal: Vec<f64> = found[0]["normal"]
-            .as_array()
-            .expect("three")
+        let normal: Vec<f64> = list(&found[0]["normal"])
             .iter()
             .filter_map(|x| x.as_f64())
             .collect();
@@ -102,36 +90,18 @@ fn places_that_are_none_are_errors() {
     let control = file(&folder, "octahedron.obj", OCTAHEDRON);
     let bad = file(&folder, "bad.txt", "0 1 0 0\n1 0.5 0.5\n");
     let empty = file(&folder, "empty.txt", "# nothing\n");
-    run("evaluate {} --at 8,1,0,0", &[&control])
-        .expect(1)
-        .saying("no face 8: the control mesh has 8 triangles");
-    usage_error(
-        "evaluate {} --at 0,0.5,0.5,0.5",
-        &[&control],
-        "'0,0.5,0.5,0.5': the weights add up to 1.5 ",
+    refuses(
+        &[("control", &control), ("bad", &bad), ("empty", &empty)],
+        "
+        1 | evaluate {control} --at 8,1,0,0 | no face 8: the control mesh has 8 triangles
+        2 | evaluate {control} --at 0,0.5,0.5,0.5 | '0,0.5,0.5,0.5': the weights add up to 1.5
+        2 | evaluate {control} --at 0,0.333,0.333,0.333 | add up to 0.999
+        2 | evaluate {control} --at 0,1.5,-0.5,0 | the weight -0.5
+        2 | evaluate {control} --at 0,1,0 | 2 weights
+        1 | evaluate {control} --at {bad} | line 2: '1 0.5 0.5' has 2 weights
+        1 | evaluate {control} --at {empty} | no places
+        1 | evaluate {control} --at 0,1,0,x | '0,1,0,x' is no place
+        1 | evaluate {control} --at nowhere.txt | nowhere.txt
+        2 | evaluate {control} | --at",
     );
-    usage_error(
-        "evaluate {} --at 0,0.333,0.333,0.333",
-        &[&control],
-        "add up to 0.999",
-    );
-    usage_error(
-        "evaluate {} --at 0,1.5,-0.5,0",
-        &[&control],
-        "the weight -0.5 ",
-    );
-    usage_error("evaluate {} --at 0,1,0", &[&control], "2 weights");
-    run("evaluate {} --at {}", &[&control, &bad])
-        .expect(1)
-        .saying("line 2: '1 0.5 0.5' has 2 weights");
-    run("evaluate {} --at {}", &[&control, &empty])
-        .expect(1)
-        .saying("no places");
-    run("evaluate {} --at 0,1,0,x", &[&control])
-        .expect(1)
-        .saying("'0,1,0,x' is no place");
-    run("evaluate {} --at nowhere.txt", &[&control])
-        .expect(1)
-        .saying("nowhere.txt");
-    usage_error("evaluate {}", &[&control], "--at");
 }

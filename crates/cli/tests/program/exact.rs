@@ -4,17 +4,15 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::common::{claimed, counts, done, file, folder, json_of, run, soup, usage_error};
+use crate::common::{
+    claimed, count, counts, done, file, folder, json_of, list, number, run, soup, text, usage_error,
+};
 
 /// Refines to an exit code and gives the report, after checking that it fits the file and itself.
 #[track_caller]
 fn refine(code: i32, input: &str, output: &Path, options: &str) -> Value {
-    let report = run(
-        &format!("refine {input} -o {{}} --report - {options}"),
-        &[output],
-    )
-    .expect(code)
-    .json();
+    let line = format!("refine {input} -o {{}} --report - {options}");
+    let report = run(&line, &[output]).expect(code).json();
     assert_eq!(report["parameters"]["method"], "exact");
     assert_eq!(
         claimed(&report["output"]),
@@ -32,28 +30,20 @@ fn refine(code: i32, input: &str, output: &Path, options: &str) -> Value {
             (&Value::Null, &json!(false))
         );
     } else {
-        assert!(
-            number(&error["lower"]) <= number(&error["upper"]),
-            "{error}"
-        );
+        at_most!(number(&error["lower"]), number(&error["upper"]), "{error}");
         let percent = 100.0 * number(&error["upper"]) / number(&error["diagonal"]);
         assert!((percent - number(&error["upper_percent"])).abs() < 1e-12 * percent);
         assert_eq!(error["certified"], true);
     }
-    let rounds = report["rounds"].as_array().expect("a list");
+    let rounds = list(&report["rounds"]);
     for (i, round) in rounds.iter().enumerate() {
         assert_eq!(round["round"], i + 1);
     }
     report
 }
 
-#[track_caller]
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
-}
-
 fn triangles(report: &Value) -> u64 {
-    report["output"]["triangles"].as_u64().expect("a count")
+    count(&report["output"]["triangles"])
 }
 
 #[test]
@@ -78,12 +68,8 @@ fn a_thousandth_of_the_diagonal_is_kept_by_default() {
     assert!(number(&report["error"]["upper_percent"]) <= 0.1);
     assert_eq!(report["output"]["watertight"], info["mesh"]["watertight"]);
     let said = done("refine builtin:cup -o {}", &[&output]);
-    assert!(
-        said.stderr.contains(" % of the diagonal (")
-            && said.stderr.contains("certified; at least 0.0"),
-        "{}",
-        said.stderr
-    );
+    says!(said.stderr, " % of the diagonal (");
+    says!(said.stderr, "certified; at least 0.0");
 }
 
 #[test]
@@ -111,10 +97,8 @@ fn a_number_of_triangles_is_used_up_and_not_passed() {
     let many = refine(0, "builtin:shoe", &output, "--triangles 12000");
     for (report, wanted) in [(&few, 3000), (&many, 12000)] {
         assert_eq!(report["stop"], "triangles");
-        assert!(
-            triangles(report) <= wanted && triangles(report) > wanted * 9 / 10,
-            "{wanted}"
-        );
+        at_most!(triangles(report), wanted);
+        above!(triangles(report), wanted * 9 / 10);
     }
     // Four times the triangles: about a quarter of the distance.
     assert!(number(&many["error"]["upper"]) < 0.5 * number(&few["error"]["upper"]));
@@ -166,15 +150,11 @@ fn what_no_machine_can_meet_ends_in_a_conforming_mesh() {
                 // Each triangle takes more than the 86 bytes of its indices, twins, positions and normals.
                 _ => assert!(triangles(&report) < (2 << 20) / 86 && triangles(&report) > 700),
             }
-            let told = run(
-                &format!("refine builtin:cup -o {{}} -q {options}"),
-                &[&output],
-            )
-            .expect(3);
+            let line = format!("refine builtin:cup -o {{}} -q {options}");
+            let told = run(&line, &[&output]).expect(3);
             let cap = cap.replace("5000", "5,000").replace("2M", "2.0 MiB");
-            assert!(
-                told.stderr.contains(&cap) && told.stderr.contains("before the tolerance of 1e-")
-            );
+            says!(told.stderr, &cap);
+            says!(told.stderr, "before the tolerance of 1e-");
             assert!(told.stderr.contains("was written with"), "{}", told.stderr);
         }
     }
@@ -198,11 +178,8 @@ fn cameras_see_the_detail() {
     }]);
     assert_eq!(front["parameters"]["exact"]["cameras"], seen);
     assert_eq!(front["stop"], "met");
-    assert!(
-        number(&front["pixels"]) <= 0.5 && number(&front["pixels"]) > 0.05,
-        "{}",
-        front["pixels"]
-    );
+    at_most!(number(&front["pixels"]), 0.5);
+    above!(number(&front["pixels"]), 0.05);
     let words = format!(
         "refine builtin:sphere -o {{}} --pixels 0.5 {}",
         camera("0,0,5")
@@ -220,11 +197,7 @@ fn cameras_see_the_detail() {
                 > 0.0
         })
         .count();
-    assert!(
-        in_front * 2 > centres.faces.len() * 11 / 10,
-        "{in_front} of {}",
-        centres.faces.len()
-    );
+    above!(in_front * 2, centres.faces.len() * 11 / 10);
     // From farther away less is needed, for two cameras more than for one, of one pixel where nothing is said.
     let far = refine(
         0,
@@ -316,10 +289,8 @@ fn a_dry_run_predicts_and_writes_nothing() {
             "{tolerance}: {estimate} {found}"
         );
         let text = done(&words, &[]).stdout;
-        assert!(
-            text.contains("triangles") && text.contains("nothing was written"),
-            "{text}"
-        );
+        says!(text, "triangles");
+        says!(text, "nothing was written");
     }
     std::fs::remove_file(&output).expect("removable");
     done("refine builtin:cup -o {} --dry-run", &[&output]);
@@ -328,7 +299,7 @@ fn a_dry_run_predicts_and_writes_nothing() {
 
 /// The rows of numbers of an ASCII PLY file's two elements, and the names of the vertices' properties.
 fn rows(path: &Path) -> (Vec<String>, Vec<Vec<f64>>, Vec<Vec<f64>>) {
-    let text = std::fs::read_to_string(path).expect("text");
+    let text = text(path);
     let (header, body) = text.split_once("end_header\n").expect("a header");
     let (vertex, face) = header.split_once("element face ").expect("faces");
     assert!(face.contains("property int parent_face"));
@@ -437,12 +408,8 @@ fn estimates_are_not_called_certified() {
     let told = told.expect(0);
     let error = &told.json()["error"];
     assert_eq!(error["certified"], false);
-    assert!(error["upper_percent"].as_f64().expect("a number") <= 1.0);
-    assert!(
-        told.stderr.contains("by samples, not certified"),
-        "{}",
-        told.stderr
-    );
+    assert!(number(&error["upper_percent"]) <= 1.0);
+    says!(told.stderr, "by samples, not certified");
 }
 
 /// Binary STL rounds coordinates: what it loses counts among the distance.
@@ -481,18 +448,12 @@ fn what_a_format_rounds_is_part_of_the_distance() {
         } else {
             "--tolerance 0.004"
         };
-        let report = run(
-            &format!("refine {input} -o {{}} --report - {options}"),
-            &[&output],
-        )
-        .expect(code)
-        .json();
+        let line = format!("refine {input} -o {{}} --report - {options}");
+        let report = run(&line, &[&output]).expect(code).json();
         let told = number(&report["error"]["upper"]);
         assert_eq!(told > 0.004, code == 3, "{told}");
-        let measured = run(
-            &format!("measure {{}} --limit-of {input} --certified --json"),
-            &[&output],
-        );
+        let line = format!("measure {{}} --limit-of {input} --certified --json");
+        let measured = run(&line, &[&output]);
         let lower = number(&measured.expect(0).json()["hausdorff"]["lower"]);
         assert!(lower <= told, "{lower} {told}");
         assert_eq!(lower > 0.004, code == 3, "{lower}");

@@ -1,15 +1,15 @@
 //! `info` and `models`: what is in a file, in words and as JSON.
 
-use crate::common::{done, file, folder, json_of, run};
+use crate::common::{done, file, folder, json_of, list, run, words};
 
 #[test]
 fn every_listed_model_can_be_examined() {
-    let list = json_of("models --json", &[]);
-    let list = list.as_array().expect("a list");
+    let report = json_of("models --json", &[]);
+    let list = list(&report);
     assert!(list.len() >= 8, "{list:?}");
     let text = done("models", &[]).stdout;
     for model in list {
-        let name = model["name"].as_str().expect("a name");
+        let name = words(&model["name"]);
         assert!(text.contains(&format!("builtin:{name}")), "{text}");
         let report = json_of(&format!("info builtin:{name} --json"), &[]);
         assert_eq!(report["diagnosis"]["clean"], true, "{name}");

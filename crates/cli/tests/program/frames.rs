@@ -7,7 +7,9 @@ use limitmesh::refine::{LimitDistanceOptions, limit_distance};
 use limitmesh::scheme::Loop;
 use tempfile::TempDir;
 
-use crate::common::{done, file, folder, run, usage_error};
+use crate::common::{
+    bytes, count, done, file, folder, json_file, list, number, run, text, usage_error,
+};
 
 /// A box of four sharp edges and texture coordinates, sheared by so much.
 fn frame(shear: f64, faces: &str, tags: &str) -> String {
@@ -44,7 +46,7 @@ fn frames(folder: &TempDir) -> Vec<PathBuf> {
 
 /// The lines of a file that begin with a word; of faces without the numbers of normals, which are those of the frame.
 fn lines(path: &Path, word: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(path).expect("a file");
+    let text = text(path);
     let own = text
         .lines()
         .filter(|line| line.split_whitespace().next() == Some(word));
@@ -84,34 +86,25 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
         panic!("three")
     };
     let done = done(command, &[a, b, c, out.path(), &report]);
-    assert!(
-        done.stderr.contains("3 frames") && done.stderr.contains("every frame"),
-        "{}",
-        done.stderr
-    );
-    let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
+    says!(done.stderr, "3 frames");
+    says!(done.stderr, "every frame");
+    let report = json_file(&report);
     assert_eq!(report["stop"], "met");
-    let proven = report["frames"].as_array().expect("a list");
+    let proven = list(&report["frames"]);
     assert_eq!(proven.len(), 3);
     let outputs: Vec<PathBuf> = (0..3)
         .map(|i| out.path().join(format!("box_{i}.obj")))
         .collect();
     for ((input, output), proven) in inputs.iter().zip(&outputs).zip(proven) {
         assert_eq!(proven["output"], output.display().to_string());
-        let upper = proven["error"]["upper"].as_f64().expect("a number");
-        assert!(
-            proven["error"]["certified"] == true && upper <= 0.02,
-            "{proven}"
-        );
+        let upper = number(&proven["error"]["upper"]);
+        assert!(proven["error"]["certified"] == true);
+        at_most!(upper, 0.02);
         for word in ["f", "t", "vt"] {
             let own = lines(output, word);
             assert!(!own.is_empty() && own == lines(&outputs[0], word), "{word}");
         }
-        assert_eq!(
-            lines(output, "f").len() as u64,
-            report["triangles"].as_u64().expect("a number")
-        );
+        assert_eq!(lines(output, "f").len() as u64, count(&report["triangles"]));
         // Another search finds no more than is proven, between the file that was written and the limit surface of its input.
         let options = LimitDistanceOptions::default().gap(Some(2e-3));
         let written = mesh(output);
@@ -156,11 +149,8 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
             &[first, &other, out.path()],
         )
         .expect(1);
-        assert!(
-            refused.stderr.contains(name) && refused.stderr.contains(what),
-            "{}",
-            refused.stderr
-        );
+        says!(refused.stderr, name);
+        says!(refused.stderr, what);
     }
     assert!(crate::common::names(out.path()).is_empty());
     for option in [
@@ -184,13 +174,13 @@ fn frames_of_other_meshes_are_refused_by_what_differs() {
     let command = "refine {} {} -o {} --shared-topology --scheme sqrt3";
     usage_error(command, &[first, &none, out.path()], "sqrt3");
     let command = "refine {} {} -o {} --shared-topology --report {}";
-    let before = std::fs::read(first).expect("a frame");
+    let before = bytes(first);
     usage_error(
         command,
         &[first, &inputs[1], out.path(), first],
         "box_0.obj is an input",
     );
-    assert_eq!(std::fs::read(first).expect("a frame"), before);
+    assert_eq!(bytes(first), before);
     let own = out.path().join("box_1.obj");
     usage_error(
         command,

@@ -1,5 +1,6 @@
 //! glTF assets put together by hand, and a reader of what is written that shares nothing with the library's.
 
+use crate::common::{bytes, count, json_file, words};
 use std::path::Path;
 
 use limitmesh::mesh::{PolygonFaces, PolygonSoup};
@@ -114,7 +115,7 @@ pub(crate) struct Glb {
 
 impl Glb {
     pub(crate) fn read(path: &Path) -> Self {
-        let glb = std::fs::read(path).expect("a file");
+        let glb = bytes(path);
         let word =
             |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().expect("four")) as usize;
         assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
@@ -128,7 +129,7 @@ impl Glb {
 
     /// A text document, without the bytes of its buffers.
     pub(crate) fn text(path: &Path) -> Self {
-        let json = serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
+        let json = json_file(path);
         Self {
             json,
             bytes: Vec::new(),
@@ -142,11 +143,10 @@ impl Glb {
 
     /// The numbers of an accessor, one element after the other. Bounds that it has are checked.
     pub(crate) fn numbers(&self, accessor: &Value) -> Vec<f64> {
-        let accessor = &self.json["accessors"][accessor.as_u64().expect("an index") as usize];
-        let view =
-            &self.json["bufferViews"][accessor["bufferView"].as_u64().expect("a view") as usize];
+        let accessor = &self.json["accessors"][count(accessor) as usize];
+        let view = &self.json["bufferViews"][count(&accessor["bufferView"]) as usize];
         let whole = |value: &Value| value.as_u64().unwrap_or(0) as usize;
-        let width = match accessor["type"].as_str().expect("a type") {
+        let width = match words(&accessor["type"]) {
             "SCALAR" => 1,
             "VEC2" => 2,
             "VEC3" => 3,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::common::{done, file, folder, json_of, usage_error};
+use crate::common::{done, file, folder, json_of, number, usage_error};
 
 pub(crate) const CORNERS: [[i32; 3]; 8] = [
     [-1, -1, -1],
@@ -58,9 +58,7 @@ fn volume(input: &Path, options: &str) -> f64 {
     let output = input.with_extension("ply");
     let command = format!("refine {{}} -o {{}} --tolerance 0.5% --report - {options}");
     let report = json_of(&command, &[input, &output]);
-    report["size"]["after"]["volume"]
-        .as_f64()
-        .expect("a number")
+    number(&report["size"]["after"]["volume"])
 }
 
 #[test]
@@ -75,7 +73,7 @@ fn normals_say_where_edges_are_sharp() {
     let output = input.with_extension("ply");
     let command = "measure {} --limit-of {} --creases-from normals --certified --json";
     let measured = json_of(command, &[&output, &input]);
-    assert!(measured["hausdorff"]["upper"].as_f64().expect("a number") < 1e-9);
+    assert!(number(&measured["hausdorff"]["upper"]) < 1e-9);
     assert_eq!(measured["reference"]["limit"]["creases_from"], "normals");
     // A vertex for each side, as PLY and STL have them: welded, and the normals kept apart.
     let mut text = "ply\nformat ascii 1.0\nelement vertex 24\n".to_owned();
@@ -105,14 +103,7 @@ fn normals_say_where_edges_are_sharp() {
         "refine {} -o {} --creases-from normals --report -",
         &[&input, &output],
     );
-    assert!(
-        (report["size"]["after"]["volume"]
-            .as_f64()
-            .expect("a number")
-            - 8.0)
-            .abs()
-            < 1e-9
-    );
+    assert!((number(&report["size"]["after"]["volume"]) - 8.0).abs() < 1e-9);
 }
 
 #[test]

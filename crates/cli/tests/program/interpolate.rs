@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use serde_json::{Value, json};
+use serde_json::json;
 
-use crate::common::{done, file, folder, json_of, soup};
+use crate::common::{done, file, folder, json_of, number, soup};
 
 /// A peg of 16 facets and radius 5 between flat ends, as OBJ.
 fn peg() -> String {
@@ -42,11 +42,6 @@ fn radii(positions: &[[f64; 3]]) -> (f64, f64) {
     radii.fold((f64::INFINITY, 0.0), |(least, most), r| {
         (least.min(r), most.max(r))
     })
-}
-
-#[track_caller]
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
 }
 
 #[test]
@@ -94,10 +89,8 @@ fn a_peg_keeps_its_radius() {
     assert!((4.97..4.985).contains(&most), "{most}");
     assert!(said.contains("passes within 0.02 of 32 vertices"), "{said}");
     assert!(number(&found["residual"]) <= 0.02 + 1e-11);
-    assert!(
-        number(&found["least_energy"]) <= number(&found["energy"])
-            && number(&found["energy"]) < 1.0
-    );
+    at_most!(number(&found["least_energy"]), number(&found["energy"]));
+    below!(number(&found["energy"]), 1.0);
     let (report, ..) = refine("--interpolate=0%");
     assert_eq!(report["interpolation"]["within"], 0.0);
 }

@@ -7,7 +7,9 @@ use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, Triangles};
 use limitmesh_io::read;
 
-use crate::common::{done, file, folder, names, run, usage_error};
+use crate::common::{
+    count, done, file, folder, json_file, list, names, number, refuses, run, text, usage_error,
+};
 
 fn control(name: &str) -> Mesh {
     let soup = limitmesh_models::find(name).expect("a model").soup();
@@ -29,9 +31,8 @@ fn files_are_within_their_tolerances_and_nested() {
         &[&out, &report],
     )
     .saying("LOD1");
-    let report: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(&report).expect("a report")).expect("JSON");
-    let levels = report["levels"].as_array().expect("a list");
+    let report = json_file(&report);
+    let levels = list(&report["levels"]);
     assert_eq!(levels.len(), 2);
     let control = control("torus");
     let (mut distances, mut vertices) = (Vec::new(), Vec::new());
@@ -40,16 +41,13 @@ fn files_are_within_their_tolerances_and_nested() {
         let mesh = Mesh::from_soup(&soup, &Default::default())
             .expect("a mesh")
             .0;
-        assert_eq!(
-            mesh.face_count() as u64,
-            level["triangles"].as_u64().expect("a number")
-        );
+        assert_eq!(mesh.face_count() as u64, count(&level["triangles"]));
         assert_eq!(mesh.topology().boundary_edge_count(), 0);
         let options = LimitDistanceOptions::default().gap(Some(1e-4 * control.diagonal()));
         let found =
             limit_distance(mesh.as_triangles(), &control, &Loop, &options).expect("a distance");
         assert!(found.distance.upper() <= (0.01 * percent + 2e-4) * control.diagonal());
-        distances.push(level["switching_distance"].as_f64().expect("a number"));
+        distances.push(number(&level["switching_distance"]));
         vertices.push(
             soup.positions
                 .iter()
@@ -62,7 +60,7 @@ fn files_are_within_their_tolerances_and_nested() {
         "vertices of the coarser level are the finer one's"
     );
     assert!(distances[0] < distances[1], "{distances:?}");
-    let count = |lod: usize| levels[lod]["triangles"].as_u64().expect("a number");
+    let count = |lod: usize| count(&levels[lod]["triangles"]);
     assert!(count(0) > count(1));
 }
 
@@ -113,36 +111,23 @@ fn one_document_has_all_levels() {
         "lod builtin:cup -o {} --levels 3 --tolerance 0.1% --morph",
         &[&out],
     );
-    let text = std::fs::read_to_string(&out).expect("a document");
+    let text = text(&out);
     let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    assert_eq!(document["meshes"].as_array().expect("meshes").len(), 3);
+    assert_eq!(list(&document["meshes"]).len(), 3);
     assert!(
         document["extensionsUsed"]
             .as_array()
             .is_some_and(|used| used.contains(&"MSFT_lod".into()))
     );
-    let nodes = document["nodes"].as_array().expect("nodes");
-    let shown = document["scenes"][0]["nodes"].as_array().expect("a scene");
+    let nodes = list(&document["nodes"]);
+    let shown = list(&document["scenes"][0]["nodes"]);
     assert_eq!(shown.len(), 1);
-    let finest = &nodes[shown[0].as_u64().expect("a number") as usize];
-    assert_eq!(
-        finest["extensions"]["MSFT_lod"]["ids"]
-            .as_array()
-            .expect("ids")
-            .len(),
-        2
-    );
-    let coverage = finest["extras"]["MSFT_screencoverage"]
-        .as_array()
-        .expect("coverage");
-    let coverage: Vec<f64> = coverage
-        .iter()
-        .map(|x| x.as_f64().expect("a number"))
-        .collect();
-    assert!(
-        coverage.len() == 3 && coverage.windows(2).all(|pair| pair[0] > pair[1]),
-        "{coverage:?}"
-    );
+    let finest = &nodes[count(&shown[0]) as usize];
+    assert_eq!(list(&finest["extensions"]["MSFT_lod"]["ids"]).len(), 2);
+    let coverage = list(&finest["extras"]["MSFT_screencoverage"]);
+    let coverage: Vec<f64> = coverage.iter().map(|x| number(x)).collect();
+    assert_eq!(coverage.len(), 3);
+    assert!(coverage.windows(2).all(|pair| pair[0] > pair[1]));
     let targets = |mesh: usize| &document["meshes"][mesh]["primitives"][0]["targets"];
     assert_eq!((0..3).filter(|&mesh| targets(mesh).is_array()).count(), 2);
 }
@@ -151,16 +136,14 @@ fn one_document_has_all_levels() {
 fn what_cannot_be_is_told() {
     let folder = folder();
     let out = folder.path().join("cup.obj");
-    usage_error(
-        "lod builtin:sphere -o {} --tolerances 3,1,2",
-        &[&out],
-        "number 3 is 2 in the mesh's unit, after 1",
+    refuses(
+        &[("out", &out)],
+        "
+        2 | lod builtin:sphere -o {out} --tolerances 3,1,2 | number 3 is 2 in the mesh's unit, after 1
+        2 | lod builtin:cup -o - | not to standard output
+        2 | lod builtin:cup -o {out} --levels 0 |
+        1 | lod builtin:none -o {out} | none",
     );
-    usage_error("lod builtin:cup -o -", &[], "not to standard output");
-    run("lod builtin:cup -o {} --levels 0", &[&out]).expect(2);
-    run("lod builtin:none -o {}", &[&out])
-        .expect(1)
-        .saying("none");
     let stl = folder.path().join("cup.stl");
     usage_error("lod builtin:cup -o {} --morph", &[&stl], "cup.stl")
         .saying("STL files have no place");
@@ -193,7 +176,7 @@ fn files_in_the_way_and_options_without_effect_are_refused() {
         &[&input, &rock],
         "rock_LOD0.obj is an input",
     );
-    assert_eq!(std::fs::read_to_string(&input).expect("the input"), PAINTED);
+    assert_eq!(text(&input), PAINTED);
     usage_error(
         "lod {} -o {} --report {}",
         &[&input, &folder.path().join("a.glb"), &input],

@@ -1,5 +1,8 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
+#[macro_use]
+mod common;
+
 mod asset;
 mod asset_cards;
 mod asset_choice;
@@ -9,7 +12,6 @@ mod asset_tangents;
 mod batch;
 mod channel_goals;
 mod channels;
-mod common;
 mod compare;
 mod concave;
 mod evaluate;

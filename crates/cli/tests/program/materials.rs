@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{done, file, folder, names, run};
+use crate::common::{bytes, count, done, file, folder, list, names, run, text, words};
 use crate::glb::Glb;
 
 /// The bytes that begin a PNG file, and others that make it unique.
@@ -43,9 +43,7 @@ fn has_materials(json: &Value) {
     assert_eq!(json["materials"], expected);
     assert_eq!(json["textures"], json!([{"source": 0}]));
     assert_eq!(json["images"].as_array().map(Vec::len), Some(1));
-    let primitives = json["meshes"][0]["primitives"]
-        .as_array()
-        .expect("primitives");
+    let primitives = list(&json["meshes"][0]["primitives"]);
     let materials: Vec<&Value> = primitives.iter().map(|own| &own["material"]).collect();
     assert_eq!(materials, [0, 1, 2]);
     assert!(
@@ -58,11 +56,11 @@ fn has_materials(json: &Value) {
 /// The kind and the bytes of the first image.
 fn image(glb: &Glb) -> (&str, &[u8]) {
     let image = &glb.json["images"][0];
-    let view = &glb.json["bufferViews"][image["bufferView"].as_u64().expect("a view") as usize];
+    let view = &glb.json["bufferViews"][count(&image["bufferView"]) as usize];
     let [start, length] =
         ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap_or(0) as usize);
     (
-        image["mimeType"].as_str().expect("a kind"),
+        words(&image["mimeType"]),
         &glb.bytes()[start..start + length],
     )
 }
@@ -99,10 +97,7 @@ fn colours_and_pictures_come_to_documents() {
     let text = Glb::text(&output);
     has_materials(&text.json);
     assert_eq!(text.json["images"][0], json!({"uri": "skin/my%20wood.png"}));
-    assert_eq!(
-        std::fs::read(other.join("skin/my wood.png")).expect("a copy"),
-        picture(b"wood")
-    );
+    assert_eq!(bytes(other.join("skin/my wood.png")), picture(b"wood"));
 }
 
 #[test]
@@ -113,11 +108,10 @@ fn libraries_and_pictures_come_to_other_folders() {
     std::fs::create_dir(&other).expect("a folder");
     done("refine {} -o {}", &[&input, &other.join("out.obj")]);
     for name in ["paint.mtl", "skin/my wood.png", "skin/bumps.png", "odd.tga"] {
-        let [was, is] =
-            [folder.path(), &other].map(|folder| std::fs::read(folder.join(name)).expect(name));
+        let [was, is] = [folder.path(), &other].map(|folder| bytes(folder.join(name)));
         assert_eq!(was, is, "{name}");
     }
-    let text = std::fs::read_to_string(other.join("out.obj")).expect("written");
+    let text = text(other.join("out.obj"));
     assert!(text.contains("mtllib paint.mtl\n") && text.contains("usemtl glass\n"));
     // Twice is as well as once.
     done("refine {} -o {}", &[&input, &other.join("out.obj")]);
@@ -141,12 +135,7 @@ fn nothing_is_replaced() {
     let folder = folder();
     let input = painted(&folder);
     let state = || {
-        let of = |name: &str| {
-            (
-                name.to_owned(),
-                std::fs::read(folder.path().join(name)).expect(name),
-            )
-        };
+        let of = |name: &str| (name.to_owned(), bytes(folder.path().join(name)));
         [
             "in.obj",
             "paint.mtl",

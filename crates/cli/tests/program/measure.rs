@@ -4,14 +4,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{done, file, folder, json_of, run, usage_error};
+use crate::common::{
+    bytes, done, file, folder, is_png, json_file, json_of, number, refuses, run, usage_error,
+};
 
 fn measure(arguments: &str, paths: &[&Path]) -> Value {
     json_of(&format!("measure {arguments} --json"), paths)
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
 }
 
 fn near(value: &Value, expected: f64) {
@@ -61,17 +59,12 @@ fn refinement_with_limit_vertices_approaches_the_limit_surface() {
     let mut last = f64::INFINITY;
     for levels in 0..4 {
         let options = format!("--method uniform --limit --levels {levels}");
-        done(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&refined],
-        );
+        let line = format!("refine builtin:torus -o {{}} {options}");
+        done(&line, &[&refined]);
         let report = measure("{} --limit-of builtin:torus", &[&refined]);
         let percent = number(&report["hausdorff"]["symmetric_percent"]);
         // The error of a regular mesh falls to a quarter with each level; the reference is finite itself.
-        assert!(
-            percent < 0.3 * last,
-            "level {levels}: {percent} after {last}"
-        );
+        below!(percent, 0.3 * last, "level {levels}");
         assert_eq!(report["reference"]["limit"]["levels"], 5);
         assert_eq!(report["reference"]["limit"]["chosen"], true);
         assert_eq!(report["reference"]["triangles"], 256 * 1024);
@@ -105,18 +98,12 @@ fn heat_maps_are_meshes_or_pictures() {
     done("measure {} {} --heatmap {}", &[&tilted, &low, &mesh]);
     let written = crate::common::soup(&mesh);
     assert_eq!(written.positions.len(), 4);
-    let bytes = std::fs::read(&mesh).expect("a file");
+    let bytes = bytes(&mesh);
     let header = String::from_utf8_lossy(&bytes[..bytes.len().min(1000)]);
-    assert!(
-        header.contains("quality") && header.contains("uchar red"),
-        "{header}"
-    );
+    says!(header, "quality");
+    says!(header, "uchar red");
     done("measure {} {} --heatmap {}", &[&tilted, &low, &picture]);
-    assert!(
-        std::fs::read(&picture)
-            .expect("a file")
-            .starts_with(b"\x89PNG")
-    );
+    is_png(&picture);
     usage_error("measure {} {} --heatmap {}", &[&tilted, &low, &low], ".png");
 }
 
@@ -173,10 +160,8 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
         let h = &report["hausdorff"];
         let (low, high) = (number(&h["lower"]), number(&h["upper"]));
         // Two intervals for one distance overlap.
-        assert!(
-            low <= upper && lower <= high,
-            "{low} {high} {lower} {upper}"
-        );
+        at_most!(low, upper);
+        at_most!(lower, high);
         let wide = if options.is_empty() {
             0.1 * low
         } else {
@@ -188,22 +173,16 @@ fn a_certified_interval_holds_the_distance_to_the_true_limit_surface() {
         assert_eq!(h["converged"], true);
     }
     let text = done("measure {} --limit-of builtin:cup --certified", &[&output]).stdout;
-    assert!(
-        text.contains("limit surface of builtin:cup") && text.contains("certainly within"),
-        "{text}"
-    );
+    says!(text, "limit surface of builtin:cup");
+    says!(text, "certainly within");
     let cut = "measure {} --limit-of builtin:cup --certified --gap 0.01% --max-work 1";
     assert!(run(cut, &[&output]).expect(3).stdout.contains("at most"));
-    run(
-        "measure {} --limit-of builtin:cup --certified --reference-levels 3",
-        &[&output],
-    )
-    .expect(2);
-    run(
-        "measure {} --limit-of builtin:cup --certified --scheme butterfly",
-        &[&output],
-    )
-    .expect(2);
+    refuses(
+        &[("output", &output)],
+        "
+        2 | measure {output} --limit-of builtin:cup --certified --reference-levels 3 |
+        2 | measure {output} --limit-of builtin:cup --certified --scheme butterfly |",
+    );
 }
 
 /// The bounds of `refine` and the distances of `measure` are per cent of one diagonal, the control mesh's; its limit surface is
@@ -219,8 +198,7 @@ fn refine_and_measure_speak_of_one_diagonal() {
         "refine builtin:cup -o {} --tolerance 0.2% --report {}",
         &[&mesh, &report],
     );
-    let refined: Value =
-        serde_json::from_str(&std::fs::read_to_string(&report).expect("a report")).expect("JSON");
+    let refined = json_file(&report);
     let error = &refined["error"];
     let info = json_of("info builtin:cup --json", &[]);
     let diagonal = number(&info["mesh"]["bounding_box"]["diagonal"]);

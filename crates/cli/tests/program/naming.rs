@@ -2,13 +2,10 @@
 
 use std::path::Path;
 
-use crate::common::{done, file, folder, names, usage_error};
-
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+use crate::common::{TETRAHEDRON, bytes, done, file, folder, names, text, usage_error};
 
 fn is_unchanged(input: &Path) -> bool {
-    std::fs::read_to_string(input).expect("text") == TETRAHEDRON
+    text(input) == TETRAHEDRON
 }
 
 #[test]
@@ -93,7 +90,7 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
     assert!(is_unchanged(&smooth));
     let ply = folder.path().join("c.ply");
     done("refine {} -o {} --tolerance 5%", &[&input, &ply]);
-    let before = std::fs::read(&ply).expect("a file");
+    let before = bytes(&ply);
     let words = "is an input, which the result would replace";
     usage_error("project {} --onto {} -o {}", &[&ply, &input, &ply], words);
     usage_error(
@@ -101,7 +98,7 @@ fn an_input_is_replaced_only_where_that_is_asked_for() {
         &[&ply, &input, &ply],
         "is an input",
     );
-    assert_eq!(std::fs::read(&ply).expect("a file"), before);
+    assert_eq!(bytes(&ply), before);
 
     done(
         "refine {} {} -o {} --tolerance 5% --overwrite",

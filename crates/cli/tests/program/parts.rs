@@ -9,7 +9,7 @@ use limitmesh::PolygonSoup;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use crate::common::{Run, done, file, folder, json_of, soup, usage_error};
+use crate::common::{Run, done, file, folder, json_of, number, soup, usage_error};
 
 type Point = [f64; 3];
 
@@ -89,17 +89,10 @@ fn volume(soup: &PolygonSoup) -> f64 {
 
 fn refine(input: &Path, options: &str) -> (Run, PolygonSoup, Value) {
     let output = input.with_extension("out.ply");
-    let run = done(
-        &format!("refine {{}} -o {{}} --report - {options}"),
-        &[input, &output],
-    );
+    let line = format!("refine {{}} -o {{}} --report - {options}");
+    let run = done(&line, &[input, &output]);
     let report = run.json();
     (run, soup(&output), report)
-}
-
-#[track_caller]
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
 }
 
 const KEPT: &str = "kept sharp, surface led through the vertices; --crease-angle none smooths them";
@@ -131,11 +124,8 @@ fn a_box_is_itself_and_says_so_first() {
     assert_eq!(report["interpolation"]["folded_regions"], 0);
 
     let (run, found, report) = refine(&input, "--crease-angle none");
-    assert!(
-        volume(&found) < 2000.0 && !run.stderr.contains("looks like"),
-        "{}",
-        run.stderr
-    );
+    below!(volume(&found), 2000.0);
+    silent!(run.stderr, "looks like");
     assert_eq!(report["parameters"]["crease_angle_auto"], false);
     // An angle that is given means what it meant.
     let (run, _, report) = refine(&input, "--crease-angle 40");
@@ -148,20 +138,12 @@ fn a_box_is_itself_and_says_so_first() {
         (&json!(40.0), &Value::Null)
     );
     let (run, _, report) = refine(&input, "--interpolate=0.1");
-    assert!(
-        run.stderr
-            .contains("kept sharp; --crease-angle none smooths them"),
-        "{}",
-        run.stderr
-    );
+    says!(run.stderr, "kept sharp; --crease-angle none smooths them");
     assert_eq!(report["parameters"]["interpolate_within"], 0.1);
     // Methods that are compared with keep their rules, unless they are asked.
     let (run, found, _) = refine(&input, "--method uniform");
-    assert!(
-        volume(&found) < 2000.0 && !run.stderr.contains("looks like"),
-        "{}",
-        run.stderr
-    );
+    below!(volume(&found), 2000.0);
+    silent!(run.stderr, "looks like");
     let (_, found, _) = refine(&input, "--method uniform --crease-angle auto");
     assert!((volume(&found) - 4000.0).abs() < 1e-3, "{}", volume(&found));
     let (_, found, _) = refine(&input, "--scheme sqrt3 --crease-angle auto --angle 20");
@@ -204,10 +186,9 @@ fn all_commands_speak_of_one_surface() {
         .saying("looks like a part")
         .json();
     let point = [0, 1, 2].map(|i| number(&found[0]["point"][i]));
-    assert!(
-        (point[0] - 5.0).abs() < 1e-9 && point[1].abs() < 1e-9 && point[2].abs() < 1e-9,
-        "{point:?}"
-    );
+    below!((point[0] - 5.0).abs(), 1e-9);
+    below!(point[1].abs(), 1e-9);
+    below!(point[2].abs(), 1e-9);
     let at = file(&folder, "points.csv", "5,0,0\n0,5,8\n");
     let found = done("project {} --onto {} --json", &[&at, &peg])
         .saying("looks like a part")
@@ -216,11 +197,7 @@ fn all_commands_speak_of_one_surface() {
     let levels = folder.path().join("levels.ply");
     done("lod {} -o {} --levels 2", &[&peg, &levels]).saying("looks like a part");
     let finest = soup(&folder.path().join("levels_LOD0.ply"));
-    assert!(
-        (volume(&finest) / (PI * 200.0) - 1.0).abs() < 5e-3,
-        "{}",
-        volume(&finest)
-    );
+    below!((volume(&finest) / (PI * 200.0) - 1.0).abs(), 5e-3);
     let picture = folder.path().join("peg.png");
     done("render {} -o {} --exact --size 60x60", &[&peg, &picture]).saying("looks like a part");
     usage_error(
@@ -230,11 +207,7 @@ fn all_commands_speak_of_one_surface() {
     );
     // Comparisons keep their rules.
     let compared = done("compare {} --levels 1 --samples 1000 --json", &[&peg]);
-    assert!(
-        !compared.stderr.contains("looks like"),
-        "{}",
-        compared.stderr
-    );
+    silent!(compared.stderr, "looks like");
 }
 
 /// Packages and assets: by mesh.
@@ -245,10 +218,8 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
     for (name, unit) in [("box.3mf", "--unit mm"), ("box.glb", "")] {
         let [plain, fine] =
             [name.to_owned(), format!("fine_{name}")].map(|name| folder.path().join(name));
-        done(
-            &format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}"),
-            &[&input, &plain],
-        );
+        let line = format!("refine {{}} -o {{}} --method uniform --levels 0 {unit}");
+        done(&line, &[&input, &plain]);
         done("refine {} -o {}", &[&plain, &fine]).saying("looks like a part: 12 edges");
         let found = json_of("info {} --json", &[&fine]);
         assert!(
@@ -258,11 +229,7 @@ fn meshes_of_assets_and_packages_are_looked_at_one_by_one() {
         );
         done("refine {} -o {} --crease-angle none", &[&plain, &fine]);
         let found = json_of("info {} --json", &[&fine]);
-        assert!(
-            number(&found["mesh"]["volume"]) < 2000.0,
-            "{name}: {}",
-            found["mesh"]["volume"]
-        );
+        below!(number(&found["mesh"]["volume"]), 2000.0, "{name}");
     }
 }
 

@@ -1,14 +1,10 @@
 //! `project`: points against the limit surface, in text, JSON and files.
 
-use crate::common::{done, file, folder, json_of, run};
-
-/// Corners in the order of the axes, faces counter-clockwise from outside.
-const OCTAHEDRON: &str = "v 1 0 0\nv 0 1 0\nv 0 0 1\nv -1 0 0\nv 0 -1 0\nv 0 0 -1\n\
-    f 1 2 3\nf 2 4 3\nf 4 5 3\nf 5 1 3\nf 2 1 6\nf 4 2 6\nf 5 4 6\nf 1 5 6\n";
+use crate::common::{OCTAHEDRON, done, file, folder, is_png, json_of, number, run, text};
 
 #[track_caller]
 fn near(found: &serde_json::Value, expected: f64) {
-    let found = found.as_f64().expect("a number");
+    let found = number(found);
     assert!((found - expected).abs() < 1e-6, "{found} and {expected}");
 }
 
@@ -41,7 +37,7 @@ fn points_along_the_axes_of_an_octahedron() {
     );
     near(&distance["median"], 2.0 - corner);
     // As a table, with the distance of the point inside below 0 and no more than its way along the axis.
-    let table = std::fs::read_to_string(&out).expect("a table");
+    let table = text(&out);
     let rows: Vec<Vec<f64>> = table
         .lines()
         .skip(1)
@@ -98,11 +94,7 @@ fn a_scan_keeps_its_vertices_and_triangles() {
     }
     let picture = folder.path().join("map.png");
     done("project {} --onto {} -o {}", &[&scan, &control, &picture]);
-    assert!(
-        std::fs::read(&picture)
-            .expect("a picture")
-            .starts_with(b"\x89PNG")
-    );
+    is_png(&picture);
 }
 
 #[test]
@@ -128,18 +120,15 @@ fn what_cannot_be_is_told() {
     let error = run("project {} --onto {}", &[&points, &control])
         .expect(1)
         .stderr;
-    assert!(
-        error.contains("points.xyz") && error.contains("line 2"),
-        "{error}"
-    );
+    says!(error, "points.xyz");
+    says!(error, "line 2");
     let decimal = file(&folder, "decimal.csv", "x;y;z\n1,5;2,5;3,5\n");
     let error = run("project {} --onto {}", &[&decimal, &control])
         .expect(1)
         .stderr;
-    assert!(
-        error.contains("decimal.csv") && error.contains("line 2") && error.contains("1,5"),
-        "{error}"
-    );
+    says!(error, "decimal.csv");
+    says!(error, "line 2");
+    says!(error, "1,5");
     let short = file(&folder, "short.pts", "3\n1 2 3\n2 3 4\n");
     run("project {} --onto {}", &[&short, &control])
         .expect(1)

@@ -9,7 +9,7 @@ use limitmesh_check::proof::Proof;
 use limitmesh_check::{read, verdict};
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, json_of, usage_error};
+use crate::common::{done, file, folder, json_of, refuses, usage_error};
 
 /// Triangles that are refused, the files being as they are.
 fn refused(control: Option<&Path>, result: &Path, proof: &Path, times: f64) -> usize {
@@ -96,11 +96,8 @@ fn what_has_no_proof_is_refused_by_name() {
         ("--scheme sqrt3", "loop"),
         ("--method uniform", "--method exact"),
     ] {
-        usage_error(
-            &format!("refine builtin:cube -o {{}} {options} --proof {{}}"),
-            &[&result, &proof],
-            words,
-        );
+        let line = format!("refine builtin:cube -o {{}} {options} --proof {{}}");
+        usage_error(&line, &[&result, &proof], words);
         assert!(!proof.exists() && !result.exists(), "{options}");
     }
     for name in ["result.stl", "result.glb", "result.3mf"] {
@@ -110,15 +107,11 @@ fn what_has_no_proof_is_refused_by_name() {
             ".ply",
         );
     }
-    usage_error(
-        "refine builtin:cube -o - --to ply --ascii --proof {}",
-        &[&proof],
-        "file",
-    );
-    usage_error(
-        "refine builtin:cube -o {} --proof {}",
-        &[&result, &result],
-        "twice",
+    refuses(
+        &[("proof", &proof), ("result", &result)],
+        "
+        2 | refine builtin:cube -o - --to ply --ascii --proof {proof} | file
+        2 | refine builtin:cube -o {result} --proof {result} | twice",
     );
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::common::{done, folder, json_of, usage_error};
+use crate::common::{done, folder, json_of, number, usage_error};
 
 /// The parameters that a refinement was done with.
 fn parameters(options: &str) -> Value {
@@ -14,35 +14,21 @@ fn parameters(options: &str) -> Value {
 
 #[test]
 fn lengths_may_have_a_unit_where_the_mesh_has_one() {
-    let tolerance = |options: &str| {
-        parameters(options)["exact"]["tolerance"]
-            .as_f64()
-            .expect("a number")
-    };
+    let tolerance = |options: &str| number(&parameters(options)["exact"]["tolerance"]);
     assert_eq!(tolerance("--tolerance 0.05"), 0.05);
     assert_eq!(tolerance("--tolerance 0.05mm --unit mm"), 0.05);
     assert_eq!(tolerance("--tolerance 0.5mm --unit cm"), 0.05);
     assert_eq!(tolerance("--tolerance 0.01in --unit mm"), 0.254);
     assert_eq!(tolerance("--tolerance 0.05 --unit mm"), 0.05);
-    assert!(
-        (parameters("--weld 1um --unit mm")["weld"]
-            .as_f64()
-            .expect("a number")
-            - 0.001)
-            .abs()
-            < 1e-15
-    );
+    assert!((number(&parameters("--weld 1um --unit mm")["weld"]) - 0.001).abs() < 1e-15);
     for (options, words) in [
         ("--tolerance 0.05mm", "--unit mm"),
         ("--tolerance 0.05mm --weld 1cm", "--unit cm"),
         ("--tolerance 0.05furlongs", "not a number"),
         ("--tolerance 0.05mm --unit furlong", "furlong"),
     ] {
-        usage_error(
-            &format!("refine builtin:cube -o out.ply {options}"),
-            &[],
-            words,
-        );
+        let line = format!("refine builtin:cube -o out.ply {options}");
+        usage_error(&line, &[], words);
     }
     let gap = "measure builtin:cube builtin:tetrahedron --certified --gap 1mm";
     usage_error(gap, &[], "--unit mm");

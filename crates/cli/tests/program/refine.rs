@@ -4,15 +4,15 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{claimed, counts, done, file, folder, json_of, run, soup};
+use crate::common::{
+    bytes, claimed, count, counts, done, file, folder, json_file, json_of, list, run, soup, text,
+};
 
 /// The keys that users of the report may rely on.
 /// Refines and gives the report, after checking that it fits the file.
 fn refine(input: &str, output: &Path, options: &str) -> Value {
-    let run = done(
-        &format!("refine {input} -o {{}} --report - {options}"),
-        &[output],
-    );
+    let line = format!("refine {input} -o {{}} --report - {options}");
+    let run = done(&line, &[output]);
     let report = run.json();
     assert_eq!(
         claimed(&report["output"]),
@@ -26,8 +26,8 @@ fn refine(input: &str, output: &Path, options: &str) -> Value {
 /// Each step starts where the one before ended, and its faces add up: divisible ones and those of Figure 5's
 /// case (d) give four, cases (a) to (c) one to three.
 fn check_steps(report: &Value) {
-    let number = |value: &Value| value.as_u64().expect("a count");
-    let steps = report["steps"].as_array().expect("a list");
+    let number = |value: &Value| count(value);
+    let steps = list(&report["steps"]);
     for (i, step) in steps.iter().enumerate() {
         assert_eq!(number(&step["step"]), i as u64 + 1);
         let [a, b, c, d] = [0, 1, 2, 3].map(|case| number(&step["closure"][case]));
@@ -110,8 +110,7 @@ fn the_cap_stops_before_the_step_that_would_pass_it() {
         .saying("9,088 triangles")
         .saying("--max-triangles 3,000");
     assert_eq!(run.stdout, "");
-    let report: Value =
-        serde_json::from_slice(&std::fs::read(&report_path).expect("a report")).expect("JSON");
+    let report = json_file(&report_path);
     assert_eq!(report["stop"], "triangle-cap");
     assert_eq!(report["needed_triangles"], 9088);
     assert_eq!(report["steps"].as_array().map(Vec::len), Some(2));
@@ -125,11 +124,9 @@ fn results_are_the_same_bytes_for_any_number_of_threads() {
     let folder = folder();
     let bytes = |threads: usize, options: &str| {
         let output = folder.path().join(format!("out{threads}.ply"));
-        done(
-            &format!("refine builtin:shoe -o {{}} --threads {threads} {options}"),
-            &[&output],
-        );
-        std::fs::read(&output).expect("a file")
+        let line = format!("refine builtin:shoe -o {{}} --threads {threads} {options}");
+        done(&line, &[&output]);
+        bytes(&output)
     };
     // Large enough that the loops do run in parallel.
     let methods = [
@@ -213,21 +210,14 @@ fn edges_that_nearly_equal_positions_keep_open_are_told() {
     let distance = told
         .unwrap_or_else(|| panic!("no distance in {}", first.stderr))
         .to_owned();
-    let second = done(
-        &format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}"),
-        &[&input, &output],
-    );
-    assert!(
-        !second.stderr.contains("--weld") && second.stderr.contains(", closed ("),
-        "{}",
-        second.stderr
-    );
+    let line = format!("refine {{}} -o {{}} --tolerance 1% --weld {distance}");
+    let second = done(&line, &[&input, &output]);
+    silent!(second.stderr, "--weld");
+    says!(second.stderr, ", closed (");
     assert_eq!(counts(&self::soup(&output)).boundary_edges, 0);
     // The same option lets the result be measured against its own control mesh.
-    done(
-        &format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000"),
-        &[&output, &input],
-    );
+    let line = format!("measure {{}} --limit-of {{}} --weld {distance} --samples 1000");
+    done(&line, &[&output, &input]);
 }
 
 #[test]
@@ -236,16 +226,10 @@ fn the_input_is_not_replaced_by_a_report_or_picture() {
     let output = folder.path().join("out.ply");
     for (name, option) in [("in.obj", "--report"), ("in.png", "--picture")] {
         let input = file(&folder, name, NEARLY_CLOSED);
-        let run = run(
-            &format!("refine {{}} -o {{}} {option} {{}}"),
-            &[&input, &output, &input],
-        )
-        .expect(2);
+        let line = format!("refine {{}} -o {{}} {option} {{}}");
+        let run = run(&line, &[&input, &output, &input]).expect(2);
         assert!(run.stderr.contains("is an input"), "{}", run.stderr);
-        assert_eq!(
-            std::fs::read_to_string(&input).expect("a file"),
-            NEARLY_CLOSED
-        );
+        assert_eq!(text(&input), NEARLY_CLOSED);
     }
 }
 
@@ -259,11 +243,9 @@ fn what_is_left_out_is_told() {
     );
     let told = done("refine {} -o {}", &[&input, &output]).stderr;
     assert!(!told.contains("left out"), "{told}");
-    let text = std::fs::read_to_string(&output).expect("it is there");
-    assert!(
-        text.contains("vt 0 0\n") && text.contains("usemtl red\n"),
-        "{text}"
-    );
+    let text = text(&output);
+    says!(text, "vt 0 0\n");
+    says!(text, "usemtl red\n");
     let carried = "carries: texture coordinates (2 numbers a corner); materials (by face)";
     assert!(done("info {}", &[&input]).stdout.contains(carried));
     let report = json_of("info {} --json", &[&input]);
@@ -281,11 +263,8 @@ fn what_is_left_out_is_told() {
         "--method uniform --levels 1",
         "--method limit-normal",
     ] {
-        let told = done(
-            &format!("refine {{}} -o {{}} {options}"),
-            &[&input, &output],
-        )
-        .stderr;
+        let line = format!("refine {{}} -o {{}} {options}");
+        let told = done(&line, &[&input, &output]).stderr;
         assert!(!told.contains("left out"), "{options}: {told}");
     }
 }

@@ -1,6 +1,6 @@
 //! `render` and `--picture`: PNG files of the size asked for, which show what was asked for.
 
-use crate::common::{done, folder, run, usage_error};
+use crate::common::{bytes, done, folder, refuses, run, usage_error};
 use crate::shading::pixels;
 
 /// Width and height in a PNG file's header.
@@ -22,11 +22,9 @@ fn pictures_differ_by_what_is_asked_for() {
         "--view 1,0,0",
         "--flat --wireframe --view 0,1,0",
     ] {
-        done(
-            &format!("render builtin:head -o {{}} --size 160x120 {options}"),
-            &[&path],
-        );
-        let png = std::fs::read(&path).expect("a picture");
+        let line = format!("render builtin:head -o {{}} --size 160x120 {options}");
+        done(&line, &[&path]);
+        let png = bytes(&path);
         assert_eq!(size(&png), [160, 120]);
         assert!(!pictures.contains(&png), "{options}");
         pictures.push(png);
@@ -36,17 +34,14 @@ fn pictures_differ_by_what_is_asked_for() {
         &[&path],
     );
     assert!(
-        pictures[0] == std::fs::read(&path).expect("a picture"),
+        pictures[0] == bytes(&path),
         "edges beyond 30° show by default"
     );
     done(
         "render builtin:head -o {} --size 160x120 --smooth",
         &[&path],
     );
-    assert!(
-        pictures[0] != std::fs::read(&path).expect("a picture"),
-        "and not where all is smooth"
-    );
+    assert!(pictures[0] != bytes(&path), "and not where all is smooth");
 }
 
 #[test]
@@ -54,7 +49,7 @@ fn refine_draws_its_result() {
     let folder = folder();
     let (mesh, path) = (folder.path().join("out.ply"), folder.path().join("out.png"));
     done("refine builtin:cup -o {} --picture {}", &[&mesh, &path]);
-    let png = std::fs::read(&path).expect("a picture");
+    let png = bytes(&path);
     assert_eq!(size(&png), [1200, 900]);
     assert!(png.len() > 20_000, "{} bytes", png.len());
 }
@@ -63,15 +58,11 @@ fn refine_draws_its_result() {
 fn wrong_pictures_are_refused() {
     let folder = folder();
     let path = folder.path().join("out.png");
-    usage_error(
-        "render builtin:head -o {} --flat --smooth",
-        &[&path],
-        "cannot be used with",
-    );
-    usage_error(
-        "render builtin:head -o {} --flat --crease-angle 30",
-        &[&path],
-        "cannot be used with",
+    refuses(
+        &[("path", &path)],
+        "
+        2 | render builtin:head -o {path} --flat --smooth | cannot be used with
+        2 | render builtin:head -o {path} --flat --crease-angle 30 | cannot be used with",
     );
     let missing = folder.path().join("missing.png");
     run("render builtin:head -o {} --texture {}", &[&path, &missing])
@@ -109,11 +100,9 @@ fn textures_lie_on_surfaces_with_texture_coordinates() {
     )
     .expect("written");
     let drawn = |options: &str| {
-        done(
-            &format!("render {{}} -o {{}} --size 160x120 {options}"),
-            &[&mesh, &path],
-        );
-        std::fs::read(&path).expect("a picture")
+        let line = format!("render {{}} -o {{}} --size 160x120 {options}");
+        done(&line, &[&mesh, &path]);
+        bytes(&path)
     };
     let none = drawn("");
     let checker = drawn("--texture checker");
@@ -142,11 +131,9 @@ fn limit_surfaces_are_drawn_by_rays() {
     let folder = folder();
     let path = folder.path().join("exact.png");
     let draw = |options: &str| {
-        done(
-            &format!("render builtin:cube -o {{}} --size 120x90 {options}"),
-            &[&path],
-        );
-        std::fs::read(&path).expect("a picture")
+        let line = format!("render builtin:cube -o {{}} --size 120x90 {options}");
+        done(&line, &[&path]);
+        bytes(&path)
     };
     let exact = draw("--exact");
     assert_eq!(size(&exact), [120, 90]);
@@ -167,34 +154,21 @@ fn limit_surfaces_are_drawn_by_rays() {
         &[&fine],
     );
     done("render {} -o {} --size 120x90", &[&fine, &drawn]);
-    let (own, other) = (
-        covered(&exact),
-        covered(&std::fs::read(&drawn).expect("a picture")),
-    );
-    assert!(
-        other > 120 * 90 / 10 && own.abs_diff(other) * 50 < other,
-        "{own} and {other} pixels"
-    );
+    let (own, other) = (covered(&exact), covered(&bytes(&drawn)));
+    above!(other, 120 * 90 / 10);
+    below!(own.abs_diff(other) * 50, other);
     assert!(
         exact == draw("--exact --threads 1"),
         "the same bytes on one thread"
     );
     assert!(exact != draw("--exact --scheme loop-warren"));
     assert!(exact != draw("--exact --crease-angle 30"));
-    run("render builtin:cube -o {} --exact --wireframe", &[&path]).expect(2);
-    usage_error(
-        "render builtin:cube -o {} --exact --smooth",
-        &[&path],
-        "--smooth",
-    );
-    usage_error(
-        "render builtin:cube -o {} --scheme loop",
-        &[&path],
-        "it needs --exact",
-    );
-    usage_error(
-        "render builtin:cube -o {} --exact --scheme butterfly",
-        &[&path],
-        "loop, loop-warren]",
+    refuses(
+        &[("path", &path)],
+        "
+        2 | render builtin:cube -o {path} --exact --wireframe |
+        2 | render builtin:cube -o {path} --exact --smooth | --smooth
+        2 | render builtin:cube -o {path} --scheme loop | it needs --exact
+        2 | render builtin:cube -o {path} --exact --scheme butterfly | loop, loop-warren]",
     );
 }

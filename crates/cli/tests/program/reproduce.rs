@@ -6,14 +6,14 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{done, file, folder, names, run};
+use crate::common::{bytes, done, file, folder, list, names, number, run, text};
 
 const COLUMNS: &str = "model,angle_degrees,faces,shd_percent,amresh_faces,amresh_shd_percent,ratio_percent,\
                        uniform_limit_faces,uniform_limit_shd_percent,exact_faces,exact_shd_percent";
 const MODELS: [&str; 6] = ["bunny", "teddy", "shark", "cup", "radish", "cusp"];
 
 fn read(folder: &Path, name: &str) -> String {
-    fs::read_to_string(folder.join(name)).expect(name)
+    text(folder.join(name))
 }
 
 /// The texts between two marks, each time they occur.
@@ -38,10 +38,8 @@ fn the_folder_is_whole_and_the_page_says_what_the_files_say() {
     json_agrees(&read(&out, "reproduction.json"), &rows);
     for name in names(&out).iter().filter(|name| name.ends_with(".svg")) {
         let svg = read(&out, name);
-        assert!(
-            svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
-            "{name}"
-        );
+        assert!(svg.starts_with("<svg"), "{name}");
+        assert!(svg.trim_end().ends_with("</svg>"), "{name}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
     }
 
@@ -57,13 +55,8 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let all = names(folder)
         .into_iter()
         .filter(|name| name != "reproduction.json");
-    all.map(|name| {
-        (
-            name.clone(),
-            fs::read(folder.join(&name)).expect("readable"),
-        )
-    })
-    .collect()
+    all.map(|name| (name.clone(), bytes(folder.join(&name))))
+        .collect()
 }
 
 fn csv_is_sound(csv: &str) -> Vec<Vec<String>> {
@@ -90,10 +83,9 @@ fn csv_is_sound(csv: &str) -> Vec<Vec<String>> {
         );
         assert!((amresh_faces / faces - 1.0).abs() < 0.05, "{row:?}");
         // Exact refinement has no more faces than the paper's method, and is not farther away.
-        assert!(
-            numbers[8] <= faces && numbers[8] > 0.8 * faces && numbers[9] <= shd,
-            "{row:?}"
-        );
+        at_most!(numbers[8], faces, "{row:?}");
+        above!(numbers[8], 0.8 * faces, "{row:?}");
+        at_most!(numbers[9], shd, "{row:?}");
     }
     rows
 }
@@ -115,7 +107,7 @@ fn links_lead_somewhere(page: &str, folder: &Path) {
                 "no {link} on the page"
             ),
             None => {
-                let bytes = fs::read(folder.join(link)).expect(link);
+                let bytes = bytes(folder.join(link));
                 assert!(!bytes.is_empty(), "{link} is empty");
             }
         }
@@ -125,15 +117,15 @@ fn links_lead_somewhere(page: &str, folder: &Path) {
 fn json_agrees(json: &str, rows: &[Vec<String>]) {
     let json: Value = serde_json::from_str(json).expect("JSON");
     // The paper's Figure 7: 142 faces split in four three times.
-    for head in json["figure_7"].as_array().expect("a list") {
+    for head in list(&json["figure_7"]) {
         assert_eq!(head["control_faces"], 142);
         assert_eq!(head["uniform_faces"], 9088);
         assert!(head["adaptive_faces"].as_u64() < Some(9088));
     }
-    let studies = json["table_1"].as_array().expect("a list");
+    let studies = list(&json["table_1"]);
     let measured: Vec<&Value> = studies
         .iter()
-        .flat_map(|study| study["rows"].as_array().expect("rows"))
+        .flat_map(|study| list(&study["rows"]))
         .collect();
     assert_eq!(measured.len(), rows.len());
     for (value, row) in measured.into_iter().zip(rows) {
@@ -148,19 +140,16 @@ fn json_agrees(json: &str, rows: &[Vec<String>]) {
         );
         assert!((shd - row[3].parse::<f64>().expect("a number")).abs() < 1e-3 * shd);
     }
-    for row in studies
-        .iter()
-        .flat_map(|study| study["rows"].as_array().expect("rows"))
-    {
-        let [sampled, upper] = [&row["exact"]["shd_percent"], &row["exact_upper_percent"]]
-            .map(|x| x.as_f64().expect("a number"));
+    for row in studies.iter().flat_map(|study| list(&study["rows"])) {
+        let [sampled, upper] =
+            [&row["exact"]["shd_percent"], &row["exact_upper_percent"]].map(|x| number(x));
         // The reference is itself a little off the limit surface.
         assert!(sampled <= 1.1 * upper, "{row}");
     }
     // Uniform refinement of the sphere's 360 faces, twice, and fewer where the view matters.
     let sphere = &json["figure_9"]["models"][0];
     assert_eq!(sphere["uniform_faces"], 5760);
-    for tried in sphere["tried"].as_array().expect("a list") {
+    for tried in list(&sphere["tried"]) {
         assert!(tried["faces"].as_u64() < Some(5760), "{tried}");
     }
 }

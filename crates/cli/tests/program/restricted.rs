@@ -1,19 +1,14 @@
 //! `refine --method planarity` and `vertex-error`: criteria of the literature over a restricted quadtree.
 
-use crate::common::{done, folder, json_of, run, usage_error};
+use crate::common::{count, done, folder, json_of, refuses, run, usage_error};
 
 /// Triangles and what was reached, from a report.
 fn refined(words: &str) -> (u64, serde_json::Value) {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    let report = json_of(
-        &format!("refine builtin:head -o {{}} --report - {words}"),
-        &[&output],
-    );
-    (
-        report["output"]["triangles"].as_u64().expect("a count"),
-        report,
-    )
+    let line = format!("refine builtin:head -o {{}} --report - {words}");
+    let report = json_of(&line, &[&output]);
+    (count(&report["output"]["triangles"]), report)
 }
 
 #[test]
@@ -49,23 +44,16 @@ fn smaller_limits_take_more_triangles() {
 fn what_does_not_go_together_is_said() {
     let folder = folder();
     let output = folder.path().join("out.ply");
-    for (words, said) in [
-        ("--method vertex-error --angle 5", "--angle"),
-        (
-            "--method planarity --angle 5 --tolerance 1%",
-            "not given together",
-        ),
-        ("--method planarity --balance", "--balance"),
-        ("--method vertex-error --levels 0", "goals need 1"),
-        ("--method planarity --view 0,0,1", "--view"),
-        ("--method planarity --scheme sqrt3", "sqrt3"),
-    ] {
-        usage_error(
-            &format!("refine builtin:cup -o {{}} {words}"),
-            &[&output],
-            said,
-        );
-    }
+    refuses(
+        &[("output", &output)],
+        "
+        2 | refine builtin:cup -o {output} --method vertex-error --angle 5 | --angle
+        2 | refine builtin:cup -o {output} --method planarity --angle 5 --tolerance 1% | not given together
+        2 | refine builtin:cup -o {output} --method planarity --balance | --balance
+        2 | refine builtin:cup -o {output} --method vertex-error --levels 0 | goals need 1
+        2 | refine builtin:cup -o {output} --method planarity --view 0,0,1 | --view
+        2 | refine builtin:cup -o {output} --method planarity --scheme sqrt3 | sqrt3",
+    );
     assert!(!output.exists());
     let asset = folder.path().join("out.glb");
     done(

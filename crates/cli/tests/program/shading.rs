@@ -1,6 +1,6 @@
 //! Normals by side: what files hold of them, and what pictures show.
 
-use crate::common::{done, file, folder, run, usage_error};
+use crate::common::{done, file, folder, run, text, usage_error};
 
 /// A prism of twelve sides, radius 2 and height 1, in the format OBJ: its ends are polygons.
 fn prism() -> String {
@@ -67,11 +67,9 @@ fn each_side_of_a_rim_has_its_normals() {
         ["out.obj", "out.ply", "split.ply", "out.stl"].map(|name| folder.path().join(name));
     let options = "--crease-angle 40 --tolerance 0.01 --quiet --ascii";
     for method in ["", "--optimize"] {
-        done(
-            &format!("refine {{}} -o {{}} {options} {method}"),
-            &[&input, &obj],
-        );
-        let text = std::fs::read_to_string(&obj).expect("written");
+        let line = format!("refine {{}} -o {{}} {options} {method}");
+        done(&line, &[&input, &obj]);
+        let text = text(&obj);
         let list = |key: &str| -> Vec<Vec<f64>> {
             text.lines()
                 .filter(|line| line.split(' ').next() == Some(key))
@@ -91,29 +89,20 @@ fn each_side_of_a_rim_has_its_normals() {
             flat += usize::from(is_flat);
             for (_, at) in corners {
                 let least = if is_flat { 1.0 - 1e-9 } else { 0.9 };
-                assert!(
-                    dot(&own, &normals[at - 1]) > least,
-                    "{line}: {own:?} {:?}",
-                    normals[at - 1]
-                );
+                above!(dot(&own, &normals[at - 1]), least, "{line}: {own:?}");
             }
         }
         assert!(flat > 20, "{flat}");
     }
 
-    let said = run(
-        &format!("refine {{}} -o {{}} {}", options.replace("--quiet", "")),
-        &[&input, &ply],
-    );
+    let line = format!("refine {{}} -o {{}} {}", options.replace("--quiet", ""));
+    let said = run(&line, &[&input, &ply]);
     said.expect(0).saying("--split-normals");
-    let text = std::fs::read_to_string(&ply).expect("written");
-    assert!(!text.contains(" nx\n"));
+    assert!(!text(&ply).contains(" nx\n"));
     let options = format!("{options} --split-normals");
-    done(
-        &format!("refine {{}} -o {{}} {options} --provenance"),
-        &[&input, &split],
-    );
-    let text = std::fs::read_to_string(&split).expect("written");
+    let line = format!("refine {{}} -o {{}} {options} --provenance");
+    done(&line, &[&input, &split]);
+    let text = text(&split);
     let (header, body) = text.split_once("end_header\n").expect("a header");
     assert!(header.contains("nx\n") && header.contains("parent_a\n"));
     let rows: Vec<Vec<f64>> = body.lines().map(numbers).collect();
@@ -127,9 +116,6 @@ fn each_side_of_a_rim_has_its_normals() {
             assert!(dot(&own, &corner[3..6]) > 0.9, "{own:?} {corner:?}");
         }
     }
-    usage_error(
-        &format!("refine {{}} -o {{}} {options}"),
-        &[&input, &stl],
-        "--split-normals",
-    );
+    let line = format!("refine {{}} -o {{}} {options}");
+    usage_error(&line, &[&input, &stl], "--split-normals");
 }

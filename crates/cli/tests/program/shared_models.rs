@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use crate::common::{claimed, counts, folder, json_of, names, run, soup};
+use crate::common::{claimed, count, counts, folder, json_of, list, names, number, run, soup};
 use serde_json::Value;
 
 /// By file: faces as stored; vertices, triangles, Euler characteristic, boundary loops and components of the control mesh, `cut` where
@@ -136,7 +136,7 @@ fn examines(name: &str, path: &Path, faces: u64, shape: &str, findings: &[&str])
             Some(&"any") => assert_ne!(count, "0", "{name}: {key}"),
             expected => assert_eq!(&count, expected.unwrap_or(&"0"), "{name}: {key}"),
         }
-        let first = value["first"].as_array().expect("a list");
+        let first = list(&value["first"]);
         assert_eq!(first.is_empty(), count == "0", "{name}: {key}");
     }
     info
@@ -148,7 +148,7 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     let output = folder.path().join("out.ply");
     let levels = if faces > LARGE { 1 } else { 2 };
     let control = &info["mesh"];
-    let number = |key: &str| control[key].as_u64().expect("a count");
+    let own = |key: &str| count(&control[key]);
     for method in ["limit-normal", "uniform"] {
         let command = format!("refine {{}} -o {{}} --method {method} --levels {levels} --report -");
         let report = json_of(&command, &[path, &output]);
@@ -161,12 +161,12 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
         if method == "uniform" {
             assert_eq!(
                 written.triangles,
-                number("triangles") << (2 * levels),
+                own("triangles") << (2 * levels),
                 "{name}"
             );
             assert_eq!(
                 written.boundary_edges,
-                number("boundary_edges") << levels,
+                own("boundary_edges") << levels,
                 "{name}"
             );
         }
@@ -174,9 +174,7 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     let command =
         format!("measure {{}} --limit-of {{}} --reference-levels {levels} --samples 2000 --json");
     let report = json_of(&command, &[&output, path]);
-    let percent = report["hausdorff"]["symmetric_percent"]
-        .as_f64()
-        .expect("a number");
+    let percent = number(&report["hausdorff"]["symmetric_percent"]);
     assert!((0.0..25.0).contains(&percent), "{name}: {percent} %");
     bounds_distances(name, &output, path);
 }
@@ -188,15 +186,11 @@ fn bounds_distances(name: &str, a: &Path, b: &Path) {
         json_of(&command, &[a, b])["hausdorff"].clone()
     };
     let (certified, sampled) = (distance("--certified"), distance("--samples 20000"));
-    let number = |value: &Value| value.as_f64().expect("a number");
     let least = 1e-6 * number(&certified["diagonal"]);
     for direction in ["forward", "backward"] {
         let [lower, upper] = ["lower", "upper"].map(|end| number(&certified[direction][end]));
         let found = number(&sampled[direction]);
-        assert!(
-            found <= upper * (1.0 + 1e-12),
-            "{name} {direction}: {found} above {upper}"
-        );
+        at_most!(found, upper * (1.0 + 1e-12), "{name} {direction}");
         let is_narrow = upper - lower <= least.max(0.01 * lower);
         assert!(is_narrow, "{name} {direction}: {lower} to {upper}");
     }

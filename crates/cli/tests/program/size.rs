@@ -2,30 +2,22 @@
 
 use serde_json::{Value, json};
 
-use crate::common::{done, file, folder, json_of};
-
-fn number(value: &Value) -> f64 {
-    value.as_f64().expect("a number")
-}
+use crate::common::{done, file, folder, json_of, number};
 
 /// The reported distance to the input, and the certified measurement of the two files.
 fn distances(input: &str, options: &str) -> ([f64; 2], [f64; 2]) {
     let folder = folder();
     let output = folder.path().join("out.off");
-    let report = json_of(
-        &format!("refine {input} -o {{}} --report - {options}"),
-        &[&output],
-    );
+    let line = format!("refine {input} -o {{}} --report - {options}");
+    let report = json_of(&line, &[&output]);
     let told = &report["input_distance"];
     let diagonal = number(&report["error"]["diagonal"]);
     for end in ["lower", "upper"] {
         let percent = number(&told[format!("{end}_percent")]);
         assert!((percent - 100.0 * number(&told[end]) / diagonal).abs() < 1e-9);
     }
-    let found = json_of(
-        &format!("measure {{}} {input} --certified --gap 0.5% --json"),
-        &[&output],
-    );
+    let line = format!("measure {{}} {input} --certified --gap 0.5% --json");
+    let found = json_of(&line, &[&output]);
     let ends = |of: &Value| ["lower", "upper"].map(|end| number(&of[end]));
     (ends(told), ends(&found["hausdorff"]))
 }
@@ -46,15 +38,11 @@ fn the_distance_to_the_input_is_what_measuring_both_finds() {
     ];
     for (input, options) in cases {
         let ([low, high], [least, most]) = distances(input, options);
-        assert!(
-            low <= high && low <= most && least <= high,
-            "{input} {options}: {low}, {high}; {least}, {most}"
-        );
+        at_most!(low, high, "{input} {options}");
+        at_most!(low, most, "{input} {options}");
+        at_most!(least, high, "{input} {options}");
         // Half of it is found: the vertices that are looked at are not just any.
-        assert!(
-            low >= 0.5 * least,
-            "{input} {options}: {low}, {high}; {least}, {most}"
-        );
+        at_least!(low, 0.5 * least, "{input} {options}, {high}, {most}");
     }
 }
 
@@ -70,11 +58,8 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         .saying("volume 1 to ");
     let kept = done("refine builtin:cube -o {} --crease-angle 30", &[&output])
         .saying("volume 1 to 1 (+0.00 %)");
-    assert!(
-        !kept.stderr.contains("moved by") && !kept.stderr.contains("would keep"),
-        "{}",
-        kept.stderr
-    );
+    silent!(kept.stderr, "moved by");
+    silent!(kept.stderr, "would keep");
     let square = file(
         &folder,
         "square.obj",
@@ -124,10 +109,8 @@ fn what_has_moved_is_told_and_what_would_keep_it() {
         .saying("(--boundary fixed would keep the outline)");
     assert!(!flat.stderr.contains("--crease-angle"), "{}", flat.stderr);
     let plain = done("refine {} -o {}", &[&square, &output]).stderr;
-    assert!(
-        plain.contains("--boundary fixed") && !plain.contains("--interpolate would"),
-        "{plain}"
-    );
+    says!(plain, "--boundary fixed");
+    silent!(plain, "--interpolate would");
     let folded = "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 2 2 0\nv 3 2 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n";
     let folded = file(&folder, "folded.obj", folded);
     let said = done(

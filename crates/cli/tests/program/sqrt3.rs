@@ -1,6 +1,6 @@
 //! `refine --scheme sqrt3`: uniform steps, what they write, and what does not go with them.
 
-use crate::common::{counts, done, folder, run, soup};
+use crate::common::{count, counts, done, folder, number, run, soup};
 
 #[test]
 fn steps_triple_the_triangles() {
@@ -10,12 +10,10 @@ fn steps_triple_the_triangles() {
     for (levels, limit) in [(0, ""), (1, "--limit"), (3, ""), (4, "--limit")] {
         let options =
             format!("--scheme sqrt3 --method uniform --levels {levels} {limit} --report -");
-        let run = done(
-            &format!("refine builtin:torus -o {{}} {options}"),
-            &[&output],
-        );
+        let line = format!("refine builtin:torus -o {{}} {options}");
+        let run = done(&line, &[&output]);
         let report = run.json();
-        let triangles = report["output"]["triangles"].as_u64().expect("a count");
+        let triangles = count(&report["output"]["triangles"]);
         assert_eq!(
             triangles,
             *faces.get_or_insert(triangles) * 3u64.pow(levels)
@@ -53,11 +51,8 @@ fn what_does_not_go_with_it_is_told_by_both_names() {
         ("--view 0,0,1 --angle 5", "--view"),
         ("--levels 0", "goals need 1"),
     ] {
-        let run = run(
-            &format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}"),
-            &[&output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup -o {{}} --scheme sqrt3 {options}");
+        let run = run(&line, &[&output]).expect(2);
         assert!(run.stderr.contains(word), "{options}: {}", run.stderr);
     }
 }
@@ -80,14 +75,14 @@ fn goals_are_reached_without_cracks() {
         assert_eq!(report["output"]["t_junctions"], 0, "{options}");
         assert_eq!(
             counts(&soup(&output)).triangles,
-            report["output"]["triangles"].as_u64().expect("a count")
+            count(&report["output"]["triangles"])
         );
         if options.starts_with("--triangles") {
-            assert!(report["output"]["triangles"].as_u64().expect("a count") <= 900);
+            assert!(count(&report["output"]["triangles"]) <= 900);
         }
         if options.starts_with("--tolerance") {
             assert_eq!(report["error"]["certified"], false);
-            assert!(report["error"]["upper_percent"].as_f64().expect("a number") <= 0.5);
+            assert!(number(&report["error"]["upper_percent"]) <= 0.5);
             assert!(done.stderr.contains("not certified"), "{}", done.stderr);
         }
     }
@@ -110,10 +105,5 @@ fn tags_that_fade_are_an_error_with_their_name() {
         &[&input, &output],
     )
     .expect(1);
-    assert!(
-        run.stderr
-            .contains("the sharpness 2.5, which is semi-sharp"),
-        "{}",
-        run.stderr
-    );
+    says!(run.stderr, "the sharpness 2.5, which is semi-sharp");
 }

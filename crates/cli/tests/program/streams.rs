@@ -7,7 +7,10 @@ use std::process::{Output, Stdio};
 
 use serde_json::Value;
 
-use crate::common::{command, done, file, folder, names, run, soup, usage_error};
+use crate::common::{
+    TETRAHEDRON, bytes, command, count, done, file, folder, json_file, names, run, soup,
+    usage_error, words,
+};
 
 /// Runs the program with bytes on standard input.
 fn fed(bytes: &[u8], arguments: &str, paths: &[&Path]) -> Output {
@@ -26,16 +29,13 @@ fn fed(bytes: &[u8], arguments: &str, paths: &[&Path]) -> Output {
     output
 }
 
-const TETRAHEDRON: &str =
-    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
-
 #[test]
 fn a_mesh_goes_from_standard_input_to_standard_output() {
     let folder = folder();
     let input = file(&folder, "in.obj", TETRAHEDRON);
     let whole = folder.path().join("whole.ply");
     done("refine {} -o {}", &[&input, &whole]);
-    let expected = std::fs::read(&whole).expect("a file");
+    let expected = bytes(&whole);
     let piped = fed(
         TETRAHEDRON.as_bytes(),
         "refine - --from obj -o - --to ply",
@@ -110,7 +110,7 @@ fn formats_that_nothing_tells_are_asked_for() {
         .expect(1)
         .saying("'dat'");
     done("refine {} -o {} --from obj --to off", &[&input, &unnamed]);
-    assert!(std::fs::read(&unnamed).expect("a file").starts_with(b"OFF"));
+    assert!(bytes(&unnamed).starts_with(b"OFF"));
     // A name that shows its format wins over --from, which is for standard input and the like.
     let named = file(&folder, "named.obj", TETRAHEDRON);
     done("info {} --from stl", &[&named]);
@@ -139,13 +139,11 @@ fn several_inputs_go_into_a_folder_by_their_names() {
         "two.png",
     ];
     assert_eq!(names(&out), expected);
-    let report: Value =
-        serde_json::from_slice(&std::fs::read(out.join("two.json")).expect("a file"))
-            .expect("JSON");
+    let report = json_file(out.join("two.json"));
     assert_eq!(report["input"]["path"], two.display().to_string());
     assert_eq!(
         soup(&out.join("two.obj")).faces.len() as u64,
-        report["output"]["triangles"].as_u64().expect("a count")
+        count(&report["output"]["triangles"])
     );
     // One input into a folder that is there, with a format of its own.
     let there = folder.path().join("there");
@@ -161,11 +159,8 @@ fn several_inputs_go_on_after_one_that_fails() {
     let bad = file(&folder, "bad.obj", "v 0 0 0\nf 1 2 3\n");
     let out = folder.path().join("out/");
     let told = run("refine {} {} -o {}", &[&bad, &good, &out]).expect(1);
-    assert!(
-        told.stderr.contains("bad.obj") && told.stderr.contains("1 of 2 inputs failed"),
-        "{}",
-        told.stderr
-    );
+    says!(told.stderr, "bad.obj");
+    says!(told.stderr, "1 of 2 inputs failed");
     assert_eq!(names(&out), ["good.obj"]);
     let short = "refine {} builtin:head -o {} --tolerance 1e-9 --max-triangles 500";
     run(short, &[&good, &out]).expect(3).saying("2 of 2 inputs");
@@ -195,14 +190,8 @@ fn names_may_be_in_any_encoding() {
     std::fs::write(&input, TETRAHEDRON).expect("writable");
     done("refine {} -o {} --report {}", &[&input, &output, &report]);
     assert!(soup(&output).faces.len() > 100);
-    let report: Value =
-        serde_json::from_slice(&std::fs::read(&report).expect("a file")).expect("JSON");
-    assert!(
-        report["input"]["path"]
-            .as_str()
-            .expect("a name")
-            .ends_with("B\u{fffd}ste.obj")
-    );
+    let report = json_file(&report);
+    assert!(words(&report["input"]["path"]).ends_with("B\u{fffd}ste.obj"));
     done("info {}", &[&input]);
     done("measure {} --limit-of {}", &[&output, &input]);
 }
@@ -226,9 +215,7 @@ fn a_full_standard_output_is_named() {
             .expect("it ends");
         let said = String::from_utf8_lossy(&ended.stderr);
         assert_eq!(ended.status.code(), Some(1), "{arguments}: {said}");
-        assert!(
-            said.contains("standard output") && said.contains("No space left"),
-            "{arguments}: {said}"
-        );
+        says!(said, "standard output");
+        says!(said, "No space left");
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use zip::ZipArchive;
 
-use crate::common::{data, done, folder, soup, usage_error};
+use crate::common::{bytes, data, done, folder, number, soup, usage_error};
 use crate::glb::Glb;
 use crate::package;
 
@@ -63,11 +63,8 @@ fn every_command_knows_the_unit_of_a_package() {
     for (command, paths) in commands {
         let paths: Vec<&Path> = paths.iter().map(|path| path.as_path()).collect();
         done(command, &paths);
-        usage_error(
-            &format!("{command} --unit mm"),
-            &paths,
-            "says that it is in in",
-        );
+        let line = format!("{command} --unit mm");
+        usage_error(&line, &paths, "says that it is in in");
     }
     let scale = &Glb::read(&levels).json["nodes"][0]["scale"];
     assert_eq!(scale, &serde_json::json!([0.0254, 0.0254, 0.0254]));
@@ -82,8 +79,7 @@ fn radius(points: impl Iterator<Item = [f64; 3]>) -> f64 {
 
 /// The unit that a package names.
 fn unit(path: &Path) -> String {
-    let mut archive =
-        ZipArchive::new(Cursor::new(std::fs::read(path).expect("a file"))).expect("an archive");
+    let mut archive = ZipArchive::new(Cursor::new(bytes(path))).expect("an archive");
     let mut text = String::new();
     archive
         .by_name("3D/3dmodel.model")
@@ -107,7 +103,7 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
     done("refine {} -o {} --tolerance 0.05mm", &[&input, &package]);
     done("refine {} -o {} --tolerance 0.05mm", &[&input, &document]).saying("scales the mm");
     let glb = Glb::read(&document);
-    let scale = glb.json["nodes"][0]["scale"][0].as_f64().expect("a scale");
+    let scale = number(&glb.json["nodes"][0]["scale"][0]);
     let points = glb.points(&glb.primitive(0)["attributes"]["POSITION"]);
     let expected = radius(
         package::triangles(&package)
@@ -135,8 +131,6 @@ fn metres_of_documents_and_millimetres_of_packages_are_the_same_size() {
     }
     // A measure knows both units.
     let run = done("measure {} {} --json", &[&package, &document]).saying("its mm are taken to m");
-    let distance = run.json()["hausdorff"]["symmetric"]
-        .as_f64()
-        .expect("a distance");
+    let distance = number(&run.json()["hausdorff"]["symmetric"]);
     assert!(distance < 1e-8, "{distance} m");
 }

@@ -1,6 +1,6 @@
 //! Wrong command lines: exit code 2, a message that says what is wrong, and no file touched.
 
-use crate::common::{done, folder, names, run, usage_error};
+use crate::common::{done, folder, names, refuses, run, usage_error};
 
 #[test]
 fn nothing_to_do_is_a_usage_error() {
@@ -48,11 +48,8 @@ fn the_short_help_shows_what_most_people_need() {
     let help = done("refine -h", &[]).stdout;
     let is_option = |line: &&str| line.trim_start().starts_with('-') && line.starts_with("  ");
     let options: Vec<&str> = help.lines().filter(is_option).collect();
-    assert!(
-        options.len() <= 20 && options.len() > 12,
-        "{} in:\n{help}",
-        options.len()
-    );
+    at_most!(options.len(), 20, "{help}");
+    above!(options.len(), 12, "{help}");
     for option in [
         "--output",
         "--tolerance",
@@ -85,15 +82,10 @@ fn help_offers_the_schemes_that_there_are() {
     ] {
         let name = command.split(' ').next().expect("a command");
         let help = done(&format!("{name} --help"), &[]).stdout;
-        assert!(
-            help.contains("loop-warren") && !help.contains("butterfly"),
-            "{help}"
-        );
-        usage_error(
-            &format!("{command} --scheme butterfly"),
-            &[],
-            "loop, loop-warren]",
-        );
+        says!(help, "loop-warren");
+        silent!(help, "butterfly");
+        let line = format!("{command} --scheme butterfly");
+        usage_error(&line, &[], "loop, loop-warren]");
     }
 }
 
@@ -126,11 +118,8 @@ fn slips_are_answered_with_what_was_meant() {
     let folder = folder();
     let output = folder.path().join("out.ply");
     for unit in ["mm", "in", "%"] {
-        let said = run(
-            &format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02"),
-            &[&output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup {unit} -o {{}} --tolerance 0.02");
+        let said = run(&line, &[&output]).expect(2);
         said.saying(&format!("such as 0.1{unit}"));
     }
     usage_error(
@@ -185,11 +174,8 @@ fn options_out_of_range_are_refused_before_any_work() {
         ("--threads 100000", "at most"),
     ];
     for (options, words) in wrong {
-        usage_error(
-            &format!("refine builtin:head -o {{}} {options}"),
-            &[&output],
-            words,
-        );
+        let line = format!("refine builtin:head -o {{}} {options}");
+        usage_error(&line, &[&output], words);
     }
     usage_error(
         "refine builtin:head -o {} --provenance",
@@ -208,16 +194,12 @@ fn options_out_of_range_are_refused_before_any_work() {
 
 #[test]
 fn measuring_needs_exactly_one_reference() {
-    run("measure builtin:head", &[]).expect(2);
-    usage_error(
-        "measure builtin:head builtin:cup --limit-of builtin:head",
+    refuses(
         &[],
-        "cannot be used with",
-    );
-    usage_error(
-        "measure builtin:head builtin:cup --reference-levels 3",
-        &[],
-        "--limit-of",
+        "
+        2 | measure builtin:head |
+        2 | measure builtin:head builtin:cup --limit-of builtin:head | cannot be used with
+        2 | measure builtin:head builtin:cup --reference-levels 3 | --limit-of",
     );
     for option in [
         "--crease-angle 30",
@@ -232,20 +214,12 @@ fn measuring_needs_exactly_one_reference() {
             &format!("{name} belongs to a limit surface; it needs --limit-of"),
         );
     }
-    usage_error(
-        "measure builtin:head builtin:cup --samples 0",
+    refuses(
         &[],
-        "at least 1",
-    );
-    usage_error(
-        "measure builtin:head --limit-of builtin:head --reference-levels 12",
-        &[],
-        "levels are possible",
-    );
-    usage_error(
-        "measure builtin:head --limit-of builtin:head --reference-levels 0",
-        &[],
-        "would measure against the control mesh's own triangles",
+        "
+        2 | measure builtin:head builtin:cup --samples 0 | at least 1
+        2 | measure builtin:head --limit-of builtin:head --reference-levels 12 | levels are possible
+        2 | measure builtin:head --limit-of builtin:head --reference-levels 0 | would measure against the control mesh's own triangles",
     );
 }
 

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::common::{done, file, folder, json_of, run, soup, usage_error};
+use crate::common::{done, file, folder, json_of, number, run, soup, usage_error};
 
 /// Squares of voxels, by their low and high corners.
 type Square = [[f64; 3]; 2];
@@ -94,32 +94,24 @@ fn voxels_become_round_within_the_distance_in_every_format() {
         let report = run.json();
         assert_eq!(report["parameters"]["within"], 0.87);
         let found = &report["input_distance"];
-        let ends = ["lower", "upper"].map(|end| found[end].as_f64().expect("a number"));
+        let ends = ["lower", "upper"].map(|end| number(&found[end]));
         assert!(ends[0] <= ends[1] && ends[1] <= 0.87, "{name}: {found}");
         let positions = soup(&output).positions;
         let farthest = distance(&positions, &squares);
-        assert!(
-            farthest <= ends[1] && deviation(&positions) <= 0.07,
-            "{name}: {farthest}"
-        );
+        at_most!(farthest, ends[1], "{name}");
+        at_most!(deviation(&positions), 0.07, "{name}");
         let size = &report["size"];
-        let volumes =
-            ["before", "after"].map(|when| size[when]["volume"].as_f64().expect("a number"));
+        let volumes = ["before", "after"].map(|when| number(&size[when]["volume"]));
         assert!(
             (volumes[1] / volumes[0] - 1.0).abs() < 0.01,
             "{name}: {volumes:?}"
         );
-        assert!(
-            run.stderr
-                .contains("mm) of the input, either way, certified"),
-            "{}",
-            run.stderr
-        );
+        says!(run.stderr, "mm) of the input, either way, certified");
     }
     let output = folder.path().join("percent.ply");
     let report = json_of("refine {} -o {} --within 4% --report -", &[&input, &output]);
-    let within = report["parameters"]["within"].as_f64().expect("a number");
-    let diagonal = report["error"]["diagonal"].as_f64().expect("a number");
+    let within = number(&report["parameters"]["within"]);
+    let diagonal = number(&report["error"]["diagonal"]);
     assert!(
         (within / diagonal - 0.04).abs() < 1e-12,
         "{within} of {diagonal}"
@@ -185,10 +177,7 @@ fn what_does_not_go_with_it_is_refused() {
         usage_error(&line, &[output], "--within");
     }
     for length in ["0", "-1", "nonsense", "0%", "101%"] {
-        run(
-            &format!("refine builtin:cup -o {{}} --within {length}"),
-            &[output],
-        )
-        .expect(2);
+        let line = format!("refine builtin:cup -o {{}} --within {length}");
+        run(&line, &[output]).expect(2);
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Stdio;
 
 #[cfg(unix)]
-use crate::common::{Running, done};
+use crate::common::{Running, done, text};
 use crate::common::{command, file, folder, names, run, soup};
 
 #[test]
@@ -15,10 +15,7 @@ fn a_failed_run_leaves_an_earlier_file_as_it_was() {
     run("refine {} -o {}", &[&input, &output])
         .expect(1)
         .saying("bad.obj");
-    assert_eq!(
-        std::fs::read_to_string(&output).expect("a file"),
-        "precious"
-    );
+    assert_eq!(text(&output), "precious");
     assert_eq!(names(folder.path()), ["bad.obj", "out.ply"]);
 }
 
@@ -142,10 +139,8 @@ fn signals_leave_the_whole_file_or_none_and_say_what_was_cancelled() {
                 [] if ended.is_none() && delay < 100 => {}
                 [] => {
                     assert_eq!(ended, Some(code), "{told}");
-                    assert!(
-                        told.contains("cancelled by") && told.contains("nothing was written"),
-                        "{told}"
-                    );
+                    says!(told, "cancelled by");
+                    says!(told, "nothing was written");
                 }
                 [name] if name == "out.ply" => {
                     assert!(ended == Some(0) || ended == Some(code), "{ended:?} {told}");
@@ -226,10 +221,7 @@ fn what_is_read_only_is_an_error_before_the_work() {
             .saying("out.ply")
             .saying("read-only");
     }
-    assert_eq!(
-        std::fs::read_to_string(&output).expect("a file"),
-        "precious"
-    );
+    assert_eq!(text(&output), "precious");
     assert_eq!(names(folder.path()), ["out.ply"]);
 }
 

@@ -5,18 +5,9 @@
 use limitmesh::criterion::{View, Viewpoint};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact_frames};
 
-use crate::support::exact;
+use crate::support::{exact, model};
 use limitmesh::scheme::Loop;
-use limitmesh::{FaceId, HalfEdgeId, Mesh};
-
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
+use limitmesh::{FaceId, HalfEdgeId};
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -61,18 +52,11 @@ fn a_view_never_costs_triangles() {
                     viewpoint,
                     dilatation,
                 };
-                let seen = exact(
-                    &control,
-                    &Loop,
-                    &ExactOptions::default().angle_seen(angle, view),
-                )
-                .unwrap();
+                let options = ExactOptions::default().angle_seen(angle, view);
+                let seen = exact(&control, &Loop, &options).unwrap();
                 assert_eq!(seen.stop, ExactStop::Met, "{name}, {view:?}");
                 let count = seen.mesh.face_count();
-                assert!(
-                    count <= fewest,
-                    "{name}, {view:?}: {count} against {fewest}"
-                );
+                at_most!(count, fewest, "{name}, {view:?}");
                 fewest = count;
                 // Equation (11) by hand, where the angle leaves room.
                 for (face, (normal, found)) in angles(&seen).into_iter().enumerate() {
@@ -105,12 +89,8 @@ fn an_angle_alone_ends_where_no_cone_closes() {
         let result = exact(&control, &Loop, &ExactOptions::default().angle(angle)).unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.stop, ExactStop::Cones);
-        assert!(
-            result.statistics.worst <= 1.0 && result.statistics.levels <= 13,
-            "{} at level {}",
-            result.statistics.worst,
-            result.statistics.levels
-        );
+        at_most!(result.statistics.worst, 1.0);
+        at_most!(result.statistics.levels, 13);
         let open: Vec<usize> = angles(&result)
             .into_iter()
             .enumerate()
@@ -118,11 +98,8 @@ fn an_angle_alone_ends_where_no_cone_closes() {
             .map(|(face, _)| face)
             .collect();
         assert_eq!(open.len(), result.statistics.open_cones);
-        assert!(
-            !open.is_empty() && open.len() < result.mesh.face_count() / 20,
-            "{}",
-            open.len()
-        );
+        assert!(!open.is_empty());
+        below!(open.len(), result.mesh.face_count() / 20);
         // They are small, and stand together in a few places.
         let mut places: Vec<[f64; 3]> = Vec::new();
         for face in open {
@@ -149,11 +126,8 @@ fn a_tolerance_is_kept_where_cones_stay_open() {
         .angle(30f64.to_radians())
         .tolerance(tolerance);
     let result = exact(&control, &Loop, &options).unwrap();
-    assert!(
-        result.error.upper <= tolerance && result.stop == ExactStop::Cones,
-        "{:?}",
-        result.stop
-    );
+    at_most!(result.error.upper, tolerance);
+    assert_eq!(result.stop, ExactStop::Cones);
 }
 
 /// By hand in every frame, whichever comes first: triangles are within the angle, or reported as

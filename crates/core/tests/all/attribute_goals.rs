@@ -8,7 +8,7 @@ use limitmesh::measure::Bvh;
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
 use limitmesh::refine::{
     AttributeGoal, Exact, ExactOptions, ExactStop, Finish, Origin, Traced, UniformOptions, exact,
-    exact_estimate, uniform,
+    exact_estimate, limit_reference, uniform,
 };
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{HalfEdgeId, Mesh};
@@ -122,25 +122,13 @@ fn values_are_within_their_tolerance() {
                 found.attribute_bounds[0],
                 format!("{name}, {arity} numbers"),
             );
-            assert!(
-                found.stop == ExactStop::Met && bound <= tolerance,
-                "{what}: {bound}, {:?}",
-                found.stop
-            );
+            assert_eq!(found.stop, ExactStop::Met, "{what}");
+            at_most!(bound, tolerance, "{what}");
             let after = sampled(&mesh, &channel, &found, 5);
-            assert!(
-                after <= bound * (1.0 + 1e-9),
-                "{what}: {after} was found, {bound} is claimed"
-            );
-            assert!(
-                before > 2.0 * tolerance,
-                "{what}: {before} asks for nothing"
-            );
+            at_most!(after, bound * (1.0 + 1e-9), "{what}");
+            above!(before, 2.0 * tolerance, "{what}");
             // Bounds are no wild guesses, and no face is divided for nothing.
-            assert!(
-                after > 0.2 * bound,
-                "{what}: {after} was found, {bound} is claimed"
-            );
+            above!(after, 0.2 * bound, "{what}");
             assert!(found.error.upper <= 0.1 * mesh.diagonal());
         }
     }
@@ -179,18 +167,9 @@ fn moved_surfaces_are_within_their_tolerance() {
         let goal = AttributeGoal::surface(target.clone(), tolerance);
         let found = exact(&mesh, &Loop, &coarse(&mesh).attributes(vec![goal])).unwrap();
         let bound = found.attribute_bounds[0];
-        assert!(
-            found.stop == ExactStop::Met && bound <= tolerance,
-            "{name}: {bound}, {:?}",
-            found.stop
-        );
-        let dense = uniform(
-            &target,
-            &Loop,
-            &UniformOptions::default().levels(5).limit(true),
-        )
-        .unwrap()
-        .mesh;
+        assert_eq!(found.stop, ExactStop::Met, "{name}");
+        at_most!(bound, tolerance, "{name}");
+        let dense = limit_reference(&target, &Loop, 5).unwrap();
         let distance_of = |found: &Exact| {
             let own = carried(std::slice::from_ref(&channel), &mesh, &Loop, found)
                 .unwrap()
@@ -217,14 +196,8 @@ fn moved_surfaces_are_within_their_tolerance() {
         let plain = exact(&mesh, &Loop, &coarse(&mesh)).unwrap();
         let (before, after) = (distance_of(&plain), distance_of(&found));
         // The dense mesh itself is a little off the surface.
-        assert!(
-            after <= 1.02 * bound,
-            "{name}: {after} was found, {bound} is claimed"
-        );
-        assert!(
-            before > 2.0 * tolerance,
-            "{name}: {before} asks for nothing"
-        );
+        at_most!(after, 1.02 * bound, "{name}");
+        above!(before, 2.0 * tolerance, "{name}");
     }
 }
 
@@ -242,11 +215,8 @@ fn goals_that_are_not_met_are_told() {
     .unwrap();
     assert_eq!(found.stop, ExactStop::LevelCap);
     let after = sampled(&mesh, &channel, &found, 5);
-    assert!(
-        after > 1e-4 && after <= found.attribute_bounds[0],
-        "{after} {:?}",
-        found.attribute_bounds
-    );
+    above!(after, 1e-4);
+    at_most!(after, found.attribute_bounds[0]);
     let found = exact(
         &mesh,
         &Loop,

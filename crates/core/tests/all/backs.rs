@@ -93,10 +93,7 @@ fn backs_save_triangles_and_never_cost_any() {
                 let all = exact(&with_a_stray_triangle(&mesh, &camera), &Loop, &options).unwrap();
                 assert_eq!((seen.stop, all.stop), (ExactStop::Met, ExactStop::Met));
                 let [own, other] = [seen, all].map(|result| result.mesh.face_count());
-                assert!(
-                    own < other,
-                    "{name}, {limit}, {finish:?}: {own} of {other}, {camera:?}"
-                );
+                below!(own, other, "{name}, {limit}, {finish:?}, {camera:?}");
                 (closed, open) = (closed + own, open + other);
             }
         }
@@ -138,11 +135,7 @@ fn distances_count_what_nobody_sees() {
             let result = exact(&mesh, &Loop, &options).unwrap();
             let found = distances_to(limit.positions(), result.mesh.as_triangles()).unwrap();
             let found = found.into_iter().fold(0.0, f64::max);
-            assert!(
-                found <= result.error.upper,
-                "{name}: {found} of {:?}",
-                result.error
-            );
+            at_most!(found, result.error.upper, "{name}");
             assert!(
                 tolerance.is_none_or(|tolerance| result.error.upper <= tolerance),
                 "{name}"

@@ -6,34 +6,20 @@
 
 use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, View, Viewpoint};
-use limitmesh::measure::{
-    Bvh, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff_between,
-};
+use limitmesh::measure::{Bvh, CertifiedOptions, SamplingOptions, hausdorff_between};
 use limitmesh::progress::Progress;
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_observed};
 use limitmesh::scheme::Loop;
 
-use crate::support::{exact, torus};
-
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
+use crate::support::{enclosed, exact, model, torus, within};
 
 /// The greatest distance between a result and the limit surface, for which a mesh that is nearer to it stands.
 fn true_distance(control: &Mesh, result: &Exact) -> (f64, f64) {
-    let options = ExactOptions::default()
-        .tolerance(result.error.lower / 25.0)
-        .max_triangles(Some(400_000));
+    let options = within(result.error.lower / 25.0).max_triangles(Some(400_000));
     let fine = exact(control, &Loop, &options).unwrap();
     let asked = CertifiedOptions::default().relative_gap(0.03);
-    let found =
-        certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
+    let found = enclosed(&result.mesh, &fine.mesh, &asked);
     let found = found.widened(fine.error.upper);
     (found.lower(), found.upper())
 }
@@ -87,10 +73,9 @@ fn bounds_are_near_the_truth_where_no_distance_was_asked_for() {
             assert_eq!(result.stop, stop, "{name}, {goal}");
             let (least, most) = true_distance(&control, &result);
             let error = result.error;
-            assert!(
-                error.certified && error.lower <= most && least <= error.upper,
-                "{name}, {goal}: {error:?}"
-            );
+            assert!(error.certified, "{name}, {goal}");
+            at_most!(error.lower, most, "{name}, {goal}");
+            at_most!(least, error.upper, "{name}, {goal}");
             told += usize::from(error.upper.is_finite());
             // A loose bound is not reported.
             assert!(
@@ -133,7 +118,7 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
             .map(|&p| tree.closest(p).distance)
             .fold(0.0, f64::max);
         let diagonal = control.diagonal();
-        let within = |share: f64| ExactOptions::default().tolerance(share * diagonal);
+        let within = |share: f64| within(share * diagonal);
         let budget = ExactOptions::default().triangles(3 * control.face_count());
         let goals = [
             ("a tolerance", within(1e-2)),
@@ -170,10 +155,7 @@ fn bounds_are_near_the_truth_whatever_ended_the_refinement() {
                 "{name}, {goal}: {error:?}, samples find {found}, give or take {chords}"
             );
             let at = [&output, &tree].map(|of| of.closest(error.at).distance);
-            assert!(
-                error.lower <= at[0].max(at[1]) + chords,
-                "{name}, {goal}: {error:?}, there {at:?}"
-            );
+            at_most!(error.lower, at[0].max(at[1]) + chords, "{name}, {goal}");
         }
     }
 }
@@ -198,19 +180,13 @@ fn bounds_hold_where_levels_end_the_division() {
             // Its chords are a 64th as high as the result's.
             let reference = limit_reference(&control, &Loop, levels + 3).unwrap();
             let reference = Bvh::new(reference.as_triangles()).unwrap();
-            let options = ExactOptions::default()
-                .tolerance(1e-6 * control.diagonal())
-                .max_levels(levels);
+            let options = within(1e-6 * control.diagonal()).max_levels(levels);
             let result = exact(&control, &Loop, &options).unwrap();
             assert_eq!(result.stop, ExactStop::LevelCap, "{name}");
             let samples = SamplingOptions::default().samples(10_000);
             let output = Bvh::new(result.mesh.as_triangles()).unwrap();
             let found = hausdorff_between(&output, &reference, &samples).symmetric();
-            assert!(
-                found <= 1.01 * result.error.upper,
-                "{name}, {levels} levels: {found} above {:?}",
-                result.error
-            );
+            at_most!(found, 1.01 * result.error.upper, "{name}, {levels} levels");
         }
     }
 }
@@ -226,12 +202,7 @@ fn the_certified_measurement_agrees_with_what_is_proven() {
         let control = model(name);
         for share in [1e-2, 3e-3, 1e-3] {
             let tolerance = share * control.diagonal();
-            let result = exact(
-                &control,
-                &Loop,
-                &ExactOptions::default().tolerance(tolerance),
-            )
-            .unwrap();
+            let result = exact(&control, &Loop, &within(tolerance)).unwrap();
             assert_eq!(result.stop, ExactStop::Met, "{name}, {share}");
             let (least, most) = true_distance(&control, &result);
             let error = result.error;
@@ -244,18 +215,10 @@ fn the_certified_measurement_agrees_with_what_is_proven() {
                 most / tolerance,
                 error.upper / most
             );
-            assert!(
-                error.certified && error.upper <= tolerance,
-                "{name}, {share}: {error:?}"
-            );
-            assert!(
-                least <= error.upper,
-                "{name}, {share}: {error:?}, at least {least}"
-            );
-            assert!(
-                error.lower <= most,
-                "{name}, {share}: {error:?}, at most {most}"
-            );
+            assert!(error.certified, "{name}, {share}");
+            at_most!(error.upper, tolerance, "{name}, {share}");
+            at_most!(least, error.upper, "{name}, {share}");
+            at_most!(error.lower, most, "{name}, {share}");
         }
     }
 }
@@ -269,7 +232,7 @@ fn tolerances_that_are_proven_are_met_whatever_ended_the_division() {
         let control = model(name);
         for share in [0.01, 0.004] {
             let tolerance = share * control.diagonal();
-            let options = ExactOptions::default().tolerance(tolerance);
+            let options = within(tolerance);
             let count = exact(&control, &Loop, &options).unwrap().mesh.face_count();
             let caps = [0.97, 0.9, 0.8, 0.5].map(|part| Some((part * count as f64) as usize));
             let capped = caps.map(|most| options.clone().max_triangles(most));
@@ -310,7 +273,7 @@ fn one_far_vertex_takes_no_finer_meshes() {
         let control = plain.clone().with_positions(positions).unwrap();
         for share in [1e-2, 1e-3] {
             let tolerance = share * control.diagonal();
-            let options = ExactOptions::default().tolerance(tolerance);
+            let options = within(tolerance);
             let mut most = 0;
             let mut watch = |progress: &Progress| {
                 most = most.max(progress.triangles);
@@ -318,10 +281,7 @@ fn one_far_vertex_takes_no_finer_meshes() {
             };
             let found = exact_observed(&control, &Loop, &options, &mut watch).unwrap();
             let count = found.mesh.face_count();
-            assert!(
-                most <= 4 * count,
-                "{far}, {share}: {most} triangles for {count}"
-            );
+            at_most!(most, 4 * count, "{far}, {share}");
             // The proven bound holds: dense samples of the true surface find no more.
             let reference = limit_reference(&control, &Loop, 5).unwrap();
             let output = Bvh::new(found.mesh.as_triangles()).unwrap();
@@ -330,16 +290,8 @@ fn one_far_vertex_takes_no_finer_meshes() {
                 .iter()
                 .map(|&p| output.closest(p).distance)
                 .fold(0.0, f64::max);
-            assert!(
-                found.error.upper <= tolerance,
-                "{far}, {share}: {:?}",
-                found.error
-            );
-            assert!(
-                sampled <= found.error.upper,
-                "{far}, {share}: {sampled}, {:?}",
-                found.error
-            );
+            at_most!(found.error.upper, tolerance, "{far}, {share}");
+            at_most!(sampled, found.error.upper, "{far}, {share}");
         }
     }
 }

@@ -11,10 +11,10 @@ use limitmesh::limit::LimitTable;
 use limitmesh::measure::Bvh;
 use limitmesh::mesh::{
     BuildOptions, Channel, CreaseTag, Domain, INFINITELY_SHARP, Interpolation, PolygonFaces,
-    PolygonSoup, SeamRule, Semantic, Tags,
+    PolygonSoup, SeamRule, Semantic,
 };
 use limitmesh::refine::{
-    Exact, ExactOptions, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
+    Exact, Origin, StepwiseOptions, Traced, UniformOptions, exact, stepwise, uniform,
 };
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
@@ -141,10 +141,7 @@ fn other_implementation(
 
 /// Every face divided twice.
 fn twice_divided(mesh: &Mesh) -> Exact {
-    let options = ExactOptions::default()
-        .tolerance(1e-9)
-        .max_levels(2)
-        .flat_regions(false);
+    let options = within(1e-9).max_levels(2).flat_regions(false);
     exact(mesh, &Loop, &options).unwrap()
 }
 
@@ -217,17 +214,11 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
                 .half_edges()
                 .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin));
             let creases = creases.filter(|_| random.below(5) == 0);
-            let tag = |h| CreaseTag {
-                vertices: topology.ends(h).map(|v| v.0),
-                sharpness: INFINITELY_SHARP,
-            };
+            let tag = |h| crease(topology.ends(h).map(|v| v.0), INFINITELY_SHARP);
             let creases: Vec<CreaseTag> = creases.map(tag).collect();
             let creased = mesh
                 .clone()
-                .with_tags(Tags {
-                    creases,
-                    ..Tags::default()
-                })
+                .with_tags(crate::support::creases(creases))
                 .unwrap();
             let whole = with_seams(&creased, usize::MAX, seed);
             check_against_other(&format!("{name}, creased, {seed}"), &creased, &whole);
@@ -239,12 +230,7 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
 #[test]
 fn positions_as_a_channel_are_positions() {
     for (name, mesh) in samples() {
-        let fine = exact(
-            &mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
-        )
-        .unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-2).flat_regions(false)).unwrap();
         let values = mesh.positions().as_flattened().to_vec();
         let channel = Channel::new("positions", Semantic::Displacement, Domain::Vertex, 3)
             .with(values, (0..mesh.vertex_count() as u32).collect());
@@ -263,12 +249,7 @@ fn positions_as_a_channel_are_positions() {
 #[test]
 fn linear_channels_are_exact() {
     for (name, mesh) in samples() {
-        let fine = exact(
-            &mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(1e-2).flat_regions(false),
-        )
-        .unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-2).flat_regions(false)).unwrap();
         let channel = with_seams(&mesh, 3, 7).interpolated(Interpolation::Linear);
         let found = carried(core::slice::from_ref(&channel), &mesh, &Loop, &fine)
             .unwrap()
@@ -325,23 +306,13 @@ fn linear_channels_are_exact() {
 #[test]
 fn affine_coordinates_of_a_disc_stay_affine() {
     let mesh = sheet(4, 5, 3);
-    let flat = mesh
-        .positions()
-        .iter()
-        .map(|&[x, y, _]| [x, y, 0.0])
-        .collect();
-    let mesh = mesh.with_positions(flat).unwrap();
+    let mesh = mapped(&mesh, |&[x, y, _]| [x, y, 0.0]);
     let affine = |[x, y, _]: [f64; 3]| [0.3 * x - 0.8 * y + 0.1, 1.7 * x + 0.4 * y - 2.0];
     let values = mesh.positions().iter().flat_map(|&p| affine(p)).collect();
     let channel = Channel::new("uv", Semantic::TextureCoordinates, Domain::Vertex, 2)
         .with(values, (0..mesh.vertex_count() as u32).collect())
         .interpolated(Interpolation::Smooth(SeamRule::None));
-    let fine = exact(
-        &mesh,
-        &Loop,
-        &ExactOptions::default().tolerance(1e-3).flat_regions(false),
-    )
-    .unwrap();
+    let fine = exact(&mesh, &Loop, &within(1e-3).flat_regions(false)).unwrap();
     let found = carried(&[channel], &mesh, &Loop, &fine).unwrap().remove(0);
     for (corner, &vertex) in fine.mesh.triangles().as_flattened().iter().enumerate() {
         let expected = affine(fine.mesh.positions()[vertex as usize]);
@@ -354,9 +325,7 @@ fn affine_coordinates_of_a_disc_stay_affine() {
 #[test]
 fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
     for (name, mesh) in samples() {
-        let stepped = uniform(&mesh, &Loop, &UniformOptions::default().levels(2))
-            .unwrap()
-            .mesh;
+        let stepped = divided(&mesh, &Loop, 2);
         let limits = LimitTable::new(&Loop).positions(&stepped).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let mut met = vec![false; limits.len()];
@@ -368,11 +337,7 @@ fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
                 let nearest = (0..limits.len())
                     .min_by(|a, b| off(a).total_cmp(&off(b)))
                     .unwrap();
-                assert!(
-                    off(&nearest) < 1e-12,
-                    "{name}, {place:?} of face {face}: {}",
-                    off(&nearest)
-                );
+                below!(off(&nearest), 1e-12, "{name}, {place:?} of face {face}");
                 met[nearest] = true;
             }
         }
@@ -384,7 +349,7 @@ fn the_surface_at_a_place_is_the_limit_of_its_vertex() {
 #[test]
 fn the_surface_between_vertices_is_near_a_certified_mesh() {
     for (name, mesh) in samples() {
-        let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-4)).unwrap();
+        let fine = exact(&mesh, &Loop, &within(1e-4)).unwrap();
         let tree = Bvh::new(fine.mesh.as_triangles()).unwrap();
         let surface = LimitSurface::new(&mesh, &Loop).unwrap();
         let mut random = Random::new(11);
@@ -442,12 +407,8 @@ fn channels_of_a_soup_reach_the_mesh() {
 #[test]
 fn an_empty_mesh_carries_nothing() {
     let mesh = Mesh::from_triangles(Vec::new(), Vec::new()).unwrap();
-    let fine = uniform(
-        &mesh,
-        &Loop,
-        &UniformOptions::default().levels(1).origins(true),
-    )
-    .unwrap();
+    let options = UniformOptions::default().levels(1).origins(true);
+    let fine = uniform(&mesh, &Loop, &options).unwrap();
     for semantic in [
         Semantic::TextureCoordinates,
         Semantic::Displacement,

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use crate::support::*;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::{Channel, Domain, Interpolation, Semantic};
-use limitmesh::refine::{Exact, ExactOptions, Finish};
+use limitmesh::refine::{Exact, Finish};
 
 use crate::support::exact;
 use limitmesh::scheme::Loop;
@@ -50,9 +50,7 @@ fn unrolled(mesh: &Mesh) -> Channel {
 
 fn collapsed(mesh: &Mesh, channels: &[Channel], tolerance: f64) -> Exact {
     // Where the surface is flat, or straight in one direction, refinement alone would leave nothing to collapse.
-    let plain = ExactOptions::default()
-        .tolerance(tolerance)
-        .flat_regions(false);
+    let plain = within(tolerance).flat_regions(false);
     let options = plain
         .clone()
         .finish(Finish::Collapsed)
@@ -130,7 +128,7 @@ fn borders_of_materials_stay() {
             .collect(),
     );
     let coarse = collapsed(&mesh, std::slice::from_ref(&label), 1e-3);
-    let fine = exact(&mesh, &Loop, &ExactOptions::default().tolerance(1e-4)).unwrap();
+    let fine = exact(&mesh, &Loop, &within(1e-4)).unwrap();
     let area = |found: &Exact| {
         let carried = &carried(std::slice::from_ref(&label), &mesh, &Loop, found).unwrap()[0];
         let own = (0..found.mesh.face_count()).filter(|&face| carried.value(face) == [1.0]);
@@ -147,10 +145,8 @@ fn borders_of_materials_stay() {
         .sum::<f64>()
     };
     let [one, other] = [&coarse, &fine].map(area);
-    assert!(
-        other > 0.1 && (one / other - 1.0).abs() < 5e-3,
-        "{one} {other}"
-    );
+    above!(other, 0.1, "{one}");
+    below!((one / other - 1.0).abs(), 5e-3, "{one}");
 }
 
 /// A prism with sharp edges around its flat ends: their corners there have the ends' normals, and the sides' corners look outwards.

@@ -4,29 +4,23 @@
 
 use std::ops::ControlFlow;
 
-use crate::support::{Random, exact, tagged_obj, vertices_are_of_uniform_refinement};
+use crate::support::{
+    Random, exact, model, sampled, shared_model, shared_models, vertices_are_of_uniform_refinement,
+    within,
+};
 use limitmesh::Mesh;
 use limitmesh::criterion::Camera;
-use limitmesh::measure::{Bvh, SamplingOptions, hausdorff, hausdorff_between};
+use limitmesh::measure::{Bvh, SamplingOptions, hausdorff_between};
 use limitmesh::progress::{Progress, Stage};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, ExactStop, Finish, exact_estimate, exact_observed};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
-
 /// Without origins the rest of a result is the same.
 #[test]
 fn origins_are_only_told_to_those_who_ask() {
     let mesh = model("cup");
-    let within = ExactOptions::default().tolerance(1e-3 * mesh.diagonal());
+    let within = within(1e-3 * mesh.diagonal());
     for options in [
         within.clone(),
         within.clone().finish(Finish::Balanced),
@@ -53,12 +47,7 @@ fn vertices_lie_where_uniform_refinement_has_its_limits() {
         for name in ["tetrahedron", "cube", "cup", "head", "sheet", "spike"] {
             let control = model(name);
             let diagonal = control.diagonal();
-            let result = exact(
-                &control,
-                scheme,
-                &ExactOptions::default().tolerance(0.004 * diagonal),
-            )
-            .unwrap();
+            let result = exact(&control, scheme, &within(0.004 * diagonal)).unwrap();
             result.mesh.validate().unwrap();
             vertices_are_of_uniform_refinement(&control, scheme, &result, name);
         }
@@ -70,33 +59,14 @@ fn the_certified_bound_holds_and_is_tight() {
     for name in ["cup", "head", "teddy", "sphere", "sheet", "spike"] {
         let control = model(name);
         let tolerance = 0.002 * control.diagonal();
-        let result = exact(
-            &control,
-            &Loop,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap();
+        let result = exact(&control, &Loop, &within(tolerance)).unwrap();
         assert_eq!(result.stop, ExactStop::Met);
-        assert!(
-            result.error.upper <= tolerance,
-            "{name}: {}",
-            result.error.upper
-        );
+        at_most!(result.error.upper, tolerance, "{name}");
         let reference = limit_reference(&control, &Loop, 5).unwrap();
-        let samples = SamplingOptions::default().samples(50_000);
-        let sampled = hausdorff(
-            result.mesh.as_triangles(),
-            reference.as_triangles(),
-            &samples,
-        )
-        .unwrap();
+        let sampled = sampled(&result.mesh, &reference, 50_000);
         // The reference's own chords leave the surface, inwards, by less than this.
         let slack = 0.02 * tolerance;
-        assert!(
-            sampled.symmetric() <= result.error.upper + slack,
-            "{name}: {}",
-            sampled.symmetric()
-        );
+        at_most!(sampled, result.error.upper + slack, "{name}");
         assert_eq!(
             result.mesh.topology().euler_characteristic(),
             control.topology().euler_characteristic(),
@@ -120,10 +90,8 @@ fn budgets_are_kept_and_spent_on_the_worst() {
             result.mesh.validate().unwrap();
             let count = result.mesh.face_count();
             assert_eq!(result.stop, ExactStop::Triangles);
-            assert!(
-                count <= budget && count + budget / 50 + 50 >= budget,
-                "{name}: {count} of {budget}"
-            );
+            at_most!(count, budget, "{name}");
+            at_least!(count + budget / 50 + 50, budget, "{name}");
             // Evenly curved models get no better before all of their faces are divided.
             assert!(result.error.lower <= last, "{name}: {:?}", result.error);
             assert!(result.error.lower <= result.error.upper);
@@ -150,20 +118,11 @@ fn budgets_prove_what_tolerances_prove() {
         let mut last = f64::INFINITY;
         for tolerance in tolerances {
             let tolerance = tolerance * control.diagonal();
-            let within = exact(
-                &control,
-                &Loop,
-                &ExactOptions::default().tolerance(tolerance),
-            )
-            .unwrap();
+            let within = exact(&control, &Loop, &within(tolerance)).unwrap();
             let count = within.mesh.face_count();
             let budget = exact(&control, &Loop, &ExactOptions::default().triangles(count)).unwrap();
             assert!(budget.mesh.face_count() <= count, "{name}");
-            assert!(
-                budget.error.upper <= 1.15 * tolerance,
-                "{name}: {:?} of {tolerance}",
-                budget.error
-            );
+            at_most!(budget.error.upper, 1.15 * tolerance, "{name}");
             assert!(budget.error.upper <= last, "{name}");
             last = budget.error.upper;
             let samples = SamplingOptions::default().samples(20_000);
@@ -182,12 +141,7 @@ fn budgets_prove_what_tolerances_prove() {
 /// 1.6 times as far off as a tolerance with as many, and took hundreds of plans.
 #[test]
 fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
-    let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
+    let Some(folder) = shared_models() else {
         return;
     };
     let cases = [
@@ -196,26 +150,15 @@ fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
         ("skull_low.obj", [2.5e-3, 2e-3, 1e-3]),
     ];
     for (name, tolerances) in cases {
-        let control = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
+        let control = shared_model(&folder, name);
         for tolerance in tolerances.map(|part| part * control.diagonal()) {
-            let within = exact(
-                &control,
-                &Loop,
-                &ExactOptions::default().tolerance(tolerance),
-            )
-            .unwrap();
+            let within = exact(&control, &Loop, &within(tolerance)).unwrap();
             let count = within.mesh.face_count();
             let budget = exact(&control, &Loop, &ExactOptions::default().triangles(count)).unwrap();
             let found = budget.mesh.face_count();
-            assert!(
-                found <= count && found + count / 50 >= count,
-                "{name}: {found} of {count}"
-            );
-            assert!(
-                budget.error.upper <= 1.15 * tolerance,
-                "{name}: {:?} of {tolerance}",
-                budget.error
-            );
+            at_most!(found, count, "{name}");
+            at_least!(found + count / 50, count, "{name}");
+            at_most!(budget.error.upper, 1.15 * tolerance, "{name}");
         }
     }
 }
@@ -223,7 +166,7 @@ fn budgets_near_the_number_of_faces_prove_what_tolerances_prove() {
 #[test]
 fn caps_end_in_a_conforming_mesh_that_says_so() {
     let control = model("cup");
-    let fine = ExactOptions::default().tolerance(1e-9 * control.diagonal());
+    let fine = within(1e-9 * control.diagonal());
     let capped = exact(&control, &Loop, &fine.clone().max_triangles(Some(5000))).unwrap();
     assert_eq!(capped.stop, ExactStop::TriangleCap);
     assert!(capped.mesh.face_count() <= 5000);
@@ -242,7 +185,7 @@ fn flat_faces_between_creases_stay_as_they_are() {
     let control = model("cube")
         .with_creases_above(30f64.to_radians())
         .unwrap();
-    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-6)).unwrap();
+    let result = exact(&control, &Loop, &within(1e-6)).unwrap();
     assert_eq!(result.mesh.triangles(), control.triangles());
     assert!(result.error.upper <= 1e-6, "{:?}", result.error);
 }
@@ -250,7 +193,7 @@ fn flat_faces_between_creases_stay_as_they_are() {
 #[test]
 fn cameras_spare_what_they_do_not_see() {
     let control = model("sphere");
-    let plain = exact(&control, &Loop, &ExactOptions::default().tolerance(0.001)).unwrap();
+    let plain = exact(&control, &Loop, &within(0.001)).unwrap();
     let camera = Camera {
         eye: [0.0, 0.0, 10.0],
         target: [0.0; 3],
@@ -260,12 +203,8 @@ fn cameras_spare_what_they_do_not_see() {
         height: 1000,
     };
     // At depth 10 a pixel is 0.00536 long.
-    let seen = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![camera]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![camera]);
+    let seen = exact(&control, &Loop, &options).unwrap();
     assert_eq!(seen.stop, ExactStop::Met);
     assert!(seen.statistics.worst <= 1.0 && seen.mesh.face_count() < plain.mesh.face_count());
     let faces = |front: bool| {
@@ -277,34 +216,21 @@ fn cameras_spare_what_they_do_not_see() {
             .filter(|t| (centre_z(t) > 0.0) == front)
             .count()
     };
-    assert!(
-        faces(true) > 2 * faces(false),
-        "{} {}",
-        faces(true),
-        faces(false)
-    );
+    above!(faces(true), 2 * faces(false));
     // Both sides together need both.
     let behind = Camera {
         eye: [0.0, 0.0, -10.0],
         ..camera
     };
-    let both = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![camera, behind]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![camera, behind]);
+    let both = exact(&control, &Loop, &options).unwrap();
     assert!(both.mesh.face_count() > seen.mesh.face_count());
     let away = Camera {
         target: [0.0, 0.0, 20.0],
         ..camera
     };
-    let unseen = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().pixels(0.2, vec![away]),
-    )
-    .unwrap();
+    let options = ExactOptions::default().pixels(0.2, vec![away]);
+    let unseen = exact(&control, &Loop, &options).unwrap();
     assert_eq!(unseen.mesh.triangles(), control.triangles());
     for broken in [
         Camera {
@@ -357,7 +283,7 @@ fn cones_hold_at_every_corner() {
 fn estimates_come_near() {
     for name in ["cup", "head", "teddy"] {
         let control = model(name);
-        let options = ExactOptions::default().tolerance(1e-4 * control.diagonal());
+        let options = within(1e-4 * control.diagonal());
         let expected = exact_estimate(&control, &Loop, &options).unwrap();
         let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
@@ -366,14 +292,12 @@ fn estimates_come_near() {
             "{name}: {expected:?} for {found}"
         );
         // Few triangles are counted; the last ones are added when the neighbours are known.
-        let options = ExactOptions::default().tolerance(1e-3 * control.diagonal());
+        let options = within(1e-3 * control.diagonal());
         let expected = exact_estimate(&control, &Loop, &options).unwrap();
         let found = exact(&control, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
-        assert!(
-            expected.is_counted && (0.9..1.1).contains(&ratio),
-            "{name}: {expected:?} for {found}"
-        );
+        assert!(expected.is_counted, "{name}, {found}");
+        assert!((0.9..1.1).contains(&ratio), "{name}, {found}");
     }
 }
 
@@ -390,14 +314,12 @@ fn estimates_of_large_meshes_come_near() {
     let mesh = smooth.clone().with_positions(positions.collect()).unwrap();
     assert!(mesh.face_count() > 50_000);
     for share in [2e-4, 5e-5, 2e-5] {
-        let options = ExactOptions::default().tolerance(share * mesh.diagonal());
+        let options = within(share * mesh.diagonal());
         let expected = exact_estimate(&mesh, &Loop, &options).unwrap();
         let found = exact(&mesh, &Loop, &options).unwrap().mesh.face_count();
         let ratio = expected.triangles as f64 / found as f64;
-        assert!(
-            !expected.is_counted && (0.9..1.1).contains(&ratio),
-            "{share}: {expected:?} for {found}"
-        );
+        assert!(!expected.is_counted, "{share}, {found}");
+        assert!((0.9..1.1).contains(&ratio), "{share}, {found}");
     }
 }
 
@@ -425,10 +347,7 @@ fn never_worse_than_uniform_refinement_at_equal_triangles() {
             let adaptive = exact(&control, &Loop, &options).unwrap();
             assert!(adaptive.mesh.face_count() <= uniform.face_count());
             let (ours, theirs) = (distance(&adaptive.mesh), distance(&uniform));
-            assert!(
-                ours <= 1.001 * theirs,
-                "{name}, {levels} levels: {ours} against {theirs}"
-            );
+            at_most!(ours, 1.001 * theirs, "{name}, {levels} levels");
         }
     }
 }
@@ -438,7 +357,7 @@ fn never_worse_than_uniform_refinement_at_equal_triangles() {
 fn balanced_meshes_need_fewer_triangles() {
     for name in ["bunny", "head", "sphere"] {
         let control = model(name);
-        let options = ExactOptions::default().tolerance(0.001 * control.diagonal());
+        let options = within(0.001 * control.diagonal());
         let plain = exact(&control, &Loop, &options).unwrap();
         let balanced = exact(&control, &Loop, &options.finish(Finish::Balanced)).unwrap();
         balanced.mesh.validate().unwrap();
@@ -449,18 +368,8 @@ fn balanced_meshes_need_fewer_triangles() {
             "{name}"
         );
         let reference = limit_reference(&control, &Loop, 5).unwrap();
-        let samples = SamplingOptions::default().samples(50_000);
-        let sampled = hausdorff(
-            balanced.mesh.as_triangles(),
-            reference.as_triangles(),
-            &samples,
-        )
-        .unwrap();
-        assert!(
-            sampled.symmetric() <= 1.02 * balanced.error.upper,
-            "{name}: {}",
-            sampled.symmetric()
-        );
+        let sampled = sampled(&balanced.mesh, &reference, 50_000);
+        at_most!(sampled, 1.02 * balanced.error.upper, "{name}");
     }
 }
 
@@ -469,9 +378,7 @@ fn balanced_meshes_need_fewer_triangles() {
 fn balanced_angles_take_no_more_triangles() {
     for (name, angle) in [("cup", 6.0f64), ("head", 8.0), ("sphere", 4.0)] {
         let control = model(name);
-        let options = ExactOptions::default()
-            .tolerance(0.005 * control.diagonal())
-            .angle(angle.to_radians());
+        let options = within(0.005 * control.diagonal()).angle(angle.to_radians());
         let plain = exact(&control, &Loop, &options).unwrap();
         let balanced = exact(&control, &Loop, &options.finish(Finish::Balanced)).unwrap();
         assert_eq!(balanced.stop, plain.stop, "{name}");
@@ -506,7 +413,7 @@ fn balancing_ends_after_a_few_rounds() {
         ("teddy", 1e-4),
     ] {
         let control = model(name);
-        let options = ExactOptions::default().tolerance(tolerance * control.diagonal());
+        let options = within(tolerance * control.diagonal());
         let (mut rounds, mut before) = (0, Stage::Limits);
         let mut count = |progress: &Progress| {
             rounds +=
@@ -560,7 +467,7 @@ fn prism() -> Mesh {
 #[test]
 fn sides_of_a_crease_have_normals_of_their_own() {
     let control = prism();
-    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(0.002)).unwrap();
+    let result = exact(&control, &Loop, &within(0.002)).unwrap();
     result.mesh.validate().unwrap();
     assert!(!result.mesh.tags().creases.is_empty());
     let mut caps = 0;
@@ -612,14 +519,10 @@ fn cut_sheets_stay_together() {
         ),
         (10, 8)
     );
-    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(1e-3)).unwrap();
+    let result = exact(&control, &Loop, &within(1e-3)).unwrap();
     result.mesh.validate().unwrap();
     let edges = &result.mesh.junctions().edges;
-    assert!(
-        edges.len() >= 4,
-        "the edge was divided {} times",
-        edges.len()
-    );
+    at_least!(edges.len(), 4);
     assert!(edges.iter().all(|copies| copies.len() == 3));
 }
 
@@ -628,14 +531,11 @@ fn cut_sheets_stay_together() {
 fn depths_have_limits() {
     let control = model("tetrahedron");
     for levels in [31, 66, 254, usize::MAX] {
-        let options = ExactOptions::default().tolerance(0.01).max_levels(levels);
+        let options = within(0.01).max_levels(levels);
         let error = exact(&control, &Loop, &options).unwrap_err().to_string();
         assert!(error.contains("levels") && error.contains("30"), "{error}");
     }
-    let options = ExactOptions::default()
-        .tolerance(1e-300)
-        .max_levels(30)
-        .max_triangles(Some(3_000));
+    let options = within(1e-300).max_levels(30).max_triangles(Some(3_000));
     let result = exact(&control, &Loop, &options).unwrap();
     result.mesh.validate().unwrap();
     assert!(result.stop != ExactStop::Met && result.mesh.face_count() <= 3_000);
@@ -698,14 +598,10 @@ fn budgets_may_leave_nothing_for_neighbours() {
         let control = model(name);
         let faces = control.face_count();
         // Any angle goes: a goal for which triangles are looked at among their neighbours.
-        let within = ExactOptions::default()
-            .tolerance(tolerance * control.diagonal())
-            .angle(3.1);
+        let within = within(tolerance * control.diagonal()).angle(3.1);
         let whole = exact(&control, &Loop, &within).unwrap();
-        assert!(
-            whole.stop == ExactStop::Met && whole.mesh.face_count() > faces,
-            "{name}"
-        );
+        assert_eq!(whole.stop, ExactStop::Met, "{name}");
+        above!(whole.mesh.face_count(), faces, "{name}");
         for budget in [0, 1, faces, faces + 1] {
             let result = exact(&control, &Loop, &within.clone().triangles(budget)).unwrap();
             assert_eq!(result.stop, ExactStop::Triangles, "{name}, {budget}");
@@ -731,7 +627,7 @@ fn results_are_the_same_bytes_in_every_build() {
     ];
     let found = golden.map(|(name, _)| {
         let control = model(name);
-        let options = ExactOptions::default().tolerance(0.1 * 0.01 * control.diagonal());
+        let options = within(0.1 * 0.01 * control.diagonal());
         let mesh = exact(&control, &Loop, &options).unwrap().mesh;
         let coordinates = mesh.positions().as_flattened().iter().map(|x| x.to_bits());
         let corners = mesh

@@ -3,60 +3,53 @@
 
 #![allow(clippy::unwrap_used)]
 
-use crate::support::{Random, exact, octahedron, tagged_obj, vertices_are_of_uniform_refinement};
+use crate::support::{
+    Random, exact, model, octahedron, pool, sampled, shared_model, shared_models, tagged_by,
+    tagged_obj, vertices_are_of_uniform_refinement, within,
+};
 use limitmesh::Mesh;
-use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{ExactOptions, ExactStop, Finish};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 
-fn model(name: &str) -> Mesh {
-    if name == "octahedron" {
-        return octahedron();
-    }
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
-
 /// Tags on about a fifth of the edges and a tenth of the vertices, most of them semi-sharp.
 fn tagged(mesh: Mesh, seed: u64) -> Mesh {
     let mut random = Random::new(seed);
-    let mut sharpness = |one_in| {
+    tagged_by(mesh, [5, 10], |one_in| {
         let (is_tagged, lasts) = (random.below(one_in) == 0, random.below(10) == 0);
         let fading = 2.5 + 2.2 * random.signed();
         is_tagged.then_some(if lasts { f64::INFINITY } else { fading })
-    };
-    let mut tags = Tags::default();
-    let topology = mesh.topology();
-    for h in topology
-        .half_edges()
-        .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin))
-    {
-        let vertices = topology.ends(h).map(|v| v.0);
-        tags.creases.extend(sharpness(5).map(|sharpness| CreaseTag {
-            vertices,
-            sharpness,
-        }));
+    })
+}
+
+fn named(name: &str) -> Mesh {
+    match name {
+        "octahedron" => octahedron(),
+        name => model(name),
     }
-    for vertex in 0..mesh.vertex_count() as u32 {
-        tags.corners
-            .extend(sharpness(10).map(|sharpness| CornerTag { vertex, sharpness }));
-    }
-    mesh.with_tags(tags).unwrap()
 }
 
 /// The greatest distance found between a refined mesh and the limit surface.
-fn sampled(control: &Mesh, scheme: &dyn Scheme, mesh: &Mesh, levels: usize) -> f64 {
-    let reference = limit_reference(control, scheme, levels).unwrap();
-    let samples = SamplingOptions::default().samples(25_000);
-    hausdorff(mesh.as_triangles(), reference.as_triangles(), &samples)
-        .unwrap()
-        .symmetric()
+fn off(control: &Mesh, scheme: &dyn Scheme, mesh: &Mesh, levels: usize) -> f64 {
+    sampled(
+        mesh,
+        &limit_reference(control, scheme, levels).unwrap(),
+        25_000,
+    )
+}
+
+/// Refinement to a share of the size is certified, as samples of so many levels have it, too.
+fn is_followed(control: &Mesh, scheme: &dyn Scheme, share: f64, levels: usize, name: &str) {
+    let tolerance = share * control.diagonal();
+    let result = exact(control, scheme, &within(tolerance)).unwrap();
+    result.mesh.validate().unwrap();
+    assert_eq!(result.stop, ExactStop::Met);
+    assert!(result.error.certified, "{name}");
+    at_most!(result.error.upper, tolerance, "{name}");
+    vertices_are_of_uniform_refinement(control, scheme, &result, name);
+    let found = off(control, scheme, &result.mesh, levels);
+    // The reference's own chords leave the surface by less than this.
+    at_most!(found, result.error.upper + 0.05 * tolerance, "{name}");
 }
 
 #[test]
@@ -66,37 +59,16 @@ fn fading_tags_are_followed_to_the_limit() {
         .enumerate()
     {
         for scheme in [&Loop as &dyn Scheme, &LoopWarren] {
-            let control = tagged(model(name), seed as u64 + 1);
-            let tolerance = 0.004 * control.diagonal();
-            let result = exact(
-                &control,
-                scheme,
-                &ExactOptions::default().tolerance(tolerance),
-            )
-            .unwrap();
-            result.mesh.validate().unwrap();
-            assert_eq!(result.stop, ExactStop::Met);
-            assert!(
-                result.error.certified && result.error.upper <= tolerance,
-                "{name}: {:?}",
-                result.error
-            );
-            vertices_are_of_uniform_refinement(&control, scheme, &result, name);
-            let found = sampled(&control, scheme, &result.mesh, 5);
-            // The reference's own chords leave the surface by less than this.
-            assert!(
-                found <= result.error.upper + 0.05 * tolerance,
-                "{name}: {found} {:?}",
-                result.error
-            );
+            let control = tagged(named(name), seed as u64 + 1);
+            is_followed(&control, scheme, 0.004, 5, name);
         }
     }
 }
 
 #[test]
 fn tags_that_fade_leave_no_crease() {
-    let control = tagged(model("octahedron"), 3);
-    let result = exact(&control, &Loop, &ExactOptions::default().tolerance(0.01)).unwrap();
+    let control = tagged(octahedron(), 3);
+    let result = exact(&control, &Loop, &within(0.01)).unwrap();
     let lasting = control
         .tags()
         .creases
@@ -117,15 +89,10 @@ fn tags_that_fade_leave_no_crease() {
 #[test]
 fn butterfly_passes_through_the_control_vertices_and_its_limit() {
     for name in ["tetrahedron", "cube", "sheet", "spike", "sphere", "teddy"] {
-        let control = model(name);
+        let control = named(name);
         let tolerance = 0.01 * control.diagonal();
         let scheme = &ModifiedButterfly;
-        let result = exact(
-            &control,
-            scheme,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap();
+        let result = exact(&control, scheme, &within(tolerance)).unwrap();
         result.mesh.validate().unwrap();
         assert_eq!(result.stop, ExactStop::Met, "{name}");
         assert!(!result.error.certified);
@@ -135,7 +102,7 @@ fn butterfly_passes_through_the_control_vertices_and_its_limit() {
             "{name}"
         );
         vertices_are_of_uniform_refinement(&control, scheme, &result, name);
-        let found = sampled(&control, scheme, &result.mesh, 4);
+        let found = off(&control, scheme, &result.mesh, 4);
         assert!(result.error.lower <= result.error.upper);
         assert!(
             (0.85..1.05).contains(&(found / result.error.upper)),
@@ -148,15 +115,10 @@ fn butterfly_passes_through_the_control_vertices_and_its_limit() {
 #[test]
 fn tagged_butterfly_meshes_are_refined_too() {
     for (seed, name) in ["cube", "octahedron", "sheet"].into_iter().enumerate() {
-        let control = tagged(model(name), seed as u64 + 7);
+        let control = tagged(named(name), seed as u64 + 7);
         let scheme = &ModifiedButterfly;
         let tolerance = 0.01 * control.diagonal();
-        let result = exact(
-            &control,
-            scheme,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap();
+        let result = exact(&control, scheme, &within(tolerance)).unwrap();
         result.mesh.validate().unwrap();
         vertices_are_of_uniform_refinement(&control, scheme, &result, name);
     }
@@ -165,21 +127,17 @@ fn tagged_butterfly_meshes_are_refined_too() {
 #[test]
 fn budgets_hold_for_butterfly() {
     let control = model("cube");
-    let result = exact(
-        &control,
-        &ModifiedButterfly,
-        &ExactOptions::default().triangles(400),
-    )
-    .unwrap();
+    let options = ExactOptions::default().triangles(400);
+    let result = exact(&control, &ModifiedButterfly, &options).unwrap();
     let count = result.mesh.face_count();
     assert!((340..=400).contains(&count), "{count}");
 }
 
 #[test]
 fn normals_are_those_of_the_limit() {
-    let control = tagged(model("octahedron"), 5);
+    let control = tagged(octahedron(), 5);
     for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
-        let result = exact(&control, scheme, &ExactOptions::default().tolerance(0.02)).unwrap();
+        let result = exact(&control, scheme, &within(0.02)).unwrap();
         let expected = limitmesh::limit::LimitTable::new(scheme)
             .normals(&control)
             .unwrap();
@@ -201,16 +159,10 @@ fn threads_change_nothing() {
     let tagged = tagged(model("sheet"), 11);
     let plain = model("cube");
     let run = || {
-        let options = |control: &Mesh| ExactOptions::default().tolerance(0.01 * control.diagonal());
+        let options = |control: &Mesh| within(0.01 * control.diagonal());
         let loop_result = exact(&tagged, &Loop, &options(&tagged)).unwrap();
         let butterfly = exact(&plain, &ModifiedButterfly, &options(&plain)).unwrap();
         [loop_result, butterfly].map(|found| (found.mesh, found.normals, found.error))
-    };
-    let pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
     };
     assert!(pool(1).install(run) == pool(3).install(run));
 }
@@ -244,45 +196,17 @@ fn schemes_without_proofs_come_to_an_end() {
     .unwrap();
     found.mesh.validate().unwrap();
     assert_eq!(found.mesh.face_count(), 40);
-    let greatest = sampled(&control, &ModifiedButterfly, &found.mesh, 7);
-    assert!(
-        greatest <= 1.1 * found.error.upper,
-        "{greatest} {:?}",
-        found.error
-    );
+    let greatest = off(&control, &ModifiedButterfly, &found.mesh, 7);
+    at_most!(greatest, 1.1 * found.error.upper);
 }
 
 #[test]
 fn shared_models_with_fading_creases_are_followed() {
-    let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
+    let Some(folder) = shared_models() else {
         return;
     };
     for (name, levels) in [("loop_icos_semisharp.obj", 6), ("rook_creased.obj", 4)] {
-        let control = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
-        let tolerance = 0.001 * control.diagonal();
-        let result = exact(
-            &control,
-            &Loop,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap();
-        assert_eq!(result.stop, ExactStop::Met);
-        assert!(
-            result.error.certified && result.error.upper <= tolerance,
-            "{name}: {:?}",
-            result.error
-        );
-        vertices_are_of_uniform_refinement(&control, &Loop, &result, name);
-        let found = sampled(&control, &Loop, &result.mesh, levels);
-        assert!(
-            found <= result.error.upper + 0.05 * tolerance,
-            "{name}: {found} {:?}",
-            result.error
-        );
+        let control = shared_model(&folder, name);
+        is_followed(&control, &Loop, 0.001, levels, name);
     }
 }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use crate::support::{Random, dot, lumpy, octahedron, samples};
 use limitmesh::criterion::Viewpoint;
-use limitmesh::mesh::{CreaseTag, Tags};
+use limitmesh::mesh::CreaseTag;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly};
 use limitmesh::{FaceId, Facing, LimitSurface, Mesh, SurfacePoint};
 
@@ -16,10 +16,8 @@ const SIDE: u32 = 16;
 /// A mesh with some of its edges sharp, for ever and for a while.
 fn creased() -> Mesh {
     let mesh = lumpy(9, 3);
-    let crease = |[a, b]: [u32; 2], sharpness| CreaseTag {
-        vertices: [a.min(b), a.max(b)],
-        sharpness,
-    };
+    let crease =
+        |[a, b]: [u32; 2], sharpness| crate::support::crease([a.min(b), a.max(b)], sharpness);
     let edges = [[0, 2], [1, 2], [1, 3], [0, 3], [0, 4]];
     let is_edge = |[a, b]: [u32; 2]| {
         mesh.triangles()
@@ -34,11 +32,7 @@ fn creased() -> Mesh {
         .collect();
     assert!(creases.len() > 2);
     creases.sort_by_key(|crease| crease.vertices);
-    mesh.with_tags(Tags {
-        creases,
-        ..Tags::default()
-    })
-    .unwrap()
+    mesh.with_tags(crate::support::creases(creases)).unwrap()
 }
 
 fn models() -> Vec<(&'static str, Mesh)> {
@@ -141,10 +135,9 @@ fn facing_is_never_wrong_and_seldom_undecided() {
         println!(
             "{name}: {decided:?} one side, {mixed} both; undecided of the former {undecided}, by cones {by_cone}"
         );
-        assert!(
-            decided[0] > 20 && decided[1] > 20 && mixed > 5,
-            "{name}: {decided:?} {mixed}"
-        );
+        above!(decided[0], 20, "{name}");
+        above!(decided[1], 20, "{name}");
+        above!(mixed, 5, "{name}");
         // At creases and boundaries irregular vertices stay undecided.
         let is_smooth = !["sheet", "creased"].contains(&name);
         assert!(
@@ -196,10 +189,7 @@ fn cones_hold_the_normals_and_are_hardly_wider_than_needed() {
                 .map(|point| dot(cone.axis, point.normal).clamp(-1.0, 1.0).acos());
             let sampled = angles.fold(0.0, f64::max);
             // An arc cosine near 1 keeps half of the digits.
-            assert!(
-                sampled <= cone.half_angle + 2e-8,
-                "{name}, face {face}: {sampled} {cone:?}"
-            );
+            at_most!(sampled, cone.half_angle + 2e-8, "{name}, face {face}");
             ratios.push(cone.half_angle / sampled);
             half_angles.push(cone.half_angle);
         }
@@ -214,12 +204,8 @@ fn cones_hold_the_normals_and_are_hardly_wider_than_needed() {
         median(&ratios),
         ratios[ratios.len() - 1]
     );
-    assert!(
-        ratios.len() > 80 && median(&ratios) < 1.35,
-        "{} {}",
-        ratios.len(),
-        median(&ratios)
-    );
+    above!(ratios.len(), 80);
+    below!(median(&ratios), 1.35);
 }
 
 /// At the size of atoms and of galaxies, and far from the origin, the answers are those at size 1, or none.

@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::ControlFlow;
 
-use crate::support::{Random, lumpy, octahedron, sheet, tagged_obj, torus};
+use crate::support::{Random, lumpy, mapped, octahedron, sheet, tagged_obj, torus};
 use limitmesh::criterion::Camera;
 use limitmesh::front::{Demand, Front, FrontError, Measure};
 use limitmesh::mesh::PolygonSoup;
@@ -258,12 +258,7 @@ fn cameras_that_move_a_little() {
 #[test]
 fn lengths_of_a_cameras_directions_do_not_count() {
     let control = lumpy(9, 7);
-    let away = control
-        .positions()
-        .iter()
-        .map(|&[x, y, z]| [x, y, z - 2.0])
-        .collect();
-    let control = control.with_positions(away).unwrap();
+    let control = mapped(&control, |&[x, y, z]| [x, y, z - 2.0]);
     let camera = |length: f64| Camera {
         eye: [0.0; 3],
         target: [0.1 * length, 0.2 * length, -length],
@@ -375,23 +370,10 @@ fn bounds_hold_by_samples() {
             front
                 .update(&Demand::tolerance(part * size).max_levels(6))
                 .unwrap();
-            assert!(
-                front.bound() <= part * size,
-                "{name}: {} of {}",
-                front.bound(),
-                part * size
-            );
+            at_most!(front.bound(), part * size, "{name}");
             let most = farthest(&control, &Loop, &front);
-            assert!(
-                most <= front.bound() + 1e-9 * size,
-                "{name}: {most} beyond {}",
-                front.bound()
-            );
-            assert!(
-                most >= 0.3 * front.bound(),
-                "{name}: {most} far below {}",
-                front.bound()
-            );
+            at_most!(most, front.bound() + 1e-9 * size, "{name}");
+            at_least!(most, 0.3 * front.bound(), "{name}");
         }
     }
 }
@@ -428,10 +410,7 @@ fn budgets_are_used() {
                 .update(&Demand::tolerance(0.0).triangles(most))
                 .unwrap();
             let (count, limit) = (front.triangles().len(), front.limit());
-            assert!(
-                count <= most.max(control.face_count()),
-                "{name}: {count} of {most}"
-            );
+            at_most!(count, most.max(control.face_count()), "{name}");
             assert_eq!(count, front.mesh().unwrap().face_count());
             let demand = Demand::tolerance(limit);
             assert!(
@@ -441,11 +420,7 @@ fn budgets_are_used() {
             let below = f64::from_bits(limit.to_bits() - 1);
             let mut finer = Front::new(&control, &Loop).unwrap();
             finer.update(&Demand::tolerance(below)).unwrap();
-            assert!(
-                finer.triangles().len() > most,
-                "{name}, {most}: {}",
-                finer.triangles().len()
-            );
+            above!(finer.triangles().len(), most, "{name}");
         }
     }
 }

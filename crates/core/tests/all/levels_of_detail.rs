@@ -11,8 +11,8 @@ use limitmesh::measure::Bvh;
 use limitmesh::mesh::{PolygonFaces, PolygonSoup, Triangles};
 use limitmesh::progress::Progress;
 use limitmesh::refine::{
-    Caps, Exact, ExactOptions, ExactStop, Level, LodOptions, RefineError, Traced, exact,
-    levels_of_detail, levels_of_detail_observed, switching_distance,
+    Caps, Exact, ExactStop, Level, LodOptions, RefineError, Traced, exact, levels_of_detail,
+    levels_of_detail_observed, switching_distance,
 };
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
@@ -155,10 +155,7 @@ fn geomorphs_start_on_the_coarser_level() {
             let bvh = Bvh::new(coarse.mesh.as_triangles()).unwrap();
             let size = 1e-12 * mesh.diagonal();
             for &position in &morph.positions {
-                assert!(
-                    bvh.closest(position).distance <= size,
-                    "{name}: {position:?}"
-                );
+                at_most!(bvh.closest(position).distance, size, "{name}: {position:?}");
             }
             assert!(pair[1].positions_at(0.0) == morph.positions);
             assert!(pair[1].positions_at(1.0) == fine.mesh.positions());
@@ -189,10 +186,7 @@ fn geomorphs_start_on_the_coarser_level() {
             }
         }
     }
-    assert!(
-        closing > 10,
-        "{closing} triangles across closing ones were met"
-    );
+    above!(closing, 10);
 }
 
 /// The greatest distance found between the mesh at a moment and the surface at the same places, as a part of what is claimed.
@@ -247,9 +241,8 @@ fn geomorphs_are_within_their_bound_at_every_moment() {
         for (i, level) in levels.iter().enumerate() {
             assert_eq!(level.exact.stop, ExactStop::Met);
             assert!(level.exact.error.certified && level.exact.error.upper <= level.tolerance);
-            assert!(
-                level.parametric <= level.tolerance && level.parametric >= level.exact.error.lower
-            );
+            at_most!(level.parametric, level.tolerance);
+            at_least!(level.parametric, level.exact.error.lower);
             let start = level.deviation_at(0.0);
             assert!(
                 i == 0 || start <= levels[i - 1].tolerance,
@@ -258,10 +251,7 @@ fn geomorphs_are_within_their_bound_at_every_moment() {
             let inner = 0.5 + 0.5 * random.signed();
             for t in [0.0, inner, 0.5, 1.0] {
                 let part = sampled(&mesh, scheme, level, t, &mut random);
-                assert!(
-                    part <= 1.0 + 1e-9,
-                    "{name}, level {i} at {t}: {part} times what is claimed"
-                );
+                at_most!(part, 1.0 + 1e-9, "{name}, level {i} at {t}");
                 // Bounds are no wild guesses, but for what is next to nothing.
                 let is_end =
                     (t == 0.0 || t == 1.0) && level.deviation_at(t) > 0.002 * level.tolerance;
@@ -319,9 +309,7 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
     let levels = levels_of_detail(&mesh, &Loop, &asked.clone().geomorphs(false)).unwrap();
     let morphed = levels_of_detail(&mesh, &Loop, &asked).unwrap();
     for (level, morphed) in levels.iter().zip(&morphed) {
-        let plain = ExactOptions::default()
-            .tolerance(level.tolerance)
-            .flat_regions(false);
+        let plain = within(level.tolerance).flat_regions(false);
         let plain = exact(&mesh, &Loop, &plain).unwrap();
         assert!(level.geomorph.is_none() && level.exact.error.upper <= level.tolerance);
         let count = level.exact.mesh.face_count();
@@ -331,9 +319,7 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
         assert!(level.parametric > level.exact.error.upper);
     }
     assert_eq!(levels[0].exact.mesh.positions().len(), {
-        let plain = ExactOptions::default()
-            .tolerance(levels[0].tolerance)
-            .flat_regions(false);
+        let plain = within(levels[0].tolerance).flat_regions(false);
         exact(&mesh, &Loop, &plain).unwrap().mesh.vertex_count()
     });
 }
@@ -354,21 +340,10 @@ fn other_schemes_have_levels_that_are_estimated() {
 fn sizes_and_threads_change_nothing() {
     let mesh = lumpy(6, 2).with_creases_above(1.1).unwrap();
     let asked = options(&mesh, &[0.05, 0.01]);
-    let pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
-    };
     let one = pool(1).install(|| levels_of_detail(&mesh, &Loop, &asked).unwrap());
     let three = pool(3).install(|| levels_of_detail(&mesh, &Loop, &asked).unwrap());
     for factor in [2f64.powi(300), 2f64.powi(-300)] {
-        let positions = mesh
-            .positions()
-            .iter()
-            .map(|p| p.map(|x| factor * x))
-            .collect();
-        let huge = mesh.clone().with_positions(positions).unwrap();
+        let huge = mapped(&mesh, |p| p.map(|x| factor * x));
         let tolerances = asked
             .tolerances
             .iter()

@@ -2,6 +2,7 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use crate::support::{crease, mapped, octahedron};
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, LimitSurface, Mesh};
 
@@ -16,30 +17,6 @@ fn near(found: f64, expected: f64, within: f64) {
 /// The corners of a solid, each face counter-clockwise from outside.
 fn solid(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Mesh {
     Mesh::from_triangles(positions.to_vec(), triangles.to_vec()).unwrap()
-}
-
-fn octahedron() -> Mesh {
-    let positions = [
-        [1.0, 0.0, 0.0],
-        [-1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, -1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, 0.0, -1.0],
-    ];
-    solid(
-        &positions,
-        &[
-            [0, 2, 4],
-            [2, 1, 4],
-            [1, 3, 4],
-            [3, 0, 4],
-            [2, 0, 5],
-            [1, 2, 5],
-            [3, 1, 5],
-            [0, 3, 5],
-        ],
-    )
 }
 
 fn tetrahedron() -> Mesh {
@@ -287,30 +264,15 @@ fn volumes_and_areas() {
         near(found / volume, 1.0, 1e-10);
         // It is the same far from the origin, and grows with the third power of lengths whatever they are.
         for (scale, power) in [(1e100, 1e300), (1e-100, 1e-300)] {
-            let scaled = mesh
-                .positions()
-                .iter()
-                .map(|p| p.map(|x| x * scale))
-                .collect();
-            let scaled = mesh.clone().with_positions(scaled).unwrap();
+            let scaled = mapped(&mesh, |p| p.map(|x| x * scale));
             let surface = LimitSurface::new(&scaled, &Loop).unwrap();
             near(surface.volume().unwrap() / power / found, 1.0, 1e-12);
             let area = LimitSurface::new(&mesh, &Loop).unwrap().area().unwrap();
             near(surface.area().unwrap() / scale / scale / area, 1.0, 1e-12);
         }
-        let huge = mesh
-            .positions()
-            .iter()
-            .map(|p| p.map(|x| x * 1e200))
-            .collect();
-        let huge = mesh.clone().with_positions(huge).unwrap();
+        let huge = mapped(&mesh, |p| p.map(|x| x * 1e200));
         assert_eq!(LimitSurface::new(&huge, &Loop).unwrap().volume(), None);
-        let moved = mesh
-            .positions()
-            .iter()
-            .map(|p| p.map(|x| x + 2f64.powi(40)))
-            .collect();
-        let moved = mesh.clone().with_positions(moved).unwrap();
+        let moved = mapped(&mesh, |p| p.map(|x| x + 2f64.powi(40)));
         near(
             LimitSurface::new(&moved, &Loop).unwrap().volume().unwrap(),
             found,
@@ -601,16 +563,10 @@ fn weights_give_the_points() {
         let soup = limitmesh_models::find(name).unwrap().soup();
         let mesh = Mesh::from_soup(&soup, &Default::default()).unwrap().0;
         let [a, b, _] = mesh.triangles()[0];
-        let creases = vec![limitmesh::mesh::CreaseTag {
-            vertices: [a, b],
-            sharpness: 1.5,
-        }];
+        let creases = vec![crease([a, b], 1.5)];
         let tagged = mesh
             .clone()
-            .with_tags(limitmesh::mesh::Tags {
-                creases,
-                corners: vec![],
-            })
+            .with_tags(crate::support::creases(creases))
             .unwrap();
         for mesh in [mesh, tagged] {
             let faces = spread
@@ -695,12 +651,8 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
                 assert!(dot(cross, at.normal) > 0.0, "{valence}");
                 // The rest of the next pattern falls by a constant factor a level.
                 let off = |levels: i32| 1.0 - dot(along, towards(0.5f64.powi(levels), 1));
-                assert!(
-                    off(16) < 1e-4 && off(16) < 0.6 * off(8) + 1e-9,
-                    "{valence}: {} {}",
-                    off(8),
-                    off(16)
-                );
+                below!(off(16), 1e-4, "{valence}");
+                below!(off(16), 0.6 * off(8) + 1e-9, "{valence}");
                 // The other edge of the face leaves to the left of the first.
                 assert!(dot(across, towards(0.5f64.powi(16), 2)) > 0.0, "{valence}");
             }

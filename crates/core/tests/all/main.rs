@@ -1,5 +1,8 @@
 //! The library from outside, in one program: linking one for each subject takes longer than running most of them.
 
+#[macro_use]
+mod support;
+
 mod angles;
 mod attribute_goals;
 mod backs;
@@ -28,5 +31,4 @@ mod replay;
 mod simplified;
 mod sqrt3;
 mod strips;
-mod support;
 mod within;

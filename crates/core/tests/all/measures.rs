@@ -5,12 +5,14 @@
 
 use std::collections::BTreeSet;
 
-use crate::support::{Random, cross, dot, lumpy, minus, octahedron, sheet, tagged_obj, torus};
+use crate::support::{
+    Random, crease, cross, dot, lumpy, minus, octahedron, sheet, tagged_obj, torus,
+};
 use limitmesh::criterion::Camera;
 use limitmesh::front::{Demand, Front, Measure, Snapshot};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CreaseTag, Tags};
-use limitmesh::refine::{Traced, UniformOptions, uniform};
+use limitmesh::mesh::Tags;
+use limitmesh::refine::Traced;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh, VertexId};
 
@@ -44,10 +46,8 @@ fn creased() -> Mesh {
     let h = HalfEdgeId(0);
     let topology = mesh.topology();
     let around: Vec<HalfEdgeId> = topology.outgoing_ring(topology.origin(h)).collect();
-    let creases = [around[0], around[around.len() / 2]].map(|h| CreaseTag {
-        vertices: topology.ends(h).map(|v| v.0),
-        sharpness: f64::INFINITY,
-    });
+    let creases = [around[0], around[around.len() / 2]]
+        .map(|h| crease(topology.ends(h).map(|v| v.0), f64::INFINITY));
     let tags = Tags {
         creases: creases.to_vec(),
         corners: Vec::new(),
@@ -65,9 +65,7 @@ struct Level {
 
 fn tower(control: &Mesh, scheme: &dyn Scheme) -> Vec<Level> {
     let level = |levels: usize| {
-        let mesh = uniform(control, scheme, &UniformOptions::default().levels(levels))
-            .unwrap()
-            .mesh;
+        let mesh = crate::support::divided(control, scheme, levels);
         let table = LimitTable::new(scheme);
         let sided = table.sided_normals(&mesh).unwrap();
         let normals = (0..mesh.face_count())

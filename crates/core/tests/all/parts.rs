@@ -8,9 +8,9 @@ use std::f64::consts::{PI, TAU};
 
 use limitmesh::interpolate::InterpolateOptions;
 use limitmesh::part::{Look, Part, Unfolded, interpolate_unfolded};
-use limitmesh::refine::{ExactOptions, limit_reference};
+use limitmesh::refine::limit_reference;
 
-use crate::support::exact;
+use crate::support::{exact, within};
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, PolygonSoup, VertexId};
 
@@ -390,12 +390,7 @@ fn rings_close_together_would_fold_and_do_not() {
             ..
         } = found;
         assert_eq!(turned_over(&mesh, &interpolated.mesh), 0);
-        let refined = exact(
-            &interpolated.mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(0.01),
-        )
-        .unwrap();
+        let refined = exact(&interpolated.mesh, &Loop, &within(0.01)).unwrap();
         assert_eq!(refined.inverted_triangles(), 0);
         // The regions have the faces that fold, and every vertex is passed through or named.
         let limits = limitmesh::limit::LimitTable::new(&Loop)
@@ -435,12 +430,7 @@ fn what_folds_does_not_change_the_rest() {
         [corners(&even, 0.0), corners(&folding, 20.0)].concat(),
     ));
     assert!(!found.folded.is_empty());
-    let surface = exact(
-        &found.interpolated.mesh,
-        &Loop,
-        &ExactOptions::default().tolerance(1e-3),
-    )
-    .unwrap();
+    let surface = exact(&found.interpolated.mesh, &Loop, &within(1e-3)).unwrap();
     let volume = |is_own: &dyn Fn(Point) -> bool| {
         let own =
             (0..surface.mesh.face_count()).map(|face| surface.mesh.as_triangles().corners(face));

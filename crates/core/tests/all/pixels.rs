@@ -225,11 +225,7 @@ impl Model {
                 "{}, view {view}: {said} of {limit}, {cameras:?}",
                 self.name
             );
-            assert!(
-                said <= limit,
-                "{}, view {view}: {said} of {limit} pixels",
-                self.name
-            );
+            at_most!(said, limit, "{}, view {view}", self.name);
             for camera in &cameras {
                 let found = self.greatest(&result, &Picture::of(camera), &mut random);
                 assert!(
@@ -361,10 +357,8 @@ fn no_frame_shows_more_than_is_told() {
             let options = ExactOptions::default().pixels(limit, cameras.clone());
             let found = exact_frames(&control, &Loop, &frames, &options).unwrap();
             let said = found.refined.pixels.unwrap();
-            assert!(
-                found.refined.stop == ExactStop::Met && said <= limit,
-                "{name}: {said} of {limit}"
-            );
+            assert_eq!(found.refined.stop, ExactStop::Met, "{name}");
+            at_most!(said, limit, "{name}");
             let (mut frame, mut most) = (Frame::default(), 0.0f64);
             for (positions, model) in frames.iter().zip(&models) {
                 found.replay.frame(positions, &mut frame).unwrap();
@@ -434,10 +428,9 @@ fn an_outline_seen_face_on_is_within_the_limit() {
             let result = exact(&model.control, &Loop, &options).unwrap();
             let found = model.greatest(&result, &Picture::of(&camera), &mut Random::new(5));
             let said = result.pixels.unwrap();
-            assert!(
-                found <= said && said <= 1.0 && found > 0.1,
-                "{found} of {said}"
-            );
+            at_most!(found, said);
+            at_most!(said, 1.0);
+            above!(found, 0.1);
         }
     }
 }

@@ -6,6 +6,7 @@
 use std::ops::ControlFlow;
 
 use crate::support::*;
+use limitmesh::Mesh;
 use limitmesh::criterion::{Camera, LimitNormal};
 use limitmesh::interpolate::{
     InterpolateError, InterpolateOptions, interpolate, interpolate_observed,
@@ -14,11 +15,10 @@ use limitmesh::measure::*;
 use limitmesh::progress::{Observer, Progress, Stage};
 use limitmesh::refine::{
     ExactOptions, Finish, Frame, RefineError, Replay, ReplayError, StepwiseOptions, UniformOptions,
-    exact, exact_estimate, exact_estimate_observed, exact_observed, stepwise, stepwise_observed,
-    uniform, uniform_observed,
+    exact, exact_estimate, exact_estimate_observed, exact_observed, limit_reference, stepwise,
+    stepwise_observed, uniform, uniform_observed,
 };
 use limitmesh::scheme::Loop;
-use limitmesh::{Mesh, Triangles};
 
 /// Runs a function to its end and checks its reports, then cancels it at the first, third, … call.
 fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
@@ -67,13 +67,7 @@ fn watch<T: PartialEq + std::fmt::Debug, E: std::fmt::Debug>(
 }
 
 fn sphere(levels: usize) -> Mesh {
-    uniform(
-        &octahedron(),
-        &Loop,
-        &UniformOptions::default().levels(levels).limit(true),
-    )
-    .unwrap()
-    .mesh
+    limit_reference(&octahedron(), &Loop, levels).unwrap()
 }
 
 #[test]
@@ -98,9 +92,7 @@ fn refinement_is_observed() {
 fn replays_are_observed() {
     let cancelled = |error: &ReplayError| matches!(error, ReplayError::Cancelled(_));
     let control = model("bunny");
-    let options = ExactOptions::default()
-        .tolerance(1e-3 * control.diagonal())
-        .flat_regions(false);
+    let options = within(1e-3 * control.diagonal()).flat_regions(false);
     let refined = exact(&control, &Loop, &options).unwrap();
     let points = |replay: Replay| {
         let mut frame = Frame::default();
@@ -157,10 +149,7 @@ fn measurement_is_observed() {
 fn watertightness_is_observed() {
     // Open at one face, so that T-junctions are looked for as well.
     let fine = sphere(6);
-    let open = Triangles {
-        positions: fine.positions(),
-        triangles: &fine.triangles()[1..],
-    };
+    let open = surface(fine.positions(), &fine.triangles()[1..]);
     let plain = watertightness(open);
     assert_eq!(plain.boundary_edges, 3);
     watch(
@@ -235,15 +224,6 @@ fn cancel_at<T: std::fmt::Debug>(
     );
 }
 
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
-
 /// Every goal of exact refinement gives the same bytes observed, and ends wherever in its course the observer says so.
 #[test]
 fn exact_refinement_is_observed_and_cancelled_everywhere() {
@@ -286,16 +266,12 @@ fn exact_refinement_is_observed_and_cancelled_everywhere() {
             assert_eq!(watched.error, plain.error, "{name}");
             assert!(calls.len() >= 5, "{name}: {calls:?}");
             // On one thread every run makes the same calls: with several, how many fall between two steps is chance.
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(1)
-                .build()
-                .unwrap()
-                .install(|| {
-                    let (_, calls) = calls_by_event(&mut run);
-                    for i in 0..8 {
-                        cancel_at(&name, (i * (calls.len() - 1) / 7, 0), &mut run);
-                    }
-                });
+            pool(1).install(|| {
+                let (_, calls) = calls_by_event(&mut run);
+                for i in 0..8 {
+                    cancel_at(&name, (i * (calls.len() - 1) / 7, 0), &mut run);
+                }
+            });
         }
     }
 }
@@ -304,109 +280,87 @@ fn exact_refinement_is_observed_and_cancelled_everywhere() {
 /// in the middle of a face. Calls at the ends of blocks of faces would be a dozen. On one thread every run makes the same calls.
 #[test]
 fn single_faces_that_take_long_are_observed() {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap()
-        .install(|| {
-            let control = model("tetrahedron");
-            let balanced = ExactOptions::default()
-                .tolerance(3e-6 * control.diagonal())
-                .finish(Finish::Balanced);
-            for options in [balanced.clone().finish(Finish::OnSurface), balanced] {
-                let mut run = |observer: &mut Observer<'_>| {
-                    exact_observed(&control, &Loop, &options, observer)
-                };
-                let (result, calls) = calls_by_event(&mut run);
-                let triangles = result.mesh.face_count();
-                assert!(triangles > 100_000);
-                // Only what is balanced is bounded all over again.
-                let bounded = (options.finish == Finish::Balanced).then_some(Stage::Bounding);
-                for stage in [Stage::Refining, Stage::Assembling]
-                    .into_iter()
-                    .chain(bounded)
-                {
-                    let count: usize = calls
-                        .iter()
-                        .filter(|(event, _)| event.0 == stage)
-                        .map(|(_, n)| n)
-                        .sum();
-                    assert!(
-                        count >= triangles / 10_000,
-                        "{stage:?}: {count} calls for {triangles} triangles"
-                    );
-                }
-                let mut most: Vec<(usize, usize)> =
-                    calls.iter().map(|(_, count)| *count).enumerate().collect();
-                most.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
-                for &(i, count) in most.iter().take(4) {
-                    cancel_at("tetrahedron", (i, count / 2), &mut run);
-                }
+    pool(1).install(|| {
+        let control = model("tetrahedron");
+        let balanced = ExactOptions::default()
+            .tolerance(3e-6 * control.diagonal())
+            .finish(Finish::Balanced);
+        for options in [balanced.clone().finish(Finish::OnSurface), balanced] {
+            let mut run =
+                |observer: &mut Observer<'_>| exact_observed(&control, &Loop, &options, observer);
+            let (result, calls) = calls_by_event(&mut run);
+            let triangles = result.mesh.face_count();
+            assert!(triangles > 100_000);
+            // Only what is balanced is bounded all over again.
+            let bounded = (options.finish == Finish::Balanced).then_some(Stage::Bounding);
+            for stage in [Stage::Refining, Stage::Assembling]
+                .into_iter()
+                .chain(bounded)
+            {
+                let count: usize = calls
+                    .iter()
+                    .filter(|(event, _)| event.0 == stage)
+                    .map(|(_, n)| n)
+                    .sum();
+                at_least!(count, triangles / 10_000, "{stage:?}");
             }
-        });
+            let mut most: Vec<(usize, usize)> =
+                calls.iter().map(|(_, count)| *count).enumerate().collect();
+            most.sort_by_key(|&(_, count)| std::cmp::Reverse(count));
+            for &(i, count) in most.iter().take(4) {
+                cancel_at("tetrahedron", (i, count / 2), &mut run);
+            }
+        }
+    });
 }
 
 /// Flat faces with very many vertices inside are triangulated as one, which can be cancelled at any
 /// time.
 #[test]
 fn large_flat_regions_are_observed() {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap()
-        .install(|| {
-            const SIDE: u32 = 150;
-            let place = |i: u32| [f64::from(i % SIDE), f64::from(i / SIDE), 0.0];
-            let plate =
-                Mesh::from_triangles((0..SIDE * SIDE).map(place).collect(), grid(SIDE, SIDE))
-                    .unwrap();
-            let options = ExactOptions::default()
-                .tolerance(1e-4 * plate.diagonal())
-                .unfold(true);
-            let mut run =
-                |observer: &mut Observer<'_>| exact_observed(&plate, &Loop, &options, observer);
-            let (result, calls) = calls_by_event(&mut run);
-            let triangles = result.mesh.face_count();
-            assert!(triangles > plate.face_count());
-            let of_stage = |stage| {
-                calls
-                    .iter()
-                    .filter(move |(event, _)| event.0 == stage)
-                    .map(|(_, count)| count)
-            };
-            let count: usize = of_stage(Stage::Assembling).sum();
-            assert!(
-                count >= triangles / 100,
-                "{count} calls for {triangles} triangles"
-            );
-            for (i, &(_, count)) in calls.iter().enumerate() {
-                (0..count)
-                    .step_by(count / 12 + 1)
-                    .for_each(|at| cancel_at("plate", (i, at), &mut run));
-            }
-        });
+    pool(1).install(|| {
+        const SIDE: u32 = 150;
+        let place = |i: u32| [f64::from(i % SIDE), f64::from(i / SIDE), 0.0];
+        let plate =
+            Mesh::from_triangles((0..SIDE * SIDE).map(place).collect(), grid(SIDE, SIDE)).unwrap();
+        let options = within(1e-4 * plate.diagonal()).unfold(true);
+        let mut run =
+            |observer: &mut Observer<'_>| exact_observed(&plate, &Loop, &options, observer);
+        let (result, calls) = calls_by_event(&mut run);
+        let triangles = result.mesh.face_count();
+        assert!(triangles > plate.face_count());
+        let of_stage = |stage| {
+            calls
+                .iter()
+                .filter(move |(event, _)| event.0 == stage)
+                .map(|(_, count)| count)
+        };
+        let count: usize = of_stage(Stage::Assembling).sum();
+        at_least!(count, triangles / 100);
+        for (i, &(_, count)) in calls.iter().enumerate() {
+            (0..count)
+                .step_by(count / 12 + 1)
+                .for_each(|at| cancel_at("plate", (i, at), &mut run));
+        }
+    });
 }
 
 /// On one thread, where every run makes the same calls: with several, how many of them fall between two steps is chance.
 #[test]
 fn estimates_are_observed() {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap()
-        .install(|| {
-            let control = model("cup");
-            let tolerance = ExactOptions::default().tolerance(5e-4 * control.diagonal());
-            for options in [tolerance.clone(), tolerance.finish(Finish::Collapsed)] {
-                let plain = exact_estimate(&control, &Loop, &options).unwrap();
-                let mut run = |observer: &mut Observer<'_>| {
-                    exact_estimate_observed(&control, &Loop, &options, observer)
-                };
-                let (watched, calls) = calls_by_event(&mut run);
-                assert_eq!(watched, plain);
-                for i in [0, calls.len() / 2, calls.len() - 1] {
-                    cancel_at("estimate", (i, 0), &mut run);
-                }
+    pool(1).install(|| {
+        let control = model("cup");
+        let tolerance = within(5e-4 * control.diagonal());
+        for options in [tolerance.clone(), tolerance.finish(Finish::Collapsed)] {
+            let plain = exact_estimate(&control, &Loop, &options).unwrap();
+            let mut run = |observer: &mut Observer<'_>| {
+                exact_estimate_observed(&control, &Loop, &options, observer)
+            };
+            let (watched, calls) = calls_by_event(&mut run);
+            assert_eq!(watched, plain);
+            for i in [0, calls.len() / 2, calls.len() - 1] {
+                cancel_at("estimate", (i, 0), &mut run);
             }
-        });
+        }
+    });
 }

@@ -4,21 +4,12 @@
 
 use core::ops::ControlFlow;
 
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Closest, FaceId, LimitSurface, Membership, Mesh, Proximity, ProximityError};
 
-use crate::support::{Point, cross, distance, dot, minus, octahedron};
-
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
+use crate::support::{Point, corner, crease, cross, distance, dot, minus, model, octahedron};
 
 /// A double cone over a polygon: tips of any valence, the others of four.
 fn spindle(valence: u32) -> Mesh {
@@ -42,14 +33,8 @@ fn tagged(mesh: &Mesh) -> Mesh {
         ([b, c], f64::INFINITY),
         ([d, e], 1.4),
     ]
-    .map(|(vertices, sharpness)| CreaseTag {
-        vertices,
-        sharpness,
-    });
-    let corners = vec![CornerTag {
-        vertex: c,
-        sharpness: f64::INFINITY,
-    }];
+    .map(|(vertices, sharpness)| crease(vertices, sharpness));
+    let corners = vec![corner(c, f64::INFINITY)];
     mesh.clone()
         .with_tags(Tags {
             creases: creases.to_vec(),
@@ -119,32 +104,14 @@ fn no_sample_is_nearer_and_the_point_is_on_the_surface() {
                     .iter()
                     .map(|&at| distance(at, point))
                     .fold(f64::INFINITY, f64::min);
-                assert!(
-                    found.lower <= near + 1e-12,
-                    "{name}, {point:?}: {} and {near}",
-                    found.lower
-                );
-                assert!(
-                    found.distance <= near + tolerance,
-                    "{name}, {point:?}: {} and {near}",
-                    found.distance
-                );
+                at_most!(found.lower, near + 1e-12, "{name}, {point:?}");
+                at_most!(found.distance, near + tolerance, "{name}, {point:?}");
                 // As dense as the samples are.
-                assert!(
-                    near - found.distance < 0.1,
-                    "{name}, {point:?}: {} and {near}",
-                    found.distance
-                );
-                assert!(
-                    found.lower <= found.distance
-                        && found.distance - found.lower <= tolerance * 1.000_001
-                );
+                below!(near - found.distance, 0.1, "{name}, {point:?}");
+                at_most!(found.lower, found.distance);
+                at_most!(found.distance - found.lower, tolerance * 1.000_001);
                 let there = surface.at(found.face, found.barycentric).position;
-                assert!(
-                    distance(there, found.point) < 1e-12,
-                    "{name}: {there:?} and {:?}",
-                    found.point
-                );
+                below!(distance(there, found.point), 1e-12, "{name}: {there:?}");
                 assert!((distance(point, found.point) - found.distance).abs() < 1e-12);
             }
         }
@@ -207,11 +174,7 @@ fn a_plane_is_as_far_as_it_is_high() {
         1e-9,
     );
     for (found, expected) in found.iter().zip([3.0, 4.0, 5.0]) {
-        assert!(
-            (found.distance - expected).abs() < 1e-9,
-            "{} and {expected}",
-            found.distance
-        );
+        below!((found.distance - expected).abs(), 1e-9, "{expected}");
     }
     assert!(distance(found[0].point, [1.3, 2.1, 2.0]) < 1e-9);
 }

@@ -4,8 +4,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::support::{Random, cross, dot, lumpy, minus, octahedron, sheet, torus};
-use limitmesh::mesh::{CreaseTag, Tags};
+use crate::support::{Random, crease, cross, dot, lumpy, minus, octahedron, sheet, torus};
+use limitmesh::mesh::CreaseTag;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly};
 use limitmesh::{Crossing, FaceId, Hit, LimitSurface, Mesh, Ray, RayCaster, RayError, RayOptions};
@@ -23,17 +23,11 @@ fn tetrahedron() -> Mesh {
 fn tagged(mesh: &Mesh, edges: &[[u32; 2]], sharpness: f64) -> Mesh {
     let mut creases: Vec<CreaseTag> = edges
         .iter()
-        .map(|&[a, b]| CreaseTag {
-            vertices: [a.min(b), a.max(b)],
-            sharpness,
-        })
+        .map(|&[a, b]| crease([a.min(b), a.max(b)], sharpness))
         .collect();
     creases.sort_by_key(|crease| crease.vertices);
     mesh.clone()
-        .with_tags(Tags {
-            creases,
-            ..Tags::default()
-        })
+        .with_tags(crate::support::creases(creases))
         .unwrap()
 }
 
@@ -240,10 +234,9 @@ fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
     println!(
         "{name}: {count} rays, {hit} hits, {grazed} grazing, {close} at outlines where the counts differ"
     );
-    assert!(
-        hit > count / 10 && close <= count / 100 && grazed == 0,
-        "{name}: {hit} {close} {grazed}"
-    );
+    above!(hit, count / 10, "{name}");
+    at_most!(close, count / 100, "{name}");
+    assert_eq!(grazed, 0, "{name}");
 }
 
 /// In all.
@@ -423,10 +416,8 @@ fn what_is_grazed_is_told() {
         direction: [1.0, 0.013, 0.0],
     };
     let hits = rays.intersections(&ray, &RayOptions::default());
-    assert!(
-        !hits.is_empty() && hits.iter().all(|hit| hit.crossing == Crossing::Grazing),
-        "{hits:?}"
-    );
+    assert!(!hits.is_empty());
+    assert!(hits.iter().all(|hit| hit.crossing == Crossing::Grazing));
     let above = Ray {
         origin: [-5.0, 1.43, 1e-6],
         direction: [1.0, 0.013, 0.0],
@@ -444,10 +435,8 @@ fn what_is_grazed_is_told() {
     let curvature = at.curvature().unwrap();
     let direction = curvature.directions[0];
     let origin = [0, 1, 2].map(|i| at.position[i] - direction[i]);
-    let hits = rays.intersections(
-        &Ray { origin, direction },
-        &RayOptions::default().tolerance(1e-8),
-    );
+    let options = RayOptions::default().tolerance(1e-8);
+    let hits = rays.intersections(&Ray { origin, direction }, &options);
     let grazes = hits
         .iter()
         .any(|hit| hit.crossing == Crossing::Grazing && (hit.t - 1.0).abs() < 1e-3);

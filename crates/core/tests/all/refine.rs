@@ -9,7 +9,7 @@ use limitmesh::criterion::{
     Criterion, CriterionError, LimitNormal, NeighbourNormal, View, Viewpoint,
 };
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::mesh::{CornerTag, INFINITELY_SHARP, Tags};
 use limitmesh::progress::{Cancelled, Progress, Stage};
 use limitmesh::refine::{
     RefineError, SeamRule, StepwiseOptions, Stop, UniformOptions, stepwise, uniform,
@@ -47,9 +47,7 @@ impl Criterion for Arbitrary {
 }
 
 fn refined(mesh: &Mesh, levels: usize) -> Mesh {
-    uniform(mesh, &Loop, &UniformOptions::default().levels(levels))
-        .unwrap()
-        .mesh
+    divided(mesh, &Loop, levels)
 }
 
 #[test]
@@ -192,13 +190,8 @@ fn points_come_from_the_old_positions_whatever_else_is_split() {
 fn the_report_counts_figure_5() {
     let mesh = lumpy(40, 2);
     let criterion = Arbitrary { seed: 4, one_in: 4 };
-    let found = stepwise(
-        &mesh,
-        &Loop,
-        &criterion,
-        &StepwiseOptions::default().levels(3),
-    )
-    .unwrap();
+    let options = StepwiseOptions::default().levels(3);
+    let found = stepwise(&mesh, &Loop, &criterion, &options).unwrap();
     assert_eq!(found.steps.len(), 3);
     let mut faces = mesh.face_count();
     for step in &found.steps {
@@ -396,12 +389,7 @@ fn a_view_leaves_back_faces_and_divides_the_silhouette() {
 #[test]
 fn overflow_is_an_error_and_not_an_infinite_mesh() {
     let mesh = octahedron();
-    let huge = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| x * f64::MAX))
-        .collect();
-    let mesh = mesh.with_positions(huge).unwrap();
+    let mesh = mapped(&mesh, |p| p.map(|x| x * f64::MAX));
     // Either all sums stay in range or the vertex is named; never NaN in a mesh.
     match stepwise(
         &mesh,
@@ -501,26 +489,14 @@ fn cut_sheets_stay_together() {
 
 #[test]
 fn tags_go_to_the_pieces_of_what_they_name() {
-    let crease = |a, b, sharpness| CreaseTag {
-        vertices: [a, b],
-        sharpness,
-    };
+    let crease = |a, b, sharpness| crate::support::crease([a, b], sharpness);
     let tags = Tags {
         creases: vec![
             crease(0, 2, 2.5),
             crease(2, 4, INFINITELY_SHARP),
             crease(4, 0, 1.0),
         ],
-        corners: vec![
-            CornerTag {
-                vertex: 1,
-                sharpness: f64::INFINITY,
-            },
-            CornerTag {
-                vertex: 5,
-                sharpness: 2.0,
-            },
-        ],
+        corners: vec![corner(1, f64::INFINITY), corner(5, 2.0)],
     };
     let mesh = octahedron().with_tags(tags).unwrap();
     let found = refined(&mesh, 2);
@@ -589,12 +565,7 @@ fn parameters_out_of_range_are_errors() {
 fn the_size_of_a_mesh_does_not_matter() {
     let mesh = lumpy(20, 3);
     let count = |size: f64, criterion: &dyn Criterion| {
-        let positions = mesh
-            .positions()
-            .iter()
-            .map(|p| p.map(|x| x * size))
-            .collect();
-        let scaled = mesh.clone().with_positions(positions).unwrap();
+        let scaled = mapped(&mesh, |p| p.map(|x| x * size));
         stepwise(&scaled, &Loop, criterion, &StepwiseOptions::default())
             .unwrap()
             .mesh

@@ -4,7 +4,7 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use crate::support::*;
-use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup, Tags};
+use limitmesh::mesh::{PolygonSoup, Tags};
 use limitmesh::refine::{
     Exact, ExactOptions, Finish, Frame, Frames, LimitDistanceOptions, RefineError, Replay,
     ReplayError, Traced, exact, exact_frames, limit_distance,
@@ -14,9 +14,7 @@ use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
 
 /// Triangles within a hundredth of the size, fewer where `share` is greater.
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, share: f64) -> Exact {
-    let options = ExactOptions::default()
-        .tolerance(share * mesh.diagonal())
-        .flat_regions(false);
+    let options = within(share * mesh.diagonal()).flat_regions(false);
     exact(mesh, scheme, &options).unwrap()
 }
 
@@ -58,20 +56,16 @@ fn tagged(mesh: Mesh, one_in: usize, seed: u64) -> Mesh {
     {
         if random.below(one_in) == 0 {
             let vertices = topology.ends(h).map(|v| v.0);
-            tags.creases.push(CreaseTag {
-                vertices,
-                sharpness: sharp[random.below(sharp.len())],
-            });
+            tags.creases
+                .push(crease(vertices, sharp[random.below(sharp.len())]));
         }
     }
     for vertex in topology.vertices() {
         if random.below(3 * one_in) > 0 {
             continue;
         }
-        tags.corners.push(CornerTag {
-            vertex: vertex.0,
-            sharpness: sharp[random.below(sharp.len())],
-        });
+        tags.corners
+            .push(corner(vertex.0, sharp[random.below(sharp.len())]));
     }
     mesh.clone().with_tags(tags).unwrap()
 }
@@ -182,11 +176,7 @@ fn vertices_are_on_the_limit_surface_of_each_frame() {
                 replay.frame(control.positions(), &mut frame).unwrap();
                 let [apart, turned] = off(&control, scheme, &refined, &frame);
                 assert!(apart < 1e-13, "{name}, {}, {seed}: {apart}", scheme.name());
-                assert!(
-                    turned < 1e-8,
-                    "{name}, {}, {seed}: normals by {turned}",
-                    scheme.name()
-                );
+                below!(turned, 1e-8, "{name}, {}, {seed}", scheme.name());
             }
         }
     }
@@ -219,10 +209,8 @@ fn what_was_refined_comes_back() {
             assert!(distance(*a, *b) < 1e-8, "{name}, {v}: {a:?} {b:?}");
         }
         for ((h, a), (other, b)) in frame.sides.iter().zip(&refined.sides) {
-            assert!(
-                h == other && distance(*a, *b) < 1e-8,
-                "{name}, {h}: {a:?} {b:?}"
-            );
+            assert_eq!(h, other, "{name}, {a:?}, {b:?}");
+            below!(distance(*a, *b), 1e-8, "{name}, {a:?}, {b:?}");
         }
         let copies = refined.mesh.junctions().vertices.iter();
         for copies in copies {
@@ -282,12 +270,8 @@ fn what_cannot_be_replayed_is_refused() {
         Err(ReplayError::NoOrigins { origins: 0, .. })
     ));
     let refined = of(ExactOptions::default());
-    let other = exact(
-        &mesh,
-        &ModifiedButterfly,
-        &ExactOptions::default().triangles(60),
-    )
-    .unwrap();
+    let options = ExactOptions::default().triangles(60);
+    let other = exact(&mesh, &ModifiedButterfly, &options).unwrap();
     let refusal = Replay::new(&mesh, &ModifiedButterfly, &other);
     assert!(matches!(refusal, Err(ReplayError::Scheme { .. })));
     let few = Mesh::from_triangles(mesh.positions()[..3].to_vec(), vec![[0, 1, 2]]).unwrap();
@@ -314,10 +298,7 @@ fn what_cannot_be_replayed_is_refused() {
 fn any_number_of_threads_gives_the_same_bytes() {
     let mesh = tagged(sheet(12, 10, 9), 8, 4);
     let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = pool(threads);
         pool.install(|| {
             let refined = refined(&mesh, &Loop, 2e-4);
             let replay = Replay::new(&mesh, &Loop, &refined).unwrap();
@@ -368,7 +349,7 @@ fn what_is_proven_of_each_frame_holds() {
     ] {
         let frames = frames(&mesh);
         let tolerance = 8e-3 * mesh.diagonal();
-        let options = ExactOptions::default().tolerance(tolerance);
+        let options = within(tolerance);
         let found = exact_frames(&mesh, &Loop, &frames, &options).unwrap();
         let Frames {
             refined,
@@ -393,10 +374,8 @@ fn what_is_proven_of_each_frame_holds() {
         );
         let mut farthest = 0.0f64;
         for (number, (positions, error)) in frames.iter().zip(errors).enumerate() {
-            assert!(
-                error.certified && error.upper <= tolerance,
-                "{name}, {number}: {error:?}"
-            );
+            assert!(error.certified, "{name}, {number}");
+            at_most!(error.upper, tolerance, "{name}, {number}");
             let control = mesh.clone().with_positions(positions.clone()).unwrap();
             replay.frame(positions, &mut frame).unwrap();
             let shown = refined.clone().moved_to(&frame).unwrap();
@@ -405,16 +384,11 @@ fn what_is_proven_of_each_frame_holds() {
             let measured =
                 limit_distance(shown.mesh.as_triangles(), &control, &Loop, &options).unwrap();
             let (low, high) = (measured.distance.lower(), measured.distance.upper());
-            assert!(
-                low <= error.upper && error.lower <= high,
-                "{name}, {number}: {low}..{high}, {error:?}"
-            );
+            at_most!(low, error.upper, "{name}, {number}");
+            at_most!(error.lower, high, "{name}, {number}");
             farthest = farthest.max(low);
         }
-        assert!(
-            farthest > 0.3 * tolerance,
-            "{name}: refined far too much, {farthest}"
-        );
+        above!(farthest, 0.3 * tolerance, "{name}");
         // No more than one frame after the other needs together.
         let alone = |positions: &Vec<Point>| {
             let control = mesh.clone().with_positions(positions.clone()).unwrap();
@@ -425,17 +399,14 @@ fn what_is_proven_of_each_frame_holds() {
         };
         let alone: Vec<usize> = frames.iter().map(alone).collect();
         let count = refined.mesh.face_count();
-        assert!(
-            count <= alone.iter().sum::<usize>(),
-            "{name}: {count}, {alone:?}"
-        );
+        at_most!(count, alone.iter().sum::<usize>(), "{name}");
     }
 }
 
 #[test]
 fn frames_that_are_none_are_refused() {
     let mesh = octahedron();
-    let options = ExactOptions::default().tolerance(0.01);
+    let options = within(0.01);
     let of =
         |frames: &[Vec<Point>], options: &ExactOptions| exact_frames(&mesh, &Loop, frames, options);
     let own = mesh.positions().to_vec();
@@ -483,13 +454,7 @@ fn frames_of_any_size_are_refined_alike() {
         let all: Vec<Vec<Point>> = frames(&mesh).iter().map(scaled).collect();
         let control = mesh.clone().with_positions(all[0].clone()).unwrap();
         let tolerance = 0.02 * scale * mesh.diagonal();
-        exact_frames(
-            &control,
-            &Loop,
-            &all,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap()
+        exact_frames(&control, &Loop, &all, &within(tolerance)).unwrap()
     };
     let scale = 2f64.powi(400);
     let (here, there) = (of(1.0), of(scale));
@@ -498,9 +463,6 @@ fn frames_of_any_size_are_refined_alike() {
         there.refined.mesh.triangles()
     );
     for (a, b) in here.errors.iter().zip(&there.errors) {
-        assert!(
-            (a.upper * scale - b.upper).abs() <= 1e-6 * b.upper,
-            "{a:?} {b:?}"
-        );
+        at_most!((a.upper * scale - b.upper).abs(), 1e-6 * b.upper, "{a:?}");
     }
 }

@@ -3,40 +3,21 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::flat::washer;
-use crate::support::{exact, tagged_obj};
+use crate::support::{enclosed, exact, model, shared_model, shared_models, within};
 use limitmesh::Mesh;
-use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
-use limitmesh::mesh::{CreaseTag, Tags};
+use limitmesh::measure::{CertifiedOptions, SamplingOptions, hausdorff};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
-fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
-}
-
 fn simplified(control: &Mesh, options: ExactOptions) -> Exact {
     exact(control, &Loop, &options.finish(Finish::Collapsed)).unwrap()
-}
-
-fn within(tolerance: f64) -> ExactOptions {
-    ExactOptions::default().tolerance(tolerance)
 }
 
 /// Checks the interval of a result by a mesh much nearer to the limit surface.
 fn check_interval(control: &Mesh, result: &Exact) {
     let nearer = exact(control, &Loop, &within(0.2 * result.error.upper)).unwrap();
     let options = CertifiedOptions::default();
-    let enclosed = certified_hausdorff(
-        result.mesh.as_triangles(),
-        nearer.mesh.as_triangles(),
-        &options,
-    )
-    .unwrap();
+    let enclosed = enclosed(&result.mesh, &nearer.mesh, &options);
     let enclosed = enclosed.widened(nearer.error.upper);
     assert!(enclosed.lower() <= result.error.upper);
     assert!(result.error.lower <= enclosed.upper());
@@ -88,10 +69,8 @@ fn a_number_of_triangles_holds_within_a_tolerance_too() {
             );
         } else {
             assert_eq!(found.stop, ExactStop::Triangles);
-            assert!(
-                count + 2 >= number && found.error.upper > tolerance,
-                "{number} within {share}: {count}"
-            );
+            at_least!(count + 2, number, "{share}");
+            above!(found.error.upper, tolerance, "{share}");
         }
     }
 }
@@ -110,17 +89,11 @@ fn it_takes_no_more_triangles_than_refinement_alone() {
             let edges = topology
                 .half_edges()
                 .filter(|&h| topology.twin(h).is_some_and(|twin| h.0 < twin.0));
-            let crease = |h| CreaseTag {
-                vertices: topology.ends(h).map(|v| v.0),
-                sharpness: 2.4,
-            };
+            let crease = |h| crate::support::crease(topology.ends(h).map(|v| v.0), 2.4);
             let creases = edges.step_by(3).map(crease).collect();
             control = control
                 .clone()
-                .with_tags(Tags {
-                    creases,
-                    ..Tags::default()
-                })
+                .with_tags(crate::support::creases(creases))
                 .unwrap();
         }
         for share in shares {
@@ -177,16 +150,9 @@ fn parts_lose_triangles_too() {
         let counts = [&result, &plain].map(|found| found.mesh.face_count());
         assert!(2 * counts[0] <= counts[1], "{share}: {counts:?}");
         let found = sampled(&result.mesh, &reference);
-        assert!(
-            result.stop == ExactStop::Met && result.error.upper <= tolerance,
-            "{:?}",
-            result.error
-        );
-        assert!(
-            found <= result.error.upper + chords,
-            "{found} {:?}",
-            result.error
-        );
+        assert_eq!(result.stop, ExactStop::Met);
+        at_most!(result.error.upper, tolerance);
+        at_most!(found, result.error.upper + chords);
     }
 }
 
@@ -209,33 +175,22 @@ fn little_of_the_tolerance_is_left() {
 
 #[test]
 fn triangles_fall_with_the_tolerance_on_a_scanned_mesh() {
-    let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
+    let Some(folder) = shared_models() else {
         return;
     };
-    let control = tagged_obj(&std::fs::read_to_string(folder.join("bunny_3674.obj")).unwrap());
+    let control = shared_model(&folder, "bunny_3674.obj");
     let mut before = usize::MAX;
     for percent in [0.05, 0.055, 0.06, 0.07] {
         let tolerance = 0.01 * percent * control.diagonal();
         let result = simplified(&control, within(tolerance));
         assert!(result.error.upper <= tolerance);
         let count = result.mesh.face_count();
-        assert!(
-            count as f64 <= 1.05 * before as f64,
-            "{count} at {percent} %, {before} before"
-        );
+        at_most!(count as f64, 1.05 * before as f64, "{percent}");
         let plain = exact(&control, &Loop, &within(tolerance))
             .unwrap()
             .mesh
             .face_count();
-        assert!(
-            count < plain * 4 / 5,
-            "{count} at {percent} %, alone {plain}"
-        );
+        below!(count, plain * 4 / 5, "{percent}");
         before = count;
     }
 }

@@ -3,9 +3,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-use crate::support::{Point, Random, creased, cross, distance, dot, exact, minus, peg};
+use crate::support::{
+    Point, Random, creased, cross, distance, dot, exact, mapped, minus, peg, pool, sampled,
+};
 use limitmesh::Mesh;
-use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::mesh::{BoundaryRule, PolygonSoup};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
@@ -107,26 +108,12 @@ fn pegs_follow_their_rims() {
         }
         assert_eq!(per_rim[0], per_rim[1]);
         // Except for some where leaves are divided next to others of the same line that are not.
-        assert!(
-            positions.len() <= 2 * per_rim[0] + 8,
-            "{} {per_rim:?}",
-            positions.len()
-        );
+        at_most!(positions.len(), 2 * per_rim[0] + 8);
         assert_eq!(result.mesh.face_count(), 2 * positions.len() - 4);
         let reference = limit_reference(&mesh, &Loop, 6).unwrap();
-        let samples = SamplingOptions::default().samples(50_000);
-        let apart = hausdorff(
-            result.mesh.as_triangles(),
-            reference.as_triangles(),
-            &samples,
-        )
-        .unwrap();
+        let apart = sampled(&result.mesh, &reference, 50_000);
         // The reference's own chords leave the rims by less than this.
-        assert!(
-            apart.symmetric() <= tolerance + 2e-5,
-            "{}",
-            apart.symmetric()
-        );
+        at_most!(apart, tolerance + 2e-5);
     }
 }
 
@@ -177,14 +164,8 @@ fn strips_are_the_same_points() {
             (area(&merged) - area(&kept)).abs() < 1e-11 * area(&kept),
             "{case}"
         );
-        let samples = SamplingOptions::default().samples(20_000);
-        let apart = hausdorff(
-            merged.mesh.as_triangles(),
-            kept.mesh.as_triangles(),
-            &samples,
-        )
-        .unwrap();
-        assert!(apart.symmetric() < 1e-11, "{case}: {}", apart.symmetric());
+        let apart = sampled(&merged.mesh, &kept.mesh, 20_000);
+        assert!(apart < 1e-11, "{case}: {}", apart);
         assert_eq!(merged.mesh.topology().euler_characteristic(), 1);
         let corners = mesh.vertex_count();
         assert_eq!(
@@ -258,18 +239,8 @@ fn flat_sides_may_go_over_into_round_ones() {
         assert!(8 * inside < merged.mesh.vertex_count(), "{inside}");
         assert!(4 * merged.mesh.face_count() < kept.mesh.face_count());
         let reference = limit_reference(&mesh, &Loop, 5).unwrap();
-        let samples = SamplingOptions::default().samples(50_000);
-        let apart = hausdorff(
-            merged.mesh.as_triangles(),
-            reference.as_triangles(),
-            &samples,
-        )
-        .unwrap();
-        assert!(
-            apart.symmetric() <= tolerance + 5e-5,
-            "{}",
-            apart.symmetric()
-        );
+        let apart = sampled(&merged.mesh, &reference, 50_000);
+        at_most!(apart, tolerance + 5e-5);
     }
 }
 
@@ -277,25 +248,14 @@ fn flat_sides_may_go_over_into_round_ones() {
 #[test]
 fn rounded_coordinates_have_strips_too() {
     let mesh = peg(16);
-    let rounded = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| f64::from(x as f32)))
-        .collect();
-    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let rounded = mapped(&mesh, |p| p.map(|x| f64::from(x as f32)));
     let [exactly, single] =
         [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &within(1e-3)).unwrap());
     assert_eq!(single.mesh.face_count(), exactly.mesh.face_count());
     assert!(single.error.upper <= 1e-3);
     let reference = limit_reference(&rounded, &Loop, 6).unwrap();
-    let samples = SamplingOptions::default().samples(50_000);
-    let apart = hausdorff(
-        single.mesh.as_triangles(),
-        reference.as_triangles(),
-        &samples,
-    )
-    .unwrap();
-    assert!(apart.symmetric() <= 1e-3 + 2e-5, "{}", apart.symmetric());
+    let apart = sampled(&single.mesh, &reference, 50_000);
+    assert!(apart <= 1e-3 + 2e-5, "{}", apart);
 }
 
 /// Two sheets in one place, joined along their border.
@@ -350,10 +310,7 @@ fn threads_change_nothing() {
     let run = || exact(&mesh, &Loop, &within(1e-4)).unwrap();
     let here = run();
     for threads in [1, 3] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = pool(threads);
         let there = pool.install(run);
         assert_eq!(here.mesh.positions(), there.mesh.positions());
         assert_eq!(here.mesh.triangles(), there.mesh.triangles());
@@ -378,14 +335,8 @@ fn sides_may_be_cut_either_way() {
                 assert_eq!(result.stop, ExactStop::Met);
                 result.mesh.face_count()
             });
-        assert!(
-            irregular <= 3 * regular,
-            "within {tolerance}: {irregular}, not {regular}"
-        );
-        assert!(
-            2 * irregular <= whole,
-            "within {tolerance}: {irregular} of {whole}"
-        );
+        at_most!(irregular, 3 * regular, "within {tolerance}");
+        at_most!(2 * irregular, whole, "within {tolerance}");
     }
 }
 
@@ -419,17 +370,12 @@ fn balanced_pegs_take_no_more_triangles() {
                 (ExactStop::Met, ExactStop::Met)
             );
             let [plain, count] = [&plain, &balanced].map(|result| result.mesh.face_count());
-            assert!(
-                count <= plain,
-                "{facets}, {tolerance}: {count} balanced, {plain}"
-            );
+            at_most!(count, plain, "{facets}, {tolerance}");
             let told = exact_estimate(&mesh, &Loop, &options.finish(Finish::Balanced))
                 .unwrap()
                 .triangles;
-            assert!(
-                4 * told <= 6 * count && 4 * count <= 6 * told,
-                "{facets}, {tolerance}: {told}, {count}"
-            );
+            at_most!(4 * told, 6 * count, "{facets}, {tolerance}");
+            at_most!(4 * count, 6 * told, "{facets}, {tolerance}");
         }
     }
 }

@@ -2,12 +2,52 @@
 #![allow(dead_code, missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use limitmesh::Mesh;
+use limitmesh::measure::{
+    CertifiedHausdorff, CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff,
+};
 use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
 use limitmesh::refine::limit_reference;
-use limitmesh::refine::{Exact, ExactOptions, RefineError};
+use limitmesh::refine::{Exact, ExactOptions, RefineError, UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
+use limitmesh::{HalfEdgeId, Mesh, Triangles};
+
+/// Compares two values; shows both, and the case they belong to, where the comparison fails.
+macro_rules! ordered {
+    ($a:expr, $order:tt, $b:expr, $($case:tt)+) => {
+        match (&$a, &$b) {
+            (a, b) => assert!(
+                *a $order *b,
+                "{}: {} is {a:?}, and not {} {b:?}",
+                format_args!($($case)+),
+                stringify!($a),
+                stringify!($order)
+            ),
+        }
+    };
+}
+
+macro_rules! at_most {
+    ($a:expr, $b:expr) => { ordered!($a, <=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <=, $b, $($case)+) };
+}
+
+macro_rules! at_least {
+    ($a:expr, $b:expr) => { ordered!($a, >=, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >=, $b, $($case)+) };
+}
+
+macro_rules! below {
+    ($a:expr, $b:expr) => { ordered!($a, <, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <, $b, $($case)+) };
+}
+
+macro_rules! above {
+    ($a:expr, $b:expr) => { ordered!($a, >, $b, "") };
+    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >, $b, $($case)+) };
+}
 
 pub type Point = [f64; 3];
 
@@ -287,16 +327,10 @@ pub fn tagged_obj(text: &str) -> Mesh {
             }
             Some(&"t") if words[1] == "crease" => {
                 let vertices = [number(3) as u32, number(4) as u32];
-                tags.creases.push(CreaseTag {
-                    vertices,
-                    sharpness: number(5),
-                });
+                tags.creases.push(crease(vertices, number(5)));
             }
             Some(&"t") if words[1] == "corner" => {
-                tags.corners.push(CornerTag {
-                    vertex: number(3) as u32,
-                    sharpness: number(4),
-                });
+                tags.corners.push(corner(number(3) as u32, number(4)));
             }
             _ => {}
         }
@@ -357,10 +391,7 @@ pub fn creased(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Mesh {
         let [a, b] = [h, twin].map(|h| unit(h.face()));
         if (0..3).map(|i| a[i] * b[i]).sum::<f64>() < 30f64.to_radians().cos() {
             let [from, to] = topology.ends(h);
-            creases.push(CreaseTag {
-                vertices: [from.0, to.0],
-                sharpness: INFINITELY_SHARP,
-            });
+            creases.push(crease([from.0, to.0], INFINITELY_SHARP));
         }
     }
     mesh.with_tags(Tags {
@@ -412,4 +443,116 @@ pub fn exact(
         crate::certificate::proofs::check(control, scheme, &found).unwrap();
     }
     Ok(found)
+}
+
+/// A built-in model.
+pub fn model(name: &str) -> Mesh {
+    let soup = limitmesh_models::find(name).unwrap().soup();
+    Mesh::from_soup(&soup, &Default::default()).unwrap().0
+}
+
+/// The folder of shared models; says that a test is skipped where there is none.
+pub fn shared_models() -> Option<PathBuf> {
+    let folder = std::env::var_os("LIMITMESH_MODELS").map(PathBuf::from);
+    if folder.is_none() {
+        // Written directly: the test harness keeps what macros print to itself.
+        let said = std::io::stderr().write_all(b"skipped: LIMITMESH_MODELS is not set\n");
+        said.unwrap();
+    }
+    folder
+}
+
+/// A shared model of triangles, as OBJ.
+pub fn shared_model(folder: &Path, name: &str) -> Mesh {
+    tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap())
+}
+
+/// Refinement to a tolerance.
+pub fn within(tolerance: f64) -> ExactOptions {
+    ExactOptions::default().tolerance(tolerance)
+}
+
+/// The distance of two meshes by so many samples.
+pub fn sampled(a: &Mesh, b: &Mesh, samples: usize) -> f64 {
+    let options = SamplingOptions::default().samples(samples);
+    let found = hausdorff(a.as_triangles(), b.as_triangles(), &options);
+    found.unwrap().symmetric()
+}
+
+/// The distance of two meshes, enclosed.
+pub fn enclosed(a: &Mesh, b: &Mesh, options: &CertifiedOptions) -> CertifiedHausdorff {
+    certified_hausdorff(a.as_triangles(), b.as_triangles(), options).unwrap()
+}
+
+/// So many threads.
+pub fn pool(threads: usize) -> rayon::ThreadPool {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap()
+}
+
+/// Tags on edges and vertices: those for which there is a sharpness, of one in so many.
+pub fn tagged_by(
+    mesh: Mesh,
+    [edges, vertices]: [usize; 2],
+    mut sharpness: impl FnMut(usize) -> Option<f64>,
+) -> Mesh {
+    let mut tags = Tags::default();
+    let topology = mesh.topology();
+    let is_first = |&h: &HalfEdgeId| topology.twin(h).is_some_and(|twin| h < twin);
+    for h in topology.half_edges().filter(is_first) {
+        let vertices = topology.ends(h).map(|v| v.0);
+        let tag = |sharpness| crease(vertices, sharpness);
+        tags.creases.extend(sharpness(edges).map(tag));
+    }
+    for vertex in 0..mesh.vertex_count() as u32 {
+        let tag = |sharpness| CornerTag { vertex, sharpness };
+        tags.corners.extend(sharpness(vertices).map(tag));
+    }
+    mesh.with_tags(tags).unwrap()
+}
+
+/// So many levels of uniform refinement.
+pub fn divided(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
+    let options = UniformOptions::default().levels(levels);
+    uniform(mesh, scheme, &options).unwrap().mesh
+}
+
+pub fn crease(vertices: [u32; 2], sharpness: f64) -> CreaseTag {
+    CreaseTag {
+        vertices,
+        sharpness,
+    }
+}
+
+pub fn corner(vertex: u32, sharpness: f64) -> CornerTag {
+    CornerTag { vertex, sharpness }
+}
+
+/// Creases alone.
+pub fn creases(creases: Vec<CreaseTag>) -> Tags {
+    Tags {
+        creases,
+        ..Tags::default()
+    }
+}
+
+/// Corners alone.
+pub fn corners(corners: Vec<CornerTag>) -> Tags {
+    Tags {
+        corners,
+        ..Tags::default()
+    }
+}
+
+pub fn surface<'a>(positions: &'a [[f64; 3]], triangles: &'a [[u32; 3]]) -> Triangles<'a> {
+    Triangles {
+        positions,
+        triangles,
+    }
+}
+
+/// A mesh with its vertices elsewhere.
+pub fn mapped(mesh: &Mesh, place: impl FnMut(&Point) -> Point) -> Mesh {
+    let positions = mesh.positions().iter().map(place).collect();
+    mesh.clone().with_positions(positions).unwrap()
 }

@@ -143,23 +143,13 @@ fn check_distance(mesh: &Mesh, found: &Within, most: f64) {
     let (input, output) = (mesh.as_triangles(), found.refined.mesh.as_triangles());
     let there = greatest_distance(&points(output, 3), input, most);
     let back = greatest_distance(&points(input, 16), output, most);
-    assert!(
-        there <= most && back <= most,
-        "{there} and {back} of {most}"
-    );
+    at_most!(there, most);
+    at_most!(back, most);
     // The reported lower bound is no more than the sampled distance, up to the distances between
     // samples.
     let sampled = there.max(back);
-    assert!(
-        found.distance.lower <= sampled * 1.02 + 1e-9,
-        "{:?}, {sampled} was sampled",
-        found.distance
-    );
-    assert!(
-        sampled <= found.distance.upper + 1e-9,
-        "{:?}, {sampled} was sampled",
-        found.distance
-    );
+    at_most!(found.distance.lower, sampled * 1.02 + 1e-9);
+    at_most!(sampled, found.distance.upper + 1e-9);
 }
 
 /// By the divergence theorem.
@@ -208,11 +198,7 @@ fn a_ball_of_voxels_becomes_round() {
     check_distance(&mesh, &found, 0.87);
     is_inverted_nowhere(&found);
     // The plain limit surface keeps the steps.
-    let plain = limitmesh::refine::exact(
-        &mesh,
-        &Loop,
-        &limitmesh::refine::ExactOptions::default().tolerance(0.02),
-    );
+    let plain = limitmesh::refine::exact(&mesh, &Loop, &crate::support::within(0.02));
     let (_, of_plain) = spread(plain.unwrap().mesh.positions().iter().map(|&p| length(p)));
     assert!(of_plain > 0.19, "{of_plain}");
 }
@@ -269,11 +255,7 @@ fn each_component_keeps_its_own_volume() {
         own.map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum::<f64>()
     };
     for (is_far, whole) in [(false, volume(&near)), (true, -volume(&far))] {
-        assert!(
-            (of_part(is_far) / whole - 1.0).abs() < 0.01,
-            "{} of {whole}",
-            of_part(is_far)
-        );
+        below!((of_part(is_far) / whole - 1.0).abs(), 0.01, "{whole}");
     }
 }
 
@@ -379,12 +361,8 @@ fn parts_and_cages_stay_within_any_distance() {
 fn a_box_that_no_smooth_surface_is_near_stays_a_box() {
     let mesh = box_of([40.0, 20.0, 5.0]);
     let found = asked(&mesh, 0.04);
-    assert!(
-        found.is_kept() && found.sharpened == 12,
-        "{:?}, {}",
-        found.distance,
-        found.sharpened
-    );
+    assert!(found.is_kept(), "{:?}", found.distance);
+    assert_eq!(found.sharpened, 12, "{:?}", found.distance);
     check_distance(&mesh, &found, 0.04);
     assert!((volume(&found.refined.mesh) - 4000.0).abs() < 1e-6);
     // Round where there is room.
@@ -398,12 +376,8 @@ fn a_box_that_no_smooth_surface_is_near_stays_a_box() {
 fn only_what_has_to_be_sharp_is() {
     let mesh = column(64, 4.0, false);
     let found = asked(&mesh, 0.01);
-    assert!(
-        found.is_kept() && found.sharpened == 128,
-        "{:?}, {}",
-        found.distance,
-        found.sharpened
-    );
+    assert!(found.is_kept(), "{:?}", found.distance);
+    assert_eq!(found.sharpened, 128, "{:?}", found.distance);
     check_distance(&mesh, &found, 0.01);
     // Rounder than the polygon, whose sides are 1.2e-3 nearer to the axis in their middle.
     let radius = |p: &Point| p[0].hypot(p[1]);
@@ -424,11 +398,7 @@ fn a_tiny_distance_does_not_take_millions_of_triangles() {
         let found = asked(&mesh, most);
         assert!(found.is_kept(), "{:?}", found.distance);
         let triangles = found.refined.mesh.face_count();
-        assert!(
-            triangles <= 4 * mesh.face_count(),
-            "{triangles} of {}",
-            mesh.face_count()
-        );
+        at_most!(triangles, 4 * mesh.face_count());
         check_distance(&mesh, &found, most);
     }
 }
@@ -457,10 +427,7 @@ fn corners_and_creases_of_the_file_stay() {
 fn the_same_comes_out_for_any_number_of_threads() {
     let mesh = ball(6);
     let of = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = pool(threads);
         let found = pool.install(|| asked(&mesh, 0.8));
         (
             found.refined.mesh.positions().to_vec(),
@@ -484,10 +451,7 @@ fn smoothing_is_observed_and_ends_when_it_is_told_to() {
         ControlFlow::Continue(())
     });
     assert!(whole.is_ok() && calls > 100, "{calls}");
-    assert!(
-        longest < Duration::from_secs(2),
-        "{longest:?} without a word"
-    );
+    below!(longest, Duration::from_secs(2));
     for stop in [1, 50, calls / 2] {
         let mut calls = 0;
         let found = within_observed(&mesh, &Loop, &options, &mut |_: &Progress| {
@@ -512,16 +476,10 @@ fn what_makes_no_sense_is_refused() {
         let refused = within(&mesh, &Loop, &WithinOptions::default().within(length));
         assert!(matches!(refused, Err(RefineError::Mesh(_))), "{length}");
     }
-    let refused = within(
-        &mesh,
-        &Loop,
-        &WithinOptions::default().within(0.1).tolerance(Some(0.2)),
-    );
+    let options = WithinOptions::default().within(0.1).tolerance(Some(0.2));
+    let refused = within(&mesh, &Loop, &options);
     assert!(matches!(refused, Err(RefineError::Mesh(_))));
-    let refused = within(
-        &mesh,
-        &ModifiedButterfly,
-        &WithinOptions::default().within(0.1),
-    );
+    let options = WithinOptions::default().within(0.1);
+    let refused = within(&mesh, &ModifiedButterfly, &options);
     assert!(refused.is_err_and(|error| error.to_string().contains("butterfly")));
 }

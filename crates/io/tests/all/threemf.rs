@@ -39,6 +39,14 @@ fn package(model: &str, more: &[(&str, &[u8])]) -> Vec<u8> {
     archive(&parts)
 }
 
+/// A triangle from all of a face.
+fn whole(face: usize) -> Source {
+    Source {
+        face,
+        corners: None,
+    }
+}
+
 /// The raw bytes of all parts of an archive, compressed as they are.
 fn raw(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
     let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
@@ -148,10 +156,7 @@ fn only_triangles_change() {
         // Each triangle in two, in another order.
         let positions: Vec<[f64; 3]> = (0..9).map(|i| [f64::from(i), 0.1, -1e-30]).collect();
         let triangles: Vec<[u32; 3]> = (0..8).map(|i| [i, i + 1, (i + 2) % 9]).collect();
-        let source = |triangle: usize| Source {
-            face: (7 - triangle) / 2,
-            corners: None,
-        };
+        let source = |triangle: usize| whole((7 - triangle) / 2);
         let keeps = |_: &str| true;
         let new = NewTriangles {
             positions: &positions,
@@ -228,10 +233,7 @@ fn volumes_are_numbered_anew() {
         1,
     );
     assert_eq!(written, expected);
-    let nothing = |_: usize| Source {
-        face: 1,
-        corners: None,
-    };
+    let nothing = |_: usize| whole(1);
     let new = NewTriangles {
         source: &nothing,
         ..new

@@ -182,6 +182,17 @@ proptest! {
     }
 }
 
+fn crease(vertices: [u32; 2], sharpness: f64) -> CreaseTag {
+    CreaseTag {
+        vertices,
+        sharpness,
+    }
+}
+
+fn corner(vertex: u32, sharpness: f64) -> CornerTag {
+    CornerTag { vertex, sharpness }
+}
+
 const POSITIONS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 2.0, 1e-9]];
 const TRIANGLES: [[u32; 3]; 1] = [[0, 1, 2]];
 
@@ -195,14 +206,8 @@ const COLOURS: [[u8; 3]; 3] = [[255, 0, 128], [1, 2, 3], [0, 0, 0]];
 /// The text of each format, which other programs must understand.
 #[test]
 fn text_is_as_the_formats_have_it() {
-    let creases = [CreaseTag {
-        vertices: [0, 2],
-        sharpness: 10.0,
-    }];
-    let corners = [CornerTag {
-        vertex: 1,
-        sharpness: 2.5,
-    }];
+    let creases = [crease([0, 2], 10.0)];
+    let corners = [corner(1, 2.5)];
     let own = triangle()
         .normals(&NORMALS)
         .colours(&COLOURS)
@@ -263,14 +268,8 @@ fn binary_is_as_the_formats_have_it() {
 fn what_does_not_fit_together_is_refused() {
     let plain = triangle();
     let beyond = output(&POSITIONS, &[[0, 1, 2], [2, 1, 3]]);
-    let creases = [CreaseTag {
-        vertices: [1, 9],
-        sharpness: 1.0,
-    }];
-    let corners = [CornerTag {
-        vertex: 3,
-        sharpness: 1.0,
-    }];
+    let creases = [crease([1, 9], 1.0)];
+    let corners = [corner(3, 1.0)];
     let unknown = plain.quality(&[f64::NAN; 3]);
     for (format, output, message) in [
         (
@@ -515,11 +514,8 @@ fn places_that_cannot_be_written_to() {
     fs::create_dir(&is_folder).unwrap();
     let message = write_whole(&is_folder, b"").unwrap_err().to_string();
     assert!(message.contains("directory"), "{message}");
-    let unknown = write(
-        &folder.path().join("mesh.xyz"),
-        &triangle(),
-        &WriteOptions::default(),
-    );
+    let options = WriteOptions::default();
+    let unknown = write(&folder.path().join("mesh.xyz"), &triangle(), &options);
     assert!(matches!(unknown, Err(WriteError::UnknownFormat(_))));
     assert_eq!(names(folder.path()), ["folder.ply"]);
 }

@@ -4,6 +4,7 @@
 
 use core::ops::ControlFlow;
 
+use crate::support::pool;
 use limitmesh::mesh::SplitSurface;
 use limitmesh::refine::{ExactOptions, exact};
 use limitmesh::scheme::Loop;
@@ -15,40 +16,22 @@ use limitmesh_render::{
 const SIZE: (u32, u32) = (150, 120);
 
 fn control(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
+    let soup = limitmesh_models::find(name).unwrap().soup();
+    Mesh::from_soup(&soup, &Default::default()).unwrap().0
 }
 
 /// The limit surface by rays, and a mesh of it to 1/20 of a pixel with its limit normals.
 fn pictures(control: &Mesh, camera: impl Fn(&SplitSurface) -> Camera) -> [Image; 2] {
     let tolerance = 0.0003 * control.diagonal();
-    let fine = exact(
-        control,
-        &Loop,
-        &ExactOptions::default().tolerance(tolerance),
-    )
-    .unwrap()
-    .split_surface();
+    let options = ExactOptions::default().tolerance(tolerance);
+    let fine = exact(control, &Loop, &options).unwrap().split_surface();
     let (camera, style) = (camera(&fine), Style::default());
     let surface = LimitSurface::new(control, &Loop).unwrap();
     let rays = RayCaster::new(&surface).unwrap();
     let by_rays = render_exact(&rays, &camera, &style, SIZE).unwrap();
-    let normals = Some(&fine.normals[..]);
-    let of_mesh = render(
-        fine.as_triangles(),
-        normals,
-        None,
-        &camera,
-        &style,
-        SIZE.0,
-        SIZE.1,
-    )
-    .unwrap();
-    [by_rays, of_mesh]
+    let (mesh, normals) = (fine.as_triangles(), Some(&fine.normals[..]));
+    let of_mesh = render(mesh, normals, None, &camera, &style, SIZE.0, SIZE.1);
+    [by_rays, of_mesh.unwrap()]
 }
 
 /// Pixels that differ by more than so much in a channel, and of them those with nothing but surface, or nothing but background, around
@@ -75,23 +58,12 @@ fn differing([a, b]: &[Image; 2], by: u8) -> (usize, usize) {
 #[test]
 fn pictures_are_those_of_fine_meshes_but_along_outlines() {
     let tight = |fine: &SplitSurface| {
-        Camera::fit_tightly(
-            fine.as_triangles(),
-            ViewDirection::default(),
-            SIZE.0,
-            SIZE.1,
-        )
-        .unwrap()
+        let view = ViewDirection::default();
+        Camera::fit_tightly(fine.as_triangles(), view, SIZE.0, SIZE.1).unwrap()
     };
     let near = |fine: &SplitSurface| {
-        Camera::fit_perspective(
-            fine.as_triangles(),
-            ViewDirection::front(),
-            40.0,
-            SIZE.0,
-            SIZE.1,
-        )
-        .unwrap()
+        let view = ViewDirection::front();
+        Camera::fit_perspective(fine.as_triangles(), view, 40.0, SIZE.0, SIZE.1).unwrap()
     };
     let sphere = pictures(&control("sphere"), tight);
     let torus = pictures(&control("torus"), near);
@@ -120,13 +92,7 @@ fn pictures_are_the_same_bytes_on_any_number_of_threads() {
     let rays = RayCaster::new(&surface).unwrap();
     let camera = Camera::fit(control.as_triangles(), ViewDirection::side(), 60, 40).unwrap();
     let draw = || render_exact(&rays, &camera, &Style::default(), (60, 40)).unwrap();
-    let with = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap()
-            .install(draw)
-    };
+    let with = |threads| pool(threads).install(draw);
     assert_eq!(with(1), with(3));
 }
 

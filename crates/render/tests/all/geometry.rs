@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::support::linear;
 use limitmesh::Triangles;
 use limitmesh_render::{
     Camera, Image, Lighting, RenderError, Shading, Style, ViewDirection, render,
@@ -93,15 +94,6 @@ fn mask() -> Style {
 /// The part of the picture that a mask covers, in pixels.
 fn covered(image: &Image) -> f64 {
     image.rgba().chunks_exact(4).map(|p| linear(p[0])).sum()
-}
-
-fn linear(channel: u8) -> f64 {
-    let c = f64::from(channel) / 255.0;
-    if c <= 0.04045 {
-        c / 12.92
-    } else {
-        ((c + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 fn draw(shape: &Shape, camera: &Camera, style: &Style, width: u32, height: u32) -> Image {
@@ -198,16 +190,8 @@ fn surfaces_that_cross_are_cut_where_they_meet() {
     let colours: Vec<[u8; 3]> = (0..8)
         .map(|v| if v < 4 { [255, 0, 0] } else { [0, 255, 0] })
         .collect();
-    let image = render(
-        shape.view(),
-        None,
-        Some(&colours),
-        &pixel_camera(20),
-        &mask(),
-        20,
-        20,
-    )
-    .unwrap();
+    let (camera, style) = (pixel_camera(20), mask());
+    let image = render(shape.view(), None, Some(&colours), &camera, &style, 20, 20).unwrap();
     for y in 2..18 {
         for x in 2..18 {
             let [r, g, ..] = image.pixel(x, y).unwrap();
@@ -238,13 +222,8 @@ fn outside_and_inside_have_their_own_colours() {
 fn light_falls_from_the_upper_left() {
     let camera = Camera::orthographic([0.0; 3], ViewDirection::front(), 1.1).unwrap();
     for shading in [Shading::Flat, Shading::Smooth] {
-        let image = draw(
-            &Shape::sphere(60),
-            &camera,
-            &Style::default().shading(shading),
-            110,
-            110,
-        );
+        let style = Style::default().shading(shading);
+        let image = draw(&Shape::sphere(60), &camera, &style, 110, 110);
         let grey = |x, y| image.pixel(x, y).unwrap()[1];
         assert!(
             grey(35, 35) > grey(75, 75) + 30 && grey(55, 30) > grey(55, 80) + 30,
@@ -260,16 +239,8 @@ fn smooth_normals_hide_the_triangles() {
     let picture = |slices: u32, shading: Shading| {
         let sphere = Shape::sphere(slices);
         let style = Style::default().shading(shading);
-        render(
-            sphere.view(),
-            Some(&sphere.positions),
-            None,
-            &camera,
-            &style,
-            100,
-            100,
-        )
-        .unwrap()
+        let normals = Some(&sphere.positions[..]);
+        render(sphere.view(), normals, None, &camera, &style, 100, 100).unwrap()
     };
     let farthest = |a: &Image, b: &Image| {
         let pixels = (30..70).flat_map(|y| (30..70).map(move |x| (x, y)));
@@ -381,13 +352,8 @@ fn the_whole_surface_is_framed() {
 #[test]
 fn a_transparent_background_stays_transparent() {
     let square = Shape::default().rectangle([-10.0, -10.0], [10.5, 10.0], 0.0);
-    let image = draw(
-        &square,
-        &pixel_camera(40),
-        &mask().background([0; 4]),
-        40,
-        40,
-    );
+    let style = mask().background([0; 4]);
+    let image = draw(&square, &pixel_camera(40), &style, 40, 40);
     assert_eq!(image.pixel(0, 0), Some([0; 4]));
     assert_eq!(image.pixel(20, 20), Some([255; 4]));
     let [r, _, _, opacity] = image.pixel(30, 20).unwrap();
@@ -478,15 +444,8 @@ fn bad_input_is_an_error() {
     }
     assert!(result(&good, &style.samples(3), 10, 10).is_err());
     assert!(result(&good, &style.wire_width(f32::NAN), 10, 10).is_err());
-    let few = render(
-        good.view(),
-        Some(&[[0.0; 3]]),
-        None,
-        &camera,
-        &style,
-        10,
-        10,
-    );
+    let normals = [[0.0; 3]];
+    let few = render(good.view(), Some(&normals), None, &camera, &style, 10, 10);
     assert!(matches!(few, Err(RenderError::Count { .. })));
     assert!(Camera::fit(good.view(), ViewDirection::along([0.0; 3]), 10, 10).is_err());
     assert!(Camera::perspective([1.0; 3], [1.0; 3], [0.0, 1.0, 0.0], 40.0).is_err());

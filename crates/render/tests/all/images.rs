@@ -3,10 +3,11 @@
 
 #![allow(clippy::unwrap_used)]
 
+use crate::support::{halves, own_colours, pool, square};
 use limitmesh::Triangles;
 use limitmesh_render::{
-    Align, Camera, ColourBar, ColourMap, GridStyle, Image, Lighting, Panel, Scale, Style,
-    TextStyle, ViewDirection, grid, render, render_scalar, text_width,
+    Align, Camera, ColourBar, ColourMap, GridStyle, Image, Panel, Scale, Style, TextStyle,
+    ViewDirection, grid, render, render_scalar, text_width,
 };
 
 const WHITE: [u8; 4] = [255; 4];
@@ -24,12 +25,11 @@ fn decoded(file: &[u8]) -> (png::OutputInfo, Vec<u8>) {
 #[test]
 fn a_png_file_holds_the_pixels() {
     let bytes: Vec<u8> = (0..5 * 3 * 4u32).map(|i| (i * 37 % 251) as u8).collect();
-    let (info, read) = decoded(
-        &Image::from_rgba(5, 3, bytes.clone())
-            .unwrap()
-            .encode_png()
-            .unwrap(),
-    );
+    let again = |bytes: &[u8]| {
+        let image = Image::from_rgba(5, 3, bytes.to_vec()).unwrap();
+        decoded(&image.encode_png().unwrap())
+    };
+    let (info, read) = again(&bytes);
     assert_eq!(
         (info.width, info.height, info.color_type),
         (5, 3, png::ColorType::Rgba)
@@ -39,12 +39,7 @@ fn a_png_file_holds_the_pixels() {
         .chunks_exact(4)
         .flat_map(|p| [p[0], p[1], p[2], 255])
         .collect();
-    let (info, read) = decoded(
-        &Image::from_rgba(5, 3, opaque.clone())
-            .unwrap()
-            .encode_png()
-            .unwrap(),
-    );
+    let (info, read) = again(&opaque);
     assert_eq!(info.color_type, png::ColorType::Rgb);
     let expected: Vec<u8> = opaque
         .chunks_exact(4)
@@ -180,43 +175,18 @@ fn a_grid_places_each_picture_in_its_cell() {
     assert!(grid(&captioned, &GridStyle::default().columns(0)).is_err());
 }
 
-/// A square of 100 pixels seen face on.
-const SQUARE: [[f64; 3]; 4] = [
-    [-1.0, -1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [1.0, 1.0, 0.0],
-    [-1.0, 1.0, 0.0],
-];
-const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
-
-/// Light of strength 1 from everywhere shows the map's own colours on a surface that faces the viewer.
-fn own_colours() -> Style {
-    let mut lighting = Lighting::even();
-    (lighting.key, lighting.fill) = (0.0, 0.0);
-    // Half of the sky and half of the ground light such a surface: 0.42 + 0.58 / 2.
-    lighting.ambient = 1.0 / 0.71;
-    Style::default().lighting(lighting)
-}
-
 #[test]
 fn numbers_and_not_colours_are_interpolated() {
-    let surface = Triangles {
-        positions: &SQUARE,
-        triangles: &HALVES,
-    };
+    // 100 pixels seen face on.
+    let positions = square(1.0);
     let camera = Camera::orthographic([0.0; 3], ViewDirection::front(), 1.0).unwrap();
+    let drawn = |values: &[f64], scale: &Scale| {
+        let (surface, style) = (halves(&positions), own_colours());
+        render_scalar(surface, None, values, scale, &camera, &style, (100, 100))
+    };
     let values = [0.0, 10.0, 10.0, 0.0];
     let scale = Scale::new(0.0, 10.0).with_map(ColourMap::Ember);
-    let image = render_scalar(
-        surface,
-        None,
-        &values,
-        &scale,
-        &camera,
-        &own_colours(),
-        (100, 100),
-    )
-    .unwrap();
+    let image = drawn(&values, &scale).unwrap();
     for x in 0..70u32 {
         let expected = ColourMap::Ember.at((f64::from(x) + 0.5) / 100.0);
         for y in [3, 50, 97] {
@@ -232,43 +202,9 @@ fn numbers_and_not_colours_are_interpolated() {
             }
         }
     }
-    assert!(
-        render_scalar(
-            surface,
-            None,
-            &[0.0; 3],
-            &scale,
-            &camera,
-            &own_colours(),
-            (9, 9)
-        )
-        .is_err()
-    );
-    assert!(
-        render_scalar(
-            surface,
-            None,
-            &[f64::NAN; 4],
-            &scale,
-            &camera,
-            &own_colours(),
-            (9, 9)
-        )
-        .is_err()
-    );
-    let swapped = Scale::new(1.0, 0.0);
-    assert!(
-        render_scalar(
-            surface,
-            None,
-            &values,
-            &swapped,
-            &camera,
-            &own_colours(),
-            (9, 9)
-        )
-        .is_err()
-    );
+    assert!(drawn(&[0.0; 3], &scale).is_err());
+    assert!(drawn(&[f64::NAN; 4], &scale).is_err());
+    assert!(drawn(&values, &Scale::new(1.0, 0.0)).is_err());
 }
 
 /// Seen in perspective, equal lengths on a receding plane are not equally long; the values must follow.
@@ -280,24 +216,13 @@ fn values_are_interpolated_in_space_and_not_in_the_picture() {
         [1.0, 0.0, -8.0],
         [-1.0, 0.0, -8.0],
     ];
-    let surface = Triangles {
-        positions: &floor,
-        triangles: &HALVES,
-    };
+    let surface = halves(&floor);
     let camera =
         Camera::perspective([0.0, 1.0, 2.0], [0.0, 0.0, -2.0], [0.0, 1.0, 0.0], 40.0).unwrap();
     let values = [0.0, 0.0, 8.0, 8.0];
     let scale = Scale::new(0.0, 8.0).with_map(ColourMap::Grey);
-    let image = render_scalar(
-        surface,
-        None,
-        &values,
-        &scale,
-        &camera,
-        &own_colours(),
-        (200, 200),
-    )
-    .unwrap();
+    let style = own_colours();
+    let image = render_scalar(surface, None, &values, &scale, &camera, &style, (200, 200)).unwrap();
     let plain = |depth: f64| {
         let [x, y] = camera.project([0.2, 0.0, -depth], 200, 200).unwrap();
         f64::from(image.pixel(x as u32, y as u32).unwrap()[1])
@@ -384,11 +309,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let picture = || render(surface, None, None, &camera, &style, 150, 110).unwrap();
     let here = picture();
     for threads in [1, 2, 5] {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        assert!(pool.install(picture) == here, "{threads} threads");
+        assert!(pool(threads).install(picture) == here, "{threads} threads");
     }
 }
 

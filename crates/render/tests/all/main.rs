@@ -3,5 +3,6 @@
 mod by_rays;
 mod geometry;
 mod images;
+mod support;
 mod textures;
 mod wires;

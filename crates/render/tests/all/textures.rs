@@ -2,35 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
-use limitmesh::Triangles;
+use crate::support::{halves, linear, own_colours, square};
 use limitmesh_render::{
-    Camera, Covering, Image, Lighting, Material, RenderError, Style, Texture, ViewDirection,
-    render_textured,
+    Camera, Covering, Image, Material, RenderError, Style, Texture, ViewDirection, render_textured,
 };
-
-/// Light by which a surface has its own colour.
-fn plain() -> Style {
-    let mut lighting = Lighting::even();
-    // From above and from below alike, as the surface faces the viewer: (0.42 + 0.58/2) of the ambient light.
-    (lighting.key, lighting.fill, lighting.ambient) = (0.0, 0.0, 1.0 / 0.71);
-    Style::default()
-        .background([0, 0, 0, 255])
-        .lighting(lighting)
-}
-
-/// A square of `size` pixels in front of the viewer, one unit a pixel.
-fn square(size: f64) -> ([[f64; 3]; 4], [[u32; 3]; 2]) {
-    let half = size / 2.0;
-    (
-        [
-            [-half, -half, 0.0],
-            [half, -half, 0.0],
-            [half, half, 0.0],
-            [-half, half, 0.0],
-        ],
-        [[0, 1, 2], [0, 2, 3]],
-    )
-}
 
 fn camera(height: u32) -> Camera {
     Camera::orthographic([0.0; 3], ViewDirection::front(), f64::from(height) / 2.0).unwrap()
@@ -60,37 +35,21 @@ fn quarters() -> Texture {
 }
 
 fn drawn(covering: &Covering<'_>, size: u32) -> Image {
-    let (positions, triangles) = square(f64::from(size));
-    let surface = Triangles {
-        positions: &positions,
-        triangles: &triangles,
-    };
+    let positions = square(0.5 * f64::from(size));
+    let (camera, style) = (camera(size), own_colours().background([0, 0, 0, 255]));
     render_textured(
-        surface,
+        halves(&positions),
         None,
         covering,
-        &camera(size),
-        &plain(),
+        &camera,
+        &style,
         (size, size),
     )
     .unwrap()
 }
 
-/// Alike in linear light, to a fiftieth of white.
-fn is_near(pixel: [u8; 4], colour: [u8; 3]) -> bool {
-    let linear = |c: u8| {
-        let c = f64::from(c) / 255.0;
-        if c <= 0.04045 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        }
-    };
-    (0..3).all(|i| (linear(pixel[i]) - linear(colour[i])).abs() < 0.02)
-}
-
-#[test]
-fn a_texture_lies_with_its_corners_where_coordinates_say() {
+/// A square of so many quartered textures.
+fn quartered(times: f64, size: u32) -> Image {
     let materials = [Material {
         colour: [1.0; 3],
         texture: Some(quarters()),
@@ -98,10 +57,20 @@ fn a_texture_lies_with_its_corners_where_coordinates_say() {
     let covering = Covering {
         materials: &materials,
         of_triangle: &[0, 0],
-        corners: &corners(1.0),
+        corners: &corners(times),
     };
+    drawn(&covering, size)
+}
+
+/// Alike in linear light, to a fiftieth of white.
+fn is_near(pixel: [u8; 4], colour: [u8; 3]) -> bool {
+    (0..3).all(|i| (linear(pixel[i]) - linear(colour[i])).abs() < 0.02)
+}
+
+#[test]
+fn a_texture_lies_with_its_corners_where_coordinates_say() {
     // A size for which the middles of the texture's pixels are middles of the picture's, rows from above.
-    let image = drawn(&covering, 42);
+    let image = quartered(1.0, 42);
     for (i, colour) in COLOURS.into_iter().enumerate() {
         let (x, y) = (10 + 21 * (i as u32 % 2), 10 + 21 * (i as u32 / 2));
         let pixel = image.pixel(x, y).unwrap();
@@ -115,16 +84,7 @@ fn a_texture_lies_with_its_corners_where_coordinates_say() {
 /// Where a pixel of the picture sees many of the texture, it has their mean in linear light.
 #[test]
 fn small_textures_become_their_mean() {
-    let materials = [Material {
-        colour: [1.0; 3],
-        texture: Some(quarters()),
-    }];
-    let covering = Covering {
-        materials: &materials,
-        of_triangle: &[0, 0],
-        corners: &corners(400.0),
-    };
-    let image = drawn(&covering, 40);
+    let image = quartered(400.0, 40);
     let linear = |c: f64| ((c / 255.0 + 0.055) / 1.055).powf(2.4);
     let mean = 0.5 * linear(200.0);
     let grey = ((1.055 * mean.powf(1.0 / 2.4) - 0.055) * 255.0).round() as u8;
@@ -159,48 +119,36 @@ fn materials_are_those_of_their_triangles() {
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let (positions, triangles) = square(10.0);
-    let surface = Triangles {
-        positions: &positions,
-        triangles: &triangles,
-    };
+    let positions = square(5.0);
     let drawn = |of_triangle: &[u32], corners: &[[f64; 2]]| {
         let covering = Covering {
             materials: &[],
             of_triangle,
             corners,
         };
+        let (camera, style) = (camera(10), Style::default());
         render_textured(
-            surface,
+            halves(&positions),
             None,
             &covering,
-            &camera(10),
-            &Style::default(),
+            &camera,
+            &style,
             (10, 10),
         )
     };
     let mut broken = corners(1.0);
     broken[4] = [0.0, f64::NAN];
-    assert!(matches!(
-        drawn(&[0], &corners(1.0)),
-        Err(RenderError::Count {
-            met: 1,
-            expected: 2,
-            ..
-        })
-    ));
-    assert!(matches!(
-        drawn(&[0, 0], &corners(1.0)[..5]),
-        Err(RenderError::Count {
-            met: 5,
-            expected: 6,
-            ..
-        })
-    ));
-    assert!(matches!(
-        drawn(&[0, 0], &broken),
-        Err(RenderError::NotFinite { index: 4, .. })
-    ));
+    let counts = |drawn| match drawn {
+        Err(RenderError::Count { met, expected, .. }) => Some((met, expected)),
+        _ => None,
+    };
+    assert_eq!(counts(drawn(&[0], &corners(1.0))), Some((1, 2)));
+    assert_eq!(counts(drawn(&[0, 0], &corners(1.0)[..5])), Some((5, 6)));
+    let place = |drawn| match drawn {
+        Err(RenderError::NotFinite { index, .. }) => Some(index),
+        _ => None,
+    };
+    assert_eq!(place(drawn(&[0, 0], &broken)), Some(4));
     // The same picture whatever is beyond single precision.
     let far = corners(1e300);
     assert!(drawn(&[0, 0], &far).is_ok());

@@ -65,12 +65,8 @@ fn the_readme_is_short() {
         .into_iter()
         .find(|page| page.name == "README.md")
         .expect("a README");
-    assert!(
-        text.lines().count() <= 150 && text.len() <= 8192,
-        "{} lines, {} bytes",
-        text.lines().count(),
-        text.len()
-    );
+    at_most!(text.lines().count(), 150);
+    at_most!(text.len(), 8192);
 }
 
 /// The links of a page below the repository, outside code.

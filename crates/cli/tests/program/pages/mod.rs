@@ -5,6 +5,7 @@ mod commands;
 mod links;
 mod reports;
 
+use crate::common::text;
 use std::path::{Path, PathBuf};
 
 use crate::kept::root;
@@ -29,7 +30,7 @@ fn pages() -> Vec<Page> {
         let name = below.to_str().expect("a name in UTF-8").to_owned();
         Page {
             name,
-            text: std::fs::read_to_string(file).expect("a page in UTF-8"),
+            text: text(file),
         }
     };
     files.into_iter().map(page).collect()

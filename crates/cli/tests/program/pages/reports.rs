@@ -4,14 +4,12 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{folder, json_of, run};
+use crate::common::{folder, json_file, json_of, run};
 use crate::kept::root;
 
 #[test]
 fn reports_are_as_the_schema_says() {
-    let text =
-        std::fs::read_to_string(root().join("docs/reports.schema.json")).expect("the schema");
-    let schema: Value = serde_json::from_str(&text).expect("JSON");
+    let schema = json_file(root().join("docs/reports.schema.json"));
     let folder = folder();
     let models = root().join("examples/models");
     let [report, output] = ["report.json", "out.glb"].map(|name| folder.path().join(name));
@@ -62,8 +60,7 @@ fn reports_are_as_the_schema_says() {
         let _ = std::fs::remove_file(&output);
         let done = run(command, paths);
         assert!(done.code < Some(2), "{command}: {}", done.stderr);
-        let text = std::fs::read_to_string(&report).expect("a report");
-        check(&schema, name, &serde_json::from_str(&text).expect("JSON"));
+        check(&schema, name, &json_file(&report));
         std::fs::remove_file(&report).expect("removed");
     }
     let printed: [(&str, &[&Path], &str); 6] = [

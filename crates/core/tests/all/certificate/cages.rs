@@ -3,10 +3,10 @@
 //! with holes, flat ones, tiny, huge and far from the origin.
 
 use limitmesh::mesh::MeshError;
-use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::mesh::{INFINITELY_SHARP, Tags};
 use limitmesh::{Mesh, PolygonSoup};
 
-use crate::support::{Point, Random, lumpy, octahedron, sheet, torus};
+use crate::support::{Point, Random, corner, crease, lumpy, octahedron, sheet, torus};
 
 /// Cages that are made for one seed at most, until one has faces.
 const MOST_TRIES: usize = 100;
@@ -282,19 +282,13 @@ fn tagged(mesh: Mesh, random: &mut Random, what: &mut String) -> Mesh {
         for i in 0..3 {
             let vertices = [triangle[i], triangle[(i + 1) % 3]];
             if random.below(200) < share {
-                tags.creases.push(CreaseTag {
-                    vertices,
-                    sharpness: sharpness(random),
-                });
+                tags.creases.push(crease(vertices, sharpness(random)));
             }
         }
     }
     for vertex in 0..mesh.vertex_count() as u32 {
         if random.below(800) < share {
-            tags.corners.push(CornerTag {
-                vertex,
-                sharpness: sharpness(random),
-            });
+            tags.corners.push(corner(vertex, sharpness(random)));
         }
     }
     let kind = if fades { "fading " } else { "" };

@@ -6,7 +6,7 @@ use limitmesh::mesh::Mesh;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish};
 use limitmesh::scheme::Loop;
 
-use crate::support::{Point, exact, octahedron, sheet};
+use crate::support::{Point, corner, exact, octahedron, sheet, within};
 
 /// More than enough for each of these, for an unoptimised build on a busy machine too.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -14,12 +14,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 fn refined(control: &Mesh, options: &ExactOptions) -> Exact {
     let start = Instant::now();
     let result = exact(control, &Loop, options).unwrap();
-    assert!(
-        start.elapsed() < PATIENCE,
-        "{:?} for {} faces",
-        start.elapsed(),
-        control.face_count()
-    );
+    below!(start.elapsed(), PATIENCE, "{}", control.face_count());
     result.mesh.validate().unwrap();
     let [before, after] =
         [control, &result.mesh].map(|mesh| mesh.topology().euler_characteristic());
@@ -31,11 +26,7 @@ fn refined(control: &Mesh, options: &ExactOptions) -> Exact {
         control.as_triangles().bounding_box()
     );
     if let (ExactStop::Met, Some(tolerance)) = (result.stop, options.goals.tolerance) {
-        assert!(
-            result.error.upper <= tolerance,
-            "{:?} of {tolerance:e}",
-            result.error
-        );
+        at_most!(result.error.upper, tolerance);
     }
     result
 }
@@ -190,11 +181,7 @@ fn flat_meshes_are_divided_only_along_their_outlines() {
     both_balances(|options| {
         let result = refined(&control, &options.clone().tolerance(1e-3));
         assert_eq!(result.stop, ExactStop::Met);
-        assert!(
-            result.mesh.face_count() < 2000,
-            "{} triangles",
-            result.mesh.face_count()
-        );
+        below!(result.mesh.face_count(), 2000);
         let result = refined(
             &control,
             &options.tolerance(1e-300).max_triangles(Some(2000)),
@@ -205,10 +192,7 @@ fn flat_meshes_are_divided_only_along_their_outlines() {
     let creases = |mesh: &Mesh| {
         let tags = limitmesh::mesh::Tags {
             corners: (0..mesh.vertex_count() as u32)
-                .map(|vertex| limitmesh::mesh::CornerTag {
-                    vertex,
-                    sharpness: f64::INFINITY,
-                })
+                .map(|vertex| corner(vertex, f64::INFINITY))
                 .collect(),
             ..Default::default()
         };
@@ -218,16 +202,9 @@ fn flat_meshes_are_divided_only_along_their_outlines() {
         &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.3, 0.9, 0.7]],
         &[[0, 1, 2]],
     );
-    let result = refined(
-        &creases(&control),
-        &ExactOptions::default().tolerance(1e-300),
-    );
+    let result = refined(&creases(&control), &within(1e-300));
     assert_eq!(result.stop, ExactStop::Rounding);
-    assert!(
-        result.mesh.face_count() < 100,
-        "{} triangles",
-        result.mesh.face_count()
-    );
+    below!(result.mesh.face_count(), 100);
     assert!(result.statistics.worst > 1.0);
 }
 
@@ -247,10 +224,7 @@ fn folds_in_one_plane_are_not_called_exact() {
     let control = mesh(&positions, &triangles);
     let result = refined(&control, &ExactOptions::default().triangles(20));
     assert!(result.error.upper > 1e-3, "{:?}", result.error);
-    assert_eq!(
-        refined(&control, &ExactOptions::default().tolerance(1e-3)).stop,
-        ExactStop::Met
-    );
+    assert_eq!(refined(&control, &within(1e-3)).stop, ExactStop::Met);
 }
 
 #[test]
@@ -294,10 +268,8 @@ fn thousands_of_faces_around_a_vertex_are_refined() {
         positions.push([angle.cos(), angle.sin(), 0.0]);
         triangles.push([0, 1 + i, 1 + (i + 1) % n]);
     }
-    let result = refined(
-        &mesh(&positions, &triangles),
-        &ExactOptions::default().triangles(4_000),
-    );
+    let options = ExactOptions::default().triangles(4_000);
+    let result = refined(&mesh(&positions, &triangles), &options);
     assert!(result.mesh.face_count() <= 4_000);
 }
 

@@ -2,12 +2,12 @@
 //! reported for them as proven. Dense refinement by their own masks is the judge.
 
 use limitmesh::measure::{SamplingOptions, hausdorff};
-use limitmesh::refine::{ExactOptions, UniformOptions, is_certified, uniform};
+use limitmesh::refine::{UniformOptions, is_certified, uniform};
 use limitmesh::ring::{EdgeShape, RingShape};
 use limitmesh::scheme::{EdgeMask, Loop, LoopFamily, LoopWarren, Scheme, Support, VertexMask};
 use limitmesh::{Mesh, Triangles};
 
-use crate::support::{exact, octahedron, sheet};
+use crate::support::{divided, exact, octahedron, sheet, within};
 
 /// Where a scheme departs from Loop's.
 #[derive(Clone, Copy, Debug)]
@@ -75,9 +75,7 @@ impl Scheme for Liar {
 
 /// The greatest distance found between a mesh and what uniform refinement tends to.
 fn by_brute_force(control: &Mesh, scheme: &dyn Scheme, mesh: Triangles<'_>) -> f64 {
-    let fine = uniform(control, scheme, &UniformOptions::default().levels(7))
-        .unwrap()
-        .mesh;
+    let fine = divided(control, scheme, 7);
     let samples = SamplingOptions::default().samples(50_000);
     hausdorff(mesh, fine.as_triangles(), &samples)
         .unwrap()
@@ -98,12 +96,7 @@ fn what_is_called_proven_holds_for_schemes_that_lie() {
     for (lie, control) in cases() {
         let scheme = Liar { lie, says: None };
         let tolerance = 0.002 * control.diagonal();
-        let result = exact(
-            &control,
-            &scheme,
-            &ExactOptions::default().tolerance(tolerance),
-        )
-        .unwrap();
+        let result = exact(&control, &scheme, &within(tolerance)).unwrap();
         let found = by_brute_force(&control, &scheme, result.mesh.as_triangles());
         let error = result.error;
         // Seven levels of refinement are that far from the limit themselves.
@@ -139,7 +132,7 @@ fn masks_of_the_family_are_never_asked_for() {
                 lie,
                 says: Some(family),
             };
-            let options = ExactOptions::default().tolerance(0.002 * control.diagonal());
+            let options = within(0.002 * control.diagonal());
             let [found, expected] = [&scheme as &dyn Scheme, &family].map(|scheme| {
                 let exact = exact(&control, scheme, &options).unwrap();
                 let levels = UniformOptions::default().levels(2).limit(true);

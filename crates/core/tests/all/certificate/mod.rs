@@ -10,12 +10,12 @@ mod extremes;
 mod liars;
 pub(crate) mod proofs;
 use limitmesh::Mesh;
-use limitmesh::measure::{Bvh, CertifiedOptions, certified_hausdorff};
+use limitmesh::measure::{Bvh, CertifiedOptions};
 use limitmesh::refine::limit_reference;
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact};
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
 
-use crate::support::{Point, Random};
+use crate::support::{Point, Random, enclosed, pool, within};
 use cages::{Cage, cage};
 
 /// Cages where nothing else is asked for, and how many of their results are confirmed at what is certified, not at more. Fewer are
@@ -282,10 +282,7 @@ fn check_threads(
     options: &ExactOptions,
     (result, threads): (&Exact, usize),
 ) -> Result<(), String> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
+    let pool = pool(threads);
     let other = pool.install(|| exact(control, scheme, options)).unwrap();
     let same = other.mesh.triangles() == result.mesh.triangles()
         && bits(other.mesh.positions()) == bits(result.mesh.positions())
@@ -306,15 +303,12 @@ fn check_independently(control: &Mesh, scheme: &dyn Scheme, result: &Exact) -> R
     if error.upper < 1e-9 * largest(control) {
         return Ok(());
     }
-    let options = ExactOptions::default()
-        .tolerance(error.upper / 20.0)
-        .max_triangles(Some(20_000));
+    let options = within(error.upper / 20.0).max_triangles(Some(20_000));
     let fine = exact(control, scheme, &options).unwrap();
     let asked = CertifiedOptions::default()
         .relative_gap(0.05)
         .max_work(20_000_000);
-    let found =
-        certified_hausdorff(result.mesh.as_triangles(), fine.mesh.as_triangles(), &asked).unwrap();
+    let found = enclosed(&result.mesh, &fine.mesh, &asked);
     let found = found.widened(fine.error.upper);
     ensure(
         found.lower() <= error.upper && error.lower <= found.upper(),

@@ -1,15 +1,15 @@
 //! Results by `limitmesh-check`, which shares nothing with the library: it confirms what is certified, and nothing below what was found.
 
-use limitmesh::refine::{Exact, ExactOptions, Origin, exact};
+use limitmesh::Mesh;
+use limitmesh::refine::{Exact, Origin, exact};
 use limitmesh::scheme::{Loop, Scheme};
-use limitmesh::{Mesh, Triangles};
 use limitmesh_check::mesh::Mesh as Plain;
 use limitmesh_check::proof::Proof as Claim;
 use limitmesh_check::tiling::Refusal;
 use limitmesh_check::verdict;
 use limitmesh_io::{Proof, ProofError};
 
-use crate::support::{Random, cross, minus};
+use crate::support::{Random, cross, minus, surface, within};
 
 fn plain(mesh: &Mesh) -> Plain {
     Plain {
@@ -93,10 +93,7 @@ impl Changed {
             control,
             holds_control: true,
             scheme: Loop,
-            result: Triangles {
-                positions: &self.mesh.positions,
-                triangles: &self.mesh.triangles,
-            },
+            result: surface(&self.mesh.positions, &self.mesh.triangles),
             origins: &self.origins,
             parents: &self.parents,
         };
@@ -174,9 +171,7 @@ fn faults_are_refused() {
         )
         .unwrap()
         .0;
-        let options = ExactOptions::default()
-            .tolerance(2e-3 * control.diagonal())
-            .flat_regions(false);
+        let options = within(2e-3 * control.diagonal()).flat_regions(false);
         let found = exact(&control, &Loop, &options).unwrap();
         let within = found.error.upper;
         let result = Changed {

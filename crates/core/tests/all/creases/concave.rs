@@ -6,10 +6,8 @@ use limitmesh::Mesh;
 use limitmesh::PolygonSoup;
 use limitmesh::VertexId;
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{
-    BoundaryRule, BuildOptions, ConcaveCorners, CornerTag, CreaseTag, PolygonFaces, Tags,
-};
-use limitmesh::refine::{Exact, ExactOptions, UniformOptions, uniform};
+use limitmesh::mesh::{BoundaryRule, BuildOptions, ConcaveCorners, CreaseTag, PolygonFaces};
+use limitmesh::refine::{Exact, UniformOptions, limit_reference, uniform};
 
 use crate::support::exact;
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
@@ -140,12 +138,7 @@ fn creased(mesh: Mesh) -> Mesh {
 }
 
 fn refined(mesh: &Mesh) -> Exact {
-    exact(
-        mesh,
-        &Loop,
-        &ExactOptions::default().tolerance(1e-3 * mesh.diagonal()),
-    )
-    .unwrap()
+    exact(mesh, &Loop, &within(1e-3 * mesh.diagonal())).unwrap()
 }
 
 fn l_shape() -> Outline {
@@ -220,13 +213,7 @@ fn prisms_over_random_polygons_stay_themselves() {
         let control = prism(&outline).with_creases_above(1e-3).unwrap();
         let (control, concave) = divided(control);
         concave_corners += concave.corners.count;
-        let mesh = uniform(
-            &control,
-            &Loop,
-            &UniformOptions::default().levels(3).limit(true),
-        )
-        .unwrap()
-        .mesh;
+        let mesh = limit_reference(&control, &Loop, 3).unwrap();
         assert_is_prism(&mesh, &outline, &format!("trial {trial}"));
     }
     assert!(concave_corners > 200, "{concave_corners}");
@@ -295,16 +282,10 @@ fn round_rim() -> Vec<(f64, f64)> {
 fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
     // The corner alone is tagged: at the other ends the boundary is smooth and is to stay so.
     let sheet = fan(&round_rim());
-    let corners = vec![CornerTag {
-        vertex: 0,
-        sharpness: f64::INFINITY,
-    }];
+    let corners = vec![crate::support::corner(0, f64::INFINITY)];
     let tagged = sheet
         .clone()
-        .with_tags(Tags {
-            corners,
-            ..Tags::default()
-        })
+        .with_tags(crate::support::corners(corners))
         .unwrap();
     let (control, concave) = divided(tagged.clone());
     assert_eq!((concave.corners.count, concave.edges), (1, 1));
@@ -325,13 +306,7 @@ fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
         assert!(distance(before, now) < 1e-15, "vertex {v}");
     }
     // Nothing is turned over.
-    let mesh = uniform(
-        &control,
-        &Loop,
-        &UniformOptions::default().levels(5).limit(true),
-    )
-    .unwrap()
-    .mesh;
+    let mesh = limit_reference(&control, &Loop, 5).unwrap();
     let least = mesh.triangles().iter().map(|t| {
         let p = t.map(|v| mesh.positions()[v as usize]);
         twice_area(&p.map(|p| [p[0], p[1]]))
@@ -343,16 +318,10 @@ fn edges_are_divided_where_a_rim_goes_on_smoothly_at_their_other_end() {
 #[test]
 fn faces_keep_their_numbers_and_parts_know_theirs() {
     let sheet = fan(&[(0.0, 1.0), (130.0, 1.2), (200.0, 0.7), (270.0, 1.0)]);
-    let corners = vec![CornerTag {
-        vertex: 0,
-        sharpness: f64::INFINITY,
-    }];
+    let corners = vec![crate::support::corner(0, f64::INFINITY)];
     let tagged = sheet
         .clone()
-        .with_tags(Tags {
-            corners,
-            ..Tags::default()
-        })
+        .with_tags(crate::support::corners(corners))
         .unwrap();
     let (control, concave) = divided(tagged.clone());
     assert!(control.face_count() > sheet.face_count());
@@ -424,17 +393,9 @@ fn saddle(bend: f64) -> Mesh {
     let flat = core::iter::once([0.0; 2]).chain(ring(1.0)).chain(ring(2.0));
     let positions = flat.map(|[x, y]| [x, y, bend * x * y]).collect();
     let sectors = (1..5).flat_map(|i| [[0, i, i + 1], [i, i + 5, i + 6], [i, i + 6, i + 1]]);
-    let corners = vec![CornerTag {
-        vertex: 0,
-        sharpness: f64::INFINITY,
-    }];
+    let corners = vec![crate::support::corner(0, f64::INFINITY)];
     let sheet = Mesh::from_triangles(positions, sectors.collect()).unwrap();
-    sheet
-        .with_tags(Tags {
-            corners,
-            ..Tags::default()
-        })
-        .unwrap()
+    sheet.with_tags(crate::support::corners(corners)).unwrap()
 }
 
 #[test]

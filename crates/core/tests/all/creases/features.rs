@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use limitmesh::mesh::{BoundaryRule, BuildOptions, CreaseTag, PolygonFaces, Tags};
-use limitmesh::refine::{UniformOptions, uniform};
+use limitmesh::mesh::{BoundaryRule, BuildOptions, PolygonFaces};
+use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 use limitmesh::{Mesh, PolygonSoup};
 
@@ -12,13 +12,7 @@ use crate::support::*;
 const DEGREE: f64 = TAU / 360.0;
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
-    let mesh = uniform(
-        mesh,
-        scheme,
-        &UniformOptions::default().levels(levels).limit(true),
-    )
-    .unwrap()
-    .mesh;
+    let mesh = limit_reference(mesh, scheme, levels).unwrap();
     mesh.validate().unwrap();
     mesh
 }
@@ -153,10 +147,8 @@ fn a_cylinder_with_creases_gets_round_and_keeps_its_flat_caps_and_sharp_rims() {
     assert!(most - least < 1e-3);
     for p in mesh.positions().iter().filter(|p| p[2].abs() < 0.999_999) {
         let radius = p[0].hypot(p[1]);
-        assert!(
-            radius > least - 5e-3 && radius < most + 5e-3,
-            "{p:?} is {radius} from the axis"
-        );
+        above!(radius, least - 5e-3, "{p:?}");
+        below!(radius, most + 5e-3, "{p:?}");
     }
 }
 
@@ -252,10 +244,7 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
             faces.push(&[i, first + i + 1, first + i]);
         }
     }
-    let crease = |a: u32, b: u32, sharpness| CreaseTag {
-        vertices: [a, b],
-        sharpness,
-    };
+    let crease = |a: u32, b: u32, sharpness| crate::support::crease([a, b], sharpness);
     let creases = vec![
         crease(1, 6, 0.5),
         crease(1, 7, 1.7),
@@ -274,9 +263,7 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
     for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
         for levels in 0..=4 {
             // Checks that copies coincide and cut edges have the same ends.
-            let mesh = uniform(&mesh, scheme, &UniformOptions::default().levels(levels))
-                .unwrap()
-                .mesh;
+            let mesh = divided(&mesh, scheme, levels);
             mesh.validate().unwrap();
             // Nothing had to be joined: each copy alone has the common limit.
             let limits = limitmesh::limit::LimitTable::new(scheme)
@@ -295,10 +282,9 @@ fn cut_sheets_stay_together_where_creases_run_into_the_cut() {
             }
         }
     }
-    let tagged = mesh.clone().with_tags(Tags {
-        creases: vec![crease(1, 6, 2.5)],
-        ..Tags::default()
-    });
+    let tagged = mesh
+        .clone()
+        .with_tags(crate::support::creases(vec![crease(1, 6, 2.5)]));
     refined(&tagged.unwrap_or(mesh), &Loop, 2);
 }
 

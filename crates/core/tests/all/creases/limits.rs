@@ -8,12 +8,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, CreaseTag, Sharpness, Tags};
-use limitmesh::refine::{UniformOptions, uniform};
+use limitmesh::mesh::{Sharpness, Tags};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh::{HalfEdgeId, Mesh, VertexId};
 
-use crate::support::{Point, cross, distance, dot};
+use crate::support::{Point, cross, distance, divided, dot};
 
 const CENTRE: VertexId = VertexId(0);
 
@@ -63,16 +62,10 @@ fn tagged(k: u32, open: bool, spokes: &[(u32, f64)], corner: f64) -> Mesh {
             } else {
                 1 + (circle - 1) * k + slot
             };
-            CreaseTag {
-                vertices: [from, 1 + circle * k + slot],
-                sharpness,
-            }
+            crate::support::crease([from, 1 + circle * k + slot], sharpness)
         })
     };
-    let corners = vec![CornerTag {
-        vertex: 0,
-        sharpness: corner,
-    }];
+    let corners = vec![crate::support::corner(0, corner)];
     fan(k, open)
         .with_tags(Tags {
             creases: spokes.iter().flat_map(out).collect(),
@@ -129,9 +122,7 @@ fn cropped(mesh: &Mesh, radius: usize) -> (Mesh, BTreeMap<u32, u32>) {
 
 /// One refinement, and the new neighbour of vertex 0 on the edge to its neighbour `first`.
 fn step(mesh: &Mesh, scheme: &dyn Scheme, first: u32) -> (Mesh, u32) {
-    let refined = uniform(mesh, scheme, &UniformOptions::default().levels(1))
-        .unwrap()
-        .mesh;
+    let refined = divided(mesh, scheme, 1);
     // Rings start at the same edge before and after.
     let slot = ring(mesh).iter().position(|&v| v == first).unwrap();
     let on_edge = ring(&refined)[slot];
@@ -288,10 +279,7 @@ fn a_dart_of_six_edges_has_the_known_weights() {
     let stencil = table.stencil(shape).unwrap();
     let known = [0.5164, 0.0986, 0.0681, 0.0822, 0.0845, 0.0822, 0.0681];
     for (weight, known) in stencil.position_weights().iter().zip(known) {
-        assert!(
-            (weight - known).abs() < 5.1e-5,
-            "{weight}, expected {known}"
-        );
+        below!((weight - known).abs(), 5.1e-5, "{weight}, expected {known}");
     }
 }
 

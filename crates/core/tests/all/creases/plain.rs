@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::Tags;
 
-use crate::support::{Point, Random};
+use crate::support::{Point, Random, corner, crease};
 
 /// A tagged mesh by maps.
 #[derive(Clone)]
@@ -167,19 +167,14 @@ pub(crate) fn randomly_tagged(mesh: Mesh, one_in: usize, seed: u64) -> Mesh {
     {
         let sharpness = sharpness();
         if sharpness > 0.0 {
-            tags.creases.push(CreaseTag {
-                vertices: topology.ends(h).map(|v| v.0),
-                sharpness,
-            });
+            tags.creases
+                .push(crease(topology.ends(h).map(|v| v.0), sharpness));
         }
     }
     for vertex in topology.vertices() {
         let sharpness = sharpness();
         if sharpness > 0.0 {
-            tags.corners.push(CornerTag {
-                vertex: vertex.0,
-                sharpness,
-            });
+            tags.corners.push(corner(vertex.0, sharpness));
         }
     }
     mesh.with_tags(tags).unwrap()

@@ -3,7 +3,6 @@
 use limitmesh::Mesh;
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{INFINITELY_SHARP, Sharpness};
-use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
 use proptest::prelude::*;
 
@@ -22,9 +21,7 @@ fn any_mesh() -> impl Strategy<Value = Mesh> {
 const SCHEMES: [&dyn Scheme; 3] = [&Loop, &LoopWarren, &ModifiedButterfly];
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme) -> Mesh {
-    uniform(mesh, scheme, &UniformOptions::default().levels(2))
-        .unwrap()
-        .mesh
+    divided(mesh, scheme, 2)
 }
 
 proptest! {
@@ -41,7 +38,7 @@ proptest! {
     #[test]
     fn the_limit_does_not_change_by_refining(mesh in any_mesh(), scheme in 0..3usize) {
         let table = LimitTable::new(SCHEMES[scheme]);
-        let fine = uniform(&mesh, SCHEMES[scheme], &UniformOptions::default().levels(1)).unwrap().mesh;
+        let fine = divided(&mesh, SCHEMES[scheme], 1);
         let (before, after) = (table.positions(&mesh).unwrap(), table.positions(&fine).unwrap());
         for (v, (a, b)) in before.iter().zip(&after).enumerate() {
             prop_assert!(distance(*a, *b) < 1e-12, "vertex {}: {:?} and {:?}", v, a, b);
@@ -81,10 +78,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     let mesh = randomly_tagged(sheet(40, 30, 9), 6, 4);
     for scheme in [&Loop as &dyn Scheme, &ModifiedButterfly] {
         let run = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = pool(threads);
             pool.install(|| {
                 let fine = refined(&mesh, scheme);
                 let table = LimitTable::new(scheme);

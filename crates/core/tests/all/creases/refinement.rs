@@ -1,17 +1,14 @@
 //! Uniform refinement of tagged meshes.
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
-use limitmesh::refine::{UniformOptions, uniform};
+use limitmesh::mesh::Tags;
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 
 use crate::creases::plain::{Plain, randomly_tagged};
 use crate::support::*;
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
-    uniform(mesh, scheme, &UniformOptions::default().levels(levels))
-        .unwrap()
-        .mesh
+    divided(mesh, scheme, levels)
 }
 
 /// Checks that two meshes have the same triangles between the same points.
@@ -131,12 +128,7 @@ fn tagged_refinement_is_the_other_implementation_s() {
 
 #[test]
 fn the_shared_models_with_tags_are_the_other_implementation_s() {
-    let Some(folder) = std::env::var_os("LIMITMESH_MODELS").map(std::path::PathBuf::from) else {
-        // Written directly: the test harness keeps what macros print to itself.
-        let _ = std::io::Write::write_all(
-            &mut std::io::stderr(),
-            b"skipped: LIMITMESH_MODELS is not set\n",
-        );
+    let Some(folder) = shared_models() else {
         return;
     };
     let models = [
@@ -145,7 +137,7 @@ fn the_shared_models_with_tags_are_the_other_implementation_s() {
         ("loop_icos_semisharp.obj", 15, 4),
     ];
     for (name, creases, levels) in models {
-        let mesh = tagged_obj(&std::fs::read_to_string(folder.join(name)).unwrap());
+        let mesh = shared_model(&folder, name);
         assert_eq!(mesh.tags().creases.len(), creases);
         check_against_other(name, &mesh, levels);
     }
@@ -154,14 +146,8 @@ fn the_shared_models_with_tags_are_the_other_implementation_s() {
 #[test]
 fn tags_of_sharpness_zero_change_nothing() {
     for (_, mesh) in samples() {
-        let creases = mesh.triangles().iter().map(|t| CreaseTag {
-            vertices: [t[0], t[1]],
-            sharpness: 0.0,
-        });
-        let corners = (0..mesh.vertex_count() as u32).map(|vertex| CornerTag {
-            vertex,
-            sharpness: 0.0,
-        });
+        let creases = mesh.triangles().iter().map(|t| crease([t[0], t[1]], 0.0));
+        let corners = (0..mesh.vertex_count() as u32).map(|vertex| corner(vertex, 0.0));
         let tags = Tags {
             creases: creases.collect(),
             corners: corners.collect(),

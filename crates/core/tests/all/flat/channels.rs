@@ -9,8 +9,7 @@ use limitmesh::mesh::{Channel, Domain, Semantic};
 use limitmesh::refine::Exact;
 use limitmesh::scheme::Loop;
 
-use super::within;
-use crate::support::{creased, cross, dot, exact};
+use crate::support::{creased, cross, dot, exact, within};
 
 const FACETS: u32 = 24;
 const TOLERANCE: f64 = 1e-4;
@@ -48,12 +47,8 @@ fn channel(domain: Domain, values: Vec<f64>) -> Channel {
 }
 
 fn refined(mesh: &Mesh, channels: &[Channel]) -> Exact {
-    exact(
-        mesh,
-        &Loop,
-        &within(TOLERANCE).kept_edges(borders(channels, mesh)),
-    )
-    .unwrap()
+    let options = within(TOLERANCE).kept_edges(borders(channels, mesh));
+    exact(mesh, &Loop, &options).unwrap()
 }
 
 #[test]
@@ -127,10 +122,8 @@ fn faces_bound_regions_where_their_values_differ() {
         found.mesh.validate().unwrap();
         assert!(found.error.upper <= TOLERANCE && found.error.certified);
         let count = found.mesh.face_count();
-        assert!(
-            plain <= count && 2 * count < divided,
-            "{plain} {count} {divided}"
-        );
+        at_most!(plain, count);
+        below!(2 * count, divided);
         let told = carried(&[own], &mesh, &Loop, &found).unwrap();
         let surface = found.mesh.as_triangles();
         let mut met = 0;

@@ -5,13 +5,14 @@ use std::f64::consts::TAU;
 
 use limitmesh::Mesh;
 use limitmesh::index::FaceId;
-use limitmesh::measure::{CertifiedOptions, SamplingOptions, certified_hausdorff, hausdorff};
-use limitmesh::mesh::{CornerTag, CreaseTag, INFINITELY_SHARP, Tags};
+use limitmesh::measure::{CertifiedOptions, SamplingOptions, hausdorff};
+use limitmesh::mesh::{INFINITELY_SHARP, Tags};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
-use super::within;
-use crate::support::{Random, creased, distance, dot, exact, grid, minus};
+use crate::support::{
+    Random, corner, creased, distance, dot, enclosed, exact, grid, minus, within,
+};
 
 /// A plate with a round hole whose triangles are slivers, as programs for design write them: the rules turn some over where two
 /// fans meet. The hole's vertices are those from the seventh on.
@@ -38,18 +39,10 @@ fn plate_of_slivers(facets: u32) -> Mesh {
         triangles.extend([[3 + i, i, next], [3 + i, next, 3 + next]]);
     }
     let corners = (0..3)
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: INFINITELY_SHARP,
-        })
+        .map(|vertex| corner(vertex, INFINITELY_SHARP))
         .collect();
     let plate = Mesh::from_triangles(positions, triangles).unwrap();
-    plate
-        .with_tags(Tags {
-            corners,
-            ..Tags::default()
-        })
-        .unwrap()
+    plate.with_tags(crate::support::corners(corners)).unwrap()
 }
 
 /// The triangles cover the inside of the rims, once.
@@ -157,10 +150,8 @@ fn rims_whose_chords_cross_are_divided() {
         let options = within(tolerance).unfold(true);
         let options = budget.map_or(options.clone(), |most| options.triangles(most));
         let found = exact(&mesh, &Loop, &options).unwrap();
-        assert!(
-            found.inverted_triangles() == 0 && found.statistics.unfolded > 0,
-            "{tolerance} {budget:?}"
-        );
+        assert_eq!(found.inverted_triangles(), 0, "{tolerance} {budget:?}");
+        above!(found.statistics.unfolded, 0, "{tolerance} {budget:?}");
         assert!(found.error.upper <= tolerance);
         let estimate = exact_estimate(&mesh, &Loop, &options).unwrap();
         assert_eq!(estimate.triangles, found.mesh.face_count());
@@ -169,11 +160,7 @@ fn rims_whose_chords_cross_are_divided() {
             .iter()
             .map(|&[point, _]| to_segments(point, &chords))
             .fold(0.0, f64::max);
-        assert!(
-            found.error.lower <= farthest + 1e-9,
-            "{:?} {farthest}",
-            found.error
-        );
+        at_most!(found.error.lower, farthest + 1e-9);
     }
 }
 
@@ -245,10 +232,8 @@ fn what_folds_beside_smooth_surfaces_stays() {
     let samples = SamplingOptions::default().samples(30_000);
     for tolerance in [0.1, 0.02, 2e-3] {
         let found = exact(&tent, &Loop, &within(tolerance).unfold(true)).unwrap();
-        assert!(
-            found.statistics.unfolded == 0 && found.inverted_triangles() > 0,
-            "{tolerance}"
-        );
+        assert_eq!(found.statistics.unfolded, 0, "{tolerance}");
+        above!(found.inverted_triangles(), 0, "{tolerance}");
         let sampled = hausdorff(
             found.mesh.as_triangles(),
             reference.as_triangles(),
@@ -256,11 +241,7 @@ fn what_folds_beside_smooth_surfaces_stays() {
         )
         .unwrap();
         // The reference's own chords are off by less than this.
-        assert!(
-            sampled.symmetric() <= found.error.upper + 2e-4,
-            "{tolerance}: {:?}",
-            found.error
-        );
+        at_most!(sampled.symmetric(), found.error.upper + 2e-4, "{tolerance}");
     }
 }
 
@@ -317,10 +298,7 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
     let inner = rows[1..rows.len() - 1]
         .iter()
         .flat_map(|row| row.windows(2));
-    let creases = inner.map(|edge| CreaseTag {
-        vertices: [edge[0], edge[1]],
-        sharpness: INFINITELY_SHARP,
-    });
+    let creases = inner.map(|edge| crate::support::crease([edge[0], edge[1]], INFINITELY_SHARP));
     let is_inside = |vertex: &u32| {
         rows[1..rows.len() - 1]
             .iter()
@@ -328,10 +306,7 @@ fn strips_between_sharp_lines(numbers: &mut Random) -> Mesh {
     };
     let around = (0..mesh.vertex_count() as u32).filter(|vertex| !is_inside(vertex));
     let corners = around
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: INFINITELY_SHARP,
-        })
+        .map(|vertex| corner(vertex, INFINITELY_SHARP))
         .collect();
     mesh.with_tags(Tags {
         creases: creases.collect(),
@@ -361,36 +336,13 @@ fn estimates_count_regions_that_stay() {
 /// One mesh is as near as reported to another of a much smaller distance, which approximates the
 /// same surface.
 fn assert_as_near_as_told(found: &Exact, fine: &Exact, what: &str) {
-    assert!(
-        fine.error.lower <= fine.error.upper,
-        "{what}: {:?}",
-        fine.error
-    );
-    assert!(
-        found.error.lower <= found.error.upper,
-        "{what}: {:?}",
-        found.error
-    );
+    at_most!(fine.error.lower, fine.error.upper, "{what}");
+    at_most!(found.error.lower, found.error.upper, "{what}");
     let options = CertifiedOptions::default().gap(Some(fine.error.upper));
-    let apart = certified_hausdorff(
-        found.mesh.as_triangles(),
-        fine.mesh.as_triangles(),
-        &options,
-    )
-    .unwrap();
+    let apart = enclosed(&found.mesh, &fine.mesh, &options);
     let off = fine.error.upper;
-    assert!(
-        apart.lower() <= found.error.upper + off,
-        "{what}: {:?} {}",
-        found.error,
-        apart.lower()
-    );
-    assert!(
-        found.error.lower <= apart.upper() + off,
-        "{what}: {:?} {}",
-        found.error,
-        apart.upper()
-    );
+    at_most!(apart.lower(), found.error.upper + off, "{what}");
+    at_most!(found.error.lower, apart.upper() + off, "{what}");
 }
 
 /// Grids, plates and strips that fold approximate one surface at all tolerances.
@@ -522,15 +474,9 @@ fn what_two_rims_undo_counts() {
         [2, 11, 10],
     ];
     let mesh = Mesh::from_triangles(positions, triangles.to_vec()).unwrap();
-    let crease = |first| CreaseTag {
-        vertices: [first, first + 1],
-        sharpness: INFINITELY_SHARP,
-    };
+    let crease = |first| crate::support::crease([first, first + 1], INFINITELY_SHARP);
     let mesh = mesh
-        .with_tags(Tags {
-            creases: (0..5).map(crease).collect(),
-            corners: Vec::new(),
-        })
+        .with_tags(crate::support::creases((0..5).map(crease).collect()))
         .unwrap();
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
     for options in [
@@ -546,10 +492,6 @@ fn what_two_rims_undo_counts() {
             &SamplingOptions::default(),
         );
         let sampled = sampled.unwrap().symmetric();
-        assert!(
-            found.error.upper >= 0.99 * sampled,
-            "{:?}, {sampled}",
-            found.error
-        );
+        at_least!(found.error.upper, 0.99 * sampled);
     }
 }

@@ -6,9 +6,8 @@ mod channels;
 mod folding;
 use std::f64::consts::TAU;
 
-use crate::support::{creased, cross, dot, exact, peg};
+use crate::support::{creased, cross, dot, exact, mapped, peg, sampled, within};
 use limitmesh::Mesh;
-use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
@@ -48,10 +47,6 @@ pub(crate) fn washer(facets: u32, has_inner: bool) -> Mesh {
         }
     }
     creased(positions, triangles)
-}
-
-pub(crate) fn within(tolerance: f64) -> ExactOptions {
-    ExactOptions::default().tolerance(tolerance)
 }
 
 /// Triangles, and area, of those whose normals are within a degree of a direction.
@@ -97,10 +92,8 @@ fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
     // themselves.
     for result in [&merged, &kept] {
         let error = &result.error;
-        assert!(
-            error.lower <= error.upper && error.upper <= tolerance,
-            "{error:?}"
-        );
+        at_most!(error.lower, error.upper);
+        at_most!(error.upper, tolerance);
     }
     let points = |result: &Exact| {
         let mut points: Vec<[u64; 3]> = result
@@ -223,11 +216,7 @@ fn sheets_that_share_their_rims_stay_apart() {
         for most in [100, 150, 200, 300] {
             let capped = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
             capped.mesh.validate().unwrap();
-            assert!(
-                capped.mesh.face_count() <= most,
-                "{} {most}",
-                capped.mesh.face_count()
-            );
+            at_most!(capped.mesh.face_count(), most);
         }
     }
 }
@@ -244,11 +233,7 @@ fn budgets_and_estimates_count_what_is_left() {
     assert!(2 * most < kept.mesh.face_count());
     let budget = exact(&mesh, &Loop, &ExactOptions::default().triangles(most)).unwrap();
     assert!(budget.mesh.face_count() <= most);
-    assert!(
-        budget.error.upper <= 1.15 * merged.error.upper,
-        "{:?}",
-        budget.error
-    );
+    at_most!(budget.error.upper, 1.15 * merged.error.upper);
 }
 
 /// Collapses leave a rim's triangles and hold what they promise: of flat ends that follow the hierarchy nothing could be proven.
@@ -258,49 +243,26 @@ fn what_is_flat_is_optimised_with_proof() {
     let plain = exact(&mesh, &Loop, &within(2e-3)).unwrap();
     let optimised = exact(&mesh, &Loop, &within(2e-3).finish(Finish::Collapsed)).unwrap();
     optimised.mesh.validate().unwrap();
-    assert!(
-        optimised.mesh.face_count() <= plain.mesh.face_count(),
-        "{}",
-        optimised.mesh.face_count()
-    );
+    at_most!(optimised.mesh.face_count(), plain.mesh.face_count());
     assert!(optimised.error.upper <= 2e-3);
     let reference = limit_reference(&mesh, &Loop, 6).unwrap();
-    let samples = SamplingOptions::default().samples(50_000);
-    let sampled = hausdorff(
-        optimised.mesh.as_triangles(),
-        reference.as_triangles(),
-        &samples,
-    )
-    .unwrap();
+    let sampled = sampled(&optimised.mesh, &reference, 50_000);
     // The reference's own chords leave the rims by less than this.
-    assert!(
-        sampled.symmetric() <= optimised.error.upper + 2e-5,
-        "{}",
-        sampled.symmetric()
-    );
+    at_most!(sampled, optimised.error.upper + 2e-5);
 }
 
 /// Planes in files of single precision are planes, and nothing curved is taken for one.
 #[test]
 fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     let mesh = peg(16);
-    let rounded = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| f64::from(x as f32)))
-        .collect();
-    let rounded = mesh.clone().with_positions(rounded).unwrap();
+    let rounded = mapped(&mesh, |p| p.map(|x| f64::from(x as f32)));
     let options = within(1e-3);
     let [exactly, single] = [&mesh, &rounded].map(|mesh| exact(mesh, &Loop, &options).unwrap());
     assert!(single.mesh.face_count() <= exactly.mesh.face_count() + 20);
     assert!(single.error.upper <= 1e-3);
     // Half a unit in the last place of single precision, in each coordinate of what spans a plane and is off it.
-    assert!(
-        exactly.statistics.off_planes < 1e-12
-            && (1e-9..1e-6).contains(&single.statistics.off_planes),
-        "{}",
-        single.statistics.off_planes
-    );
+    below!(exactly.statistics.off_planes, 1e-12);
+    assert!((1e-9..1e-6).contains(&single.statistics.off_planes));
     // One vertex of an end off its plane by less than a thousandth: it is in the ring of all that meet at the fan's tip.
     let axis = [0, 1, 2].map(|i| (mesh.positions()[16][i] - mesh.positions()[0][i]) / 3.0);
     let mut positions = mesh.positions().to_vec();
@@ -312,10 +274,9 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     // Triangles in one plane are put together, but the end is none.
     let other = axis.map(|x| -x);
     let flat = facing(&merged, other).0;
-    assert!(
-        10 * flat < count && count <= same && (area - as_large).abs() < 1e-6,
-        "{flat} {count} {same}"
-    );
+    below!(10 * flat, count);
+    at_most!(count, same);
+    below!((area - as_large).abs(), 1e-6);
     assert!(flat < facing(&kept, other).0);
 }
 
@@ -348,21 +309,10 @@ fn budgets_of_flat_faces_are_not_guessed_from_rounding() {
         let options = ExactOptions::default().triangles(number);
         let result = limitmesh::refine::exact_observed(&mesh, &Loop, &options, &mut count).unwrap();
         let count = result.mesh.face_count();
-        assert!(
-            count <= number && count >= 3 * number / 4,
-            "{number}: {count}"
-        );
-        let own = exact(
-            &mesh,
-            &Loop,
-            &ExactOptions::default().tolerance(result.error.upper),
-        )
-        .unwrap();
-        assert!(
-            own.mesh.face_count() <= count,
-            "{number}: {count}, {}",
-            own.mesh.face_count()
-        );
+        at_most!(count, number);
+        at_least!(count, 3 * number / 4);
+        let own = exact(&mesh, &Loop, &within(result.error.upper)).unwrap();
+        at_most!(own.mesh.face_count(), count, "{number}");
         assert!(result.error.upper < before, "{number}");
         before = result.error.upper;
     }

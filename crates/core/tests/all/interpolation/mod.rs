@@ -10,11 +10,9 @@ mod within;
 
 use std::f64::consts::TAU;
 
-use crate::support::{Point, Random, distance};
+use crate::support::{Point, Random, distance, divided, model, tagged_by};
 use limitmesh::interpolate::{InterpolateError, InterpolateOptions, Interpolated};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
-use limitmesh::refine::{UniformOptions, uniform};
 use limitmesh::scheme::Scheme;
 use limitmesh::{Mesh, VertexId};
 use nalgebra::{DMatrix, DVector};
@@ -24,15 +22,6 @@ pub(crate) fn interpolate(
     scheme: &dyn Scheme,
 ) -> Result<Interpolated, InterpolateError> {
     limitmesh::interpolate::interpolate(mesh, scheme, &InterpolateOptions::default())
-}
-
-pub(crate) fn model(name: &str) -> Mesh {
-    Mesh::from_soup(
-        &limitmesh_models::find(name).unwrap().soup(),
-        &Default::default(),
-    )
-    .unwrap()
-    .0
 }
 
 /// The greatest distance of the library's limits from the vertices of a mesh, except for the
@@ -153,48 +142,22 @@ pub(crate) fn refinement_tends_to(
     levels: usize,
     near: f64,
 ) {
-    let refined = uniform(control, scheme, &UniformOptions::default().levels(levels))
-        .unwrap()
-        .mesh;
+    let refined = divided(control, scheme, levels);
     let away = farthest(
         &refined.positions()[..vertices.vertex_count()],
         vertices.positions(),
     );
     let before = farthest(control.positions(), vertices.positions());
-    assert!(
-        away < near * before,
-        "{}: {away} of {before}",
-        scheme.name()
-    );
+    below!(away, near * before, "{}", scheme.name());
 }
 
 /// Tags on some edges and vertices, many of them semi-sharp, some single ones that end in darts.
 pub(crate) fn tagged(mesh: Mesh, seed: u64, lasting_only: bool) -> Mesh {
     let mut random = Random::new(seed);
-    let mut sharpness = |one_in| {
+    tagged_by(mesh, [8, 15], |one_in| {
         let is_tagged = random.below(one_in) == 0;
         let fading = 1.6 + 1.5 * random.signed();
-        is_tagged.then_some(if lasting_only || random.below(2) == 0 {
-            f64::INFINITY
-        } else {
-            fading
-        })
-    };
-    let mut tags = Tags::default();
-    let topology = mesh.topology();
-    for h in topology
-        .half_edges()
-        .filter(|&h| topology.twin(h).is_some_and(|twin| h < twin))
-    {
-        let vertices = topology.ends(h).map(|v| v.0);
-        tags.creases.extend(sharpness(8).map(|sharpness| CreaseTag {
-            vertices,
-            sharpness,
-        }));
-    }
-    for vertex in 0..mesh.vertex_count() as u32 {
-        tags.corners
-            .extend(sharpness(15).map(|sharpness| CornerTag { vertex, sharpness }));
-    }
-    mesh.with_tags(tags).unwrap()
+        let lasts = lasting_only || random.below(2) == 0;
+        is_tagged.then_some(if lasts { f64::INFINITY } else { fading })
+    })
 }

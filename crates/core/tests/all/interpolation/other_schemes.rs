@@ -1,13 +1,13 @@
 //! Schemes outside the Loop family: those that interpolate, those whose systems are general, singular or none.
 
 use limitmesh::interpolate::InterpolationMethod;
-use limitmesh::mesh::{CornerTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::ring::{EdgeShape, RingShape, VertexKind};
 use limitmesh::scheme::{EdgeMask, Loop, ModifiedButterfly, Scheme, Support, VertexMask};
 use nalgebra::DVector;
 
 use crate::interpolation::{dense, from_limits, interpolate, refinement_tends_to, tagged};
-use crate::support::{Random, distance, lumpy, octahedron, sheet, torus};
+use crate::support::{Random, distance, lumpy, mapped, octahedron, sheet, torus};
 
 #[test]
 fn a_scheme_that_interpolates_changes_nothing() {
@@ -105,12 +105,7 @@ fn what_has_no_solution_is_called_least_squares() {
     let scheme = Weighted { ring: 0.75 };
     let mut random = Random::new(8);
     let mesh = torus(9, 6);
-    let moved = mesh
-        .positions()
-        .iter()
-        .map(|p| p.map(|x| x + 0.1 * random.signed()))
-        .collect();
-    let mesh = mesh.with_positions(moved).unwrap();
+    let mesh = mapped(&mesh, |p| p.map(|x| x + 0.1 * random.signed()));
     let found = interpolate(&mesh, &scheme).unwrap();
     assert_eq!(found.method, InterpolationMethod::LeastSquares);
     let matrix = dense(&mesh, |k| 0.75 / k);
@@ -168,10 +163,7 @@ fn what_has_no_limit_is_an_error() {
         .collect();
     let huge = octahedron().with_positions(huge).unwrap();
     assert!(interpolate(&huge, &Loop).is_err());
-    let corner = CornerTag {
-        vertex: 0,
-        sharpness: f64::INFINITY,
-    };
+    let corner = crate::support::corner(0, f64::INFINITY);
     let tags = Tags {
         corners: vec![corner],
         ..Tags::default()

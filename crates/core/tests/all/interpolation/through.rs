@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate as interpolate_within,
 };
-use limitmesh::mesh::{BoundaryRule, CreaseTag, PolygonSoup, Tags};
+use limitmesh::mesh::{BoundaryRule, PolygonSoup, Tags};
 use limitmesh::refine::ExactOptions;
 use limitmesh::refine::limit_reference;
 use limitmesh::scheme::{Loop, LoopWarren, Scheme};
@@ -16,7 +16,9 @@ use crate::interpolation::{
     dense, dense_solution, farthest, from_limits, interpolate, loop_beta, model,
     refinement_tends_to, tagged,
 };
-use crate::support::{Point, Random, distance, exact, lumpy, octahedron, sheet, torus};
+use crate::support::{
+    Point, Random, distance, exact, lumpy, octahedron, pool, sheet, torus, within,
+};
 
 fn warren_beta(k: f64) -> f64 {
     if k == 3.0 {
@@ -92,16 +94,8 @@ fn systems_are_as_well_conditioned_as_claimed() {
             let scale = matrix.diagonal().map(|x| 1.0 / x.sqrt());
             let scaled = DMatrix::from_diagonal(&scale) * matrix * DMatrix::from_diagonal(&scale);
             let eigenvalues = scaled.symmetric_eigenvalues();
-            assert!(
-                eigenvalues.min() > least - 1e-12,
-                "{} {least}",
-                eigenvalues.min()
-            );
-            assert!(
-                eigenvalues.max() < most + 1e-12,
-                "{} {most}",
-                eigenvalues.max()
-            );
+            above!(eigenvalues.min(), least - 1e-12);
+            below!(eigenvalues.max(), most + 1e-12);
             assert!(most / least < 10.0 + 1e-9, "{}", most / least);
         }
     }
@@ -170,10 +164,8 @@ fn corners_keep_their_place_and_lines_know_nothing_of_their_sides() {
     // A crease round a torus does not depend on the adjacent points.
     let (m, n) = (12, 8);
     let line: Vec<u32> = (0..m).map(|i| i * n).collect();
-    let crease = |i: usize| CreaseTag {
-        vertices: [line[i], line[(i + 1) % line.len()]],
-        sharpness: f64::INFINITY,
-    };
+    let crease =
+        |i: usize| crate::support::crease([line[i], line[(i + 1) % line.len()]], f64::INFINITY);
     let tags = Tags {
         creases: (0..line.len()).map(crease).collect(),
         ..Tags::default()
@@ -238,11 +230,7 @@ fn pegs_keep_their_radius() {
         let expected = 5.0 / (2.0 / 3.0 + (TAU / f64::from(facets)).cos() / 3.0);
         for v in (0..facets).chain(2 * facets..3 * facets) {
             let [x, y, _] = control.positions()[v as usize];
-            assert!(
-                (x.hypot(y) - expected).abs() < 1e-12,
-                "{} {expected}",
-                x.hypot(y)
-            );
+            below!((x.hypot(y) - expected).abs(), 1e-12, "{expected}");
         }
         let surface = limit_reference(&control, &Loop, 4).unwrap();
         let rims = surface
@@ -269,12 +257,7 @@ fn an_exact_refinement_meets_every_vertex() {
     let mesh = model("cup");
     let control = interpolate(&mesh, &Loop).unwrap().mesh;
     let tolerance = 0.001 * mesh.diagonal();
-    let refined = exact(
-        &control,
-        &Loop,
-        &ExactOptions::default().tolerance(tolerance),
-    )
-    .unwrap();
+    let refined = exact(&control, &Loop, &within(tolerance)).unwrap();
     assert!(refined.error.certified && refined.error.upper <= tolerance);
     let vertices = &refined.mesh.positions()[..mesh.vertex_count()];
     assert!(farthest(vertices, mesh.positions()) < 1e-12 * mesh.diagonal());
@@ -343,10 +326,7 @@ fn the_same_bytes_come_out_of_any_number_of_threads() {
     let fine = torus(84, 60);
     for (mesh, part) in [(fine.clone(), 1e-3), (tagged(fine, 5, false), 0.0)] {
         let bits = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = pool(threads);
             let options = [0.0, part * mesh.diagonal()]
                 .map(|within| InterpolateOptions::default().within(within));
             options.map(|options| {

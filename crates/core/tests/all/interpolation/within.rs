@@ -4,12 +4,12 @@ use limitmesh::interpolate::{
     InterpolateError, InterpolateOptions, interpolate as interpolate_within,
 };
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{CornerTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::scheme::Loop;
 use limitmesh::{Mesh, VertexId};
 
 use crate::interpolation::{dense, dense_solution, from_limits, interpolate, loop_beta, tagged};
-use crate::support::{Point, Random, distance, lumpy, octahedron, sheet, torus};
+use crate::support::{Point, Random, corner, distance, lumpy, octahedron, sheet, torus};
 
 /// The energy that the documentation names, on a mesh without tags.
 fn thin_plate(mesh: &Mesh) -> f64 {
@@ -47,17 +47,12 @@ fn limits_stay_within_and_the_net_gets_fairer() {
             let options = InterpolateOptions::default().within(within);
             let found = interpolate_within(&mesh, &Loop, &options).unwrap();
             let away = from_limits(&found, &Loop, &mesh);
-            assert!(
-                away <= within + 1e-12 * size && away > 0.3 * within,
-                "{away} of {within}"
-            );
+            at_most!(away, within + 1e-12 * size);
+            above!(away, 0.3 * within);
             assert!((away - found.residual).abs() < 1e-12 * size);
             let fairness = found.fairness.unwrap();
             assert!(fairness.least_energy <= fairness.energy && fairness.energy < share);
-            assert!(
-                fairness.least_energy > 0.99 * fairness.energy,
-                "{fairness:?}"
-            );
+            above!(fairness.least_energy, 0.99 * fairness.energy);
             share = fairness.energy;
             if mesh.tags().is_empty() {
                 let now = thin_plate(&found.mesh);
@@ -121,10 +116,7 @@ fn lines_within_reach_of_straight_ones_get_straight() {
     positions[0][2] = 0.0;
     positions[10][2] = 0.0;
     let corners = [0, 10, 11, 21]
-        .map(|vertex| CornerTag {
-            vertex,
-            sharpness: f64::INFINITY,
-        })
+        .map(|vertex| corner(vertex, f64::INFINITY))
         .to_vec();
     let tags = Tags {
         corners,

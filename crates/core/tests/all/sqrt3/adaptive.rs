@@ -1,19 +1,15 @@
-use limitmesh::mesh::Tags;
 use limitmesh::refine::{ExactStop, RefineError, UniformOptions};
 use limitmesh::sqrt3::{Sqrt3, Sqrt3Options, adaptive, uniform};
 use limitmesh::{HalfEdgeId, Mesh};
 
 use crate::sqrt3::models::{icosahedron, junction, sharp, smooth, tetrahedron};
-use crate::support::{Point, distance, octahedron, unnumbered};
+use crate::support::{Point, crease, distance, octahedron, unnumbered};
 
 fn cone(mesh: &Mesh, degrees: f64) -> Sqrt3 {
-    adaptive(
-        mesh,
-        &Sqrt3Options::default()
-            .angle(Some(degrees.to_radians()))
-            .origins(true),
-    )
-    .unwrap()
+    let options = Sqrt3Options::default()
+        .angle(Some(degrees.to_radians()))
+        .origins(true);
+    adaptive(mesh, &options).unwrap()
 }
 
 /// Icosahedron, octahedron, tetrahedron, and the icosahedron three times as high.
@@ -221,10 +217,8 @@ fn tolerances_hold_about() {
         let tolerance = 0.003 * mesh.diagonal();
         let found = adaptive(&mesh, &Sqrt3Options::default().tolerance(Some(tolerance))).unwrap();
         let estimate = found.estimated_distance.unwrap();
-        assert!(
-            estimate <= tolerance && estimate > 0.2 * tolerance,
-            "{name}"
-        );
+        at_most!(estimate, tolerance, "{name}");
+        above!(estimate, 0.2 * tolerance, "{name}");
         let fine = uniform(&mesh, &UniformOptions::default().levels(7).limit(true))
             .unwrap()
             .mesh;
@@ -233,10 +227,8 @@ fn tolerances_hold_about() {
             limitmesh::measure::hausdorff(found.mesh.as_triangles(), fine.as_triangles(), &options)
                 .unwrap();
         let measured = measured.symmetric();
-        assert!(
-            measured < 1.3 * estimate && measured > 0.7 * estimate,
-            "{name}: {measured} {estimate}"
-        );
+        below!(measured, 1.3 * estimate, "{name}");
+        above!(measured, 0.7 * estimate, "{name}");
     }
 }
 
@@ -247,10 +239,8 @@ fn caps_and_budgets_are_not_passed() {
         let found = adaptive(&mesh, &Sqrt3Options::default().triangles(Some(triangles))).unwrap();
         assert_eq!(found.stop, ExactStop::Triangles);
         let count = found.mesh.face_count();
-        assert!(
-            count <= triangles && count + 12 > triangles.min(1000),
-            "{count} of {triangles}"
-        );
+        at_most!(count, triangles);
+        above!(count + 12, triangles.min(1000));
         found.mesh.validate().unwrap();
     }
     let options = Sqrt3Options::default()
@@ -284,15 +274,9 @@ fn options_that_mean_nothing_are_errors() {
     assert!(refused(
         Sqrt3Options::default().triangles(Some(9)).max_levels(49)
     ));
-    let creases = vec![limitmesh::mesh::CreaseTag {
-        vertices: [0, 2],
-        sharpness: 1.0,
-    }];
+    let creases = vec![crease([0, 2], 1.0)];
     let fading = octahedron()
-        .with_tags(Tags {
-            creases,
-            corners: Vec::new(),
-        })
+        .with_tags(crate::support::creases(creases))
         .unwrap();
     let error = adaptive(&fading, &Sqrt3Options::default().angle(Some(0.1))).unwrap_err();
     assert!(matches!(error, RefineError::FadingTag { .. }));

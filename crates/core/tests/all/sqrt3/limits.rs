@@ -144,10 +144,7 @@ fn limits_do_not_change_with_the_level() {
                 distance(limit, deep.positions()[v]),
                 distance(limit, mesh.positions()[v]),
             );
-            assert!(
-                near <= 0.06 * far + 1e-13,
-                "{name}, vertex {v}: {near} of {far}"
-            );
+            at_most!(near, 0.06 * far + 1e-13, "{name}, vertex {v}");
         }
     }
 }
@@ -158,11 +155,8 @@ fn normals_do_not_change_with_the_level() {
         let expected = limit_normals(&mesh).unwrap();
         let all: Vec<Mesh> = (0..=4).map(|level| levels(&mesh, level).mesh).collect();
         for level in 1..=4 {
-            let refined = uniform(
-                &mesh,
-                &UniformOptions::default().levels(level).normals(true),
-            )
-            .unwrap();
+            let options = UniformOptions::default().levels(level).normals(true);
+            let refined = uniform(&mesh, &options).unwrap();
             let normals = refined.normals.unwrap();
             for h in mesh.topology().half_edges() {
                 let vertex = mesh.topology().origin(h);

@@ -1,9 +1,9 @@
 //! Control meshes: closed, open, with creases that end, cross and close.
 
 use limitmesh::Mesh;
-use limitmesh::mesh::{BuildOptions, CornerTag, CreaseTag, PolygonSoup, Tags};
+use limitmesh::mesh::{BuildOptions, CornerTag, PolygonSoup, Tags};
 
-use crate::support::{Point, lumpy, octahedron, sheet, torus};
+use crate::support::{Point, crease, lumpy, octahedron, sheet, torus};
 
 pub(crate) fn tetrahedron() -> Mesh {
     let corners = vec![
@@ -62,10 +62,7 @@ pub(crate) fn creased(mesh: Mesh, edges: &[[u32; 2]], corners: &[u32]) -> Mesh {
     let sharpness = f64::INFINITY;
     let creases = edges
         .iter()
-        .map(|&vertices| CreaseTag {
-            vertices,
-            sharpness,
-        })
+        .map(|&vertices| crease(vertices, sharpness))
         .collect();
     let corners = corners
         .iter()

@@ -1,11 +1,11 @@
-use limitmesh::mesh::{CornerTag, CreaseTag, Tags};
+use limitmesh::mesh::Tags;
 use limitmesh::refine::{RefineError, Refinement, Stop, UniformOptions};
 use limitmesh::sqrt3::uniform;
 use limitmesh::{Mesh, VertexId};
 
 use crate::sqrt3::models::{creased, junction, sharp, smooth, tetrahedron};
 use crate::sqrt3::plain::{Plain, step};
-use crate::support::{distance, octahedron, sheet, unnumbered};
+use crate::support::{crease, distance, octahedron, sheet, unnumbered};
 
 pub(crate) fn levels(mesh: &Mesh, levels: usize) -> Refinement {
     let options = UniformOptions::default()
@@ -145,10 +145,7 @@ fn tags_that_fade_are_refused_by_name() {
         assert!(matches!(error, RefineError::FadingTag { .. }));
         assert!(error.to_string().starts_with(name), "{error}");
     };
-    let creases = vec![CreaseTag {
-        vertices: [0, 2],
-        sharpness: 2.5,
-    }];
+    let creases = vec![crease([0, 2], 2.5)];
     refuses(
         Tags {
             creases,
@@ -156,10 +153,7 @@ fn tags_that_fade_are_refused_by_name() {
         },
         "the edge from vertex 0 to vertex 2 has the sharpness 2.5",
     );
-    let corners = vec![CornerTag {
-        vertex: 3,
-        sharpness: 9.9,
-    }];
+    let corners = vec![crate::support::corner(3, 9.9)];
     refuses(
         Tags {
             creases: Vec::new(),
@@ -200,10 +194,7 @@ fn origins_are_places_in_control_faces() {
                 if level % 2 == 0 {
                     let [a, b, c] = own.map(|origin| origin.unwrap().barycentric);
                     let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                    assert!(
-                        (area - share).abs() < 1e-12,
-                        "{name}, level {level}: {area}"
-                    );
+                    below!((area - share).abs(), 1e-12, "{name}, level {level}: {area}");
                 } else {
                     assert!(own.iter().flatten().count() >= 2, "{name}, level {level}");
                 }

@@ -1,15 +1,15 @@
 //! Files that other programs wrote: each is read, or refused by a flaw that names the place; and edits keep the rest.
 
-use super::support::shared;
-use limitmesh_io::gltf::{Geometry, Joining};
+use super::support::plain;
+use crate::support::shared;
+use limitmesh_io::gltf::Joining;
 use limitmesh_io::{Asset, Format};
 use serde_json::Value;
 use std::path::PathBuf;
 
 fn files() -> Vec<PathBuf> {
     let Some(folder) = shared("assets") else {
-        println!("skipped: LIMITMESH_MODELS names no folder with assets");
-        return Vec::new();
+        return vec![];
     };
     let all = std::fs::read_dir(folder)
         .unwrap()
@@ -186,17 +186,7 @@ fn edits_touch_only_what_may_change() {
                     .collect();
                 let positions = &own.soup.positions;
                 asset
-                    .replace(
-                        mesh,
-                        part.primitive,
-                        &Geometry {
-                            positions,
-                            normals: None,
-                            triangles: &triangles,
-                            attributes: &[],
-                            targets: &[],
-                        },
-                    )
+                    .replace(mesh, part.primitive, &plain(positions, &triangles))
                     .unwrap();
                 changed += 1;
             }
@@ -237,15 +227,14 @@ fn edits_touch_only_what_may_change() {
 #[test]
 fn compressed_meshes_are_those_that_were_compressed() {
     // The same box three times, by three writers: plain, Draco, meshopt.
-    let Some(plain) = shared("assets/BoxInterleaved.glb") else {
-        println!("skipped: LIMITMESH_MODELS names no folder with assets");
+    let Some(uncompressed) = shared("assets/BoxInterleaved.glb") else {
         return;
     };
     let sizes = |path: PathBuf| {
         let [low, high] = Asset::open(&path).unwrap().bounding_box().unwrap().unwrap();
         [0, 1, 2].map(|i| ((high[i] - low[i]) * 1e3).round() / 1e3)
     };
-    let folder = plain.parent().unwrap().to_owned();
+    let folder = uncompressed.parent().unwrap().to_owned();
     for name in ["BoxDraco.gltf", "BoxMeshopt.glb"] {
         let mesh = Asset::open(&folder.join(name))
             .unwrap()
@@ -256,7 +245,11 @@ fn compressed_meshes_are_those_that_were_compressed() {
             (8, 12),
             "{name}"
         );
-        assert_eq!(sizes(folder.join(name)), sizes(plain.clone()), "{name}");
+        assert_eq!(
+            sizes(folder.join(name)),
+            sizes(uncompressed.clone()),
+            "{name}"
+        );
     }
     // What was Draco is not any more, and nothing says that it were.
     let mut asset = Asset::open(&folder.join("BoxDraco.gltf")).unwrap();
@@ -268,17 +261,7 @@ fn compressed_meshes_are_those_that_were_compressed() {
         .map(|face| face.try_into().unwrap())
         .collect();
     asset
-        .replace(
-            0,
-            0,
-            &Geometry {
-                positions: &own.soup.positions,
-                normals: None,
-                triangles: &triangles,
-                attributes: &[],
-                targets: &[],
-            },
-        )
+        .replace(0, 0, &plain(&own.soup.positions, &triangles))
         .unwrap();
     let text = String::from_utf8(asset.to_bytes(Format::Gltf).unwrap()).unwrap();
     assert!(

@@ -1,9 +1,9 @@
 //! Edited documents: new triangles, and all else as it was, to the byte.
 
-use super::support::{document, floats, glb, parts, triangles_of};
-use limitmesh::Triangles;
+use super::support::{document, floats, glb, parts, plain, triangles_of};
+use crate::support::{output, written};
 use limitmesh_io::gltf::{Geometry, VertexAttribute};
-use limitmesh_io::{Asset, Format, Output, WriteOptions, read_bytes, write_to};
+use limitmesh_io::{Asset, Format, read_bytes};
 use std::fs;
 
 const SQUARE: [[f64; 3]; 4] = [
@@ -97,19 +97,7 @@ fn short_indices_end_at_65535_vertices() {
         let positions: Vec<[f64; 3]> = (0..vertices).map(|v| [v as f64, 0.0, 0.0]).collect();
         let triangles = [[0, 1, vertices as u32 - 1]];
         let mut asset = Asset::from_bytes(&bytes, None).unwrap();
-        asset
-            .replace(
-                0,
-                0,
-                &Geometry {
-                    positions: &positions,
-                    normals: None,
-                    triangles: &triangles,
-                    attributes: &[],
-                    targets: &[],
-                },
-            )
-            .unwrap();
+        asset.replace(0, 0, &plain(&positions, &triangles)).unwrap();
         let written = asset.to_bytes(Format::Glb).unwrap();
         assert!(parts(&written).0.contains(&format!(
             "\"componentType\":{kind},\"count\":3,\"type\":\"SCALAR\""
@@ -121,41 +109,20 @@ fn short_indices_end_at_65535_vertices() {
 #[test]
 fn geometry_that_does_not_fit_is_refused() {
     let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
-    let mut refused = |geometry: &Geometry<'_>| {
-        asset
-            .replace(0, 0, geometry)
-            .expect_err("a flaw")
-            .to_string()
+    let mut refused = |change: &dyn Fn(&mut Geometry<'_>), words: &str| {
+        let mut own = geometry();
+        change(&mut own);
+        let said = asset.replace(0, 0, &own).expect_err("a flaw").to_string();
+        assert!(said.contains(words), "{said}");
     };
-    let good = geometry();
-    assert!(
-        refused(&Geometry {
-            triangles: &[[0, 1, 4]],
-            ..good
-        })
-        .contains("a triangle names vertex 4, but there are 4")
+    let beyond = "a triangle names vertex 4, but there are 4";
+    refused(&|own| own.triangles = &[[0, 1, 4]], beyond);
+    refused(&|own| own.triangles = &[], "a primitive needs triangles");
+    refused(
+        &|own| own.positions = &[[1e39, 0.0, 0.0]; 4],
+        "32-bit floats",
     );
-    assert!(
-        refused(&Geometry {
-            triangles: &[],
-            ..good
-        })
-        .contains("a primitive needs triangles")
-    );
-    assert!(
-        refused(&Geometry {
-            positions: &[[1e39, 0.0, 0.0]; 4],
-            ..good
-        })
-        .contains("32-bit floats")
-    );
-    assert!(
-        refused(&Geometry {
-            normals: Some(&[]),
-            ..good
-        })
-        .contains("0 normals")
-    );
+    refused(&|own| own.normals = Some(&[]), "0 normals");
 }
 
 #[test]
@@ -236,19 +203,8 @@ fn links_do_not_lead_out_of_the_folder() {
 
 #[test]
 fn triangles_from_elsewhere_become_a_document() {
-    let surface = Triangles {
-        positions: &SQUARE,
-        triangles: &HALVES,
-    };
     for format in [Format::Glb, Format::Gltf] {
-        let mut bytes = Vec::new();
-        write_to(
-            &mut bytes,
-            format,
-            &Output::new(surface),
-            &WriteOptions::default(),
-        )
-        .unwrap();
+        let bytes = written(format, &output(&SQUARE, &HALVES), false);
         let soup = read_bytes(&bytes, format).unwrap();
         assert_eq!(
             soup.positions,
@@ -278,16 +234,9 @@ fn morph_targets_are_replaced_and_counted() {
         vec![added("POSITION", 3), added("TEXCOORD_0", 2)],
         vec![added("NORMAL", 3)],
     ];
-    asset
-        .replace(
-            0,
-            0,
-            &Geometry {
-                targets: &targets,
-                ..geometry()
-            },
-        )
-        .unwrap();
+    let mut own = geometry();
+    own.targets = &targets;
+    asset.replace(0, 0, &own).unwrap();
     let (new, bin) = parts(&asset.to_bytes(Format::Glb).unwrap());
     assert!(
         new.contains(r#""targets":[{"POSITION":3,"TEXCOORD_0":4},{"NORMAL":5}]"#),
@@ -302,17 +251,11 @@ fn morph_targets_are_replaced_and_counted() {
     assert_eq!(bin[start..start + 8], floats(&[-2.5, -1.5]));
     let refused = |targets: &[Vec<VertexAttribute>]| {
         let mut asset = Asset::from_bytes(&glb(&odd(), &floats(&[0.0; 9])), None).unwrap();
-        asset
-            .replace(
-                0,
-                0,
-                &Geometry {
-                    targets,
-                    ..geometry()
-                },
-            )
-            .expect_err("a flaw")
-            .to_string()
+        let own = Geometry {
+            targets,
+            ..geometry()
+        };
+        asset.replace(0, 0, &own).expect_err("a flaw").to_string()
     };
     assert!(
         refused(&[vec![]])

@@ -1,10 +1,8 @@
 //! Documents of meshes that come from other formats: channels and materials are in them, and are read again.
 
-use limitmesh::Triangles;
+use crate::support::{output, triangles};
 use limitmesh::mesh::{Channel, PolygonSoup};
-use limitmesh_io::{
-    Format, MATERIAL, Output, TEXTURE, WriteOptions, read_bytes, values_lost, write_to,
-};
+use limitmesh_io::{Format, MATERIAL, TEXTURE, read_bytes, values_lost};
 
 /// Two squares of two materials and a triangle without one, a texture with a seam between them, and colours.
 const OBJ: &str = "\
@@ -65,18 +63,9 @@ fn corners(soup: &PolygonSoup) -> Vec<String> {
 }
 
 fn written(soup: &PolygonSoup, format: Format) -> Vec<u8> {
-    let triangles: Vec<[u32; 3]> = soup
-        .faces
-        .iter()
-        .map(|face| face.try_into().expect("three"))
-        .collect();
-    let surface = Triangles {
-        positions: &soup.positions,
-        triangles: &triangles,
-    };
-    let mut bytes = Vec::new();
-    let output = Output::new(surface).channels(&soup.channels);
-    write_to(&mut bytes, format, &output, &WriteOptions::default()).expect("written");
+    let triangles = triangles(soup);
+    let own = output(&soup.positions, &triangles).channels(&soup.channels);
+    let bytes = crate::support::written(format, &own, false);
     for channel in &soup.channels {
         assert_eq!(
             values_lost(format, channel, &triangles, soup.positions.len()),

@@ -41,6 +41,13 @@ impl Builder {
         self.accessor(floats(points.as_flattened()), points.len(), "VEC3", 5126)
     }
 
+    /// A primitive of positions alone.
+    fn plain(&mut self, points: &[[f32; 3]]) {
+        let points = self.points(points);
+        let primitive = format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#);
+        self.primitives.push(primitive);
+    }
+
     fn read(&self, joining: Joining) -> MeshSoup {
         self.asset().mesh(0, joining).unwrap()
     }
@@ -58,6 +65,14 @@ impl Builder {
     }
 }
 
+fn ignoring(skins: bool, morphs: bool, distance: f64) -> Joining {
+    Joining::Ignoring {
+        skins,
+        morphs,
+        distance,
+    }
+}
+
 /// Two triangles over a common edge from (0, 0, 0) to (1, 0, 0), each with vertices of its own.
 const APART: [[f32; 3]; 6] = [
     [0.0, 0.0, 0.0],
@@ -71,10 +86,7 @@ const APART: [[f32; 3]; 6] = [
 #[test]
 fn what_stands_together_is_one() {
     let mut builder = Builder::new();
-    let points = builder.points(&APART);
-    builder
-        .primitives
-        .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    builder.plain(&APART);
     assert_eq!(builder.read(Joining::Together).soup.positions.len(), 4);
     assert_eq!(builder.read(Joining::Never).soup.positions.len(), 6);
 }
@@ -105,15 +117,9 @@ fn what_morphs_apart_stays_apart() {
         (0, 1)
     );
     // Joined all the same, they move as the first does.
-    let found = builder.read(Joining::Ignoring {
-        skins: false,
-        morphs: true,
-        distance: 0.0,
-    });
-    assert_eq!(
-        (found.soup.positions.len(), found.kept_apart.moving),
-        (4, 0)
-    );
+    let found = builder.read(ignoring(false, true, 0.0));
+    assert_eq!(found.soup.positions.len(), 4);
+    assert_eq!(found.kept_apart.moving, 0);
     let table = &found.attributes[0];
     assert_eq!(
         (table.name.as_str(), table.plain_name(), table.target),
@@ -161,39 +167,26 @@ fn what_joints_move_apart_stays_apart() {
         r#"{{"attributes":{{"POSITION":{points},"JOINTS_0":{joints},"WEIGHTS_0":{weights}}}}}"#
     ));
     let found = builder.read(Joining::Together);
-    assert_eq!(
-        (found.soup.positions.len(), found.kept_apart.moving),
-        (5, 1)
-    );
+    assert_eq!(found.soup.positions.len(), 5);
+    assert_eq!(found.kept_apart.moving, 1);
     assert_eq!(
         (found.kept_apart.by_skins, found.kept_apart.by_morphs),
         (1, 0)
     );
-    let found = builder.read(Joining::Ignoring {
-        skins: true,
-        morphs: false,
-        distance: 0.0,
-    });
-    assert_eq!(
-        (found.soup.positions.len(), found.kept_apart.moving),
-        (4, 0)
-    );
+    let found = builder.read(ignoring(true, false, 0.0));
+    assert_eq!(found.soup.positions.len(), 4);
+    assert_eq!(found.kept_apart.moving, 0);
 }
 
 #[test]
 fn primitives_are_joined_along_edges_that_match() {
     let mut builder = Builder::new();
     for half in [0..3, 3..6] {
-        let points = builder.points(&APART[half]);
-        builder
-            .primitives
-            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+        builder.plain(&APART[half]);
     }
     let found = builder.read(Joining::Together);
-    assert_eq!(
-        (found.soup.positions.len(), found.kept_apart.touching),
-        (4, 0)
-    );
+    assert_eq!(found.soup.positions.len(), 4);
+    assert_eq!(found.kept_apart.touching, 0);
     let faces: Vec<_> = found
         .parts
         .iter()
@@ -210,28 +203,20 @@ fn primitives_that_touch_are_not_joined() {
     for (other, touching) in [(same_way, 2), (corner, 1)] {
         let mut builder = Builder::new();
         for points in [[APART[0], APART[1], APART[2]], other] {
-            let points = builder.points(&points);
-            builder
-                .primitives
-                .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+            builder.plain(&points);
         }
         let found = builder.read(Joining::Together);
-        assert_eq!(
-            (found.soup.positions.len(), found.kept_apart.touching),
-            (6, touching)
-        );
+        assert_eq!(found.soup.positions.len(), 6);
+        assert_eq!(found.kept_apart.touching, touching);
     }
     // An edge that three primitives share is nobody's.
     let mut builder = Builder::new();
     for third in [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0f32]] {
-        let points = builder.points(&if third[1] > 0.0 {
+        builder.plain(&if third[1] > 0.0 {
             [APART[0], APART[1], third]
         } else {
             [APART[1], APART[0], third]
         });
-        builder
-            .primitives
-            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
     }
     assert_eq!(builder.read(Joining::Together).soup.positions.len(), 9);
 }
@@ -297,33 +282,19 @@ fn a_distance_joins_what_rounding_tells_apart() {
     points[3] = [1.0, 1e-6, 0.0];
     let read = |distance| {
         let mut builder = Builder::new();
-        let points = builder.points(&points);
+        builder.plain(&points);
         builder
-            .primitives
-            .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
-        builder
-            .read(Joining::Ignoring {
-                skins: false,
-                morphs: false,
-                distance,
-            })
+            .read(ignoring(false, false, distance))
             .soup
             .positions
             .len()
     };
     assert_eq!([0.0, 1e-7, 1e-5].map(read), [5, 5, 4]);
     let mut builder = Builder::new();
-    let points = builder.points(&APART);
-    builder
-        .primitives
-        .push(format!(r#"{{"attributes":{{"POSITION":{points}}}}}"#));
+    builder.plain(&APART);
     let asset = builder.asset();
     for distance in [-1.0, f64::NAN, f64::INFINITY] {
-        let joining = Joining::Ignoring {
-            skins: false,
-            morphs: false,
-            distance,
-        };
+        let joining = ignoring(false, false, distance);
         let error = asset.mesh(0, joining).expect_err("no distance").to_string();
         assert!(error.contains("at least 0"), "{error}");
     }

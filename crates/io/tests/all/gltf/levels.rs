@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use limitmesh::Triangles;
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use limitmesh_io::gltf::{DetailLevel, write_levels};
 use limitmesh_io::{Asset, Format, MATERIAL, Output, WriteError, read};
 use serde_json::{Value, json};
 
 use super::support::{floats, glb, parts};
+use crate::support::{output, triangles};
 
 /// A square of two triangles; its first is the coarser level's place of all.
 const SQUARE: [[f64; 3]; 4] = [
@@ -21,10 +21,7 @@ const FACES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 const UP: [[f64; 3]; 4] = [[0.0, 0.0, 1.0]; 4];
 
 fn square() -> Output<'static> {
-    Output::new(Triangles {
-        positions: &SQUARE,
-        triangles: &FACES,
-    })
+    output(&SQUARE, &FACES)
 }
 
 fn written(
@@ -50,10 +47,7 @@ fn document(path: &Path) -> Value {
 
 #[test]
 fn what_does_not_fit_together_is_refused() {
-    let beyond = Output::new(Triangles {
-        positions: &SQUARE,
-        triangles: &[[0, 1, 4]],
-    });
+    let beyond = output(&SQUARE, &[[0, 1, 4]]);
     assert_eq!(
         complaint(DetailLevel::new(beyond)),
         "triangle 0 names vertex 4, but there are 4"
@@ -221,16 +215,9 @@ fn materials_need_no_names() {
     });
     let asset = Asset::from_bytes(&glb(&text.to_string(), &bin), None).expect("an asset");
     let soup = asset.scene_soup().expect("two triangles");
-    let triangles: Vec<[u32; 3]> = soup
-        .faces
-        .iter()
-        .map(|face| face.try_into().expect("three"))
-        .collect();
-    let surface = Triangles {
-        positions: &soup.positions,
-        triangles: &triangles,
-    };
-    let level = DetailLevel::new(Output::new(surface).channels(&soup.channels));
+    let triangles = triangles(&soup);
+    let own = output(&soup.positions, &triangles);
+    let level = DetailLevel::new(own.channels(&soup.channels));
     let (_folder, path) = written(&[level], Some(&asset)).expect("written");
     let document = document(&path);
     assert_eq!(document["materials"], text["materials"]);

@@ -1,7 +1,8 @@
 //! Bytes flipped, bytes cut, numbers swapped: whatever a file becomes, it is read or refused, and what was read can be
 //! written.
 
-use super::support::{document, floats, glb, shared};
+use super::support::{document, floats, glb};
+use crate::support::shared;
 use limitmesh_io::gltf::{Geometry, Joining, MeshSoup, VertexAttribute};
 use limitmesh_io::{Asset, Format};
 use proptest::prelude::*;
@@ -172,7 +173,6 @@ fn small_files_of_others_with_bytes_flipped() {
     };
     for name in names {
         let Some(file) = shared(&format!("assets/{name}")) else {
-            println!("skipped: LIMITMESH_MODELS names no folder with assets");
             return;
         };
         let bytes = std::fs::read(file).unwrap();

@@ -1,9 +1,8 @@
 //! Documents put together by hand, and a reader of GLBs that shares nothing with the library's.
 
 use limitmesh_io::Asset;
-use limitmesh_io::gltf::{Joining, MeshSoup};
+use limitmesh_io::gltf::{Geometry, Joining, MeshSoup};
 use serde_json::Value;
-use std::path::PathBuf;
 
 /// A GLB of a JSON text and a buffer.
 pub(crate) fn glb(json: &str, bin: &[u8]) -> Vec<u8> {
@@ -122,8 +121,29 @@ pub(crate) fn triangles_of(glb: &[u8], mesh: usize, primitive: usize) -> Vec<[[f
         .collect()
 }
 
-/// A file of the shared models, if they are there.
-pub(crate) fn shared(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("LIMITMESH_MODELS")?;
-    Some(PathBuf::from(folder).join(name)).filter(|path| path.exists())
+/// Triangles without anything else.
+pub(crate) fn plain<'a>(positions: &'a [[f64; 3]], triangles: &'a [[u32; 3]]) -> Geometry<'a> {
+    Geometry {
+        positions,
+        normals: None,
+        triangles,
+        attributes: &[],
+        targets: &[],
+    }
+}
+
+/// One triangle.
+pub(crate) const TRIANGLE: Geometry<'_> = Geometry {
+    positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+    normals: None,
+    triangles: &[[0, 1, 2]],
+    attributes: &[],
+    targets: &[],
+};
+
+/// Why an asset is none.
+#[track_caller]
+pub(crate) fn refused(bytes: &[u8]) -> String {
+    let asset = Asset::from_bytes(bytes, None);
+    asset.expect_err("a flaw").to_string()
 }

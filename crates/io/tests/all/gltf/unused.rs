@@ -1,18 +1,10 @@
 //! Bytes of geometry that was replaced and that nothing names are gone from files that are written anew; everything else is where its
 //! numbers say.
 
-use super::support::{glb, parts, shared};
-use limitmesh_io::gltf::Geometry;
+use super::support::{TRIANGLE, glb, parts};
+use crate::support::shared;
 use limitmesh_io::{Asset, Format};
 use serde_json::{Value, json};
-
-const TRIANGLE: Geometry<'_> = Geometry {
-    positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-    normals: None,
-    triangles: &[[0, 1, 2]],
-    attributes: &[],
-    targets: &[],
-};
 
 /// Bytes of the triangle: three positions, and three indices of two bytes with what fills them up to a multiple of four.
 const NEW: usize = 36 + 8;
