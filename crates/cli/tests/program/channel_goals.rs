@@ -47,7 +47,7 @@ fn texture_coordinates_are_within_their_tolerance() {
         )
         .saying("s,t: within ");
         let report = report(&folder);
-        let [goal] = &list(&report["attributes"])[..] else {
+        let [goal] = list(&report["attributes"]) else {
             panic!("{report:#}")
         };
         assert_eq!(goal["name"], "s,t");

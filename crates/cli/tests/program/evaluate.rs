@@ -20,7 +20,7 @@ fn places_of_an_octahedron() {
     );
     let command = "evaluate {} --at 0,0.5,0.3,0.2 --at 0,1,0,0 --at {} --json";
     let found = json_of(command, &[&control, &places]);
-    let [place, corner, edge, centre] = &list(&found)[..] else {
+    let [place, corner, edge, centre] = list(&found) else {
         panic!("{found}")
     };
     assert_eq!(

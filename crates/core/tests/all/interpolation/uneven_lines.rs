@@ -39,7 +39,7 @@ fn apart(mesh: &Mesh) -> ([f64; 2], usize) {
     let smooth = exact(&found.mesh, &Loop, &options).unwrap();
     assert_eq!(smooth.inverted_triangles(), 0);
     let options = CertifiedOptions::default();
-    let apart = enclosed(&smooth.mesh, &mesh, &options);
+    let apart = enclosed(&smooth.mesh, mesh, &options);
     ([apart.lower(), apart.upper()], found.relaxed.len())
 }
 
