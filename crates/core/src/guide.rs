@@ -2,7 +2,7 @@
 //!
 //! All examples start from a control [`Mesh`](crate::Mesh). [`Mesh::from_triangles`](crate::Mesh::from_triangles)
 //! takes plain arrays; [`Mesh::from_soup`](crate::Mesh::from_soup) takes what a file holds, with its
-//! defects, and reports what it repaired. Here models come from the crate `limitmesh-models`.
+//! defects, and reports what it repaired. All lengths are in the mesh's unit. Here models come from the crate `limitmesh-models`.
 //!
 //! # 1. Refine to a tolerance
 //! ```
@@ -24,6 +24,7 @@
 //! use limitmesh::refine::{ExactOptions, Finish, exact};
 //! use limitmesh::scheme::Loop;
 //!
+//! // The error lies on both sides of the surface, so that fewer triangles do.
 //! let options = ExactOptions::default().triangles(5_000).finish(Finish::Balanced);
 //! let smooth = exact(&mesh, &Loop, &options)?;
 //! assert!(smooth.mesh.face_count() <= 5_000);
@@ -79,6 +80,7 @@
 //! )?;
 //! let texture = Channel::new("uv", Semantic::TextureCoordinates, Domain::Corner, 2)
 //!     .with(corners.concat(), vec![0, 1, 2, 0, 2, 3]);
+//! // Each corner must have its place on its own control face.
 //! let options = ExactOptions::default().tolerance(1e-3).flat_regions(false);
 //! let smooth = exact(&mesh, &Loop, &options)?;
 //! let textures = carried(&[texture], &mesh, &Loop, &smooth)?;
@@ -115,7 +117,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # 8. Project points on the limit surface
+//! # 8. Project points onto the limit surface
 //! ```
 //! # let soup = limitmesh_models::find("torus").ok_or("no such model")?.soup();
 //! # let mesh = limitmesh::Mesh::from_soup(&soup, &Default::default())?.0;

@@ -8,8 +8,7 @@
 //!
 //! ```
 //! use limitmesh::measure::{SamplingOptions, hausdorff};
-//! use limitmesh::refine::limit_reference;
-//! use limitmesh::refine::{ExactOptions, exact};
+//! use limitmesh::refine::{ExactOptions, exact, limit_reference};
 //! use limitmesh::scheme::Loop;
 //! use limitmesh::Mesh;
 //!
@@ -24,7 +23,7 @@
 //! assert_eq!(refined.mesh.topology().boundary_edge_count(), 0);
 //! assert!(refined.error.upper <= tolerance);
 //!
-//! // Samples agree: they find no more than that.
+//! // Samples agree, against the surface five levels on.
 //! let limit = limit_reference(&control, &Loop, 5)?;
 //! let samples = SamplingOptions::default().samples(10_000);
 //! let distance = hausdorff(refined.mesh.as_triangles(), limit.as_triangles(), &samples)?;
@@ -40,16 +39,19 @@
 //! | [`scheme`] | subdivision schemes as masks on ring shapes |
 //! | [`limit`] | limit positions and normals of any scheme from its masks |
 //! | [`mod@interpolate`] | control meshes whose limit surface passes through the vertices of a mesh |
-//! | [`part`] | which meshes look like parts, whose sharp edges are intended, and how their surface
-//! keeps its size |
+//! | [`part`] | which meshes look like parts with intended sharp edges, and how they keep their size |
 //! | [`criterion`] | which faces are to be divided |
-//! | [`mod@closure`] | Figure 5's patterns: triangles whose edges are split, covered without cracks |
+//! | [`carry`] | textures, colours and names from a control mesh to what it was refined to |
+//! | [`mod@closure`] | the paper's Figure 5: triangles whose edges are split, covered without cracks |
 //! | [`front`] | triangles that are refined and coarsened from one demand to the next |
 //! | [`refine`] | exact refinement to a goal, uniform and the paper's stepwise refinement |
 //! | [`mod@simplify`] | edge collapse within a proven distance |
 //! | [`sqrt3`] | √3-subdivision: uniform and adaptive, with exact limits |
 //! | [`progress`] | what long functions report while they work, and how they are cancelled |
 //! | [`measure`] | distances, sampled and certified, watertightness, triangle quality |
+//!
+//! At the root stand [`Mesh`], and the limit surface as an object: [`LimitSurface`], [`Proximity`]
+//! and [`RayCaster`].
 
 pub mod carry;
 mod certificate;

@@ -5,6 +5,8 @@
 //! vertex opposite corner `i`. So child `i` lies along the first half of edge `i` and the second half of edge `i + 2` of its
 //! parent, and shares its edge `i + 1` with the middle child, whose edge of the same number runs the other way.
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::index::HalfEdgeId;
 use crate::mesh::{Mesh, Topology};
 
@@ -235,6 +237,28 @@ impl<'m> Edges<'m> {
     /// The half-edges of a group, and whether each runs against the first.
     pub(crate) fn members(&self, group: usize) -> &[(u32, bool)] {
         &self.members[group]
+    }
+
+    /// The nodes of the same level beyond an edge of a node, on all sheets that meet there.
+    pub(crate) fn nodes_beyond(
+        &self,
+        place: NodeAddress,
+        edge: usize,
+    ) -> SmallVec<[NodeAddress; 1]> {
+        let along = match beyond(place, edge) {
+            Beyond::Same(other) => return smallvec![other],
+            Beyond::Control(along) => along,
+        };
+        let h = along.half_edge;
+        if let Some(twin) = self.twin(h) {
+            return smallvec![along.node_at(twin, true).0];
+        }
+        let members = self.group(h).map_or(&[][..], |group| self.members(group));
+        let is_turned = members.contains(&(h, true));
+        let others = members.iter().filter(|&&(member, _)| member != h);
+        others
+            .map(|&(member, turned)| along.node_at(member, turned != is_turned).0)
+            .collect()
     }
 
     pub(crate) fn group_count(&self) -> usize {

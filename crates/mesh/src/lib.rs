@@ -1,10 +1,10 @@
-//! Triangle meshes, and how far two are apart.
+//! Triangle meshes: building, measuring, simplifying.
 //!
 //! A [`Mesh`] is made from any soup of polygons: it is welded, repaired, triangulated, connected and
 //! oriented, with a report of all that was repaired. Distances between meshes are sampled
 //! ([`measure::hausdorff`]) or proven ([`measure::certified_hausdorff`]). [`simplify`](mod@simplify)
 //! collapses edges within a proven distance. This crate knows nothing of subdivision; the crate
-//! `limitmesh` refines meshes and has all of this under the same names.
+//! `limitmesh` refines meshes and re-exports all of this.
 //!
 //! ```
 //! use limitmesh_mesh::Mesh;

@@ -4,7 +4,7 @@
 //! derivatives and curvature. [`Proximity`] finds closest points and what is inside, certified;
 //! [`RayCaster`] finds where rays hit. [`mod@interpolate`] makes control meshes whose surface passes
 //! through given points. [`limit`] has limit positions and normals of any scheme from its masks. The
-//! crate `limitmesh` refines meshes towards this surface and has all of this under the same names.
+//! crate `limitmesh` refines meshes towards this surface and re-exports all of this.
 //!
 //! ```
 //! use limitmesh_surface::mesh::Mesh;

@@ -54,8 +54,7 @@ pub struct ExactOptions {
 
 /// How good a mesh is to be.
 ///
-/// Each goal on quality (tolerance, angle, pixels, attributes) is met everywhere. A number of
-/// triangles ends the refinement early, with the worst places refined first.
+/// Each goal but the number of triangles is met everywhere. That number ends the refinement early, with the worst places refined first.
 #[derive(Clone, Debug, Default)]
 pub struct Goals {
     /// Greatest distance between mesh and limit surface, either way, as a length.
@@ -69,8 +68,8 @@ pub struct Goals {
     /// Then a 32nd of the number may stay unused, and more where many faces are alike, as on a
     /// regular sphere: dividing some of those would not reduce the distance.
     pub triangles: Option<usize>,
-    /// Goals for what the mesh carries: with goals on quality, without a number of triangles and
-    /// with [`Finish::OnSurface`]; flat regions then follow the hierarchy.
+    /// Goals for what the mesh carries: only together with a tolerance, an angle or pixels, without
+    /// a number of triangles and with [`Finish::OnSurface`]; flat regions then follow the hierarchy.
     pub attributes: Vec<AttributeGoal>,
 }
 
@@ -298,12 +297,12 @@ impl ExactOptions {
             return bad("number of levels", self.caps.levels as f64, "at most 30");
         }
         if self.is_collapsed() && (goals.angle.is_some() || goals.pixels.is_some()) {
-            let expected = "goals that are a tolerance or a number of triangles";
-            return bad("optimisation", 1.0, expected);
+            let expected = "0: edges are collapsed for a tolerance or a number of triangles alone";
+            return bad("number of angle and pixel goals", 1.0, expected);
         }
         let is_free = self.finish == Finish::OnSurface && goals.triangles.is_none();
         if !goals.attributes.is_empty() && !is_free {
-            let expected = "none with a number of triangles, balance or optimisation";
+            let expected = "0 with a number of triangles, balanced or collapsed";
             let count = goals.attributes.len() as f64;
             return bad("number of goals for attributes", count, expected);
         }
@@ -348,7 +347,7 @@ impl Goals {
             goal.check(control.face_count())?;
         }
         if !self.has_quality() && self.triangles.is_none() {
-            let expected = "a tolerance, an angle, pixels or a number of triangles";
+            let expected = "at least 1: a tolerance, an angle, pixels or a number of triangles";
             return bad("number of goals", 0.0, expected);
         }
         Ok(())

@@ -34,13 +34,11 @@ pub enum ExactStop {
 pub struct ErrorBounds {
     /// A distance that some point of one has from the other.
     pub lower: f64,
-    /// An upper bound where [`Self::certified`] holds; infinite without a goal for distances or a
-    /// number of triangles where nothing near [`Self::lower`] could be proven. Otherwise an
-    /// estimate, the greatest distance of the surface's points three levels below the triangles,
-    /// which the true one may exceed by some per cent.
+    /// If [`Self::certified`], no distance is greater; infinite where no goal limits distances and
+    /// nothing near [`Self::lower`] could be proven. If not, an estimate from points three levels
+    /// below the triangles, which the true distance may exceed by some per cent.
     pub upper: f64,
-    /// Whether `upper` is proven. It is for the Loop family ([`crate::scheme::LoopFamily`]), whose
-    /// masks are convex combinations.
+    /// Whether `upper` is proven, as it is for the Loop family ([`crate::scheme::LoopFamily`]).
     pub certified: bool,
     /// The point at which `lower` is attained: one of the mesh, or of the limit surface, within an
     /// eighth of `lower`.
@@ -92,7 +90,7 @@ impl Origin {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Exact {
-    /// The mesh; all vertices lie on the limit surface, but with
+    /// The mesh; all vertices lie on the limit surface, except with
     /// [`Finish::Balanced`](super::Finish::Balanced). Control vertices keep their numbers.
     pub mesh: Mesh,
     /// Unit limit normals of the vertices; zero where the surface has none, an average of the sides

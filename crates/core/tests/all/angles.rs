@@ -2,10 +2,13 @@
 
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use core::ops::ControlFlow;
 use limitmesh::criterion::{View, Viewpoint};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact_frames};
 
-use crate::support::{exact, model};
+use limitmesh::progress::{Progress, Stage};
+use limitmesh::refine::{Exact, ExactOptions, ExactStop, Frame, exact_frames, exact_observed};
+
+use crate::support::{exact, model, shared_model, shared_models};
 use limitmesh::scheme::Loop;
 use limitmesh::{FaceId, HalfEdgeId};
 
@@ -171,5 +174,32 @@ fn angles_hold_in_every_frame() {
             );
             assert_eq!(found.refined.pixels, None);
         }
+    }
+}
+
+/// Where the surface folds, each layer of split leaves has the next one split: that takes one round, not hundreds.
+#[test]
+fn folds_take_few_rounds() {
+    let Some(folder) = shared_models() else {
+        return;
+    };
+    let control = shared_model(&folder, "rook_creased.obj");
+    let plain = ExactOptions::default().angle(1.0);
+    let view = View {
+        viewpoint: Viewpoint::Direction([1.0, 0.0, 0.0]),
+        dilatation: 1.0,
+    };
+    for options in [plain, ExactOptions::default().angle_seen(1.0, view)] {
+        let mut rounds = 0;
+        let mut observer = |at: &Progress| {
+            rounds = match at.stage {
+                Stage::Refining => rounds.max(at.done),
+                _ => rounds,
+            };
+            ControlFlow::Continue(())
+        };
+        let found = exact_observed(&control, &Loop, &options, &mut observer).unwrap();
+        assert_eq!(found.stop, ExactStop::Cones);
+        at_most!(rounds, 30);
     }
 }

@@ -285,7 +285,7 @@ fn goals_that_make_no_sense_are_refused() {
     ] {
         refused(
             options.attributes(values(&mesh, 1.0)),
-            "none with a number of triangles",
+            "0 with a number of triangles",
         );
     }
 }

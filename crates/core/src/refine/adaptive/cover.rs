@@ -86,7 +86,7 @@ impl Covering<'_> {
 }
 
 /// Whether of the two diagonals of a leaf that has one unsplit edge the surface is nearer to the one from that edge's end, in its middle.
-fn is_nearer_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
+pub(super) fn is_nearer_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
     let (corners, middles) = (surface.corners(), surface.middles());
     let (end, tip) = ((unsplit + 1) % 3, (unsplit + 2) % 3);
     let off = |corner: usize, middle: usize| {

@@ -19,6 +19,7 @@ mod bulges;
 mod caps;
 mod chains;
 mod changes;
+mod closing;
 mod coarser;
 mod control;
 mod cover;

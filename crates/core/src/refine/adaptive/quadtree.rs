@@ -52,6 +52,11 @@ pub(super) fn even_depth(word: u32) -> Option<u32> {
     (word & LEAF != 0).then_some(word & DEPTH)
 }
 
+/// Whether there is a node at a place that has no children.
+pub(super) fn is_leaf(trees: &Trees, place: NodeAddress) -> bool {
+    trees.word_at(place).is_some_and(|word| !is_split(word))
+}
+
 impl Trees {
     /// Trees from pieces: for consecutive runs of control faces their roots, and words whose children count from the
     /// piece's own first.

@@ -13,7 +13,7 @@ use super::flat::Net;
 use super::judge::Goal;
 use super::measure::{Look, measure};
 use super::neighbours::sharp_edges;
-use super::quadtree::{self, NodeAddress};
+use super::quadtree::{NodeAddress, is_leaf};
 use super::seen::Allowance;
 use super::state::State;
 use super::{Engine, sides};
@@ -47,7 +47,7 @@ impl Engine<'_> {
             return Ok(None);
         };
         let faces = state.covers.len();
-        self.cover(&mut state, &mut Dirty::all(faces))?;
+        self.cover(&mut state, &mut Dirty::all(faces), most)?;
         Ok(Some(state))
     }
 
@@ -60,7 +60,7 @@ impl Engine<'_> {
         let faces = state.covers.len();
         let (mut dirty, mut last) = (Dirty::all(faces), None);
         loop {
-            self.cover(&mut state, &mut dirty)?;
+            self.cover(&mut state, &mut dirty, most)?;
             self.watch.round(state.triangles)?;
             let has_strips = self.control.flat.has_strips();
             if state.triangles > most && !has_strips {
@@ -90,9 +90,10 @@ impl Engine<'_> {
     }
 
     /// Balances the trees and covers what is dirty.
-    fn cover(&self, state: &mut State, dirty: &mut Dirty) -> Result<(), RefineError> {
+    fn cover(&self, state: &mut State, dirty: &mut Dirty, most: usize) -> Result<(), RefineError> {
         let Self { control, watch, .. } = *self;
         self.balance(state, dirty)?;
+        self.split_closing(state, dirty, most)?;
         let edges = &control.edges;
         let chains = match dirty.is_all {
             true => Chains::of(control.mesh, edges, &state.trees, watch)?,
@@ -330,7 +331,7 @@ impl Engine<'_> {
         for &(place, value) in failing {
             self.watch.poll()?;
             // Triangles of a leaf may fail for several reasons.
-            if !is_leaf(state, place) {
+            if !is_leaf(&state.trees, place) {
                 continue;
             }
             // Each division leaves a quarter of the height.
@@ -378,7 +379,7 @@ impl Engine<'_> {
     }
 
     /// Splits a leaf; adds that to what is dirty.
-    fn split(
+    pub(super) fn split(
         &self,
         state: &mut State,
         place: NodeAddress,
@@ -430,7 +431,7 @@ impl Engine<'_> {
                 .into_iter()
                 .flatten()
             {
-                if is_leaf(state, place) {
+                if is_leaf(&state.trees, place) {
                     self.split(state, place, dirty)?;
                     is_split = true;
                 }
@@ -493,14 +494,6 @@ fn towards_corner(place: NodeAddress) -> Option<TowardsCorner> {
         }),
         _ => None,
     }
-}
-
-/// Whether there is a node at a place that has no children.
-fn is_leaf(state: &State, place: NodeAddress) -> bool {
-    state
-        .trees
-        .word_at(place)
-        .is_some_and(|word| !quadtree::is_split(word))
 }
 
 #[cfg(test)]

@@ -62,6 +62,11 @@ impl<'a> Trial<'a> {
         }
     }
 
+    /// Whether it leaves its cones.
+    pub(super) fn leaves_cone(&self) -> bool {
+        exceeds(self.cone, self.limit)
+    }
+
     /// Whether a triangle fails for sure with a point of its piece so high over it.
     pub(super) fn is_lost(&self, height: f64) -> bool {
         let least = Apart {
@@ -73,7 +78,7 @@ impl<'a> Trial<'a> {
             self.criteria
                 .distance_ratio(&least, &self.region, &self.backs)
         };
-        exceeds(self.cone, self.limit) || exceeds(ratio(), self.limit)
+        self.leaves_cone() || exceeds(ratio(), self.limit)
     }
 
     /// Whether distances are within the limit with this deviation.
@@ -93,7 +98,7 @@ impl<'a> Trial<'a> {
         open: [bool; 3],
         rules: &Rules<'_>,
     ) -> Fate {
-        if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
+        if !self.criteria.has_distances() || self.leaves_cone() {
             return self.fate(true);
         }
         let heights = quartic.jet().heights(cell, self.seen.frame.normal());
@@ -118,7 +123,7 @@ impl<'a> Trial<'a> {
         open: [bool; 3],
         rules: &'p Rules<'p>,
     ) -> Fate {
-        if !self.criteria.has_distances() || exceeds(self.cone, self.limit) {
+        if !self.criteria.has_distances() || self.leaves_cone() {
             return self.fate(true);
         }
         let effort = self.effort(open);
@@ -132,7 +137,7 @@ impl<'a> Trial<'a> {
 
     /// The fate of a node that is within its distances or not.
     fn fate(&self, is_within: bool) -> Fate {
-        if is_within && !exceeds(self.cone, self.limit) {
+        if is_within && !self.leaves_cone() {
             Fate::Likely
         } else {
             Fate::Fails
