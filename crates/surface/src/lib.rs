@@ -9,13 +9,16 @@
 //! ```
 //! use limitmesh_surface::mesh::Mesh;
 //! use limitmesh_surface::scheme::Loop;
-//! use limitmesh_surface::{LimitSurface, Proximity, Ray, RayCaster, RayOptions};
+//! use limitmesh_surface::{FaceId, LimitSurface, Proximity, Ray, RayCaster, RayOptions};
 //!
 //! let mesh = Mesh::from_triangles(
 //!     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],
 //!     vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]],
 //! )?;
 //! let surface = LimitSurface::new(&mesh, &Loop)?;
+//! // Over the middle of a face, from the weights of its corners.
+//! let middle = surface.at(FaceId(0), [1.0 / 3.0; 3]);
+//! assert!(middle.normal[0] > 0.57);
 //! let closest = Proximity::new(&surface)?.closest(&[[1.0; 3]], 1e-9)?[0];
 //! // From that point's side a ray hits the surface there.
 //! let ray = Ray { origin: [1.0; 3], direction: [-1.0; 3] };

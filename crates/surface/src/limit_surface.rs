@@ -51,7 +51,7 @@ pub struct SurfacePoint {
 /// The limit surface of a control mesh.
 ///
 /// ```
-/// use limitmesh::{FaceId, LimitSurface, Mesh, scheme::Loop};
+/// use limitmesh_surface::{FaceId, LimitSurface, Mesh, scheme::Loop};
 ///
 /// let mesh = Mesh::from_triangles(
 ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

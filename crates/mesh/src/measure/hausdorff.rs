@@ -91,8 +91,8 @@ const RUN: usize = 1024;
 /// The bytes of the result do not depend on the number of threads.
 ///
 /// ```
-/// use limitmesh::Triangles;
-/// use limitmesh::measure::{SamplingOptions, hausdorff};
+/// use limitmesh_mesh::Triangles;
+/// use limitmesh_mesh::measure::{SamplingOptions, hausdorff};
 ///
 /// let square = |z| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
 /// let (below, above) = (square(0.0), square(0.25));
@@ -103,7 +103,7 @@ const RUN: usize = 1024;
 ///     &SamplingOptions::default().samples(1000),
 /// )?;
 /// assert!((distance.symmetric() - 0.25).abs() < 1e-12);
-/// # Ok::<(), limitmesh::measure::MeasureError>(())
+/// # Ok::<(), limitmesh_mesh::measure::MeasureError>(())
 /// ```
 ///
 /// # Errors

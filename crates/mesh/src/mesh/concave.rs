@@ -49,8 +49,8 @@ impl Mesh {
     /// so do faces and the first parts of those that were divided; the others follow.
     ///
     /// ```
-    /// use limitmesh::mesh::{CornerTag, Tags};
-    /// use limitmesh::Mesh;
+    /// use limitmesh_mesh::mesh::{CornerTag, Tags};
+    /// use limitmesh_mesh::Mesh;
     ///
     /// // A flat L whose vertices all keep their place.
     /// let positions = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]].map(|[x, y]| [x as f64, y as f64, 0.0]);
@@ -61,7 +61,7 @@ impl Mesh {
     /// let (flat, concave) = flat.with_divided_concave_corners()?;
     /// assert_eq!((&concave.corners.first[..], concave.edges), (&[3][..], 1));
     /// assert_eq!(flat.tags().creases[0].vertices, [3, 0]);
-    /// # Ok::<(), limitmesh::mesh::MeshError>(())
+    /// # Ok::<(), limitmesh_mesh::mesh::MeshError>(())
     /// ```
     ///
     /// # Errors

@@ -25,8 +25,8 @@ impl Mesh {
     /// The mesh with the corner tags that `rule` gives its boundary; existing tags stay.
     ///
     /// ```
-    /// use limitmesh::Mesh;
-    /// use limitmesh::mesh::BoundaryRule;
+    /// use limitmesh_mesh::Mesh;
+    /// use limitmesh_mesh::mesh::BoundaryRule;
     ///
     /// let square = Mesh::from_triangles(
     ///     vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
@@ -34,7 +34,7 @@ impl Mesh {
     /// )?;
     /// assert_eq!(square.clone().with_boundary(BoundaryRule::Corners).tags().corners.len(), 2);
     /// assert_eq!(square.with_boundary(BoundaryRule::Fixed).tags().corners.len(), 4);
-    /// # Ok::<(), limitmesh::mesh::MeshError>(())
+    /// # Ok::<(), limitmesh_mesh::mesh::MeshError>(())
     /// ```
     pub fn with_boundary(self, rule: BoundaryRule) -> Self {
         if rule == BoundaryRule::Smooth {

@@ -44,10 +44,10 @@
 //! [`Interpolated::fairness`] compares the energy with a lower bound.
 //!
 //! ```
-//! use limitmesh::interpolate::{InterpolateOptions, interpolate};
-//! use limitmesh::limit::LimitTable;
-//! use limitmesh::scheme::Loop;
-//! use limitmesh::Mesh;
+//! use limitmesh_surface::interpolate::{InterpolateOptions, interpolate};
+//! use limitmesh_surface::limit::LimitTable;
+//! use limitmesh_surface::scheme::Loop;
+//! use limitmesh_surface::Mesh;
 //!
 //! let soup = limitmesh_models::find("sphere").ok_or("no such model")?.soup();
 //! let (mesh, _) = Mesh::from_soup(&soup, &Default::default())?;

@@ -38,9 +38,9 @@
 //! against plain iteration:
 //!
 //! ```
-//! use limitmesh::limit::{LimitTable, ring_matrix};
-//! use limitmesh::ring::{EdgeShape, RingShape, VertexKind};
-//! use limitmesh::scheme::{EdgeMask, Loop, Scheme, Support, VertexMask};
+//! use limitmesh_surface::limit::{LimitTable, ring_matrix};
+//! use limitmesh_surface::ring::{EdgeShape, RingShape, VertexKind};
+//! use limitmesh_surface::scheme::{EdgeMask, Loop, Scheme, Support, VertexMask};
 //!
 //! struct Heavier;
 //!
@@ -95,7 +95,7 @@
 //!     assert!((points[0][axis] - position[axis]).abs() < 1e-9);
 //!     assert!((face[axis] - normal[axis]).abs() < 1e-4);
 //! }
-//! # Ok::<(), limitmesh::limit::LimitError>(())
+//! # Ok::<(), limitmesh_surface::limit::LimitError>(())
 //! ```
 
 mod closed;

@@ -31,11 +31,11 @@ pub enum BarycentricError {
 /// Weights that are below 0 by no more than 1e-6 count as 0.
 ///
 /// ```
-/// let middle = limitmesh::barycentric([0.3333, 0.3333, 0.3333])?;
+/// let middle = limitmesh_surface::barycentric([0.3333, 0.3333, 0.3333])?;
 /// assert_eq!(middle, [1.0 / 3.0; 3]);
-/// let why = limitmesh::barycentric([0.5, 0.25, 0.0]).unwrap_err();
+/// let why = limitmesh_surface::barycentric([0.5, 0.25, 0.0]).unwrap_err();
 /// assert_eq!(why.to_string(), "the weights add up to 0.75 rather than 1 (to 0.0002)");
-/// # Ok::<(), limitmesh::BarycentricError>(())
+/// # Ok::<(), limitmesh_surface::BarycentricError>(())
 /// ```
 ///
 /// # Errors

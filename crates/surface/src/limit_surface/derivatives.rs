@@ -107,7 +107,7 @@ impl LimitSurface<'_> {
     /// from there; half of a curvature's digits are lost 2⁻¹³ of a face away from one of valence 3, 2⁻²³ from 5, and 2⁻³⁴ from 12.
     ///
     /// ```
-    /// use limitmesh::{FaceId, LimitSurface, Mesh, scheme::Loop};
+    /// use limitmesh_surface::{FaceId, LimitSurface, Mesh, scheme::Loop};
     ///
     /// let mesh = Mesh::from_triangles(
     ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

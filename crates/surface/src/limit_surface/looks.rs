@@ -18,8 +18,8 @@ impl LimitSurface<'_> {
     /// on faces that do not exist.
     ///
     /// ```
-    /// use limitmesh::criterion::Viewpoint;
-    /// use limitmesh::{FaceId, Facing, LimitSurface, Mesh, scheme::Loop};
+    /// use limitmesh_surface::Viewpoint;
+    /// use limitmesh_surface::{FaceId, Facing, LimitSurface, Mesh, scheme::Loop};
     ///
     /// let mesh = Mesh::from_triangles(
     ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

@@ -91,7 +91,7 @@ impl LimitSurface<'_> {
     /// schemes outside the Loop family, and where it overflows.
     ///
     /// ```
-    /// use limitmesh::{LimitSurface, Mesh, scheme::Loop};
+    /// use limitmesh_surface::{LimitSurface, Mesh, scheme::Loop};
     ///
     /// let mesh = Mesh::from_triangles(
     ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

@@ -23,7 +23,7 @@ impl LimitSurface<'_> {
     /// is used as by [`Self::at`]; a face that does not exist has no weights.
     ///
     /// ```
-    /// use limitmesh::{FaceId, LimitSurface, Mesh, VertexId, scheme::Loop};
+    /// use limitmesh_surface::{FaceId, LimitSurface, Mesh, VertexId, scheme::Loop};
     ///
     /// let mesh = Mesh::from_triangles(
     ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

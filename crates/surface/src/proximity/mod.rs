@@ -125,7 +125,7 @@ pub enum Membership {
 /// A limit surface, prepared for queries of points.
 ///
 /// ```
-/// use limitmesh::{LimitSurface, Membership, Mesh, Proximity, scheme::Loop};
+/// use limitmesh_surface::{LimitSurface, Membership, Mesh, Proximity, scheme::Loop};
 ///
 /// let mesh = Mesh::from_triangles(
 ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

@@ -128,7 +128,7 @@ pub enum RayError {
 /// A limit surface, ready for many rays.
 ///
 /// ```
-/// use limitmesh::{Crossing, LimitSurface, Mesh, Ray, RayCaster, scheme::Loop};
+/// use limitmesh_surface::{Crossing, LimitSurface, Mesh, Ray, RayCaster, scheme::Loop};
 ///
 /// let mesh = Mesh::from_triangles(
 ///     vec![[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]],

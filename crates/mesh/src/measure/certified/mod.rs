@@ -141,8 +141,8 @@ impl CertifiedHausdorff {
 /// of threads.
 ///
 /// ```
-/// use limitmesh::Triangles;
-/// use limitmesh::measure::{CertifiedOptions, certified_hausdorff};
+/// use limitmesh_mesh::Triangles;
+/// use limitmesh_mesh::measure::{CertifiedOptions, certified_hausdorff};
 ///
 /// let square = |z| [[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]];
 /// let (below, above) = (square(0.0), square(0.25));
@@ -153,7 +153,7 @@ impl CertifiedHausdorff {
 ///     &CertifiedOptions::default(),
 /// )?;
 /// assert!(distance.lower() <= 0.25 && 0.25 <= distance.upper() && distance.upper() <= 0.2525);
-/// # Ok::<(), limitmesh::measure::MeasureError>(())
+/// # Ok::<(), limitmesh_mesh::measure::MeasureError>(())
 /// ```
 ///
 /// # Errors
