@@ -46,7 +46,7 @@ pub(super) fn apply(
     Ok((found.mesh, Some(report)))
 }
 
-/// Where the surface of a part passes by vertices, because through them it would fold.
+/// Where the surface of a part misses vertices, because through them it would fold.
 fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion) -> String {
     let vertices = counted(found.relaxed.len(), "vertex", "vertices");
     let faces = counted(largest.faces.len(), "face", "faces");
@@ -57,7 +57,7 @@ fn folded_in_words(found: &Interpolated, regions: usize, largest: &FoldedRegion)
         "the largest has"
     };
     format!(
-        "the surface passes by {vertices}: through them it would fold in {}; {largest} {faces}, from {low} to {high}",
+        "the surface misses {vertices}: through them it would fold in {}; {largest} {faces}, from {low} to {high}",
         counted(regions, "region", "regions")
     )
 }

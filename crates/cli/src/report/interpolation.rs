@@ -17,7 +17,7 @@ pub(crate) struct InterpolationReport {
     pub(crate) iterations: usize,
     /// The greatest distance of a limit from its vertex, but for relaxed ones, which `relaxed` counts.
     pub(crate) residual: f64,
-    /// Vertices that the surface passes by: those next to much longer edges of sharp lines and boundaries, and those in regions that would fold.
+    /// Vertices that the surface misses: those next to much longer edges of sharp lines and boundaries, and those in regions that would fold.
     pub(crate) relaxed: usize,
     /// Regions of a part that would fold if the surface passed through all vertices.
     pub(crate) folded_regions: usize,
