@@ -1,6 +1,8 @@
-//! What unit tests of several crates share: random numbers that are the same on every run, and meshes.
+//! What tests of several crates share: random numbers that are the same on every run, meshes,
+//! and comparisons.
 
 pub mod models;
+mod ordered;
 mod random;
 
 pub use random::Random;

@@ -12,41 +12,6 @@ use limitmesh::PolygonSoup;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Compares two values; shows both, and the case they belong to, where the comparison fails.
-macro_rules! ordered {
-    ($a:expr, $order:tt, $b:expr, $($case:tt)+) => {
-        match (&$a, &$b) {
-            (a, b) => assert!(
-                *a $order *b,
-                "{}: {} is {a:?}, and not {} {b:?}",
-                format_args!($($case)+),
-                stringify!($a),
-                stringify!($order)
-            ),
-        }
-    };
-}
-
-macro_rules! at_most {
-    ($a:expr, $b:expr) => { ordered!($a, <=, $b, "") };
-    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <=, $b, $($case)+) };
-}
-
-macro_rules! at_least {
-    ($a:expr, $b:expr) => { ordered!($a, >=, $b, "") };
-    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >=, $b, $($case)+) };
-}
-
-macro_rules! below {
-    ($a:expr, $b:expr) => { ordered!($a, <, $b, "") };
-    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, <, $b, $($case)+) };
-}
-
-macro_rules! above {
-    ($a:expr, $b:expr) => { ordered!($a, >, $b, "") };
-    ($a:expr, $b:expr, $($case:tt)+) => { ordered!($a, >, $b, $($case)+) };
-}
-
 /// A text that has words in it; it is shown where it has not.
 macro_rules! says {
     ($text:expr, $words:expr) => {

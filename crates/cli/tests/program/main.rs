@@ -1,6 +1,9 @@
 //! The program as its users meet it: commands, files, exit codes, the JSON contract.
 
 #[macro_use]
+extern crate limitmesh_testing;
+
+#[macro_use]
 mod common;
 
 mod asset;

@@ -40,10 +40,10 @@ struct General {
     middles: [DVec3; 3],
 }
 
-/// Items in numbered slots. A slot that is freed keeps its item until it is used again.
+/// Items in numbered slots, which are freed and used again.
 #[derive(Debug)]
 struct Shelf<T> {
-    all: Vec<T>,
+    all: Vec<Option<T>>,
     free: Vec<u32>,
 }
 
@@ -59,19 +59,23 @@ impl<T> Default for Shelf<T> {
 impl<T> Shelf<T> {
     fn put(&mut self, item: T) -> u32 {
         if let Some(place) = self.free.pop() {
-            self.all[place as usize] = item;
+            self.all[place as usize] = Some(item);
             return place;
         }
-        self.all.push(item);
+        self.all.push(Some(item));
         (self.all.len() - 1) as u32
     }
 
     fn take(&mut self, place: u32) {
+        self.all[place as usize] = None;
         self.free.push(place);
     }
 
     fn get(&self, place: u32) -> &T {
-        &self.all[place as usize]
+        match &self.all[place as usize] {
+            Some(item) => item,
+            None => unreachable!("a piece that was given back is asked for"),
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The library from outside, in one program: linking one for each subject takes longer than running most of them.
 
 #[macro_use]
+extern crate limitmesh_testing;
+
 mod support;
 
 mod angles;

@@ -66,7 +66,7 @@ impl Pending {
     }
 }
 
-/// Whether the node beyond an edge of an even one is even, too, and at most a level less deep.
+/// Whether all nodes beyond an edge of an even one are even, too, and at most a level less deep.
 fn is_as_deep(
     trees: &Trees,
     edges: &Edges<'_>,
@@ -74,30 +74,16 @@ fn is_as_deep(
     depth: u32,
     edge: usize,
 ) -> bool {
-    let other = match beyond(place, edge) {
-        Beyond::Same(other) => Some(other),
-        Beyond::Control(along) => edges
-            .twin(along.half_edge)
-            .map(|twin| along.node_at(twin, true).0),
-    };
-    let below = other
-        .and_then(|other| trees.word_at(other))
-        .and_then(even_depth);
-    below.is_some_and(|below| below + 1 >= depth)
+    edges.nodes_beyond(place, edge).into_iter().all(|other| {
+        let below = trees.word_at(other).and_then(even_depth);
+        below.is_some_and(|below| below + 1 >= depth)
+    })
 }
 
-/// Whether the node of the same level beyond an edge may be missing.
+/// Whether a node of the same level beyond an edge is missing.
 fn lacks(trees: &Trees, edges: &Edges<'_>, place: NodeAddress, edge: usize) -> bool {
-    if place.has_sibling_beyond(edge) {
-        return false;
-    }
-    match beyond(place, edge) {
-        Beyond::Same(other) => !trees.has(other),
-        Beyond::Control(along) => match edges.twin(along.half_edge) {
-            Some(twin) => !trees.has(along.node_at(twin, true).0),
-            None => edges.group(along.half_edge).is_some(),
-        },
-    }
+    let mut beyond = edges.nodes_beyond(place, edge).into_iter();
+    !place.has_sibling_beyond(edge) && beyond.any(|other| !trees.has(other))
 }
 
 /// Splits what must be for the nodes in `pending`; `split` is called with each place that was. `false` if there would be too many

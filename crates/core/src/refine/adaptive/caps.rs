@@ -120,6 +120,7 @@ pub(super) fn may_do_with_fewer(
         return Ok(true);
     }
     plain.with_engine(observer, |engine| {
+        // Flat regions and strips of a sixteenth of the faces may make the plain mesh the smaller one.
         Ok(16 * engine.control.flat.merged_faces() >= plain.mesh.face_count())
     })
 }

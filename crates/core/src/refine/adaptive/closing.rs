@@ -30,12 +30,13 @@ impl Engine<'_> {
         most: usize,
     ) -> Result<(), RefineError> {
         let criteria = self.control.criteria.as_ref();
-        let Some(criteria) = criteria.filter(|criteria| criteria.has_cones()) else {
+        let has_cones = |criteria: &&Criteria| criteria.has_cones() && !self.is_balanced;
+        let Some(criteria) = criteria.filter(has_cones) else {
             return Ok(());
         };
         let mut pieces = HashMap::new();
         let mut first = 0;
-        while !self.is_balanced && first < dirty.split().len() && dirty.split().len() < most {
+        while first < dirty.split().len() && dirty.split().len() < most {
             let layer = self.touched(state, &dirty.split()[first..]);
             first = dirty.split().len();
             let mut failing = Vec::new();

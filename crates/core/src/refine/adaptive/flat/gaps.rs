@@ -34,6 +34,7 @@ impl Gaps {
         if attempt >= 6 {
             return demands.judge_all_by_triangles();
         }
+        // Gaps are not worth the division of more than a million nodes.
         let mut room = if attempt < MOST_DIVISIONS {
             room.min(1 << 20)
         } else {
