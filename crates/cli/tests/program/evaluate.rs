@@ -94,9 +94,9 @@ fn places_that_are_none_are_errors() {
         &[("control", &control), ("bad", &bad), ("empty", &empty)],
         "
         1 | evaluate {control} --at 8,1,0,0 | no face 8: the control mesh has 8 triangles
-        2 | evaluate {control} --at 0,0.5,0.5,0.5 | '0,0.5,0.5,0.5': the weights add up to 1.5
+        2 | evaluate {control} --at 0,0.5,0.5,0.5 | '0,0.5,0.5,0.5': the weights add up to 1.5 rather than 1
         2 | evaluate {control} --at 0,0.333,0.333,0.333 | add up to 0.999
-        2 | evaluate {control} --at 0,1.5,-0.5,0 | the weight -0.5
+        2 | evaluate {control} --at 0,1.5,-0.5,0 | the weight -0.5 is below 0
         2 | evaluate {control} --at 0,1,0 | 2 weights
         1 | evaluate {control} --at {bad} | line 2: '1 0.5 0.5' has 2 weights
         1 | evaluate {control} --at {empty} | no places
