@@ -239,25 +239,25 @@ impl<'m> Edges<'m> {
         &self.members[group]
     }
 
-    /// The nodes of the same level beyond an edge of a node, on all sheets that meet there.
+    /// The nodes of the same level beyond an edge of a node, on all sheets that meet there, and the number of the edge in each.
     pub(crate) fn nodes_beyond(
         &self,
         place: NodeAddress,
         edge: usize,
-    ) -> SmallVec<[NodeAddress; 1]> {
+    ) -> SmallVec<[(NodeAddress, usize); 1]> {
         let along = match beyond(place, edge) {
-            Beyond::Same(other) => return smallvec![other],
+            Beyond::Same(other) => return smallvec![(other, edge)],
             Beyond::Control(along) => along,
         };
         let h = along.half_edge;
         if let Some(twin) = self.twin(h) {
-            return smallvec![along.node_at(twin, true).0];
+            return smallvec![along.node_at(twin, true)];
         }
         let members = self.group(h).map_or(&[][..], |group| self.members(group));
         let is_turned = members.contains(&(h, true));
         let others = members.iter().filter(|&&(member, _)| member != h);
         others
-            .map(|&(member, turned)| along.node_at(member, turned != is_turned).0)
+            .map(|&(member, turned)| along.node_at(member, turned != is_turned))
             .collect()
     }
 

@@ -15,12 +15,19 @@ pub(crate) struct Deviation {
     pub(crate) own: f64,
     /// The greatest height over the triangle's plane, and distance to edges without a neighbour.
     pub(crate) height: f64,
-    /// How far pieces reach over edges with a neighbour.
-    pub(crate) displacement: f64,
+    /// The greatest height of the curves over edges with a neighbour, and of what reaches over these, by edge.
+    pub(crate) edge_heights: [f64; 3],
+    /// How far that reaches over them.
+    pub(crate) displacements: [f64; 3],
     /// The greatest ratio of that to the distance from the edge's ends, by edge.
     pub(crate) slopes: [f64; 3],
     /// How much of the height may point in any direction rather than along normals.
     pub(crate) across: f64,
+}
+
+/// The greater of each.
+fn greater_each(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|edge| greater(a[edge], b[edge]))
 }
 
 impl Deviation {
@@ -29,8 +36,9 @@ impl Deviation {
         Self {
             own: greater(self.own, other.own),
             height: greater(self.height, other.height),
-            displacement: greater(self.displacement, other.displacement),
-            slopes: [0, 1, 2].map(|edge| greater(self.slopes[edge], other.slopes[edge])),
+            edge_heights: greater_each(self.edge_heights, other.edge_heights),
+            displacements: greater_each(self.displacements, other.displacements),
+            slopes: greater_each(self.slopes, other.slopes),
             across: greater(self.across, other.across),
         }
     }
@@ -41,7 +49,8 @@ impl Deviation {
         Self {
             own,
             height: own,
-            displacement: 0.0,
+            edge_heights: [own; 3],
+            displacements: [0.0; 3],
             slopes: [0.0; 3],
             across: own,
         }
@@ -62,7 +71,8 @@ impl Deviation {
         Self {
             own: greater(self.own, moved),
             height,
-            displacement: self.displacement + aside,
+            edge_heights: [height; 3],
+            displacements: self.displacements.map(|reach| reach + aside),
             across,
             ..self
         }
@@ -74,12 +84,14 @@ impl Deviation {
         let Self {
             own,
             height,
+            edge_heights,
             across,
             ..
         } = self;
         Self {
             own: own + distance,
             height: height + distance,
+            edge_heights: edge_heights.map(|height| height + distance),
             across: across + distance,
             ..self
         }
@@ -97,24 +109,38 @@ impl Deviation {
         (0..3).all(|edge| self.slopes[edge] <= slopes[edge])
     }
 
-    /// The bound where the neighbours' planes are turned by angles with this chord (2 sin(θ/2)) at most, and `slopes`
+    /// The bound where the neighbours' planes are turned by angles with these chords (2 sin(θ/2)) at most, and `slopes`
     /// are the greatest that are allowed, by edge.
     #[inline]
-    pub(crate) fn bound(&self, chord: f64, slopes: [f64; 3]) -> f64 {
-        self.among_neighbours(chord, slopes)
+    pub(crate) fn bound(&self, chords: [f64; 3], slopes: [f64; 3]) -> f64 {
+        self.among_neighbours(chords, slopes)
             .map_or(self.own, |bound| self.own.min(bound))
     }
 
     /// The part of the bound that takes help of the neighbours; `None` where they can't help.
     #[inline]
-    fn among_neighbours(&self, chord: f64, slopes: [f64; 3]) -> Option<f64> {
-        let can_help = self.is_within(slopes) && chord * chord <= SHARPEST;
-        can_help.then_some(self.height * (1.0 + 0.5 * chord * chord) + chord * self.displacement)
+    fn among_neighbours(&self, chords: [f64; 3], slopes: [f64; 3]) -> Option<f64> {
+        let can_help =
+            self.is_within(slopes) && chords.iter().all(|chord| chord * chord <= SHARPEST);
+        let at_edge = |edge: usize| {
+            let (chord, height) = (chords[edge], self.edge_heights[edge].min(self.height));
+            height * (1.0 + 0.5 * chord * chord) + chord * self.displacements[edge]
+        };
+        can_help.then(|| (0..3).map(at_edge).fold(self.height, greater))
     }
 
     /// The height for which that would be no more than this.
-    pub(crate) fn height_within(&self, limit: f64, chord: f64) -> f64 {
-        (limit - chord * self.displacement) / (1.0 + 0.5 * chord * chord)
+    pub(crate) fn height_within(&self, limit: f64, chords: [f64; 3]) -> f64 {
+        let by_edge = (0..3).map(|edge| {
+            let chord = chords[edge];
+            let most = (limit - chord * self.displacements[edge]) / (1.0 + 0.5 * chord * chord);
+            if self.edge_heights[edge] <= most {
+                limit
+            } else {
+                most
+            }
+        });
+        by_edge.fold(limit, f64::min)
     }
 
     /// The bounds with and without neighbours, and which part of the former is along normals.
@@ -125,9 +151,9 @@ impl Deviation {
     /// planes and the chord between them; and where it is a strip that covers, at most the tangent
     /// of half their angle outside, all within that angle of the triangle's own normal or counted
     /// as little.
-    pub(crate) fn apart(&self, chord: f64, slopes: [f64; 3]) -> Apart {
+    pub(crate) fn apart(&self, chords: [f64; 3], slopes: [f64; 3]) -> Apart {
         let bound = self
-            .among_neighbours(chord, slopes)
+            .among_neighbours(chords, slopes)
             .unwrap_or(f64::INFINITY);
         let across = if bound.is_finite() {
             self.across.min(bound)

@@ -6,14 +6,13 @@ use crate::vector::DVec3;
 /// A slope beyond all that can be met.
 pub(crate) const STEEP: f64 = f64::MAX;
 
-/// The squared chord and the slope next to a triangle without a plane: they leave only the bound that needs no
+/// The chords and the slopes next to a triangle without a plane: they leave only the bound that needs no
 /// neighbours.
-const UNSETTLED: (f64, [f64; 3]) = (4.0, [0.0; 3]);
+const UNSETTLED: ([f64; 3], [f64; 3]) = ([2.0; 3], [0.0; 3]);
 
-/// The greatest squared chord of the angles between the planes of a triangle and its neighbours,
-/// given by their corners opposite, and the greatest slopes at which points may move tangentially
-/// over them, by edge.
-pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f64; 3]) {
+/// The chords of the angles between the planes of a triangle and its neighbours, given by their corners opposite, and the
+/// greatest slopes at which points may move tangentially over them, by edge. No neighbour turns by nothing.
+pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> ([f64; 3], [f64; 3]) {
     let edges = [own[1] - own[0], own[2] - own[1], own[0] - own[2]];
     let Some((normal, area)) = plane(edges[0], edges[1]) else {
         return UNSETTLED;
@@ -25,7 +24,7 @@ pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f
         let before = (corner + 2) % 3;
         (lengths[corner] * lengths[before] - edges[corner].dot(edges[before])) / area
     });
-    let (mut squared, mut slopes) = (0.0f64, [STEEP; 3]);
+    let (mut chords, mut slopes) = ([0.0; 3], [STEEP; 3]);
     for edge in 0..3 {
         let Some(opposite) = opposite[edge] else {
             continue;
@@ -35,13 +34,13 @@ pub(crate) fn around(own: [DVec3; 3], opposite: &[Option<DVec3>; 3]) -> (f64, [f
         let Some((other, area)) = plane(out, edges[edge]) else {
             return UNSETTLED;
         };
-        squared = squared.max(normal.distance_squared(other));
+        chords[edge] = normal.distance(other);
         // Tangents of the neighbour's angles at both ends: the lesser is that of the greater product.
         let at_start = out.dot(edges[edge]);
         let product = at_start.max(lengths[edge] * lengths[edge] - at_start);
         slopes[edge] = free[edge].min(free[(edge + 1) % 3]).min(area / product);
     }
-    (squared, slopes)
+    (chords, slopes)
 }
 
 /// The unit vector at right angles to two edges, and the area of their parallelogram; `None` if that is nothing, or

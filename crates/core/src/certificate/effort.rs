@@ -19,8 +19,8 @@ pub(crate) struct Effort {
     pub(crate) open: [bool; 3],
     /// Whether nothing counts but the curves over these.
     pub(crate) rim_alone: bool,
-    /// Expected chord of the angles between the triangle and its neighbours.
-    pub(crate) chord: f64,
+    /// Expected chords of the angles between the triangle and its neighbours, by edge.
+    pub(crate) chords: [f64; 3],
     /// Expected greatest slopes, by edge.
     pub(crate) slopes: [f64; 3],
     /// Whether the distance of a triangle that certainly misses the target is not needed.
@@ -33,13 +33,13 @@ pub(crate) struct Effort {
 impl Effort {
     /// For triangles of flat regions, of whose edges the open ones count alone.
     pub(crate) fn along_rim(target: f64, open: [bool; 3]) -> Self {
-        let (chord, slopes) = (0.0, [0.0; 3]);
+        let (chords, slopes) = ([0.0; 3], [0.0; 3]);
         Self {
             target,
             halvings: RIM_HALVINGS,
             open,
             rim_alone: true,
-            chord,
+            chords,
             slopes,
             gives_up: false,
             least_chord: None,

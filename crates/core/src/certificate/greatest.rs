@@ -27,7 +27,9 @@ struct Greatest<'a> {
     squared: f64,
     /// The part of that distance within the plane.
     side: f64,
-    displacement: f64,
+    /// By edge, the greatest height of curve points and of points outside it, and how far outside these are.
+    edge_heights: [f64; 3],
+    displacements: [f64; 3],
     slopes: [f64; 3],
     /// By edge, the ratio of a curve point's distance from its edge's line, on either side, to the distance from the ends.
     swings: [f64; 3],
@@ -148,7 +150,8 @@ impl<'a> Greatest<'a> {
             most: f64x4::ZERO,
             squared: 0.0,
             side: 0.0,
-            displacement: 0.0,
+            edge_heights: [0.0; 3],
+            displacements: [0.0; 3],
             slopes: [0.0; 3],
             swings: [0.0; 3],
             beyond: false,
@@ -191,15 +194,16 @@ impl<'a> Greatest<'a> {
             let along = point.edge_position(self.frame, edge).along;
             let room = along.min(self.frame.lengths[edge] - along);
             side = side.larger(outside);
+            self.edge_heights[edge] = self.edge_heights[edge].larger(height.abs());
+            self.displacements[edge] = self.displacements[edge].larger(outside);
             self.slopes[edge] = self.slopes[edge].larger(outside / room);
             self.beyond |= exceeds(0.0, room);
         }
-        self.displacement = self.displacement.larger(side);
         self.side = self.side.larger(side);
         self.squared = self.squared.larger(height * height + side * side);
     }
 
-    /// Points of the curve over an edge, some perhaps more than once; their heights are not taken.
+    /// Points of the curve over an edge, some perhaps more than once.
     #[inline]
     fn curve(&mut self, edge: usize, points: [&Trilinear; TOGETHER]) {
         let row = |at: usize| f64x4::new(points.map(|point| point.0.as_array()[at % 4]));
@@ -216,7 +220,8 @@ impl<'a> Greatest<'a> {
         self.side = self.side.larger(greatest(side));
         self.swings[edge] = self.swings[edge].larger(greatest(swings));
         self.slopes[edge] = self.slopes[edge].larger(greatest(outside & swings));
-        self.displacement = self.displacement.larger(greatest(outside & out));
+        self.displacements[edge] = self.displacements[edge].larger(greatest(outside & out));
+        self.edge_heights[edge] = self.edge_heights[edge].larger(greatest(heights.abs()));
         let rooms = is_off.bitselect(room, room + on_edge);
         self.beyond |= rooms.simd_lt(f64x4::ZERO).any();
     }
@@ -229,7 +234,8 @@ impl<'a> Greatest<'a> {
             most,
             squared,
             side,
-            displacement,
+            edge_heights,
+            displacements,
             slopes,
             ..
         } = self;
@@ -246,7 +252,8 @@ impl<'a> Greatest<'a> {
         (stays && !self.beyond).then_some(Deviation {
             own,
             height,
-            displacement,
+            edge_heights,
+            displacements,
             slopes,
             across: 0.0,
         })

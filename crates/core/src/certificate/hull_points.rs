@@ -238,6 +238,8 @@ impl<P: HullPoint> DeviationBound<'_, P> {
                 if self.open[edge] {
                     alone = greater(alone, hypotenuse(height, position.outside));
                 } else {
+                    let known = &mut deviation.edge_heights[edge];
+                    *known = greater(*known, height);
                     self.displaced(edge, position, deviation);
                 }
             }
@@ -271,7 +273,9 @@ impl<P: HullPoint> DeviationBound<'_, P> {
             deviation.height = greater(deviation.height, own);
             deviation.across = greater(deviation.across, own);
         } else {
-            deviation.height = greater(deviation.height, point.height(self.frame).abs());
+            let height = point.height(self.frame).abs();
+            deviation.height = greater(deviation.height, height);
+            deviation.edge_heights[edge] = greater(deviation.edge_heights[edge], height);
             let position = point.edge_position(self.frame, edge);
             if exceeds(position.outside, 0.0) {
                 self.displaced(edge, position, deviation);
@@ -297,7 +301,8 @@ impl<P: HullPoint> DeviationBound<'_, P> {
         let room = position
             .along
             .min(P::length(self.frame, edge) - position.along);
-        deviation.displacement = greater(deviation.displacement, position.outside);
+        let reach = &mut deviation.displacements[edge];
+        *reach = greater(*reach, position.outside);
         let slope = if room > 0.0 {
             position.outside / room
         } else {
@@ -369,7 +374,14 @@ mod tests {
                     "{case}: {found:?} {each:?}"
                 );
                 assert!(
-                    near(found.height, each.height) && near(found.displacement, each.displacement),
+                    near(found.height, each.height)
+                        && (0..3).all(|edge| near(
+                            found.displacements[edge],
+                            each.displacements[edge]
+                        ) && near(
+                            found.edge_heights[edge],
+                            each.edge_heights[edge]
+                        )),
                     "{case}: {found:?} {each:?}"
                 );
                 assert!(

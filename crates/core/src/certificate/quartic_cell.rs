@@ -22,7 +22,7 @@
 //! both over the domain, in the metric of the plane in which T has three edges of length 1. Where ‖A‖ < 1 all over D the
 //! projection takes no two points to one place, since from one point of D to another it changes by the change on T and the mean of A
 //! along the way; its rim is the three curves, so nothing of S reaches over an edge farther than the edge's own curve. With
-//! f = q + c + r as above, now within the plane ([`is_folding`]):
+//! f = q + c + r as above, now within the plane ([`turn`]):
 //!
 //! * the part of q is linear over D: greatest in a corner. There it is ½Wᵢ and −½Wⱼ along the edges that end and start
 //!   in the corner, so ‖A‖² ≤ ⅔ · ¼(|Wᵢ|² + |Wⱼ|² + |Wᵢ − Wⱼ|²) ≤ max |W|², ⅔ Σ|Aeᵢ|² being the square of the Frobenius norm;
@@ -32,6 +32,11 @@
 //! * a unit vector is the sum of two edges times factors of 2/√3 together, so c and r add 2/√3
 //!   times these, either with lengths in that metric or, by bounds of T and F, times the greatest
 //!   stretch of lengths by the metric.
+//!
+//! **What reaches over an edge.** A point whose barycentric coordinate of the corner opposite is λ lies λ times the altitude inside the
+//! edge on T, and within the curve's own reach g and λ times the change along an edge beyond that on S. That change is at most 2/√3 ‖A‖ times the
+//! altitude, so λ ≤ g/(altitude (1 − 2/√3 ‖A‖)) for points that reach over the edge ([`share_beyond`]). Their heights are those
+//! of the curve and λ times the greatest derivative of heights along edges: the greatest second derivative and what c and r add.
 //!
 //! Otherwise all that is known is |S − T| ≤ ½ Σ λᵢλⱼ M ≤ M/6, M bounding second derivatives along edges all over D.
 
@@ -178,18 +183,20 @@ impl QuarticJet {
     ) -> EdgeBounds {
         let bends = self.bends(cell);
         let (third, fourth) = self.most(reach(cell));
-        let is_folding = is_folding(
-            frame,
-            &bends,
-            frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth),
-        );
+        let first = 0.5 * third + QUARTIC_SLOPE * fourth;
         let steep = third / 12.0 + fourth / 48.0;
+        let off = CURVE_CUBIC * third + fourth / 384.0;
         let rest = EdgeRest {
-            off: CURVE_CUBIC * third + fourth / 384.0,
+            off,
+            height: off,
             outward: steep,
             along: steep,
         };
-        EdgeBounds::of(frame, &bends, [rest; 3], open, is_folding, third + fourth)
+        let inside = InnerRest {
+            turn: turn(frame, &bends, frame.stretch() * first),
+            rise: first,
+        };
+        EdgeBounds::of(frame, &bends, [rest; 3], open, inside, third + fourth)
     }
 
     /// The distances from the edges by the part's own third and fourth derivatives, where the first
@@ -204,14 +211,7 @@ impl QuarticJet {
         let EdgeBounds { bends, rest, .. } = known;
         let part = self.part(cell);
         let rests = [0, 1, 2].map(|edge| part.rest(edge, frame));
-        EdgeBounds::of(
-            frame,
-            bends,
-            rests,
-            open,
-            part.is_folding(frame, bends),
-            *rest,
-        )
+        EdgeBounds::of(frame, bends, rests, open, part.inside(frame, bends), *rest)
     }
 
     /// Third and fourth derivatives of a part.
@@ -319,8 +319,9 @@ pub(crate) struct EdgeBounds {
     side: f64,
     /// The distance from edges without a neighbour.
     open: f64,
-    /// How far curves reach over the others.
-    displacement: f64,
+    /// The heights of the curves over the others and of what reaches over these, and how far it does, by edge.
+    edge_heights: [f64; 3],
+    displacements: [f64; 3],
     /// The greatest ratio of that to the distance from the edge's ends, by edge.
     slopes: [f64; 3],
     /// The distance of the surface from the triangle, where none of the others is bounded.
@@ -350,35 +351,47 @@ impl PartDerivatives {
         let (third, fourth) = (self.middles[edge], self.pairs[edge]);
         let (outward, along) = (frame.outward(edge), frame.along(edge));
         let steep = |way: DVec3| third.dot(way).abs() / 12.0 + fourth.dot(way).abs() / 48.0;
-        let off = CURVE_CUBIC * third.dot(outward).abs() + fourth.dot(outward).abs() / 384.0;
+        let off = |way: DVec3| CURVE_CUBIC * third.dot(way).abs() + fourth.dot(way).abs() / 384.0;
         EdgeRest {
-            off,
+            off: off(outward),
+            height: off(frame.normal()),
             outward: steep(outward),
             along: steep(along),
         }
     }
 
-    /// [`is_folding`] by them.
+    /// Their share inside the part.
     #[inline]
-    fn is_folding(&self, frame: &TriangleFrame, bends: &[DVec3; 3]) -> bool {
+    fn inside(&self, frame: &TriangleFrame, bends: &[DVec3; 3]) -> InnerRest {
         let length = |vector: DVec3| frame.stretched_squared(vector).sqrt();
-        let thirds = self.thirds.map(length).iter().sum::<f64>();
-        let fourth = self
-            .pairs
-            .iter()
-            .map(|&pair| frame.stretched_squared(pair))
-            .fold(0.0, f64::larger)
-            .sqrt();
-        let rest = thirds / 12.0 + 0.25 * length(self.bubble) + QUARTIC_SLOPE * fourth;
-        is_folding(frame, bends, rest)
+        let height = |vector: DVec3| vector.dot(frame.normal()).abs();
+        let by = |size: &dyn Fn(DVec3) -> f64| {
+            let thirds = self.thirds.map(size).iter().sum::<f64>();
+            let fourth = self.pairs.map(size).into_iter().fold(0.0, f64::larger);
+            thirds / 12.0 + 0.25 * size(self.bubble) + QUARTIC_SLOPE * fourth
+        };
+        InnerRest {
+            turn: turn(frame, bends, by(&length)),
+            rise: by(&height),
+        }
     }
+}
+
+/// The share of third and fourth derivatives inside a part.
+#[derive(Clone, Copy, Debug)]
+struct InnerRest {
+    /// ‖A‖ of the module's page, with that of second derivatives.
+    turn: f64,
+    /// To the derivatives of heights along edges.
+    rise: f64,
 }
 
 /// The share of third and fourth derivatives along an edge.
 #[derive(Clone, Copy, Debug)]
 struct EdgeRest {
-    /// To the distance of the curve from the edge's line within the triangle's plane.
+    /// To the distance of the curve from the edge's line within the triangle's plane, and to its height.
     off: f64,
+    height: f64,
     /// To the curve's slope towards the ends: outwards, and along the edge.
     outward: f64,
     along: f64,
@@ -386,28 +399,31 @@ struct EdgeRest {
 
 impl EdgeBounds {
     /// By the second derivatives along the edges in their middles, the share of third and fourth
-    /// ones in the curves, whether the surface may fold, and the greatest deviation of second
-    /// derivatives along edges.
+    /// ones in the curves and inside, and the greatest deviation of second derivatives along edges.
     #[inline]
     fn of(
         frame: &TriangleFrame,
         bends: &[DVec3; 3],
         rests: [EdgeRest; 3],
         open: [bool; 3],
-        is_folding: bool,
+        inside: InnerRest,
         rest: f64,
     ) -> Self {
         let slopes = [0.0; 3];
         let mut found = Self {
             side: 0.0,
             open: 0.0,
-            displacement: 0.0,
+            edge_heights: [0.0; 3],
+            displacements: [0.0; 3],
             slopes,
             loose: None,
             bends: *bends,
             rest,
         };
-        let mut is_plain = !frame.is_flat() && !is_folding;
+        // Fails for NaN.
+        let mut is_plain = !frame.is_flat() && inside.turn < NEARLY_ONE;
+        let heights = bends.map(|bend| bend.dot(frame.normal()).abs());
+        let rise = heights.into_iter().fold(0.0, f64::larger) + inside.rise;
         for edge in 0..3 {
             // Outwards where the derivative points inwards.
             let outward = -bends[edge].dot(frame.outward(edge));
@@ -423,7 +439,11 @@ impl EdgeBounds {
             if open[edge] {
                 found.open = found.open.larger(off);
             } else {
-                found.displacement = found.displacement.larger(0.125 * outward + by_rest.off);
+                let reach = 0.125 * outward + by_rest.off;
+                found.displacements[edge] = reach;
+                found.edge_heights[edge] = 0.125 * heights[edge]
+                    + by_rest.height
+                    + rise * share_beyond(reach, frame.altitude(edge), inside.turn);
                 found.slopes[edge] = (0.5 * outward + by_rest.outward) / room;
             }
         }
@@ -453,16 +473,12 @@ impl EdgeBounds {
             None => {
                 let alone = hypotenuse(height, self.open);
                 let across = if self.open > 0.0 { alone } else { 0.0 };
-                let (own, displacement, slopes) = (
-                    hypotenuse(height, self.side),
-                    self.displacement,
-                    self.slopes,
-                );
                 Deviation {
-                    own,
+                    own: hypotenuse(height, self.side),
                     height: alone,
-                    displacement,
-                    slopes,
+                    edge_heights: self.edge_heights,
+                    displacements: self.displacements,
+                    slopes: self.slopes,
                     across,
                 }
             }
@@ -498,19 +514,24 @@ impl EdgeBounds {
     }
 }
 
-/// Whether a map over the triangle may take two points to one place, by its second derivatives
-/// along the edges in their middles, and the change by third and fourth ones of the first
-/// derivatives along edges, in the metric of the triangle.
+/// A bound of ‖A‖ by the second derivatives along the edges in their middles, and the change by third and fourth ones of the
+/// first derivatives along edges, in the metric of the triangle.
 #[inline]
-fn is_folding(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> bool {
+fn turn(frame: &TriangleFrame, bends: &[DVec3; 3], rest: f64) -> f64 {
     let most = bends
         .iter()
         .map(|&bend| frame.stretched_squared(bend))
         .fold(0.0, f64::max)
         .sqrt();
-    // Fails for NaN.
-    let is_apart = most + DIRECTIONS * rest < NEARLY_ONE;
-    !is_apart
+    most + DIRECTIONS * rest
+}
+
+/// The greatest barycentric coordinate, of the corner opposite, of a point that reaches over an edge, by how far the curve there
+/// does, the altitude, and ‖A‖.
+#[inline]
+fn share_beyond(reach: f64, altitude: f64, turn: f64) -> f64 {
+    let room = altitude * (1.0 - DIRECTIONS * turn);
+    if room > reach { reach / room } else { 1.0 }
 }
 
 /// The greatest coordinate of an edge's direction.

@@ -156,7 +156,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
 
     /// The value of a deviation.
     fn value(&self, deviation: &Deviation) -> f64 {
-        deviation.bound(self.effort.chord, self.effort.slopes)
+        deviation.bound(self.effort.chords, self.effort.slopes)
     }
 
     /// The value that is good enough for the rest: values below the present bound add nothing.
@@ -179,7 +179,7 @@ impl<'a, P: HullPoint> Search<'a, P> {
         self.found = self.with(deviation);
         if let Some(chord) = self.effort.least_chord
             && exceeds(
-                self.found.bound(chord, self.effort.slopes),
+                self.found.bound([chord; 3], self.effort.slopes),
                 self.effort.target,
             )
         {

@@ -244,6 +244,12 @@ impl TriangleFrame {
         (half_trace + (half_trace * half_trace - determinant).max(0.0).sqrt()).sqrt()
     }
 
+    /// The height of the corner opposite over an edge.
+    #[inline]
+    pub(crate) fn altitude(&self, edge: usize) -> f64 {
+        self.parallelogram() / self.lengths[edge]
+    }
+
     /// Twice the area.
     #[inline]
     fn parallelogram(&self) -> f64 {

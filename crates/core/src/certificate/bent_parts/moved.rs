@@ -54,17 +54,17 @@ struct Triangle {
 struct EdgeDeviations {
     /// How far curves are from their edges, and how far they reach over them.
     side: f64x4,
-    displacement: f64x4,
+    displacements: [f64x4; 3],
     /// The greatest slopes of that.
     slopes: [f64x4; 3],
     /// Whether each curve stays within the angles at its edge.
     is_plain: f64x4,
 }
 
-/// The greatest squared chord of the angles to the neighbours, the greatest slopes of tangential
+/// The squared chords of the angles to the neighbours, the greatest slopes of tangential
 /// displacements, and whether all have planes.
 struct Around {
-    squared: f64x4,
+    squared: [f64x4; 3],
     slopes: [f64x4; 3],
     is_known: f64x4,
 }
@@ -103,10 +103,12 @@ impl MovedFour {
         let at_corners = most.fast_max(moved);
         let apart = (at_corners * at_corners + 4.0 * aside * aside).sqrt();
         let within = |edge: usize| edges.slopes[edge].simd_le(around.slopes[edge]);
-        let is_helped =
-            within(0) & within(1) & within(2) & around.squared.simd_le(f64x4::splat(SHARPEST));
-        let among = apart * (1.0 + 0.5 * around.squared)
-            + around.squared.sqrt() * (edges.displacement + aside);
+        let (mut is_helped, mut among) = (triangle.has_plane, apart);
+        for (edge, squared) in around.squared.into_iter().enumerate() {
+            is_helped = is_helped & within(edge) & squared.simd_le(f64x4::splat(SHARPEST));
+            let reach = edges.displacements[edge] + aside;
+            among = among.fast_max(apart * (1.0 + 0.5 * squared) + squared.sqrt() * reach);
+        }
         let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
         FoundFour {
@@ -166,7 +168,7 @@ impl Triangle {
     fn edge_bounds(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
         let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
-        let (mut side, mut displacement, mut slopes) = (zero, zero, [zero; 3]);
+        let (mut side, mut displacements, mut slopes) = (zero, [zero; 3], [zero; 3]);
         let mut is_plain = self.has_plane;
         for edge in 0..3 {
             let share = 1.0 / self.lengths[edge];
@@ -179,12 +181,12 @@ impl Triangle {
             is_plain = is_plain & room.simd_gt(zero) & stays;
             side = side.fast_max(0.125 * outward.abs() + curve);
             // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
-            displacement = displacement.fast_max(0.125 * outward.fast_max(zero) + curve);
+            displacements[edge] = 0.125 * outward.fast_max(zero) + curve;
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
         EdgeDeviations {
             side,
-            displacement,
+            displacements,
             slopes,
             is_plain,
         }
@@ -221,7 +223,7 @@ impl Triangle {
             (lengths + self.products[corner]) * share
         });
         let mut around = Around {
-            squared: f64x4::ZERO,
+            squared: [f64x4::ZERO; 3],
             slopes: free,
             is_known: f64x4::ZERO.simd_eq(f64x4::ZERO),
         };
@@ -231,7 +233,7 @@ impl Triangle {
             let area = dot(&across, &across).sqrt();
             let share = 1.0 / area;
             let apart = minus(&self.normal, &across.map(|axis| axis * share));
-            around.squared = around.squared.fast_max(dot(&apart, &apart));
+            around.squared[edge] = dot(&apart, &apart);
             let at_start = dot(&out, &self.edges[edge]);
             let product = at_start.fast_max(self.lengths[edge] * self.lengths[edge] - at_start);
             around.slopes[edge] = free[edge]

@@ -123,12 +123,12 @@ fn four_at_once_come_to_what_each_comes_to() {
             let edges = jet.closer_edge_bounds(&by_piece, &case.cells[l], &frame, open);
             let aside = aside.into_iter().fold(0.0, f64::max);
             let moved = steps.map(DVec3::length).into_iter().fold(0.0, f64::max);
-            let (squared, slopes) = around(corners, &opposite.map(Some));
+            let (chords, slopes) = around(corners, &opposite.map(Some));
             // By derivatives of the part itself, and by those of all of its piece.
             let [expected, loosely] = [edges, by_piece].map(|edges| {
                 edges
                     .deviation_off(height + rest, moved, aside)
-                    .bound(squared.sqrt(), slopes)
+                    .bound(chords, slopes)
             });
             let unit = 1.0 / case.scale;
             assert!(

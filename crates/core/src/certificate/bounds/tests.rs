@@ -156,7 +156,7 @@ fn bounds_hold_for_every_part_and_valence() {
                         halvings: 3,
                         open: [false; 3],
                         rim_alone: false,
-                        chord: 0.1,
+                        chords: [0.1; 3],
                         slopes: [slope; 3],
                         gives_up: false,
                         least_chord: None,
@@ -190,7 +190,7 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
         halvings: 1,
         open: [false; 3],
         rim_alone: false,
-        chord: 0.1,
+        chords: [0.1; 3],
         slopes: [0.5; 3],
         gives_up: false,
         least_chord: None,
@@ -207,7 +207,7 @@ fn nothing_is_within_a_distance_of_what_is_not_a_number() {
             effort,
         );
         assert!(
-            exceeds(found.bound(0.1, [0.5; 3]), f64::MAX),
+            exceeds(found.bound([0.1; 3], [0.5; 3]), f64::MAX),
             "{what}: {found:?}"
         );
     };
@@ -272,14 +272,14 @@ fn nothing_is_given_up_that_could_pass() {
             halvings: 2,
             open: [false; 3],
             rim_alone: false,
-            chord: 0.3,
+            chords: [0.3; 3],
             slopes: [0.6; 3],
             gives_up: false,
             least_chord: None,
         };
         let some = Effort {
             gives_up: true,
-            least_chord: Some(chord.min(all.chord)),
+            least_chord: Some(chord.min(0.3)),
             ..all
         };
         let [whole, found] = [all, some]
@@ -287,8 +287,8 @@ fn nothing_is_given_up_that_could_pass() {
         if found.own == f64::INFINITY {
             given_up += 1;
             assert!(
-                whole.bound(chord, [0.4; 3]) > all.target
-                    && whole.bound(0.3, [0.6; 3]) > all.target
+                whole.bound([chord; 3], [0.4; 3]) > all.target
+                    && whole.bound([0.3; 3], [0.6; 3]) > all.target
             );
         } else {
             kept += 1;

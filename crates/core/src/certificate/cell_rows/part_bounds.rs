@@ -153,12 +153,20 @@ pub(super) fn measure(
         let normal_deviation = triangle.normal_deviation([at(&m0), at(&m1), at(&m2)]);
         let chord = normal_deviation + neighbour;
         let edges = triangle.edge_bounds(&bends, off, rest, share);
+        let (turn, room) = triangle.turn(&bends, off, rest);
         let is_plain = edges.is_plain
-            & triangle.is_unfolded(&bends, off, rest)
+            & turn.simd_lt(room)
             & edges.slope.simd_le(f32x4::splat(allowed))
             & (chord * chord).simd_le(f32x4::splat(SHARPEST));
-        let value =
-            (height * (1.0 + 0.5 * chord * chord) + chord * edges.displacement) * A_LITTLE_MORE;
+        // What reaches over an edge, as `share_beyond` in `quartic_cell` has it.
+        let bend = larger(seen.map(f32x4::abs)) + 1.6 * triangle.unsure * size;
+        let inside = room - DIRECTIONS as f32 * turn;
+        let reach = edges.displacement * triangle.length;
+        let beyond = inside.simd_gt(reach).bitselect(reach / inside, f32x4::ONE);
+        let at_edges = 0.125 * bend + rest.curve + (bend + rest.first) * beyond;
+        let among =
+            at_edges.fast_min(height) * (1.0 + 0.5 * chord * chord) + chord * edges.displacement;
+        let value = height.fast_max(among) * A_LITTLE_MORE;
         bound[i] = is_plain
             .bitselect(value, f32x4::splat(f32::INFINITY))
             .to_array();
@@ -294,10 +302,9 @@ impl Triangle {
         }
     }
 
-    /// Whether the map is injective (see `quartic_cell`), by changes of barycentric coordinates
-    /// times the area.
+    /// ‖A‖ of `quartic_cell`, by changes of barycentric coordinates times the area, and its limit.
     #[inline(always)]
-    fn is_unfolded(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> f32x4 {
+    fn turn(&self, bends: &[[f32x4; 3]; 3], off: f32x4, rest: &Remainder) -> (f32x4, f32x4) {
         let across = [self.a, self.b].map(|edge| cross(edge, self.normal));
         let stretched = bends.map(|bend| {
             let [x, y] = across.map(|across| dot(bend, across));
@@ -307,7 +314,7 @@ impl Triangle {
         let [la, lb, lc] = self.squares;
         let stretch = (0.5 * (la + lb + lc)).sqrt();
         let room = NEARLY_ONE as f32 * self.area * (1.0 - 2.0 * self.unsure);
-        (most + DIRECTIONS as f32 * rest.first * stretch).simd_lt(room)
+        (most + DIRECTIONS as f32 * rest.first * stretch, room)
     }
 }
 

@@ -72,7 +72,7 @@ fn samples_lie_within(range_share: f64) {
                     };
                     let domain = corners.map(|[i, j]| [at[0] + step * i, at[1] + step * j]);
                     let frame = TriangleFrame::new(domain.map(|[u, v]| piece.point(u, v)));
-                    let (mut low, mut high, mut outside) = (0.0f64, 0.0f64, 0.0f64);
+                    let (mut low, mut high, mut at_edges) = (0.0f64, 0.0f64, Vec::new());
                     for a in 0..=12 {
                         for b in 0..=12 - a {
                             let (b, c) = (f64::from(a) / 12.0, f64::from(b) / 12.0);
@@ -84,8 +84,12 @@ fn samples_lie_within(range_share: f64) {
                             let point = piece.point(place[0], place[1]);
                             let height = frame.height(point);
                             (low, high) = (low.min(height), high.max(height));
-                            for edge in 0..3 {
-                                outside = outside.max(frame.edge_position(edge, point).outside);
+                            // The weights of the corners opposite to the edges.
+                            for (edge, weight) in [c, 1.0 - b - c, b].into_iter().enumerate() {
+                                let outside = frame.edge_position(edge, point).outside;
+                                if weight < 1e-9 || outside > 0.0 {
+                                    at_edges.push((height.abs(), outside.max(0.0)));
+                                }
                             }
                         }
                     }
@@ -97,7 +101,10 @@ fn samples_lie_within(range_share: f64) {
                         Mark::Passes => {
                             passed += 1;
                             let chord = normal_deviation + target.normal_deviation;
-                            let value = highest * (1.0 + 0.5 * chord * chord) + chord * outside;
+                            let at_edge = |&(height, outside): &(f64, f64)| {
+                                height * (1.0 + 0.5 * chord * chord) + chord * outside
+                            };
+                            let value = at_edges.iter().map(at_edge).fold(highest, f64::max);
                             assert!(value <= distance, "round {round}: {value} of {distance}");
                             // Of ranges only the quadratic part is used.
                             let rest = 2.0 * block.rest(step.abs());

@@ -60,6 +60,8 @@ fn place(cell: &Cell, weights: [f64; 3]) -> Domain {
 fn dense_samples_lie_within_the_bounds() {
     let mut random = Random::new(3);
     let (mut tight, mut counted, mut closer) = (0, 0, 0);
+    // Edges whose curves are lower than the surface inside, and those whose bounds are not far above the truth.
+    let (mut lower, mut near) = (0, 0);
     for round in 0..3000 {
         let piece = piece(&mut random, [0.002, 0.02, 0.1, 0.4][round % 4]);
         let (jet, cell) = (QuarticJet::of(&piece), cell(&mut random));
@@ -78,14 +80,20 @@ fn dense_samples_lie_within_the_bounds() {
         ];
         closer += usize::from(edges[0].is_loose() && !edges[1].is_loose());
         let deviation = edges[usize::from(round % 3 > 0)].deviation(high.min(refined));
-        let (mut highest, mut farthest, mut outside) = (0.0f64, 0.0f64, [0.0f64; 3]);
+        let (mut highest, mut farthest) = (0.0f64, 0.0f64);
+        // By edge, how far points reach over it, and how high these and those of the curve stand.
+        let (mut outside, mut at_edges) = ([0.0f64; 3], [0.0f64; 3]);
         for weights in grid(GRID) {
             let [u, v] = place(&cell, weights);
             let point = piece.point(u, v);
             highest = highest.max(frame.height(point).abs());
             farthest = farthest.max(frame.squared(point).sqrt());
             for edge in 0..3 {
-                outside[edge] = outside[edge].max(frame.edge_position(edge, point).outside);
+                let beyond = frame.edge_position(edge, point).outside;
+                outside[edge] = outside[edge].max(beyond);
+                if beyond > 0.0 || weights[(edge + 2) % 3] == 0.0 {
+                    at_edges[edge] = at_edges[edge].max(frame.height(point).abs());
+                }
                 // A point of the curve.
                 if weights[(edge + 2) % 3] == 0.0 {
                     let from_edge = frame.squared_to_edge(edge, point).sqrt();
@@ -116,11 +124,20 @@ fn dense_samples_lie_within_the_bounds() {
             "round {round}: {farthest} {deviation:?}"
         );
         if deviation.steepest().is_finite() {
-            let most = outside[0].max(outside[2]);
-            assert!(
-                most <= deviation.displacement + slack,
-                "round {round}: {most} {deviation:?}"
-            );
+            for edge in [0, 2] {
+                let case =
+                    format!("round {round}, edge {edge}: {outside:?} {at_edges:?} {deviation:?}");
+                assert!(
+                    outside[edge] <= deviation.displacements[edge] + slack,
+                    "{case}"
+                );
+                assert!(
+                    at_edges[edge] <= deviation.edge_heights[edge] + slack,
+                    "{case}"
+                );
+                lower += usize::from(at_edges[edge] < 0.9 * deviation.height);
+                near += usize::from(deviation.edge_heights[edge] <= 1.2 * at_edges[edge] + 1e-9);
+            }
         }
         counted += 1;
         tight += usize::from(refined.min(high) <= 1.06 * highest + 1e-9);
@@ -130,6 +147,7 @@ fn dense_samples_lie_within_the_bounds() {
         "{tight} of {counted}"
     );
     assert!(closer > 100, "{closer}");
+    assert!(lower > 2000 && near > 1200, "{lower} {near}");
 }
 
 /// Where a part is said not to fold, its projection on the triangle's plane keeps its orientation everywhere, for slim triangles too;
@@ -178,10 +196,10 @@ fn parts_that_do_not_fold_keep_their_orientation() {
             .fold(0.0f64, |reach, x| reach.max(x.abs()));
         let (third, fourth) = jet.most(reach.max((s[0] - r[0]).abs()).max((s[1] - r[1]).abs()));
         let rest = frame.stretch() * (0.5 * third + QUARTIC_SLOPE * fourth);
-        let is_plain = !jet.part(&cell).is_folding(&frame, &bends);
+        let is_plain = jet.part(&cell).inside(&frame, &bends).turn < NEARLY_ONE;
         assert!(!is_plain || least > 0.0, "round {round}: {least}");
         assert!(
-            is_plain || is_folding(&frame, &bends, rest),
+            is_plain || super::turn(&frame, &bends, rest) >= NEARLY_ONE,
             "round {round}: closer, but less sure"
         );
         plain += usize::from(is_plain);

@@ -57,19 +57,7 @@ impl<P: HullPoint> Search<'_, P> {
             ..*self
         };
         twin.part(&near, part, borders, depth);
-        let found = twin.found.off(rest, rest);
-        let Deviation {
-            own,
-            height,
-            across,
-            ..
-        } = found;
-        let found = Deviation {
-            own: own + rest,
-            height: height + rest,
-            across: across + rest,
-            ..found
-        };
+        let found = twin.found.off(rest, rest).grown(rest);
         let fails = exceeds(self.value(&twin.found) - CERTAIN * rest, aim);
         if fails || self.value(&found) <= aim {
             self.add(found);

@@ -2,25 +2,34 @@
 //!
 //! A node that has children needs a node of its own level beyond each of its edges. From the finest level down, what is
 //! missing is split; that asks only for nodes of coarser levels, so each level is done once. The result is the least
-//! restriction of the trees, whatever the order. All half-edges along an edge of cut sheets count as neighbours.
+//! restriction of the trees, whatever the order. A leaf that asks for the middle of an edge needs a node of its own level beyond that one.
+//! All half-edges along an edge of cut sheets count as neighbours.
 
 use std::collections::HashSet;
 
-use super::quadtree::{Along, Beyond, Edges, NodeAddress, Trees, beyond, even_depth};
+use super::quadtree::{Along, Beyond, Edges, NodeAddress, Trees, asks, beyond, even_depth};
 use crate::progress::Cancelled;
 
-/// Nodes with children whose neighbours must exist, by level.
+/// Nodes whose neighbours must exist beyond some edges, given by their bits, by level.
 #[derive(Default)]
-pub(super) struct Pending(Vec<Vec<NodeAddress>>);
+pub(super) struct Pending(Vec<Vec<(NodeAddress, u8)>>);
+
+/// The bits of all edges.
+const ALL_EDGES: u8 = 7;
 
 impl Pending {
     /// A node that has children.
     pub(super) fn push(&mut self, place: NodeAddress) {
+        self.push_beyond(place, ALL_EDGES);
+    }
+
+    /// A node whose neighbours must exist beyond the edges of these bits.
+    pub(super) fn push_beyond(&mut self, place: NodeAddress, edges: u8) {
         let level = place.level as usize;
         if self.0.len() <= level {
             self.0.resize_with(level + 1, Vec::new);
         }
-        self.0[level].push(place);
+        self.0[level].push((place, edges));
     }
 
     /// Those nodes with children in the tree of a control face that lack a neighbour: of even nodes the lowest ones, which speak for
@@ -31,7 +40,16 @@ impl Pending {
 
     fn push_below(&mut self, trees: &Trees, edges: &Edges<'_>, word: u32, place: NodeAddress) {
         match even_depth(word) {
-            Some(0) => {}
+            Some(0) => {
+                let is_lacking =
+                    |edge: &usize| asks(word, *edge) && lacks(trees, edges, place, *edge);
+                let bits = (0..3)
+                    .filter(is_lacking)
+                    .fold(0, |bits, edge| bits | 1 << edge);
+                if bits != 0 {
+                    self.push_beyond(place, bits);
+                }
+            }
             Some(depth) => {
                 // Inside, neighbours are equally deep, and so are most of those around it.
                 for edge in (0..3).filter(|&edge| !is_as_deep(trees, edges, place, depth, edge)) {
@@ -74,16 +92,19 @@ fn is_as_deep(
     depth: u32,
     edge: usize,
 ) -> bool {
-    edges.nodes_beyond(place, edge).into_iter().all(|other| {
-        let below = trees.word_at(other).and_then(even_depth);
-        below.is_some_and(|below| below + 1 >= depth)
-    })
+    edges
+        .nodes_beyond(place, edge)
+        .into_iter()
+        .all(|(other, _)| {
+            let below = trees.word_at(other).and_then(even_depth);
+            below.is_some_and(|below| below + 1 >= depth)
+        })
 }
 
 /// Whether a node of the same level beyond an edge is missing.
 fn lacks(trees: &Trees, edges: &Edges<'_>, place: NodeAddress, edge: usize) -> bool {
     let mut beyond = edges.nodes_beyond(place, edge).into_iter();
-    !place.has_sibling_beyond(edge) && beyond.any(|other| !trees.has(other))
+    !place.has_sibling_beyond(edge) && beyond.any(|(other, _)| !trees.has(other))
 }
 
 /// Splits what must be for the nodes in `pending`; `split` is called with each place that was. `false` if there would be too many
@@ -95,22 +116,23 @@ pub(super) fn balance(
     poll: &mut dyn FnMut() -> Result<(), Cancelled>,
     mut split: impl FnMut(NodeAddress),
 ) -> Result<bool, Cancelled> {
-    let mut asked = HashSet::new();
+    let mut ensured = HashSet::new();
     let mut fresh = Vec::new();
     let mut steps = 0usize;
     // No split is missing at a control face.
     for level in (1..pending.0.len()).rev() {
-        while let Some(place) = pending.0[level].pop() {
+        while let Some((place, bits)) = pending.0[level].pop() {
             steps += 1;
             if steps.is_multiple_of(1 << 12) {
                 poll()?;
             }
-            for edge in (0..3).filter(|&edge| !place.has_sibling_beyond(edge)) {
+            let wants = |edge: &usize| bits >> edge & 1 != 0 && !place.has_sibling_beyond(*edge);
+            for edge in (0..3).filter(wants) {
                 let mut ensure =
                     |place: NodeAddress| trees.ensure(place, |place| fresh.push(place));
                 let fits = match beyond(place, edge) {
                     Beyond::Same(other) => ensure(other),
-                    Beyond::Control(along) => ensure_along(edges, along, &mut asked, ensure),
+                    Beyond::Control(along) => ensure_along(edges, along, &mut ensured, ensure),
                 };
                 if !fits {
                     return Ok(false);
@@ -129,7 +151,7 @@ pub(super) fn balance(
 fn ensure_along(
     edges: &Edges<'_>,
     along: Along,
-    asked: &mut HashSet<(usize, u32, u32)>,
+    ensured: &mut HashSet<(usize, u32, u32)>,
     mut ensure: impl FnMut(NodeAddress) -> bool,
 ) -> bool {
     let h = along.half_edge;
@@ -149,7 +171,7 @@ fn ensure_along(
     } else {
         along.index
     };
-    if !asked.insert((group, along.level, index)) {
+    if !ensured.insert((group, along.level, index)) {
         return true;
     }
     let first = Along { index, ..along };

@@ -71,7 +71,10 @@ impl Engine<'_> {
         let mut touched = Vec::with_capacity(7 * split.len());
         for &place in split {
             touched.extend((0..4).map(|child| place.child(child)));
-            (0..3).for_each(|edge| touched.extend(self.control.edges.nodes_beyond(place, edge)));
+            for edge in 0..3 {
+                let beyond = self.control.edges.nodes_beyond(place, edge);
+                touched.extend(beyond.into_iter().map(|(other, _)| other));
+            }
         }
         touched.retain(|&place| is_leaf(&state.trees, place));
         touched.sort_unstable_by_key(|place| (place.face, place.level, place.path));
@@ -88,11 +91,9 @@ impl Engine<'_> {
         pieces: &mut HashMap<u32, SurfacePiece>,
     ) -> bool {
         let (control, trees) = (self.control, &state.trees);
-        let is_split = |edge: &usize| {
-            let mut beyond = control.edges.nodes_beyond(place, *edge).into_iter();
-            beyond.any(|other| trees.has(other) && !is_leaf(trees, other))
-        };
-        let split: Vec<usize> = (0..3).filter(is_split).collect();
+        let split: Vec<usize> = (0..3)
+            .filter(|&edge| trees.has_middle(&control.edges, place, edge))
+            .collect();
         if split.is_empty() {
             return false;
         }

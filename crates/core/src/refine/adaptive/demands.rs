@@ -360,7 +360,7 @@ fn bound(goal: &Goal<'_>, sheets: &[(ParamPatch, &Rules<'_>)], part: SubTriangle
                     open: [false; 3],
                     rim_alone: false,
                     // No chord that counts is as great.
-                    chord: 4.0,
+                    chords: [4.0; 3],
                     slopes: [0.0; 3],
                     gives_up: false,
                     least_chord: None,

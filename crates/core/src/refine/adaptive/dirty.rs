@@ -10,6 +10,8 @@ pub(super) struct Dirty {
     is_marked: Vec<bool>,
     /// Leaves that were split.
     split: Vec<NodeAddress>,
+    /// Leaves that ask for the middle of an edge since then.
+    asking: Vec<(NodeAddress, usize)>,
 }
 
 impl Dirty {
@@ -19,6 +21,7 @@ impl Dirty {
             is_all: false,
             is_marked: vec![false; faces],
             split: Vec::new(),
+            asking: Vec::new(),
         }
     }
 
@@ -28,6 +31,7 @@ impl Dirty {
             is_all: true,
             is_marked: vec![true; faces],
             split: Vec::new(),
+            asking: Vec::new(),
         }
     }
 
@@ -41,12 +45,21 @@ impl Dirty {
         &self.split
     }
 
+    /// The leaves that ask for the middle of an edge.
+    pub(super) fn asking(&self) -> &[(NodeAddress, usize)] {
+        &self.asking
+    }
+
     /// The vertices that this has put on edges of control faces: half-edges that keep vertices, ascending, and places on these.
     pub(super) fn inserted(&self, edges: &Edges<'_>) -> Vec<(u32, u32)> {
         let mut inserted = Vec::new();
         for &place in &self.split {
             let along = (0..3).filter(|&edge| place.lies_along(edge));
             along.for_each(|edge| insert(edges, place, edge, &mut inserted));
+        }
+        let asking = self.asking.iter();
+        for &(place, edge) in asking.filter(|(place, edge)| place.lies_along(*edge)) {
+            insert(edges, place, edge, &mut inserted);
         }
         inserted.sort_unstable();
         inserted.dedup();
@@ -57,7 +70,19 @@ impl Dirty {
     pub(super) fn add(&mut self, edges: &Edges<'_>, place: NodeAddress) {
         self.split.push(place);
         self.is_marked[place.face as usize] = true;
-        for edge in (0..3).filter(|&edge| place.lies_along(edge)) {
+        (0..3).for_each(|edge| self.mark_beyond(edges, place, edge));
+    }
+
+    /// Adds a leaf that asks for the middle of an edge, and marks the control faces that have it on theirs.
+    pub(super) fn ask(&mut self, edges: &Edges<'_>, place: NodeAddress, edge: usize) {
+        self.asking.push((place, edge));
+        self.is_marked[place.face as usize] = true;
+        self.mark_beyond(edges, place, edge);
+    }
+
+    /// Marks the control faces beyond a node's edge.
+    fn mark_beyond(&mut self, edges: &Edges<'_>, place: NodeAddress, edge: usize) {
+        if place.lies_along(edge) {
             let h = 3 * place.face + edge as u32;
             if let Some(twin) = edges.twin(h) {
                 self.is_marked[twin as usize / 3] = true;

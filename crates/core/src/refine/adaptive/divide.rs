@@ -10,7 +10,7 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use super::Engine;
 use super::control::Control;
 use super::judge::{Goal, Judge, Verdict};
-use super::quadtree::{LEAF, MOST_LEVELS, NodeAddress, PROVEN, Piece, Trees};
+use super::quadtree::{LEAF, MOST_LEVELS, NodeAddress, PROVEN, Piece, Trees, asking};
 use super::seen::{Allowance, Extent, Fate, Seen};
 use super::surface::QuarticPiece;
 use crate::certificate::{CellRows, Marks, Pieces};
@@ -224,6 +224,10 @@ impl Divider<'_> {
                 return self.leaf(&verdict);
             }
         }
+        let is_demanded = self.control.demands.divides(place);
+        if !is_demanded && let Some(edges) = judge.asked(&corners, &middles, open) {
+            return self.asking_leaf(edges);
+        }
         let children = [0, 1, 2, 3].map(|child| {
             let own = child_corners(corners, middles, child);
             self.node(
@@ -304,6 +308,9 @@ impl Divider<'_> {
             }
         }
         let middles = quartic.at([0, 1, 2].map(|edge| domain.along(edge, 0.5)));
+        if !is_demanded && let Some(edges) = self.judge.asked(&corners, &middles, open) {
+            return self.asking_leaf(edges);
+        }
         let children = [0, 1, 2, 3].map(|child| {
             let own = Part {
                 domain: domain.child(child),
@@ -332,6 +339,12 @@ impl Divider<'_> {
     /// Whether there are too many leaves by now, so that nothing matters any more.
     fn is_too_much(&self) -> bool {
         self.leaves == 0 && self.count.is_passed()
+    }
+
+    /// A leaf that asks for the middles of the edges of these bits.
+    fn asking_leaf(&mut self, edges: u8) -> u32 {
+        self.count_leaves(1 + edges.count_ones() as usize);
+        asking(edges)
     }
 
     fn leaf(&mut self, verdict: &Verdict) -> u32 {

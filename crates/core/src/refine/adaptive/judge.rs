@@ -11,7 +11,7 @@ use super::back_faces::BackFaces;
 use super::backs::{Behind, Leaf};
 use super::control::Control;
 use super::seen::{
-    ANY_SLOPES, Allowance, DISPLACEMENT_SHARE, DIVISIONS, Extent, Fate, HALVINGS, Seen,
+    ANY_SLOPES, Allowance, DISPLACEMENT_SHARE, DIVISIONS, Extent, Fate, HALVINGS, NO_CHORDS, Seen,
 };
 use super::surface::QuarticPiece;
 use super::trial::Trial;
@@ -181,7 +181,7 @@ impl Judge<'_> {
     /// A node whose curves are known, by heights that are refined where the least of them would do.
     fn by_heights(&self, seen: &Seen, edges: &EdgeBounds, heights: &Heights, low: f64) -> Verdict {
         let least = edges.deviation(low);
-        if exceeds(least.bound(0.0, ANY_SLOPES), self.limit) {
+        if exceeds(least.bound(NO_CHORDS, ANY_SLOPES), self.limit) {
             return Verdict::of(Fate::Fails);
         }
         let enough = ROUNDED * least.height_within(self.limit, self.allowed(seen).0);
@@ -316,7 +316,7 @@ impl Judge<'_> {
 
     /// The effort for a bound.
     fn effort(&self, seen: &Seen, open: [bool; 3]) -> Effort {
-        let chord = self.allowed(seen).0;
+        let chords = self.allowed(seen).0;
         // A guess: neighbours have angles like the triangle's own.
         let slopes = [0, 1, 2].map(|edge| seen.frame.slope_at(edge).min(1.0));
         Effort {
@@ -324,7 +324,7 @@ impl Judge<'_> {
             halvings: HALVINGS,
             open,
             rim_alone: false,
-            chord,
+            chords,
             slopes,
             // A node that will be divided needs no bound.
             gives_up: true,
@@ -334,8 +334,8 @@ impl Judge<'_> {
 
     /// The fate of a node with this deviation.
     fn decided(&self, seen: &Seen, deviation: Deviation) -> Verdict {
-        let (chord, slopes) = self.allowed(seen);
-        let bound = deviation.bound(chord, slopes);
+        let (chords, slopes) = self.allowed(seen);
+        let bound = deviation.bound(chords, slopes);
         if bound <= self.limit {
             // Drifts that are too steep are not counted on.
             let displacement_slope = if deviation.is_within(slopes) {
@@ -352,19 +352,19 @@ impl Judge<'_> {
                 },
             };
         }
-        let fails = exceeds(deviation.bound(0.0, ANY_SLOPES), self.limit);
+        let fails = exceeds(deviation.bound(NO_CHORDS, ANY_SLOPES), self.limit);
         Verdict::of(if fails { Fate::Fails } else { Fate::Likely })
     }
 
-    /// The chord of the angles to the neighbours and the greatest slopes of tangential displacements, by edge, that the allowance makes certain.
+    /// The chords of the angles to the neighbours and the greatest slopes of tangential displacements, by edge, that the allowance makes certain.
     #[inline]
-    fn allowed(&self, seen: &Seen) -> (f64, [f64; 3]) {
+    fn allowed(&self, seen: &Seen) -> ([f64; 3], [f64; 3]) {
         let Allowance {
             normal_deviation,
             slope,
         } = self.allowance;
         (
-            seen.normal_deviation + normal_deviation,
+            [seen.normal_deviation + normal_deviation; 3],
             seen.own_slopes().map(|own| own.min(slope)),
         )
     }
@@ -403,6 +403,11 @@ impl Judge<'_> {
                     .is_lost(height)
             }
         }
+    }
+
+    /// Whether a node may ask for the middles of its edges ([`super::asking`]).
+    pub(super) fn may_ask(&self) -> bool {
+        self.criteria.is_none() && self.range_share == 0.0 && !self.rim_alone
     }
 
     /// Whether whole rows of nodes can be tested at once.

@@ -333,7 +333,7 @@ impl<'a> Measuring<'a> {
     /// and nets bound heights no better than derivatives do. It never does where tight bounds or more than distances are asked for.
     fn fails_by_height(&self, among: &Among, edges: &EdgeBounds, least: &Deviation) -> bool {
         let counts_alone = self.length.is_infinite() && self.criteria.is_none();
-        counts_alone && !edges.is_loose() && least.bound(among.chord, among.slopes) <= self.limit
+        counts_alone && !edges.is_loose() && least.bound(among.chords, among.slopes) <= self.limit
     }
 
     /// The greatest height of a few points of a piece that is not regular.
@@ -360,7 +360,7 @@ impl<'a> Measuring<'a> {
     fn high_enough(&self, among: &Among, flat: &Deviation) -> f64 {
         let target = self.limit.min(self.length);
         let can_be = self.criteria.is_none() && target.is_finite() && flat.is_within(among.slopes);
-        let (within, aside) = (flat.height_within(target, among.chord), 2.0 * among.aside);
+        let (within, aside) = (flat.height_within(target, among.chords), 2.0 * among.aside);
         // As far as `Deviation::off` lets it be.
         if can_be && within > aside {
             ROUNDED * (within * within - aside * aside).sqrt()
@@ -396,7 +396,7 @@ impl<'a> Measuring<'a> {
             // A net is halved often towards a corner with too steep tangential displacements, where only short pieces are near.
             halvings: 10,
             open: emitted.open,
-            chord: among.chord,
+            chords: among.chords,
             slopes: among.slopes,
             rim_alone: false,
             gives_up: false,
@@ -406,7 +406,7 @@ impl<'a> Measuring<'a> {
 
     /// The value of the triangle with this deviation.
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
-        let bound = deviation.bound(among.chord, among.slopes);
+        let bound = deviation.bound(among.chords, among.slopes);
         let Some(criteria) = self.criteria else {
             return Value {
                 bound,
@@ -414,7 +414,7 @@ impl<'a> Measuring<'a> {
                 pixels: 0.0,
             };
         };
-        let apart: Apart = deviation.apart(among.chord, among.slopes);
+        let apart: Apart = deviation.apart(among.chords, among.slopes);
         let region = among.region().grown(apart.own);
         let value = criteria.distance_ratio(&apart, &region, &among.backs);
         Value {
@@ -449,8 +449,8 @@ impl Height {
 struct Among {
     corners: [DVec3; 3],
     frame: TriangleFrame,
-    /// The greatest chord of the angles between its plane and its neighbours'.
-    chord: f64,
+    /// The chords of the angles between its plane and its neighbours', by edge.
+    chords: [f64; 3],
     /// The greatest slopes of tangential displacements over its edges.
     slopes: [f64; 3],
     /// Heights of the surface's corners over the triangle's plane.
@@ -476,12 +476,13 @@ impl Among {
             .vertices
             .map(|vertex| vector(emission.positions[vertex as usize]));
         let frame = TriangleFrame::new(corners);
-        let (squared, slopes) = angles(emission, sharp, emitted.number);
+        let (chords, slopes) = angles(emission, sharp, emitted.number);
         let neighbours = match criteria.is_some_and(|criteria| criteria.viewers() > 0) {
             true => neighbours(emission, sharp, emitted.number),
             false => [None; 3],
         };
-        let slopes = [0, 1, 2].map(|edge| slopes[(emitted.turn + edge) % 3]);
+        let [chords, slopes] =
+            [chords, slopes].map(|own| [0, 1, 2].map(|edge| own[(emitted.turn + edge) % 3]));
         let steps = emitted.vertices.map(|vertex| emission.step(vertex));
         let (mut moved, mut aside) = (0.0f64, 0.0f64);
         let lifts = steps.map(|step| {
@@ -490,11 +491,11 @@ impl Among {
             aside = aside.max((step - lift * frame.normal()).length());
             -lift
         });
-        let (chord, backs) = (squared.sqrt(), Backs::nobodys());
+        let backs = Backs::nobodys();
         Self {
             corners,
             frame,
-            chord,
+            chords,
             slopes,
             lifts,
             moved,
@@ -517,7 +518,8 @@ impl Among {
     }
 
     fn region(&self) -> Region {
-        Region::around(self.corners, self.frame.normal()).turned(self.chord)
+        Region::around(self.corners, self.frame.normal())
+            .turned(self.chords.into_iter().fold(0.0, f64::max))
     }
 
     /// How many times over the triangle of a leaf leaves its cones; not at all where these are given up.

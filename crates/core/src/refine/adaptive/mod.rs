@@ -11,6 +11,7 @@
 //! 4. [`probe`]: the certified interval;
 //! 5. [`flat`]: regions whose surface lies in a plane, triangulated from their rims.
 
+mod asking;
 mod back_faces;
 mod backs;
 mod balance;

@@ -24,8 +24,12 @@ pub(super) fn sharp_edges(
     Ok(sharp)
 }
 
-/// The angles between a triangle and its neighbours, and the room for tangential displacements over its edges, as [`around`] gives them.
-pub(super) fn angles(emission: &Emission, sharp: &HashSet<u32>, triangle: u32) -> (f64, [f64; 3]) {
+/// The chords of the angles between a triangle and its neighbours, and the room for tangential displacements over its edges, as [`around`] gives them.
+pub(super) fn angles(
+    emission: &Emission,
+    sharp: &HashSet<u32>,
+    triangle: u32,
+) -> ([f64; 3], [f64; 3]) {
     let opposite = [0, 1, 2].map(|edge| {
         let twin = beyond(emission, sharp, 3 * triangle + edge)?;
         let vertex = emission.triangles[twin as usize / 3][(twin as usize + 2) % 3];

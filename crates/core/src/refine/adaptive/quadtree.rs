@@ -1,7 +1,8 @@
 //! Quadtrees over the control faces.
 //!
 //! A tree is a word for its root. [`LEAF`] with a depth `m` says that all leaves lie `m` levels below, and [`PROVEN`] that their bounds are known.
-//! Anything else is the index of four consecutive words, those of the children, which [`crate::node`] numbers.
+//! A leaf may also ask for the middles of some of its edges, three bits from [`ASKED`] on: the edge is then split for both sides, the leaf
+//! is not. Anything else is the index of four consecutive words, those of the children, which [`crate::node`] numbers.
 
 use crate::mesh::MeshError;
 pub(super) use crate::node::{Along, Beyond, Edges, NodeAddress, along_edge, beyond};
@@ -16,6 +17,10 @@ pub(super) const PROVEN: u32 = 1 << 30;
 
 /// The depth of leaves below a node.
 const DEPTH: u32 = (1 << 5) - 1;
+
+/// Marks a leaf that asks for the middle of its first edge; the next bits are those of the others.
+const ASKED: u32 = 1 << 5;
+const ANY_ASKED: u32 = 7 * ASKED;
 
 /// Nodes whose indices leave room for the marks.
 pub(super) const MOST_NODES: usize = 1 << 28;
@@ -50,6 +55,23 @@ pub(super) fn is_proven(word: u32) -> bool {
 #[inline]
 pub(super) fn even_depth(word: u32) -> Option<u32> {
     (word & LEAF != 0).then_some(word & DEPTH)
+}
+
+/// The word of a leaf that asks for the middles of edges, by their bits.
+pub(super) fn asking(edges: u8) -> u32 {
+    LEAF | u32::from(edges) * ASKED
+}
+
+/// Whether a node is a leaf that asks for the middle of an edge.
+#[inline]
+pub(super) fn asks(word: u32, edge: usize) -> bool {
+    word & LEAF != 0 && word & (ASKED << edge) != 0
+}
+
+/// How often an edge of a node is halved by the node, where it is so evenly.
+#[inline]
+pub(super) fn even_depth_along(word: u32, edge: usize) -> Option<u32> {
+    even_depth(word).map(|depth| depth + u32::from(asks(word, edge)))
 }
 
 /// Whether there is a node at a place that has no children.
@@ -151,6 +173,15 @@ impl Trees {
         Some(self.words[at])
     }
 
+    /// Whether the edge of a leaf has a middle: the leaf itself asks for it, or a node beyond has one.
+    pub(super) fn has_middle(&self, edges: &Edges<'_>, place: NodeAddress, edge: usize) -> bool {
+        let is_halved = |(place, edge): (NodeAddress, usize)| {
+            self.word_at(place)
+                .is_some_and(|word| is_split(word) || asks(word, edge))
+        };
+        is_halved((place, edge)) || edges.nodes_beyond(place, edge).into_iter().any(is_halved)
+    }
+
     /// Splits whatever must be for the node at `place` to exist; `fresh` is called with the places that were split. `false` if there
     /// would be too many nodes.
     pub(super) fn ensure(
@@ -193,6 +224,30 @@ impl Trees {
         self.ensure(place.child(0), fresh)
     }
 
+    /// Has the leaf at a place ask for the middle of an edge. `false` if there would be too many nodes.
+    pub(super) fn ask(&mut self, place: NodeAddress, edge: usize) -> bool {
+        let mut at = place.face as usize;
+        for level in 0..place.level {
+            let word = self.words[at];
+            let first = if word & LEAF == 0 {
+                word
+            } else {
+                // Leaves that ask are kept one by one.
+                match self.expanded(word) {
+                    Some(first) => {
+                        self.words[at] = first;
+                        first
+                    }
+                    None => return false,
+                }
+            };
+            at = first as usize + place.digit(level);
+        }
+        debug_assert!(!is_split(self.words[at]), "a leaf asks");
+        self.words[at] = self.words[at] & !PROVEN | ASKED << edge;
+        true
+    }
+
     /// Four words for the children of a node whose leaves are equally deep.
     fn expanded(&mut self, word: u32) -> Option<u32> {
         let first = self.words.len();
@@ -220,7 +275,7 @@ impl Piece {
     /// The word of a node over a regular part with the given children.
     pub(super) fn node(&mut self, children: [u32; 4]) -> u32 {
         let [first, ..] = children;
-        let is_even = first & LEAF != 0 && first & DEPTH < MOST_LEVELS;
+        let is_even = first & (LEAF | ANY_ASKED) == LEAF && first & DEPTH < MOST_LEVELS;
         if is_even && children.iter().all(|&child| child == first) {
             return first + 1;
         }

@@ -127,10 +127,10 @@ impl Engine<'_> {
                 *own = cover;
             },
         )?;
-        dirty
-            .split()
-            .iter()
-            .for_each(|place| state.is_changed[place.face as usize] = true);
+        let asking = dirty.asking().iter().map(|(place, _)| place);
+        for place in dirty.split().iter().chain(asking) {
+            state.is_changed[place.face as usize] = true;
+        }
         state.chains = chains;
         let own = |face: u32| state.covers[face as usize].triangles as usize;
         state.triangles = control.flat.count(control, &state.chains, own);
@@ -151,6 +151,9 @@ impl Engine<'_> {
             self.watch.each(lists, |list| all.append(list))?;
         }
         self.watch.each(dirty.split(), |&place| all.push(place))?;
+        self.watch.each(dirty.asking(), |&(place, edge)| {
+            all.push_beyond(place, 1 << edge)
+        })?;
         let fits = balance(trees, edges, all, &mut || self.watch.poll(), |place| {
             dirty.add(edges, place)
         })?;
@@ -327,7 +330,8 @@ impl Engine<'_> {
     ) -> Result<bool, RefineError> {
         let goal = state.goal.clone();
         let has_heights = self.control.criteria.is_none();
-        let mut is_split = false;
+        let failing = &self.ask(state, failing, dirty)?;
+        let mut is_split = !dirty.asking().is_empty();
         for &(place, value) in failing {
             self.watch.poll()?;
             // Triangles of a leaf may fail for several reasons.

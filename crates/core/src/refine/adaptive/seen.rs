@@ -21,6 +21,9 @@ const ANY_DEVIATION: f64 = 2.0;
 /// Slopes that no known tangential displacement exceeds: as if neighbours were as wide as can be.
 pub(super) const ANY_SLOPES: [f64; 3] = [9.0; 3];
 
+/// The chords of the angles to neighbours in the triangle's own plane.
+pub(super) const NO_CHORDS: [f64; 3] = [0.0; 3];
+
 /// Limits that leaves count on for the triangles in their control face and adjacent to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Allowance {

@@ -4,7 +4,7 @@
 //! again ([`super::measure`]).
 
 use super::backs::{Behind, looks_away};
-use super::seen::{ANY_SLOPES, DIVISIONS, Fate, HALVINGS, Seen};
+use super::seen::{ANY_SLOPES, DIVISIONS, Fate, HALVINGS, NO_CHORDS, Seen};
 use super::surface::QuarticPiece;
 use crate::certificate::{Cell, Deviation, Effort, NetPart, Pieces, SubTriangle, exceeds};
 use crate::criterion::{Apart, Backs, Criteria, Region};
@@ -83,7 +83,7 @@ impl<'a> Trial<'a> {
 
     /// Whether distances are within the limit with this deviation.
     fn is_within(&self, deviation: &Deviation) -> bool {
-        let apart = deviation.apart(0.0, ANY_SLOPES);
+        let apart = deviation.apart(NO_CHORDS, ANY_SLOPES);
         let ratio =
             self.criteria
                 .distance_ratio(&apart, &self.region.grown(apart.own), &self.backs);
@@ -150,7 +150,7 @@ impl<'a> Trial<'a> {
             target: self.limit * self.criteria.allowed_length(&self.region, &self.backs),
             halvings: HALVINGS,
             open,
-            chord: 0.0,
+            chords: NO_CHORDS,
             slopes: ANY_SLOPES,
             rim_alone: false,
             gives_up: false,

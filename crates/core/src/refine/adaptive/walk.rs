@@ -6,7 +6,8 @@
 //! half-edge that was met there first, so that half-edges find their twins.
 
 use super::quadtree::{
-    FULL, LEAF, NodeAddress, Trees, along_edge, even_depth, is_proven, is_split,
+    FULL, LEAF, NodeAddress, Trees, along_edge, asks, even_depth, even_depth_along, is_proven,
+    is_split,
 };
 use super::surface::Surface;
 use crate::mesh::NONE;
@@ -309,26 +310,33 @@ pub(super) fn merged<const N: usize>(
     length: u32,
     found: &mut impl FnMut(u32),
 ) {
-    let deepest = members.iter().try_fold(0, |deepest: u32, &(word, ..)| {
-        Some(deepest.max(even_depth(word)?))
-    });
+    let deepest = members
+        .iter()
+        .try_fold(0, |deepest: u32, &(word, edge, _)| {
+            Some(deepest.max(even_depth_along(word, edge)?))
+        });
     if let Some(depth) = deepest {
         (1..1 << depth).for_each(|i| found(from + i * (length >> depth)));
         return;
     }
-    let half = |second: bool| {
-        members.map(|(word, edge, turned)| {
-            let below = if is_split(word) {
-                trees.child(word, along_edge(edge, second != turned))
-            } else {
-                LEAF
-            };
-            (below, edge, turned)
-        })
-    };
+    let half = |second: bool| members.map(|member| half_of(trees, member, second));
     merged(trees, &half(false), from, length / 2, found);
     found(from + length / 2);
     merged(trees, &half(true), from + length / 2, length / 2, found);
+}
+
+/// The node along half of a member's edge. Beyond a leaf's own edge nothing is split.
+fn half_of(
+    trees: &Trees,
+    (word, edge, turned): (u32, usize, bool),
+    second: bool,
+) -> (u32, usize, bool) {
+    let below = if is_split(word) {
+        trees.child(word, along_edge(edge, second != turned))
+    } else {
+        LEAF
+    };
+    (below, edge, turned)
 }
 
 /// [`merged`] for any number of members.
@@ -342,20 +350,16 @@ pub(super) fn merged_all(
     let split: Vec<_> = members
         .iter()
         .copied()
-        .filter(|&(word, ..)| is_split(word))
+        .filter(|&(word, edge, _)| is_split(word) || asks(word, edge))
         .collect();
     if split.is_empty() {
         return;
     }
     let half = |second: bool| -> Vec<_> {
-        let below = |&(word, edge, turned): &(u32, usize, bool)| {
-            (
-                trees.child(word, along_edge(edge, second != turned)),
-                edge,
-                turned,
-            )
-        };
-        split.iter().map(below).collect()
+        split
+            .iter()
+            .map(|&member| half_of(trees, member, second))
+            .collect()
     };
     merged_all(trees, &half(false), from, length / 2, found);
     found(from + length / 2);

@@ -58,6 +58,12 @@ impl Divider<'_> {
                 may_be_below: true,
             };
         }
+        // The node itself may do with middles of its edges.
+        if least == 1
+            && let Some(word) = self.asking(quartic, domain)
+        {
+            return AtOnce::Decided(word);
+        }
         let last = last.min(MOST_DIVISIONS);
         if place.level + last > self.max_levels {
             return AtOnce::NotHere {
@@ -94,7 +100,8 @@ impl Divider<'_> {
             displacement_slope,
             bound,
         });
-        let word = if tested == 1 && levels[0].are_all_passing() {
+        let is_even = tested == 1 && levels[0].are_all_passing();
+        let word = if is_even && !self.judge.may_ask() {
             self.count_leaves(1 << (2 * least));
             (LEAF | PROVEN) + least
         } else {
@@ -109,6 +116,18 @@ impl Divider<'_> {
         };
         self.marks = levels;
         AtOnce::Decided(word)
+    }
+
+    /// The word of a node that asks for the middles of its edges; `None` if it is divided.
+    fn asking(&mut self, quartic: &QuarticPiece, domain: ParamTriangle) -> Option<u32> {
+        if !self.judge.may_ask() {
+            return None;
+        }
+        let [a, b, c] = domain.corners();
+        let middles = [0, 1, 2].map(|edge| domain.along(edge, 0.5));
+        let [a, b, c, d, e, f] = quartic.at([a, b, c, middles[0], middles[1], middles[2]]);
+        let edges = self.judge.asked(&[a, b, c], &[d, e, f], [false; 3])?;
+        Some(self.asking_leaf(edges))
     }
 
     /// A node `level` levels below the one whose rows were tested.
@@ -152,6 +171,13 @@ impl Divider<'_> {
                 if verdict.fate != Fate::Fails {
                     return self.leaf(&verdict);
                 }
+            }
+        }
+        // Above the last level there is a proof for less.
+        if level > 0 && level + 1 >= rows.first {
+            let domain = rows.domain.row(level, i, j, is_inverted);
+            if let Some(word) = self.asking(rows.quartic, domain) {
+                return word;
             }
         }
         let (x, y) = (2 * i, 2 * j);
