@@ -6,8 +6,9 @@
 use std::collections::HashMap;
 
 use super::Engine;
+use super::control::Control;
 use super::dirty::Dirty;
-use super::judge::Judge;
+use super::judge::{Judge, UNBALANCED};
 use super::quadtree::NodeAddress;
 use super::state::State;
 use super::surface::SurfacePiece;
@@ -21,7 +22,7 @@ pub(super) const DIVIDED: f64 = 4.0;
 /// The bits of all edges.
 const ALL_EDGES: u8 = 7;
 
-/// The curves over the edges of a leaf, by their middles.
+/// The curves over those edges of a leaf that count, by their middles.
 struct EdgeCurves {
     /// How far they are from the triangle.
     heights: [f64; 3],
@@ -29,7 +30,13 @@ struct EdgeCurves {
 }
 
 impl EdgeCurves {
-    fn of(corners: &[LimitPoint; 3], middles: &[LimitPoint; 3], open: [bool; 3]) -> Self {
+    /// Those of a leaf some of whose edges have no neighbour that counts, which may be the only ones that count themselves.
+    fn of(
+        corners: &[LimitPoint; 3],
+        middles: &[LimitPoint; 3],
+        open: [bool; 3],
+        rim_alone: bool,
+    ) -> Self {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         let height = |edge: usize| {
             let point = middles[edge].position;
@@ -38,9 +45,18 @@ impl EdgeCurves {
                 false => frame.height(point).abs(),
             }
         };
+        let counted = |of: &dyn Fn(usize) -> f64| {
+            [0, 1, 2].map(|edge| {
+                if rim_alone && !open[edge] {
+                    0.0
+                } else {
+                    of(edge)
+                }
+            })
+        };
         Self {
-            heights: [0, 1, 2].map(height),
-            lengths: [0, 1, 2].map(|edge| frame.length(edge)),
+            heights: counted(&height),
+            lengths: counted(&|edge| frame.length(edge)),
         }
     }
 
@@ -49,6 +65,20 @@ impl EdgeCurves {
         (0..3).fold(0, |bits, edge| {
             bits | u8::from(self.heights[edge] > limit) << edge
         })
+    }
+
+    /// The longest of those without these bits.
+    fn longest(&self, without: u8) -> Option<usize> {
+        let free = (0..3).filter(|edge| without >> edge & 1 == 0 && self.lengths[*edge] > 0.0);
+        free.max_by(|&a, &b| self.lengths[a].total_cmp(&self.lengths[b]))
+    }
+}
+
+impl Control<'_> {
+    /// Whether leaves of a control face may ask: where nothing counts but distances, which are proven, and no strips are put together, which would
+    /// not lie in planes any more.
+    pub(super) fn may_ask(&self, face: u32) -> bool {
+        self.criteria.is_none() && self.rules.is_certified() && !self.flat.is_straight(face)
     }
 }
 
@@ -60,19 +90,17 @@ impl Judge<'_> {
         middles: &[LimitPoint; 3],
         open: [bool; 3],
     ) -> Option<u8> {
-        let curves = EdgeCurves::of(corners, middles, open);
+        if !self.may_ask {
+            return None;
+        }
+        let curves = EdgeCurves::of(corners, middles, open, self.rim_alone);
         let is_far = curves.above(DIVIDED * self.limit) != 0;
         let asked = curves.above(self.limit);
-        (self.may_ask() && !is_far && asked != ALL_EDGES).then_some(asked)
+        (!is_far && asked != ALL_EDGES).then_some(asked)
     }
 }
 
 impl Engine<'_> {
-    /// Whether leaves may ask: where vertices stay on the surface and nothing counts but distances.
-    fn may_ask(&self) -> bool {
-        !self.is_balanced && self.control.criteria.is_none()
-    }
-
     /// Has leaves with triangles that fail, not by much, ask for the middles of edges; gives those that are to be divided instead.
     pub(super) fn ask(
         &self,
@@ -80,21 +108,24 @@ impl Engine<'_> {
         failing: &[(NodeAddress, f64)],
         dirty: &mut Dirty,
     ) -> Result<Vec<(NodeAddress, f64)>, RefineError> {
-        if !self.may_ask() {
-            return Ok(failing.to_vec());
-        }
         let mut pieces = HashMap::new();
         let (mut divided, mut high, mut low) = (Vec::new(), Vec::new(), Vec::new());
         for &(place, value) in failing {
             self.watch.poll()?;
             let limit = state.goal.allowed(place.face);
-            let is_rim = self.control.flat.is_its_rim(place.face);
-            if value > DIVIDED * limit || is_rim || place.level >= self.max_levels {
+            let may_ask = self.control.may_ask(place.face) && place.level < self.max_levels;
+            if value > DIVIDED * limit || !may_ask {
                 divided.push((place, value));
                 continue;
             }
             let split = self.split_edges(state, place);
             let curves = self.curves(place, &mut pieces);
+            // As far as corners may be moved.
+            let limit = if self.is_balanced {
+                UNBALANCED * limit
+            } else {
+                limit
+            };
             let asked = curves.above(limit) & !split;
             if (asked | split) == ALL_EDGES {
                 divided.push((place, value));
@@ -115,9 +146,7 @@ impl Engine<'_> {
             if split != before {
                 continue;
             }
-            let free = (0..3).filter(|edge| split >> edge & 1 == 0);
-            let longest = free.max_by(|&a, &b| curves.lengths[a].total_cmp(&curves.lengths[b]));
-            match longest {
+            match curves.longest(split) {
                 Some(edge) if split.count_ones() < 2 => self.ask_edge(state, place, edge, dirty)?,
                 _ => divided.push((place, value)),
             }
@@ -159,6 +188,11 @@ impl Engine<'_> {
         });
         let open = control.open(place.face);
         let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
-        EdgeCurves::of(&surface.corners(), &surface.middles(), open)
+        EdgeCurves::of(
+            &surface.corners(),
+            &surface.middles(),
+            open,
+            control.flat.is_its_rim(place.face),
+        )
     }
 }

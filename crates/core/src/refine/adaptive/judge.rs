@@ -55,6 +55,7 @@ impl Goal {
             back_faces: &control.back_faces,
             face,
             rim_alone: control.flat.is_its_rim(face),
+            may_ask: control.may_ask(face),
             limit: match self {
                 Self::Balanced(distance) => UNBALANCED * distance,
                 _ => self.allowed(face),
@@ -87,7 +88,9 @@ pub(super) struct Judge<'a> {
     back_faces: &'a BackFaces,
     face: u32,
     /// Whether it is flat and nothing counts but the rim of its region ([`super::flat`]).
-    rim_alone: bool,
+    pub(super) rim_alone: bool,
+    /// Whether its nodes may ask for the middles of their edges ([`super::asking`]).
+    pub(super) may_ask: bool,
     /// Greatest value: a distance where nothing else counts.
     pub(super) limit: f64,
     /// Ranges of heights from one side to the other count by this, as well as the greatest height on one side.
@@ -403,11 +406,6 @@ impl Judge<'_> {
                     .is_lost(height)
             }
         }
-    }
-
-    /// Whether a node may ask for the middles of its edges ([`super::asking`]).
-    pub(super) fn may_ask(&self) -> bool {
-        self.criteria.is_none() && self.range_share == 0.0 && !self.rim_alone
     }
 
     /// Whether whole rows of nodes can be tested at once.

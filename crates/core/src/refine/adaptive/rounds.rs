@@ -345,7 +345,7 @@ impl Engine<'_> {
             } else {
                 0.0
             };
-            let levels = if times > 1.0 {
+            let levels = if times > 1.0 && times.is_finite() {
                 (times.log2() / 2.0).ceil() as u32
             } else {
                 0

@@ -35,7 +35,7 @@ fn extruded_around(profile: &[[f64; 2]], middle: [f64; 2], height: f64) -> Mesh 
 fn apart(mesh: &Mesh) -> ([f64; 2], usize) {
     let found = interpolate(mesh, &Loop).unwrap();
     below!(found.residual, 1e-12 * mesh.diagonal());
-    let options = within(1e-4 * mesh.diagonal()).unfold(true);
+    let options = within(1e-5 * mesh.diagonal()).unfold(true);
     let smooth = exact(&found.mesh, &Loop, &options).unwrap();
     assert_eq!(smooth.inverted_triangles(), 0);
     let options = CertifiedOptions::default();

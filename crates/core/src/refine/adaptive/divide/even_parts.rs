@@ -59,7 +59,9 @@ impl Divider<'_> {
             };
         }
         // The node itself may do with middles of its edges.
+        let is_deepest = place.level >= self.max_levels;
         if least == 1
+            && !is_deepest
             && let Some(word) = self.asking(quartic, domain)
         {
             return AtOnce::Decided(word);
@@ -101,7 +103,7 @@ impl Divider<'_> {
             bound,
         });
         let is_even = tested == 1 && levels[0].are_all_passing();
-        let word = if is_even && !self.judge.may_ask() {
+        let word = if is_even && !self.judge.may_ask {
             self.count_leaves(1 << (2 * least));
             (LEAF | PROVEN) + least
         } else {
@@ -120,7 +122,7 @@ impl Divider<'_> {
 
     /// The word of a node that asks for the middles of its edges; `None` if it is divided.
     fn asking(&mut self, quartic: &QuarticPiece, domain: ParamTriangle) -> Option<u32> {
-        if !self.judge.may_ask() {
+        if !self.judge.may_ask {
             return None;
         }
         let [a, b, c] = domain.corners();

@@ -94,6 +94,11 @@ impl FlatRegions {
         !self.straight.is_empty()
     }
 
+    /// Whether strips may be put together over a face.
+    pub(in super::super) fn is_straight(&self, face: u32) -> bool {
+        self.straight.binary_search(&face).is_ok()
+    }
+
     /// Control faces that are part of regions, or over which there may be strips.
     pub(in super::super) fn merged_faces(&self) -> usize {
         self.is_merged
