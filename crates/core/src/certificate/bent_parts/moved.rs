@@ -93,9 +93,10 @@ impl MovedFour {
         let edges = triangle.edge_bounds(&bends, curve, steep);
         let opposite = [from, second, third].map(|corner| corner.map(|axis| axis * scale));
         let around = triangle.around(&opposite, self.opposite.each_ref().map(vectors), scale);
+        let turn = triangle.turn(&bends, first);
         let is_plain = triangle.has_plane
             & edges.is_plain
-            & triangle.is_unfolded(&bends, first)
+            & turn.simd_lt(f64x4::splat(NEARLY_ONE))
             & around.is_known;
         // As `EdgeBounds::deviation_off` and `Deviation::bound` have it.
         let (most, off) = (height + rest, edges.side + aside);
@@ -104,10 +105,20 @@ impl MovedFour {
         let apart = (at_corners * at_corners + 4.0 * aside * aside).sqrt();
         let within = |edge: usize| edges.slopes[edge].simd_le(around.slopes[edge]);
         let (mut is_helped, mut among) = (triangle.has_plane, apart);
+        let seen = bends
+            .each_ref()
+            .map(|bend| dot(bend, &triangle.normal).abs());
+        let rise = seen[0].fast_max(seen[1]).fast_max(seen[2]) + first;
+        let is_still = moved.simd_eq(f64x4::ZERO);
         for (edge, squared) in around.squared.into_iter().enumerate() {
             is_helped = is_helped & within(edge) & squared.simd_le(f64x4::splat(SHARPEST));
             let reach = edges.displacements[edge] + aside;
-            among = among.fast_max(apart * (1.0 + 0.5 * squared) + squared.sqrt() * reach);
+            // As `share_beyond` in `quartic_cell` has it.
+            let room = triangle.area / triangle.lengths[edge] * (1.0 - DIRECTIONS * turn);
+            let share = room.simd_gt(reach).bitselect(reach / room, f64x4::ONE);
+            let at_edge = 0.125 * seen[edge] + curve + rise * share;
+            let height = is_still.bitselect(at_edge.fast_min(apart), apart);
+            among = among.fast_max(height * (1.0 + 0.5 * squared) + squared.sqrt() * reach);
         }
         let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
@@ -119,6 +130,41 @@ impl MovedFour {
             least: triangle
                 .has_plane
                 .bitselect((height - rest) * share, f64x4::ZERO)
+                .to_array(),
+        }
+    }
+}
+
+/// Triangles as their neighbours see them: the greatest chords between their normals and the limit normals at their corners, and
+/// the tangents of their least angles.
+pub(crate) struct SeenFour {
+    pub(crate) normal_deviation: [f64; FOUR],
+    pub(crate) slope: [f64; FOUR],
+}
+
+impl MovedFour {
+    /// What neighbours see of the triangles, given the limit normals at their corners.
+    #[inline(never)]
+    pub(crate) fn seen(&self, normals: &[[[f64; FOUR]; 3]; 3], scale: f64) -> SeenFour {
+        let [from, second, third] = self.corners.each_ref().map(vectors);
+        let [to_second, to_third] =
+            [second, third].map(|to| minus(&to, &from).map(|axis| axis * scale));
+        let triangle = Triangle::of(to_second, to_third);
+        let squared = normals.each_ref().map(vectors).map(|normal| {
+            let apart = minus(&normal, &triangle.normal);
+            dot(&apart, &apart)
+        });
+        let most = squared[0].fast_max(squared[1]).fast_max(squared[2]);
+        let [a, b, c] = triangle.products;
+        let is_known = triangle.has_plane;
+        // Unit vectors are off by no more than 1e-12.
+        let normal_deviation = most.sqrt() + 1e-12;
+        SeenFour {
+            normal_deviation: is_known
+                .bitselect(normal_deviation, f64x4::splat(2.0))
+                .to_array(),
+            slope: is_known
+                .bitselect(triangle.area / a.fast_max(b).fast_max(c), f64x4::ZERO)
                 .to_array(),
         }
     }
@@ -192,9 +238,9 @@ impl Triangle {
         }
     }
 
-    /// Whether the map is injective, by changes of barycentric coordinates times the area.
+    /// ‖A‖ of `quartic_cell`, by changes of barycentric coordinates times the area.
     #[inline(always)]
-    fn is_unfolded(&self, bends: &[Vectors; 3], first: f64x4) -> f64x4 {
+    fn turn(&self, bends: &[Vectors; 3], first: f64x4) -> f64x4 {
         let across = [&self.edges[0], &self.edges[2]].map(|edge| cross(edge, &self.normal));
         let mut most = f64x4::ZERO;
         for bend in bends {
@@ -211,7 +257,7 @@ impl Triangle {
                 .fast_max(f64x4::ZERO)
                 .sqrt())
         .sqrt();
-        (most.sqrt() + DIRECTIONS * first * stretch).simd_lt(NEARLY_ONE * self.area)
+        (most.sqrt() + DIRECTIONS * first * stretch) / self.area
     }
 
     /// As in [`super::super::dihedral::around`], for triangles with neighbours beyond all edges.

@@ -183,7 +183,7 @@ impl Bulge {
 }
 
 /// The factor that makes the edges of a control face about 1.
-fn scale(control: &Control<'_>, face: u32) -> f64 {
+pub(super) fn scale(control: &Control<'_>, face: u32) -> f64 {
     let [a, b, c] =
         control.mesh.triangles()[face as usize].map(|v| vector(control.positions[v as usize]));
     reciprocal_power((b - a).abs().max((c - a).abs()).max_element())

@@ -5,6 +5,7 @@
 //! bounded as [`crate::certificate::Deviation::off`] and [`EdgeBounds::deviation_off`] say.
 
 mod at_once;
+mod fours;
 
 use core::ops::Range;
 use std::collections::HashSet;
@@ -13,8 +14,9 @@ use smallvec::SmallVec;
 
 use super::back_faces::BackFaces;
 use super::backs::{Behind, looks_away};
-use super::bulges::{Bulge, Bulges};
+use super::bulges::{Bulge, Bulges, scale};
 use super::changes::Changes;
+use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::{Goal, ROUNDED};
@@ -27,9 +29,11 @@ use crate::certificate::{
     Deviation, EdgeBounds, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
+use crate::index::VertexId;
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
+use fours::Fours;
 
 /// How triangles are looked at.
 #[derive(Clone, Copy)]
@@ -70,6 +74,16 @@ pub(super) fn measure(
                 measuring.is_left = Some(is_left);
                 if is_done {
                     return measuring.found(Some(bulge));
+                }
+            } else if measuring.may_be_at_once(sources.control, face) {
+                let (count, scale) = (
+                    sources.emission.triangles_of(face).len(),
+                    scale(sources.control, face),
+                );
+                let mut fours = Fours::of(&mut measuring, count, scale);
+                sources.show(face, is_stopped, &mut fours);
+                if !fours.end() {
+                    return measuring.found(None);
                 }
             }
             sources.show(face, is_stopped, &mut measuring);
@@ -132,8 +146,7 @@ impl TriangleVisitor for Measuring<'_> {
         }
         if self.counts_normal_deviations {
             let extent = Seen::of(&over.corners()).extent();
-            self.found.normal_deviation = self.found.normal_deviation.max(extent.normal_deviation);
-            self.found.slope = self.found.slope.min(extent.slope);
+            self.see(extent.normal_deviation, extent.slope);
         }
         let mut among = Among::of(self.emission, self.sharp, emitted, self.criteria);
         if let Some(criteria) = self.criteria {
@@ -160,12 +173,12 @@ impl TriangleVisitor for Measuring<'_> {
             }
         };
         if self.fails_for_sure(height.least()) {
-            let value = Value {
-                bound: f64::INFINITY,
-                value: height.least(),
-                pixels: 0.0,
-            };
-            return self.take(emitted, value, 0.0);
+            return self.take(
+                emitted.number,
+                emitted.place,
+                Value::failing(height.least()),
+                0.0,
+            );
         }
         let mut best: Option<Value> = None;
         let mut is_enough = |deviation: Deviation| {
@@ -212,7 +225,7 @@ impl TriangleVisitor for Measuring<'_> {
             },
             ..value
         };
-        self.take(emitted, value, highest);
+        self.take(emitted.number, emitted.place, value, highest);
     }
 }
 
@@ -278,9 +291,14 @@ impl<'a> Measuring<'a> {
         self.found
     }
 
+    /// Takes what neighbours see of a triangle.
+    fn see(&mut self, normal_deviation: f64, slope: f64) {
+        self.found.normal_deviation = self.found.normal_deviation.max(normal_deviation);
+        self.found.slope = self.found.slope.min(slope);
+    }
+
     /// Takes the value of a triangle and the height of the surface over it.
-    fn take(&mut self, emitted: &Emitted, value: Value, height: f64) {
-        let Emitted { number, place, .. } = *emitted;
+    fn take(&mut self, number: u32, place: NodeAddress, value: Value, height: f64) {
         if let Some(known) = self.found.each.get_mut((number - self.first) as usize) {
             let offsets = self.emission.offsets_of(number as usize);
             *known = FoundLast {
@@ -312,15 +330,17 @@ impl<'a> Measuring<'a> {
             Over::General(pieces, ..) => pieces.deviation(emitted.part, &frame, rules, effort),
         };
         let bound = deviation.own;
-        self.take(
-            emitted,
-            Value {
-                bound,
-                value: bound,
-                pixels: 0.0,
-            },
-            bound,
-        );
+        self.take(emitted.number, emitted.place, Value::of(bound), bound);
+    }
+
+    /// Whether triangles of a control face may be looked at four at a time: nothing counts but distances, and vertices have one normal each.
+    fn may_be_at_once(&self, control: &Control<'_>, face: u32) -> bool {
+        let is_smooth = |vertex: u32| {
+            let vertex = VertexId(vertex);
+            !control.sharpness.is_tagged(vertex) && !control.mesh.topology().is_boundary(vertex)
+        };
+        let corners = control.mesh.triangles()[face as usize];
+        self.criteria.is_none() && !self.rim_alone && corners.into_iter().all(is_smooth)
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is
@@ -408,11 +428,7 @@ impl<'a> Measuring<'a> {
     fn value(&self, among: &Among, deviation: &Deviation) -> Value {
         let bound = deviation.bound(among.chords, among.slopes);
         let Some(criteria) = self.criteria else {
-            return Value {
-                bound,
-                value: bound,
-                pixels: 0.0,
-            };
+            return Value::of(bound);
         };
         let apart: Apart = deviation.apart(among.chords, among.slopes);
         let region = among.region().grown(apart.own);

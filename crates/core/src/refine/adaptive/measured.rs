@@ -16,6 +16,23 @@ pub(super) struct Value {
 }
 
 impl Value {
+    /// That of a triangle of which nothing but the distance counts.
+    pub(super) fn of(bound: f64) -> Self {
+        Self {
+            bound,
+            value: bound,
+            pixels: 0.0,
+        }
+    }
+
+    /// That of a triangle that fails by a point so far off.
+    pub(super) fn failing(least: f64) -> Self {
+        Self {
+            bound: f64::INFINITY,
+            ..Self::of(least)
+        }
+    }
+
     /// The lesser of two proofs.
     pub(super) fn least(&self, other: &Self) -> Self {
         Self {
