@@ -12,19 +12,30 @@ use super::judge::{Judge, UNBALANCED};
 use super::quadtree::NodeAddress;
 use super::state::State;
 use super::surface::SurfacePiece;
-use crate::certificate::TriangleFrame;
+use crate::certificate::{TriangleFrame, quadratic_height};
+use crate::closure::{Diagonal, closure};
 use crate::patch::LimitPoint;
 use crate::refine::RefineError;
 
 /// A leaf so many times as far from the surface as it may be is divided. Its parts are a quarter as far.
 pub(super) const DIVIDED: f64 = 4.0;
 
+/// The places of the labels of [`closure`] in a leaf.
+const PLACES: [[f64; 2]; 6] = [
+    [0.0, 0.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [0.5, 0.0],
+    [0.5, 0.5],
+    [0.0, 0.5],
+];
+
 /// The bits of all edges.
 const ALL_EDGES: u8 = 7;
 
 /// The curves over those edges of a leaf that count, by their middles.
 struct EdgeCurves {
-    /// How far they are from the triangle.
+    /// How far they are from the triangle; signed where that is by heights.
     heights: [f64; 3],
     lengths: [f64; 3],
 }
@@ -42,7 +53,7 @@ impl EdgeCurves {
             let point = middles[edge].position;
             match open[edge] || frame.is_flat() {
                 true => frame.squared_to_edge(edge, point).sqrt(),
-                false => frame.height(point).abs(),
+                false => frame.height(point),
             }
         };
         let counted = |of: &dyn Fn(usize) -> f64| {
@@ -63,8 +74,39 @@ impl EdgeCurves {
     /// The bits of those that are too high.
     fn above(&self, limit: f64) -> u8 {
         (0..3).fold(0, |bits, edge| {
-            bits | u8::from(self.heights[edge] > limit) << edge
+            bits | u8::from(self.heights[edge].abs() > limit) << edge
         })
+    }
+
+    /// The bits of the edges that are split in the end, where those of some bits are: as long as a triangle of the pattern is too high over
+    /// the quadratic that stands over the middles, the longest edge that is not split. `None` if that is all of them.
+    fn completed(&self, split: u8, limit: f64) -> Option<u8> {
+        let mut split = split;
+        while split != ALL_EDGES {
+            let passes = |diagonal| {
+                let triangles = closure(split, diagonal).triangles().iter();
+                triangles
+                    .map(|&labels| self.height(labels))
+                    .all(|height| height <= limit)
+            };
+            if passes(Diagonal::FromStart) || passes(Diagonal::FromEnd) {
+                return Some(split);
+            }
+            split |= 1 << self.longest(split)?;
+        }
+        None
+    }
+
+    /// The greatest height of that quadratic over a triangle of a pattern.
+    fn height(&self, labels: [u8; 3]) -> f64 {
+        // Second derivatives along the edges are eight times the heights in their middles.
+        let [p, q, s] = self.heights.map(|height| 8.0 * height);
+        let at = labels.map(|label| PLACES[label as usize]);
+        let bend = |i: usize| {
+            let [u, v] = [0, 1].map(|axis| at[(i + 1) % 3][axis] - at[i][axis]);
+            p * u * u + s * v * v + (p + s - q) * u * v
+        };
+        quadratic_height([0, 1, 2].map(bend))
     }
 
     /// The longest of those without these bits.
@@ -95,8 +137,10 @@ impl Judge<'_> {
         }
         let curves = EdgeCurves::of(corners, middles, open, self.rim_alone);
         let is_far = curves.above(DIVIDED * self.limit) != 0;
-        let asked = curves.above(self.limit);
-        (!is_far && asked != ALL_EDGES).then_some(asked)
+        match is_far {
+            true => None,
+            false => curves.completed(curves.above(self.limit), self.limit),
+        }
     }
 }
 
