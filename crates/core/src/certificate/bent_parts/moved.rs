@@ -52,10 +52,11 @@ struct Triangle {
 
 /// The distances of parts of the surface from the edges of their triangles.
 struct EdgeDeviations {
-    /// How far curves are from their edges, and how far they reach over them.
+    /// How far curves are from their edges.
     side: f64x4,
-    displacements: [f64x4; 3],
-    /// The greatest slopes of that.
+    /// Second derivatives outwards, 0 where they point inwards.
+    outward: [f64x4; 3],
+    /// The greatest slopes of how far curves reach over the edges.
     slopes: [f64x4; 3],
     /// Whether each curve stays within the angles at its edge.
     is_plain: f64x4,
@@ -95,6 +96,7 @@ impl MovedFour {
         let around = triangle.around(&opposite, self.opposite.each_ref().map(vectors), scale);
         let turn = triangle.turn(&bends, first);
         let is_plain = triangle.has_plane
+            & rest.simd_lt(f64x4::splat(f64::INFINITY))
             & edges.is_plain
             & turn.simd_lt(f64x4::splat(NEARLY_ONE))
             & around.is_known;
@@ -105,20 +107,29 @@ impl MovedFour {
         let apart = (at_corners * at_corners + 4.0 * aside * aside).sqrt();
         let within = |edge: usize| edges.slopes[edge].simd_le(around.slopes[edge]);
         let (mut is_helped, mut among) = (triangle.has_plane, apart);
-        let seen = bends
-            .each_ref()
-            .map(|bend| dot(bend, &triangle.normal).abs());
-        let rise = seen[0].fast_max(seen[1]).fast_max(seen[2]) + first;
-        let is_still = moved.simd_eq(f64x4::ZERO);
+        let seen = bends.each_ref().map(|bend| dot(bend, &triangle.normal));
+        let rise = steepest(&seen, lifts) + first;
+        // What is as high as h may be so far off along the plane: no farther than twice that and this part of h together.
+        let twice = 2.0 * aside;
+        let part = at_corners
+            .simd_gt(f64x4::ZERO)
+            .bitselect((apart - twice) / at_corners, f64x4::ONE);
         for (edge, squared) in around.squared.into_iter().enumerate() {
             is_helped = is_helped & within(edge) & squared.simd_le(f64x4::splat(SHARPEST));
-            let reach = edges.displacements[edge] + aside;
+            let (chord, times) = (squared.sqrt(), 1.0 + 0.5 * squared);
+            let outward = edges.outward[edge];
+            let reach = 0.125 * outward + curve + aside;
             // As `share_beyond` in `quartic_cell` has it.
             let room = triangle.area / triangle.lengths[edge] * (1.0 - DIRECTIONS * turn);
             let share = room.simd_gt(reach).bitselect(reach / room, f64x4::ONE);
-            let at_edge = 0.125 * seen[edge] + curve + rise * share;
-            let height = is_still.bitselect(at_edge.fast_min(apart), apart);
-            among = among.fast_max(height * (1.0 + 0.5 * squared) + squared.sqrt() * reach);
+            let along = Along {
+                ends: [lifts[edge], lifts[(edge + 1) % 3]].map(|lift| times * part * lift),
+                bend: times * part * seen[edge],
+                outward: chord * outward,
+            };
+            let others = times * (twice + curve + rise * share) + chord * (curve + aside);
+            let at_edge = along.greatest() + others;
+            among = among.fast_max(at_edge.fast_min(apart * times + chord * reach));
         }
         let bound = is_helped.bitselect(own.fast_min(among), own);
         let share = 1.0 / scale;
@@ -133,6 +144,40 @@ impl MovedFour {
                 .to_array(),
         }
     }
+}
+
+/// The curve over an edge, point by point: its height, which is linear but for a bend, and how far it reaches over the edge, both times
+/// what they count.
+struct Along {
+    ends: [f64x4; 2],
+    bend: f64x4,
+    outward: f64x4,
+}
+
+impl Along {
+    /// The greatest sum of both anywhere along the edge.
+    #[inline(always)]
+    fn greatest(&self) -> f64x4 {
+        let on_side = |sign: f64| {
+            let [from, to] = self.ends.map(|end| sign * end);
+            let (rise, bend) = (to - from, self.outward - sign * self.bend);
+            let inner = from + 0.5 * rise + 0.125 * bend + 0.5 * rise * rise / bend;
+            let is_met = bend.simd_gt(2.0 * rise.abs());
+            from.fast_max(to).fast_max(is_met.bitselect(inner, from))
+        };
+        on_side(1.0).fast_max(on_side(-1.0))
+    }
+}
+
+/// The greatest derivative along an edge of a quadratic with these second derivatives along the edges and values at the corners.
+#[inline(always)]
+fn steepest([p, q, s]: &[f64x4; 3], [a, b, c]: [f64x4; 3]) -> f64x4 {
+    let bend = p.abs().fast_max(q.abs()).fast_max(s.abs());
+    let rise = (b - a)
+        .abs()
+        .fast_max((c - b).abs())
+        .fast_max((a - c).abs());
+    bend + rise
 }
 
 /// Triangles as their neighbours see them: the greatest chords between their normals and the limit normals at their corners, and
@@ -214,7 +259,7 @@ impl Triangle {
     fn edge_bounds(&self, bends: &[Vectors; 3], curve: f64x4, steep: f64x4) -> EdgeDeviations {
         let zero = f64x4::ZERO;
         let tangents = self.products.map(|product| self.area / product.abs());
-        let (mut side, mut displacements, mut slopes) = (zero, [zero; 3], [zero; 3]);
+        let (mut side, mut outwards, mut slopes) = (zero, [zero; 3], [zero; 3]);
         let mut is_plain = self.has_plane;
         for edge in 0..3 {
             let share = 1.0 / self.lengths[edge];
@@ -227,12 +272,12 @@ impl Triangle {
             is_plain = is_plain & room.simd_gt(zero) & stays;
             side = side.fast_max(0.125 * outward.abs() + curve);
             // A curve that bends inwards may reach outwards by the rest alone, nearer to an end.
-            displacements[edge] = 0.125 * outward.fast_max(zero) + curve;
+            outwards[edge] = outward.fast_max(zero);
             slopes[edge] = (half.fast_max(zero) + steep) / room;
         }
         EdgeDeviations {
             side,
-            displacements,
+            outward: outwards,
             slopes,
             is_plain,
         }

@@ -18,7 +18,10 @@ use crate::patch::LimitPoint;
 use crate::refine::RefineError;
 
 /// A leaf so many times as far from the surface as it may be is divided. Its parts are a quarter as far.
-pub(super) const DIVIDED: f64 = 4.0;
+const DIVIDED: f64 = 4.0;
+
+/// Where the surface is straight in a direction, curves whose heights are as near to each other as this are as high.
+const ALIKE: f64 = 0.9;
 
 /// The places of the labels of [`closure`] in a leaf.
 const PLACES: [[f64; 2]; 6] = [
@@ -33,20 +36,42 @@ const PLACES: [[f64; 2]; 6] = [
 /// The bits of all edges.
 const ALL_EDGES: u8 = 7;
 
+/// How the leaves of a control face ask.
+#[derive(Clone, Copy)]
+pub(super) struct Asking {
+    /// Whether they do: where nothing counts but distances, which are proven.
+    pub(super) may_be: bool,
+    /// Whether nothing counts but the rim of a flat region.
+    rim_alone: bool,
+    /// Whether strips may be put together.
+    is_straight: bool,
+}
+
+impl Asking {
+    pub(super) fn of(control: &Control<'_>, face: u32) -> Self {
+        Self {
+            may_be: control.criteria.is_none() && control.rules.is_certified(),
+            rim_alone: control.flat.is_its_rim(face),
+            is_straight: control.flat.is_straight(face),
+        }
+    }
+}
+
 /// The curves over those edges of a leaf that count, by their middles.
 struct EdgeCurves {
     /// How far they are from the triangle; signed where that is by heights.
     heights: [f64; 3],
     lengths: [f64; 3],
+    is_straight: bool,
 }
 
 impl EdgeCurves {
-    /// Those of a leaf some of whose edges have no neighbour that counts, which may be the only ones that count themselves.
+    /// Those of a leaf some of whose edges have no neighbour that counts.
     fn of(
         corners: &[LimitPoint; 3],
         middles: &[LimitPoint; 3],
         open: [bool; 3],
-        rim_alone: bool,
+        asking: Asking,
     ) -> Self {
         let frame = TriangleFrame::new(corners.map(|corner| corner.position));
         let height = |edge: usize| {
@@ -56,43 +81,60 @@ impl EdgeCurves {
                 false => frame.height(point),
             }
         };
-        let counted = |of: &dyn Fn(usize) -> f64| {
-            [0, 1, 2].map(|edge| {
-                if rim_alone && !open[edge] {
-                    0.0
-                } else {
-                    of(edge)
-                }
-            })
-        };
+        let counts = |edge: &usize| !asking.rim_alone || open[*edge];
+        let (mut heights, mut lengths) = ([0.0; 3], [0.0; 3]);
+        for edge in (0..3).filter(counts) {
+            (heights[edge], lengths[edge]) = (height(edge), frame.length(edge));
+        }
         Self {
-            heights: counted(&height),
-            lengths: counted(&|edge| frame.length(edge)),
+            heights,
+            lengths,
+            is_straight: asking.is_straight,
         }
     }
 
-    /// The bits of those that are too high.
+    /// The bits of those that are higher.
     fn above(&self, limit: f64) -> u8 {
-        (0..3).fold(0, |bits, edge| {
-            bits | u8::from(self.heights[edge].abs() > limit) << edge
-        })
+        let is_above = |edge: usize| self.heights[edge].abs() > limit;
+        (0..3).fold(0, |bits, edge| bits | u8::from(is_above(edge)) << edge)
     }
 
-    /// The bits of the edges that are split in the end, where those of some bits are: as long as a triangle of the pattern is too high over
-    /// the quadratic that stands over the middles, the longest edge that is not split. `None` if that is all of them.
+    /// The bits of those that are split first: all that are higher, and those that are about as high where the surface is straight.
+    fn first(&self, limit: f64) -> u8 {
+        match self.above(limit) {
+            0 => 0,
+            _ if self.is_straight => self.above(ALIKE * limit),
+            bits => bits,
+        }
+    }
+
+    /// The bits of those that are split next where those of some bits are: the longest other one; where the surface is straight in a
+    /// direction, all that lead across, so that triangles stay in planes.
+    fn next(&self, split: u8) -> Option<u8> {
+        if self.is_straight {
+            let heights = self.heights.iter();
+            let most = heights.fold(0.0, |most: f64, height| most.max(height.abs()));
+            let across = self.above(ALIKE * most) & !split;
+            return (across != 0).then_some(across);
+        }
+        let free = (0..3).filter(|edge| split >> edge & 1 == 0 && self.lengths[*edge] > 0.0);
+        let longest = free.max_by(|&a, &b| self.lengths[a].total_cmp(&self.lengths[b]));
+        longest.map(|edge| 1 << edge)
+    }
+
+    /// The bits of those that are split in the end, where those of some bits are: others follow as long as a triangle of the pattern is too
+    /// high over the quadratic that stands over the middles. `None` if that is all of them.
     fn completed(&self, split: u8, limit: f64) -> Option<u8> {
         let mut split = split;
         while split != ALL_EDGES {
             let passes = |diagonal| {
-                let triangles = closure(split, diagonal).triangles().iter();
-                triangles
-                    .map(|&labels| self.height(labels))
-                    .all(|height| height <= limit)
+                let mut triangles = closure(split, diagonal).triangles().iter();
+                triangles.all(|&labels| self.height(labels) <= limit)
             };
             if passes(Diagonal::FromStart) || passes(Diagonal::FromEnd) {
                 return Some(split);
             }
-            split |= 1 << self.longest(split)?;
+            split |= self.next(split)?;
         }
         None
     }
@@ -101,26 +143,12 @@ impl EdgeCurves {
     fn height(&self, labels: [u8; 3]) -> f64 {
         // Second derivatives along the edges are eight times the heights in their middles.
         let [p, q, s] = self.heights.map(|height| 8.0 * height);
-        let at = labels.map(|label| PLACES[label as usize]);
+        let at = labels.map(|label| PLACES[usize::from(label)]);
         let bend = |i: usize| {
             let [u, v] = [0, 1].map(|axis| at[(i + 1) % 3][axis] - at[i][axis]);
             p * u * u + s * v * v + (p + s - q) * u * v
         };
         quadratic_height([0, 1, 2].map(bend))
-    }
-
-    /// The longest of those without these bits.
-    fn longest(&self, without: u8) -> Option<usize> {
-        let free = (0..3).filter(|edge| without >> edge & 1 == 0 && self.lengths[*edge] > 0.0);
-        free.max_by(|&a, &b| self.lengths[a].total_cmp(&self.lengths[b]))
-    }
-}
-
-impl Control<'_> {
-    /// Whether leaves of a control face may ask: where nothing counts but distances, which are proven, and no strips are put together, which would
-    /// not lie in planes any more.
-    pub(super) fn may_ask(&self, face: u32) -> bool {
-        self.criteria.is_none() && self.rules.is_certified() && !self.flat.is_straight(face)
     }
 }
 
@@ -132,46 +160,44 @@ impl Judge<'_> {
         middles: &[LimitPoint; 3],
         open: [bool; 3],
     ) -> Option<u8> {
-        if !self.may_ask {
+        if !self.asking.may_be {
             return None;
         }
-        let curves = EdgeCurves::of(corners, middles, open, self.rim_alone);
-        let is_far = curves.above(DIVIDED * self.limit) != 0;
-        match is_far {
-            true => None,
-            false => curves.completed(curves.above(self.limit), self.limit),
+        let curves = EdgeCurves::of(corners, middles, open, self.asking);
+        match curves.above(DIVIDED * self.limit) {
+            0 => curves.completed(curves.first(self.limit), self.limit),
+            _ => None,
         }
     }
 }
+
+/// A leaf with a triangle that fails, and its value.
+type Failing = (NodeAddress, f64);
 
 impl Engine<'_> {
     /// Has leaves with triangles that fail, not by much, ask for the middles of edges; gives those that are to be divided instead.
     pub(super) fn ask(
         &self,
         state: &mut State,
-        failing: &[(NodeAddress, f64)],
+        failing: &[Failing],
         dirty: &mut Dirty,
-    ) -> Result<Vec<(NodeAddress, f64)>, RefineError> {
+    ) -> Result<Vec<Failing>, RefineError> {
         let mut pieces = HashMap::new();
         let (mut divided, mut high, mut low) = (Vec::new(), Vec::new(), Vec::new());
         for &(place, value) in failing {
             self.watch.poll()?;
+            let asking = Asking::of(self.control, place.face);
             let limit = state.goal.allowed(place.face);
-            let may_ask = self.control.may_ask(place.face) && place.level < self.max_levels;
-            if value > DIVIDED * limit || !may_ask {
+            if value > DIVIDED * limit || !asking.may_be || place.level >= self.max_levels {
                 divided.push((place, value));
                 continue;
             }
-            let split = self.split_edges(state, place);
-            let curves = self.curves(place, &mut pieces);
             // As far as corners may be moved.
-            let limit = if self.is_balanced {
-                UNBALANCED * limit
-            } else {
-                limit
-            };
-            let asked = curves.above(limit) & !split;
-            if (asked | split) == ALL_EDGES {
+            let times = if self.is_balanced { UNBALANCED } else { 1.0 };
+            let split = self.split_edges(state, place);
+            let curves = self.curves(place, asking, &mut pieces);
+            let asked = curves.first(times * limit) & !split;
+            if asked | split == ALL_EDGES {
                 divided.push((place, value));
             } else if asked != 0 {
                 high.push((place, asked));
@@ -180,49 +206,55 @@ impl Engine<'_> {
             }
         }
         for (place, asked) in high {
-            for edge in (0..3).filter(|edge| asked >> edge & 1 != 0) {
-                self.ask_edge(state, place, edge, dirty)?;
-            }
+            self.ask_edges(state, place, asked, dirty)?;
         }
         for (place, value, before, curves) in low {
-            // Others may have helped.
             let split = self.split_edges(state, place);
+            // Others may have helped.
             if split != before {
                 continue;
             }
-            match curves.longest(split) {
-                Some(edge) if split.count_ones() < 2 => self.ask_edge(state, place, edge, dirty)?,
+            match curves.next(split) {
+                Some(asked) if asked | split != ALL_EDGES => {
+                    self.ask_edges(state, place, asked, dirty)?;
+                }
                 _ => divided.push((place, value)),
             }
         }
         Ok(divided)
     }
 
-    fn ask_edge(
+    /// Has a leaf ask for the middles of the edges of these bits.
+    fn ask_edges(
         &self,
         state: &mut State,
         place: NodeAddress,
-        edge: usize,
+        asked: u8,
         dirty: &mut Dirty,
     ) -> Result<(), RefineError> {
-        if !state.trees.ask(place, edge) {
-            return Err(state.trees.too_many(4).into());
+        for edge in (0..3).filter(|edge| asked >> edge & 1 != 0) {
+            if !state.trees.ask(place, edge) {
+                return Err(state.trees.too_many(4).into());
+            }
+            dirty.ask(&self.control.edges, place, edge);
         }
-        dirty.ask(&self.control.edges, place, edge);
         Ok(())
     }
 
     /// The bits of the edges of a leaf that have middles.
     fn split_edges(&self, state: &State, place: NodeAddress) -> u8 {
         let edges = &self.control.edges;
-        let has_middle = |edge: &usize| state.trees.has_middle(edges, place, *edge);
-        (0..3)
-            .filter(has_middle)
-            .fold(0, |bits, edge| bits | 1 << edge)
+        let has_middle = |edge: usize| state.trees.has_middle(edges, place, edge);
+        (0..3).fold(0, |bits, edge| bits | u8::from(has_middle(edge)) << edge)
     }
 
     /// The curves over the edges of a leaf; pieces of control faces are kept.
-    fn curves(&self, place: NodeAddress, pieces: &mut HashMap<u32, SurfacePiece>) -> EdgeCurves {
+    fn curves(
+        &self,
+        place: NodeAddress,
+        asking: Asking,
+        pieces: &mut HashMap<u32, SurfacePiece>,
+    ) -> EdgeCurves {
         let control = self.control;
         let piece = pieces
             .entry(place.face)
@@ -232,11 +264,6 @@ impl Engine<'_> {
         });
         let open = control.open(place.face);
         let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
-        EdgeCurves::of(
-            &surface.corners(),
-            &surface.middles(),
-            open,
-            control.flat.is_its_rim(place.face),
-        )
+        EdgeCurves::of(&surface.corners(), &surface.middles(), open, asking)
     }
 }

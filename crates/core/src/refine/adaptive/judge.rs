@@ -7,6 +7,7 @@
 //! [`Allowance`]: the greatest normal deviation and the least angle of the triangles in it and adjacent to it. Where a whole leaf is within the limit
 //! on that condition, its bound holds as soon as all these triangles keep the allowance.
 
+use super::asking::Asking;
 use super::back_faces::BackFaces;
 use super::backs::{Behind, Leaf};
 use super::control::Control;
@@ -55,7 +56,7 @@ impl Goal {
             back_faces: &control.back_faces,
             face,
             rim_alone: control.flat.is_its_rim(face),
-            may_ask: control.may_ask(face),
+            asking: Asking::of(control, face),
             limit: match self {
                 Self::Balanced(distance) => UNBALANCED * distance,
                 _ => self.allowed(face),
@@ -88,9 +89,9 @@ pub(super) struct Judge<'a> {
     back_faces: &'a BackFaces,
     face: u32,
     /// Whether it is flat and nothing counts but the rim of its region ([`super::flat`]).
-    pub(super) rim_alone: bool,
-    /// Whether its nodes may ask for the middles of their edges ([`super::asking`]).
-    pub(super) may_ask: bool,
+    rim_alone: bool,
+    /// How its nodes ask for the middles of their edges.
+    pub(super) asking: Asking,
     /// Greatest value: a distance where nothing else counts.
     pub(super) limit: f64,
     /// Ranges of heights from one side to the other count by this, as well as the greatest height on one side.

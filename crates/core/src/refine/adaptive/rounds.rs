@@ -32,6 +32,9 @@ pub(super) struct Verified {
 /// A leaf with a triangle that fails, and its value.
 type Failing = (NodeAddress, f64);
 
+/// Levels that a leaf which fails is split by beyond the first at most: bounds of coarse leaves may be far above their distances.
+const MOST_AT_ONCE: u32 = 3;
+
 impl Engine<'_> {
     /// Divides until all triangles are within a goal; `None` if there are more than `most`.
     pub(super) fn refined(&self, goal: Goal, most: usize) -> Result<Option<Verified>, RefineError> {
@@ -345,8 +348,8 @@ impl Engine<'_> {
             } else {
                 0.0
             };
-            let levels = if times > 1.0 && times.is_finite() {
-                (times.log2() / 2.0).ceil() as u32
+            let levels = if times > 1.0 {
+                ((times.log2() / 2.0).ceil() as u32).min(MOST_AT_ONCE)
             } else {
                 0
             };

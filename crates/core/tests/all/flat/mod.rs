@@ -67,8 +67,7 @@ fn facing(result: &Exact, direction: [f64; 3]) -> (usize, f64) {
     (count, area)
 }
 
-/// Without the option and with it: equal points everywhere except inside the flat regions and on
-/// rims that are divided less.
+/// Without the option and with it: both within the tolerance of one surface.
 fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
     let options = within(tolerance);
     let merged = exact(mesh, &Loop, &options).unwrap();
@@ -95,18 +94,7 @@ fn both(mesh: &Mesh, tolerance: f64) -> (Exact, Exact) {
         at_most!(error.lower, error.upper);
         at_most!(error.upper, tolerance);
     }
-    let points = |result: &Exact| {
-        let mut points: Vec<[u64; 3]> = result
-            .mesh
-            .positions()
-            .iter()
-            .map(|p| p.map(|x| x.to_bits()))
-            .collect();
-        points.sort_unstable();
-        points
-    };
-    let (few, many) = (points(&merged), points(&kept));
-    assert!(few.iter().all(|point| many.binary_search(point).is_ok()));
+    at_most!(sampled(&merged.mesh, &kept.mesh, 20_000), 2.0 * tolerance);
     (merged, kept)
 }
 
@@ -276,7 +264,7 @@ fn rounded_coordinates_are_flat_and_curved_ones_are_not() {
     let flat = facing(&merged, other).0;
     below!(10 * flat, count);
     at_most!(count, same);
-    below!((area - as_large).abs(), 1e-6);
+    below!((area - as_large).abs(), 1e-3 * area);
     assert!(flat < facing(&kept, other).0);
 }
 

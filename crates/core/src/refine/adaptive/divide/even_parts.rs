@@ -103,7 +103,7 @@ impl Divider<'_> {
             bound,
         });
         let is_even = tested == 1 && levels[0].are_all_passing();
-        let word = if is_even && !self.judge.may_ask {
+        let word = if is_even && !self.judge.asking.may_be {
             self.count_leaves(1 << (2 * least));
             (LEAF | PROVEN) + least
         } else {
@@ -122,7 +122,7 @@ impl Divider<'_> {
 
     /// The word of a node that asks for the middles of its edges; `None` if it is divided.
     fn asking(&mut self, quartic: &QuarticPiece, domain: ParamTriangle) -> Option<u32> {
-        if !self.judge.may_ask {
+        if !self.judge.asking.may_be {
             return None;
         }
         let [a, b, c] = domain.corners();

@@ -94,7 +94,7 @@ fn rounds_end_with_what_is_found_anew() {
                     goal: &found.state.goal,
                     length: if engine.trusts() { 0.0 } else { f64::INFINITY },
                     changes: None,
-                    bulges: None,
+                    bulges: engine.is_balanced.then_some(&found.state.bulges),
                     trusted: &[],
                 };
                 let sources = engine.sources(&found.state, &found.emission);
