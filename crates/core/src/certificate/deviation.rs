@@ -23,6 +23,9 @@ pub(crate) struct Deviation {
     pub(crate) slopes: [f64; 3],
     /// How much of the height may point in any direction rather than along normals.
     pub(crate) across: f64,
+    /// How far points near corners that were moved may be, and how far these were moved along the plane.
+    pub(crate) at_corners: f64,
+    pub(crate) aside: f64,
 }
 
 /// The greater of each.
@@ -40,6 +43,8 @@ impl Deviation {
             displacements: greater_each(self.displacements, other.displacements),
             slopes: greater_each(self.slopes, other.slopes),
             across: greater(self.across, other.across),
+            at_corners: greater(self.at_corners, other.at_corners),
+            aside: greater(self.aside, other.aside),
         }
     }
 
@@ -53,6 +58,8 @@ impl Deviation {
             displacements: [0.0; 3],
             slopes: [0.0; 3],
             across: own,
+            at_corners: 0.0,
+            aside: 0.0,
         }
     }
 
@@ -62,18 +69,23 @@ impl Deviation {
     /// At such a corner the projections on the planes around it lie up to `aside` from it, and up
     /// to twice that apart; points near it that they leave uncovered are that far from the
     /// projection of the surface's corner. Curves may reach by `aside` over other edges there.
+    ///
+    /// What a point of a curve counts is a convex function of it: greatest at a corner, or at another of the points whose heights are known.
     pub(crate) fn off(self, moved: f64, aside: f64) -> Self {
         if moved == 0.0 {
             return self;
         }
-        let height = hypotenuse(greater(self.height, moved), 2.0 * aside);
+        let farther = |height: f64| hypotenuse(height, 2.0 * aside);
+        let height = farther(greater(self.height, moved));
         let across = self.across + 2.0 * aside;
         Self {
             own: greater(self.own, moved),
             height,
-            edge_heights: [height; 3],
+            edge_heights: self.edge_heights.map(farther),
             displacements: self.displacements.map(|reach| reach + aside),
             across,
+            at_corners: farther(moved),
+            aside,
             ..self
         }
     }
@@ -86,6 +98,7 @@ impl Deviation {
             height,
             edge_heights,
             across,
+            at_corners,
             ..
         } = self;
         Self {
@@ -93,6 +106,7 @@ impl Deviation {
             height: height + distance,
             edge_heights: edge_heights.map(|height| height + distance),
             across: across + distance,
+            at_corners: at_corners + distance,
             ..self
         }
     }
@@ -124,7 +138,9 @@ impl Deviation {
             self.is_within(slopes) && chords.iter().all(|chord| chord * chord <= SHARPEST);
         let at_edge = |edge: usize| {
             let (chord, height) = (chords[edge], self.edge_heights[edge].min(self.height));
-            height * (1.0 + 0.5 * chord * chord) + chord * self.displacements[edge]
+            let times = 1.0 + 0.5 * chord * chord;
+            let inside = height * times + chord * self.displacements[edge];
+            greater(inside, self.at_corners * times + chord * self.aside)
         };
         can_help.then(|| (0..3).map(at_edge).fold(self.height, greater))
     }

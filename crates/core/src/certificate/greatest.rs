@@ -255,7 +255,7 @@ impl<'a> Greatest<'a> {
             edge_heights,
             displacements,
             slopes,
-            across: 0.0,
+            ..Deviation::default()
         })
     }
 }

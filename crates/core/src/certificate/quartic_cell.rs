@@ -480,6 +480,7 @@ impl EdgeBounds {
                     displacements: self.displacements,
                     slopes: self.slopes,
                     across,
+                    ..Deviation::default()
                 }
             }
         }
@@ -510,7 +511,17 @@ impl EdgeBounds {
             open: farther(self.open),
             ..*self
         };
-        moved_piece.deviation(height).off(moved, aside)
+        let found = moved_piece.deviation(height).off(moved, aside);
+        // Heights of the curves are those over the surface's own chords.
+        let edge_heights = if moved > 0.0 {
+            [found.height; 3]
+        } else {
+            found.edge_heights
+        };
+        Deviation {
+            edge_heights,
+            ..found
+        }
     }
 }
 

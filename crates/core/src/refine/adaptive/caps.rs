@@ -110,7 +110,7 @@ pub(in crate::refine) fn within(
 }
 
 /// Whether vertices on the surface may do with fewer triangles than balanced ones: where flat regions are merged, which is done with these alone,
-/// where hardly any face is divided, and where normals decide, which moved vertices bring no nearer. Of few triangles it takes little time to tell.
+/// where normals decide, which moved vertices bring no nearer, and where guesses do. Of few triangles it takes little time to tell.
 pub(super) fn may_do_with_fewer(
     plain: Task<'_>,
     count: usize,
@@ -121,7 +121,12 @@ pub(super) fn may_do_with_fewer(
     }
     plain.with_engine(observer, |engine| {
         // Flat regions and strips of a sixteenth of the faces may make the plain mesh the smaller one.
-        Ok(16 * engine.control.flat.merged_faces() >= plain.mesh.face_count())
+        if 16 * engine.control.flat.merged_faces() >= plain.mesh.face_count() {
+            return Ok(true);
+        }
+        let floor = engine.floor(plain.options.goals.tolerance);
+        // Verifying only adds triangles.
+        Ok(floor > 0.0 && engine.guessed(Goal::Within(floor), count)?.is_some())
     })
 }
 
