@@ -189,26 +189,22 @@ impl TriangleVisitor for Measuring<'_> {
         };
         let highest = match (over, height) {
             (Over::Regular(quartic, cell, domain), Height::Regular((height, rest), heights)) => {
-                let jet = quartic.jet();
-                let by_piece = jet.edge_bounds(&cell, &among.frame, emitted.open);
-                let high = height + rest;
-                if !is_enough(by_piece.deviation_off(high, among.moved, among.aside)) {
-                    let edges =
-                        jet.closer_edge_bounds(&by_piece, &cell, &among.frame, emitted.open);
-                    let off = |height| edges.deviation_off(height, among.moved, among.aside);
-                    let refined = || {
-                        let enough = self.high_enough(&among, &off(0.0));
-                        heights.lifted(among.lifts, DIVISIONS, enough)
-                    };
-                    // Nothing that is loose depends on heights.
-                    let is_met =
-                        is_enough(off(high)) || !edges.is_loose() && is_enough(off(refined()));
-                    if !is_met && !self.fails_by_height(&among, &edges, &off(height - rest)) {
-                        let net = quartic.net(domain, emitted.part);
-                        let effort = self.effort(&among, emitted);
-                        let deviation = net.deviation(&among.frame, rules, effort);
-                        is_enough(deviation.off(among.moved, among.aside));
-                    }
+                let by_piece = quartic.jet().edge_bounds(&cell, &among.frame, emitted.open);
+                let edges =
+                    quartic
+                        .jet()
+                        .closer_edge_bounds(&by_piece, &cell, &among.frame, emitted.open);
+                let off = |height| edges.deviation_off(height, among.moved, among.aside);
+                let refined =
+                    || heights.lifted(among.lifts, DIVISIONS, self.high_enough(&among, &off(0.0)));
+                // Nothing that is loose depends on heights.
+                let is_met =
+                    is_enough(off(height + rest)) || !edges.is_loose() && is_enough(off(refined()));
+                if !is_met && !self.fails_by_height(&among, &edges, &off(height - rest)) {
+                    let net = quartic.net(domain, emitted.part);
+                    let deviation =
+                        net.deviation(&among.frame, rules, self.effort(&among, emitted));
+                    is_enough(deviation.off(among.moved, among.aside));
                 }
                 height
             }
