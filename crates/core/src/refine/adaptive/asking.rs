@@ -3,12 +3,11 @@
 //!
 //! Sizes of leaves jump by four; middles of edges are the steps between.
 
-use std::collections::HashMap;
-
 use super::Engine;
 use super::control::Control;
 use super::dirty::Dirty;
 use super::judge::{Judge, UNBALANCED};
+use super::measured::Failing;
 use super::quadtree::NodeAddress;
 use super::state::State;
 use super::surface::SurfacePiece;
@@ -171,9 +170,6 @@ impl Judge<'_> {
     }
 }
 
-/// A leaf with a triangle that fails, and its value.
-type Failing = (NodeAddress, f64);
-
 impl Engine<'_> {
     /// Has leaves with triangles that fail, not by much, ask for the middles of edges; gives those that are to be divided instead.
     pub(super) fn ask(
@@ -182,7 +178,7 @@ impl Engine<'_> {
         failing: &[Failing],
         dirty: &mut Dirty,
     ) -> Result<Vec<Failing>, RefineError> {
-        let mut pieces = HashMap::new();
+        let mut last = None;
         let (mut divided, mut high, mut low) = (Vec::new(), Vec::new(), Vec::new());
         for &(place, value) in failing {
             self.watch.poll()?;
@@ -195,7 +191,7 @@ impl Engine<'_> {
             // As far as corners may be moved.
             let times = if self.is_balanced { UNBALANCED } else { 1.0 };
             let split = self.split_edges(state, place);
-            let curves = self.curves(place, asking, &mut pieces);
+            let curves = self.curves(place, asking, &mut last);
             let asked = curves.first(times * limit) & !split;
             if asked | split == ALL_EDGES {
                 divided.push((place, value));
@@ -248,17 +244,18 @@ impl Engine<'_> {
         (0..3).fold(0, |bits, edge| bits | u8::from(has_middle(edge)) << edge)
     }
 
-    /// The curves over the edges of a leaf; pieces of control faces are kept.
+    /// The curves over the edges of a leaf; the piece of the last control face is kept.
     fn curves(
         &self,
         place: NodeAddress,
         asking: Asking,
-        pieces: &mut HashMap<u32, SurfacePiece>,
+        last: &mut Option<(u32, SurfacePiece)>,
     ) -> EdgeCurves {
         let control = self.control;
-        let piece = pieces
-            .entry(place.face)
-            .or_insert_with(|| control.piece(place.face));
+        let (_, piece) = match last.take().filter(|(face, _)| *face == place.face) {
+            Some(known) => last.insert(known),
+            None => last.insert((place.face, control.piece(place.face))),
+        };
         let surface = (0..place.level).fold(piece.surface(control.rules), |surface, level| {
             surface.child(place.digit(level))
         });

@@ -4,6 +4,9 @@
 use super::quadtree::NodeAddress;
 use crate::certificate::exceeds;
 
+/// A leaf with a triangle that fails, and its value.
+pub(super) type Failing = (NodeAddress, f64);
+
 /// The values of a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Value {

@@ -117,7 +117,7 @@ pub(in crate::refine) fn nested(
     }
 }
 
-/// Demands that what has leaves below it on a level is divided.
+/// Demands that what has leaves below it on a level is divided, and leaves with middles on their edges.
 fn divide_as(
     mesh: &Mesh,
     level: &Exact,
@@ -141,7 +141,7 @@ fn divide_as(
     Ok(())
 }
 
-/// Collects the nodes that leaves are children of.
+/// Collects the nodes that leaves are children of, and leaves with middles on their edges.
 struct Parents<'a> {
     found: Vec<NodeAddress>,
     is_stopped: &'a IsStopped<'a>,
@@ -154,7 +154,11 @@ impl Descent for Parents<'_> {
         [(); 4]
     }
 
-    fn leaf(&mut self, place: NodeAddress, (): (), _: &[Covering]) {
+    fn leaf(&mut self, place: NodeAddress, (): (), covering: &[Covering]) {
+        // The middles of its edges may be its own.
+        if covering.len() > 1 {
+            self.found.push(place);
+        }
         if let Some(parent) = place.parent()
             && self.found.last() != Some(&parent)
         {

@@ -12,6 +12,7 @@ use super::emit::{Emission, Emitter};
 use super::flat::Net;
 use super::judge::Goal;
 use super::measure::{Look, measure};
+use super::measured::Failing;
 use super::neighbours::sharp_edges;
 use super::quadtree::{NodeAddress, is_leaf};
 use super::seen::Allowance;
@@ -28,9 +29,6 @@ pub(super) struct Verified {
     pub(super) state: State,
     pub(super) emission: Emission,
 }
-
-/// A leaf with a triangle that fails, and its value.
-type Failing = (NodeAddress, f64);
 
 /// Levels that a leaf which fails is split by beyond the first at most: bounds of coarse leaves may be far above their distances.
 const MOST_AT_ONCE: u32 = 3;
