@@ -57,7 +57,7 @@ fn sides_of_two_materials_are_refined_as_if_alone() {
     let glb = Glb::read(&output);
     for (primitive, up) in [(0, 1.0), (1, -1.0)] {
         let own = side(&glb, primitive);
-        assert_eq!(own.triangles.len(), 56);
+        assert_eq!(own.triangles.len(), 40);
         is_limit_of_front(&own.positions, &own.triangles);
         assert!(
             own.triangles

@@ -20,7 +20,7 @@
 //! surface leaves the plane; the neighbour then covers what T does not. Let T′ be the triangle
 //! beyond edge e, θ the angle between both planes, σ = 2 sin(θ/2). A point at height h over the
 //! plane of T, outside e by g, is within |h| + σg of T′ if its projection lies in T′ turned into
-//! the plane of T ([`Deviation::height`], [`Deviation::displacement`]); |h| + σ max(0, g) is convex. Its
+//! the plane of T; |h| + σ max(0, g) is convex. Its
 //! projection lies there where g is at most tan x times its distance along e from either end, x
 //! being at most the angles of T′ at e and at most half of what the angles of T at e leave of π, so
 //! that T and its three flaps are convex together ([`Deviation::slopes`]). For the other way take
@@ -29,7 +29,9 @@
 //! cos θ), and a strip of straight lines joins them. The outer curves do not reach over T as long
 //! as no curve crosses another edge of its own triangle, which is checked; so what is covered,
 //! strips included, winds round each q in T, and the point that covers it is within |h|(1 + σ²/2) +
-//! σg, h and g being those of T or of the neighbour. For a point of a strip take g to be negative
+//! σg, h and g being those of T or of the neighbour. Where no strip covers q it is within |h|, or within the
+//! neighbour's |h| + σg: so σ counts edge by edge, for the curve over the edge and what reaches over it
+//! ([`Deviation::edge_heights`], [`Deviation::displacements`]), and the height inside counts as it is. For a point of a strip take g to be negative
 //! inside e. Its curve point is within |h| of one end and, where it is outside T′ by g′ > 0, within
 //! |h′| + σg′ of the other. Where it is inside both, no farther from it than e is, it is between
 //! the two triangles or outside the angle between them, at the distance r from e with max(|h|,

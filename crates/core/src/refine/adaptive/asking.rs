@@ -38,7 +38,7 @@ const ALL_EDGES: u8 = 7;
 /// How the leaves of a control face ask.
 #[derive(Clone, Copy)]
 pub(super) struct Asking {
-    /// Whether they do: where nothing counts but distances, which are proven.
+    /// Whether they do: where nothing counts but distances, which are proven, and levels of detail are not nested.
     pub(super) may_be: bool,
     /// Whether nothing counts but the rim of a flat region.
     rim_alone: bool,
@@ -49,7 +49,9 @@ pub(super) struct Asking {
 impl Asking {
     pub(super) fn of(control: &Control<'_>, face: u32) -> Self {
         Self {
-            may_be: control.criteria.is_none() && control.rules.is_certified(),
+            may_be: control.criteria.is_none()
+                && control.rules.is_certified()
+                && control.demands.let_leaves_ask(),
             rim_alone: control.flat.is_its_rim(face),
             is_straight: control.flat.is_straight(face),
         }

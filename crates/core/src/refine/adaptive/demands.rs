@@ -49,9 +49,29 @@ pub(super) struct Demands {
     divided: HashSet<NodeAddress>,
     by_triangles: BTreeSet<u32>,
     all_by_triangles: bool,
+    /// No leaf asks for middles of its edges.
+    leaves_are_whole: bool,
 }
 
 impl Demands {
+    /// None but that no leaf asks for middles of its edges: places of patterns are farther off than those of nodes.
+    pub(super) fn of_whole_leaves() -> Self {
+        Self {
+            leaves_are_whole: true,
+            ..Self::default()
+        }
+    }
+
+    /// Whether leaves may ask for middles of their edges.
+    pub(super) fn let_leaves_ask(&self) -> bool {
+        !self.leaves_are_whole
+    }
+
+    /// Adds the nodes of others.
+    pub(super) fn add_all(&mut self, others: Self) {
+        self.divided.extend(others.divided);
+    }
+
     /// Whether a node is divided.
     #[inline]
     pub(super) fn divides(&self, place: NodeAddress) -> bool {

@@ -40,13 +40,13 @@ pub(in crate::refine) fn nested(
         options,
         most.saturating_sub(mesh.face_count()) / ADDED,
     );
-    let mut demands = Demands::default();
+    let mut demands = Demands::of_whole_leaves();
     let mut fits = true;
     if with_geomorph {
         let functions = Functions::positions(surface, tolerance);
         let found = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         fits = found.is_some();
-        demands = found.unwrap_or_default();
+        demands.add_all(found.unwrap_or_default());
     }
     if let Some(coarser) = coarser {
         divide_as(
@@ -117,7 +117,7 @@ pub(in crate::refine) fn nested(
     }
 }
 
-/// Demands that what has leaves below it on a level is divided, and leaves with middles on their edges.
+/// Demands that what has leaves below it on a level is divided.
 fn divide_as(
     mesh: &Mesh,
     level: &Exact,
@@ -141,7 +141,7 @@ fn divide_as(
     Ok(())
 }
 
-/// Collects the nodes that leaves are children of, and leaves with middles on their edges.
+/// Collects the nodes that leaves are children of.
 struct Parents<'a> {
     found: Vec<NodeAddress>,
     is_stopped: &'a IsStopped<'a>,
@@ -154,11 +154,7 @@ impl Descent for Parents<'_> {
         [(); 4]
     }
 
-    fn leaf(&mut self, place: NodeAddress, (): (), covering: &[Covering]) {
-        // The middles of its edges may be its own.
-        if covering.len() > 1 {
-            self.found.push(place);
-        }
+    fn leaf(&mut self, place: NodeAddress, (): (), _: &[Covering]) {
         if let Some(parent) = place.parent()
             && self.found.last() != Some(&parent)
         {
