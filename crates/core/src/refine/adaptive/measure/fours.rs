@@ -69,12 +69,11 @@ impl<'m, 'a> Fours<'m, 'a> {
                 |corner: usize, axis: usize| f64x4::new(from_fn(|l| part(l).cell.0[corner][axis]));
             let bent = bender.any([0, 1, 2].map(|corner| [place(corner, 0), place(corner, 1)]));
             let (kept, mut parts) = (bent.kept(self.scale), BentFour::UNKNOWN);
-            let mut normals = [[[0.0; FOUR]; 3]; 3];
-            for l in 0..FOUR {
-                let (number, emission) = (part(l).number as usize, self.measuring.emission);
-                parts.take(l, &kept, l, part(l).turn);
-                // Parts with edges that have no neighbour do not wait.
-                self.measuring.gather(number, l, &mut four);
+            let (mut normals, mut is_gathered) = ([[[0.0; FOUR]; 3]; 3], [false; FOUR]);
+            for (l, part) in (0..FOUR).map(|l| (l, part(l))) {
+                let (number, emission) = (part.number as usize, self.measuring.emission);
+                parts.take(l, &kept, l, part.turn);
+                is_gathered[l] = self.measuring.gather(number, l, &mut four);
                 for (corner, vertex) in emission.triangles[number].into_iter().enumerate() {
                     let normal = emission.normals[vertex as usize];
                     (0..3).for_each(|axis| normals[corner][axis][l] = normal[axis]);
@@ -85,6 +84,10 @@ impl<'m, 'a> Fours<'m, 'a> {
             for (l, part) in some.iter().enumerate() {
                 let (bound, least) = (found.bound[l], found.least[l]);
                 let measuring = &mut *self.measuring;
+                if !is_gathered[l] {
+                    self.is_left[(part.number - measuring.first) as usize] = true;
+                    continue;
+                }
                 if measuring.fails_for_sure(least) {
                     measuring.take(part.number, part.place, Value::failing(least), 0.0);
                 } else if bound <= measuring.limit && bound <= measuring.length {
@@ -114,9 +117,6 @@ impl TriangleVisitor for Fours<'_, '_> {
         let Over::Regular(quartic, cell, _) = over else {
             return self.measuring.triangle(emitted, over, rules);
         };
-        if !self.measuring.has_neighbours(emitted.number) {
-            return self.measuring.triangle(emitted, over, rules);
-        }
         let is_other = self
             .quartic
             .is_some_and(|known| !core::ptr::eq(known, quartic));
