@@ -246,7 +246,7 @@ impl TriangleFrame {
 
     /// The height of the corner opposite over an edge.
     #[inline]
-    pub(crate) fn altitude(&self, edge: usize) -> f64 {
+    pub(super) fn altitude(&self, edge: usize) -> f64 {
         self.parallelogram() / self.lengths[edge]
     }
 

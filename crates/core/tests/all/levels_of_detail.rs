@@ -99,7 +99,7 @@ fn three_sheets() -> Mesh {
 
 #[test]
 fn each_level_is_nested_in_the_next() {
-    // Tolerances that are near to each other, too: what a level splits the next might do without.
+    // Tolerances that are near to each other, too.
     let steps = [[0.05, 0.02, 0.005], [0.02, 0.018, 0.015]];
     for ((name, mesh), parts) in all_samples()
         .into_iter()

@@ -8,7 +8,7 @@ use super::control::Control;
 use super::dirty::Dirty;
 use super::judge::{Judge, UNBALANCED};
 use super::measured::Failing;
-use super::quadtree::NodeAddress;
+use super::quadtree::{ALL_EDGES, NodeAddress};
 use super::state::State;
 use super::surface::SurfacePiece;
 use crate::certificate::{TriangleFrame, quadratic_height};
@@ -31,9 +31,6 @@ const PLACES: [[f64; 2]; 6] = [
     [0.5, 0.5],
     [0.0, 0.5],
 ];
-
-/// The bits of all edges.
-const ALL_EDGES: u8 = 7;
 
 /// How the leaves of a control face ask.
 #[derive(Clone, Copy)]
@@ -258,9 +255,7 @@ impl Engine<'_> {
             Some(known) => last.insert(known),
             None => last.insert((place.face, control.piece(place.face))),
         };
-        let surface = (0..place.level).fold(piece.surface(control.rules), |surface, level| {
-            surface.child(place.digit(level))
-        });
+        let surface = piece.over(place, control.rules);
         let open = control.open(place.face);
         let open = [0, 1, 2].map(|edge| open[edge] && place.lies_along(edge));
         EdgeCurves::of(&surface.corners(), &surface.middles(), open, asking)

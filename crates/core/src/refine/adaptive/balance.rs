@@ -7,15 +7,14 @@
 
 use std::collections::HashSet;
 
-use super::quadtree::{Along, Beyond, Edges, NodeAddress, Trees, asks, beyond, even_depth};
+use super::quadtree::{
+    ALL_EDGES, Along, Beyond, Edges, NodeAddress, Trees, asks, beyond, even_depth,
+};
 use crate::progress::Cancelled;
 
 /// Nodes whose neighbours must exist beyond some edges, given by their bits, by level.
 #[derive(Default)]
 pub(super) struct Pending(Vec<Vec<(NodeAddress, u8)>>);
-
-/// The bits of all edges.
-const ALL_EDGES: u8 = 7;
 
 impl Pending {
     /// A node that has children.

@@ -100,9 +100,7 @@ impl Engine<'_> {
         let piece = pieces
             .entry(place.face)
             .or_insert_with(|| control.piece(place.face));
-        let surface = (0..place.level).fold(piece.surface(control.rules), |surface, level| {
-            surface.child(place.digit(level))
-        });
+        let surface = piece.over(place, control.rules);
         let unsplit = 3 - split.iter().sum::<usize>();
         let is_from_end =
             split.len() == 2 && !state.has_fixed_diagonals && is_nearer_from_end(surface, unsplit);

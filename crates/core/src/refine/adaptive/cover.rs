@@ -5,7 +5,7 @@ use super::chains::Chains;
 use super::control::Control;
 use super::quadtree::{NodeAddress, Trees, is_split};
 use super::rim::Rim;
-use super::surface::{Surface, SurfacePiece};
+use super::surface::Surface;
 use super::walk::{EdgeVertex, Node, Visitor, Walk};
 use crate::parallel::IsStopped;
 use crate::patch::ParamTriangle;
@@ -67,21 +67,13 @@ impl Covering<'_> {
                 return false;
             }
             let piece = piece.get_or_insert_with(|| control.piece(face));
-            is_nearer_from_end(self.surface(piece, place), unsplit)
+            is_nearer_from_end(piece.over(place, control.rules), unsplit)
         });
         Cover {
             vertices: walk.next,
             triangles: count.triangles as u32,
             diagonals: diagonals.collect(),
         }
-    }
-
-    /// The surface over a leaf of a face, given that over the whole face.
-    fn surface<'p>(&'p self, piece: &'p SurfacePiece, place: NodeAddress) -> Surface<'p> {
-        let levels = 0..place.level;
-        levels.fold(piece.surface(self.control.rules), |surface, level| {
-            surface.child(place.digit(level))
-        })
     }
 }
 

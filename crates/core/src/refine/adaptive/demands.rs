@@ -54,22 +54,17 @@ pub(super) struct Demands {
 }
 
 impl Demands {
-    /// None but that no leaf asks for middles of its edges: places of patterns are farther off than those of nodes.
-    pub(super) fn of_whole_leaves() -> Self {
+    /// These, where no leaf asks for middles of its edges: places of patterns are farther off than those of nodes.
+    pub(super) fn of_whole_leaves(self) -> Self {
         Self {
             leaves_are_whole: true,
-            ..Self::default()
+            ..self
         }
     }
 
     /// Whether leaves may ask for middles of their edges.
     pub(super) fn let_leaves_ask(&self) -> bool {
         !self.leaves_are_whole
-    }
-
-    /// Adds the nodes of others.
-    pub(super) fn add_all(&mut self, others: Self) {
-        self.divided.extend(others.divided);
     }
 
     /// Whether a node is divided.

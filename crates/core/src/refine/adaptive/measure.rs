@@ -14,9 +14,8 @@ use smallvec::SmallVec;
 
 use super::back_faces::BackFaces;
 use super::backs::{Behind, looks_away};
-use super::bulges::{Bulge, Bulges, scale};
+use super::bulges::{Bulge, Bulges};
 use super::changes::Changes;
-use super::control::Control;
 use super::emit::Emission;
 use super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::judge::{Goal, ROUNDED};
@@ -29,11 +28,9 @@ use crate::certificate::{
     Deviation, EdgeBounds, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
 use crate::criterion::{Apart, Backs, Criteria, Region, Viewpoint};
-use crate::index::VertexId;
 use crate::patch::{LimitPoint, Rules};
 use crate::progress::{Cancelled, SharedWatch};
 use crate::vector::{DVec3, vector};
-use fours::Fours;
 
 /// How triangles are looked at.
 #[derive(Clone, Copy)]
@@ -75,16 +72,8 @@ pub(super) fn measure(
                 if is_done {
                     return measuring.found(Some(bulge));
                 }
-            } else if measuring.may_be_at_once(sources.control, face) {
-                let (count, scale) = (
-                    sources.emission.triangles_of(face).len(),
-                    scale(sources.control, face),
-                );
-                let mut fours = Fours::of(&mut measuring, count, scale);
-                sources.show(face, is_stopped, &mut fours);
-                if !fours.end() {
-                    return measuring.found(None);
-                }
+            } else if measuring.by_fours(sources, face, is_stopped) {
+                return measuring.found(None);
             }
             sources.show(face, is_stopped, &mut measuring);
             measuring.found(bulge)
@@ -331,16 +320,6 @@ impl<'a> Measuring<'a> {
         };
         let bound = deviation.own;
         self.take(emitted.number, emitted.place, Value::of(bound), bound);
-    }
-
-    /// Whether triangles of a control face may be looked at four at a time: nothing counts but distances, and vertices have one normal each.
-    fn may_be_at_once(&self, control: &Control<'_>, face: u32) -> bool {
-        let is_smooth = |vertex: u32| {
-            let vertex = VertexId(vertex);
-            !control.sharpness.is_tagged(vertex) && !control.mesh.topology().is_boundary(vertex)
-        };
-        let corners = control.mesh.triangles()[face as usize];
-        self.criteria.is_none() && !self.rim_alone && corners.into_iter().all(is_smooth)
     }
 
     /// Whether a triangle with a point of the surface so high over it fails for sure: then it needs no bound, as long as it is

@@ -40,14 +40,15 @@ pub(in crate::refine) fn nested(
         options,
         most.saturating_sub(mesh.face_count()) / ADDED,
     );
-    let mut demands = Demands::of_whole_leaves();
+    let mut demands = Demands::default();
     let mut fits = true;
     if with_geomorph {
         let functions = Functions::positions(surface, tolerance);
         let found = functions.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         fits = found.is_some();
-        demands.add_all(found.unwrap_or_default());
+        demands = found.unwrap_or_default();
     }
+    demands = demands.of_whole_leaves();
     if let Some(coarser) = coarser {
         divide_as(
             mesh,

@@ -22,6 +22,9 @@ const DEPTH: u32 = (1 << 5) - 1;
 const ASKED: u32 = 1 << 5;
 const ANY_ASKED: u32 = 7 * ASKED;
 
+/// The bits of all edges of a node.
+pub(super) const ALL_EDGES: u8 = 7;
+
 /// Nodes whose indices leave room for the marks.
 pub(super) const MOST_NODES: usize = 1 << 28;
 
@@ -206,11 +209,8 @@ impl Trees {
                         ..place
                     });
                 }
-                match self.expanded(word) {
-                    Some(first) => {
-                        self.words[at] = first;
-                        first
-                    }
+                match self.opened(at) {
+                    Some(first) => first,
                     None => return false,
                 }
             };
@@ -228,18 +228,9 @@ impl Trees {
     pub(super) fn ask(&mut self, place: NodeAddress, edge: usize) -> bool {
         let mut at = place.face as usize;
         for level in 0..place.level {
-            let word = self.words[at];
-            let first = if word & LEAF == 0 {
-                word
-            } else {
-                // Leaves that ask are kept one by one.
-                match self.expanded(word) {
-                    Some(first) => {
-                        self.words[at] = first;
-                        first
-                    }
-                    None => return false,
-                }
+            // Leaves that ask are kept one by one.
+            let Some(first) = self.opened(at) else {
+                return false;
             };
             at = first as usize + place.digit(level);
         }
@@ -248,14 +239,18 @@ impl Trees {
         true
     }
 
-    /// Four words for the children of a node whose leaves are equally deep.
-    fn expanded(&mut self, word: u32) -> Option<u32> {
-        let first = self.words.len();
+    /// The children of a node, which have words of their own from now on.
+    fn opened(&mut self, at: usize) -> Option<u32> {
+        let (word, first) = (self.words[at], self.words.len());
+        if word & LEAF == 0 {
+            return Some(word);
+        }
         if first + 4 >= MOST_NODES {
             return None;
         }
         let below = if is_split(word) { word - 1 } else { LEAF };
         self.words.extend([below; 4]);
+        self.words[at] = first as u32;
         Some(first as u32)
     }
 }

@@ -4,6 +4,7 @@
 use core::array::from_fn;
 use core::cell::OnceCell;
 
+use super::quadtree::NodeAddress;
 use crate::certificate::{NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::extraordinary::RefinedExtraordinary;
@@ -131,6 +132,13 @@ impl SurfacePiece {
             Patch::Regular(points) => Self::Regular(points, OnceCell::new()),
             patch => Self::General(GeneralPiece::of(patch, corners)),
         }
+    }
+
+    /// The part over a node.
+    pub(super) fn over<'a>(&'a self, place: NodeAddress, rules: &'a Rules<'a>) -> Surface<'a> {
+        (0..place.level).fold(self.surface(rules), |surface, level| {
+            surface.child(place.digit(level))
+        })
     }
 
     /// All of it.

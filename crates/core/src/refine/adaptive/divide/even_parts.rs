@@ -175,7 +175,7 @@ impl Divider<'_> {
                 }
             }
         }
-        // Above the last level there is a proof for less.
+        // A node whose children are small enough may do with middles of its edges.
         if level > 0 && level + 1 >= rows.first {
             let domain = rows.domain.row(level, i, j, is_inverted);
             if let Some(word) = self.asking(rows.quartic, domain) {

@@ -2,12 +2,16 @@
 
 use core::array::from_fn;
 
-use super::super::emitted::{Emitted, Over, TriangleVisitor};
+use super::super::bulges::scale;
+use super::super::control::Control;
+use super::super::emitted::{Emitted, Over, Sources, TriangleVisitor};
 use super::super::measured::Value;
 use super::super::quadtree::NodeAddress;
 use super::super::surface::QuarticPiece;
 use super::Measuring;
 use crate::certificate::{Bender, BentFour, Cell, FOUR, MovedFour, QuarticJet};
+use crate::index::VertexId;
+use crate::parallel::IsStopped;
 use crate::patch::Rules;
 use wide::f64x4;
 
@@ -24,9 +28,48 @@ struct Part {
     place: NodeAddress,
 }
 
-/// Measures the triangles of a control face as far as that is done four at a time.
-pub(super) struct Fours<'m, 'a> {
+impl Measuring<'_> {
+    /// Measures the triangles of a control face as far as that is done four at a time; says whether none is left.
+    pub(super) fn by_fours(
+        &mut self,
+        sources: &Sources<'_>,
+        face: u32,
+        is_stopped: &IsStopped<'_>,
+    ) -> bool {
+        if !self.may_be_at_once(sources.control, face) {
+            return false;
+        }
+        let mut fours = Fours {
+            is_left: vec![false; sources.emission.triangles_of(face).len()],
+            measuring: self,
+            scale: scale(sources.control, face),
+            quartic: None,
+            jet: None,
+            waiting: Vec::with_capacity(MOST),
+        };
+        sources.show(face, is_stopped, &mut fours);
+        fours.look();
+        let is_left = fours.is_left;
+        let is_done = !is_left.contains(&true);
+        self.is_left = Some(is_left);
+        is_done
+    }
+
+    /// Whether nothing counts but distances, and vertices have one normal each.
+    fn may_be_at_once(&self, control: &Control<'_>, face: u32) -> bool {
+        let is_smooth = |vertex: u32| {
+            let vertex = VertexId(vertex);
+            !control.sharpness.is_tagged(vertex) && !control.mesh.topology().is_boundary(vertex)
+        };
+        let corners = control.mesh.triangles()[face as usize];
+        self.criteria.is_none() && !self.rim_alone && corners.into_iter().all(is_smooth)
+    }
+}
+
+/// The triangles of a control face on their way.
+struct Fours<'m, 'a> {
     measuring: &'m mut Measuring<'a>,
+    /// Makes the control face's edges about 1.
     scale: f64,
     /// The piece, by its place in memory: it stays there while somebody walks over its control face.
     quartic: Option<*const QuarticPiece>,
@@ -35,27 +78,7 @@ pub(super) struct Fours<'m, 'a> {
     is_left: Vec<bool>,
 }
 
-impl<'m, 'a> Fours<'m, 'a> {
-    /// For a control face's triangles; `scale` makes its edges about 1.
-    pub(super) fn of(measuring: &'m mut Measuring<'a>, triangles: usize, scale: f64) -> Self {
-        Self {
-            measuring,
-            scale,
-            quartic: None,
-            jet: None,
-            waiting: Vec::with_capacity(MOST),
-            is_left: vec![false; triangles],
-        }
-    }
-
-    /// Leaves the others; says whether there are any.
-    pub(super) fn end(mut self) -> bool {
-        self.look();
-        let has_left = self.is_left.contains(&true);
-        self.measuring.is_left = Some(self.is_left);
-        has_left
-    }
-
+impl Fours<'_, '_> {
     /// Looks at all that wait.
     fn look(&mut self) {
         self.quartic = None;
@@ -84,17 +107,16 @@ impl<'m, 'a> Fours<'m, 'a> {
             for (l, part) in some.iter().enumerate() {
                 let (bound, least) = (found.bound[l], found.least[l]);
                 let measuring = &mut *self.measuring;
-                if !is_gathered[l] {
+                let passes = bound <= measuring.limit && bound <= measuring.length;
+                let fails = measuring.fails_for_sure(least);
+                if !is_gathered[l] || !passes && !fails {
                     self.is_left[(part.number - measuring.first) as usize] = true;
                     continue;
                 }
-                if measuring.fails_for_sure(least) {
+                if fails {
                     measuring.take(part.number, part.place, Value::failing(least), 0.0);
-                } else if bound <= measuring.limit && bound <= measuring.length {
-                    measuring.take(part.number, part.place, Value::of(bound), found.height[l]);
                 } else {
-                    self.is_left[(part.number - measuring.first) as usize] = true;
-                    continue;
+                    measuring.take(part.number, part.place, Value::of(bound), found.height[l]);
                 }
                 measuring.see(seen.normal_deviation[l], seen.slope[l]);
             }
