@@ -19,6 +19,9 @@ use crate::refine::RefineError;
 /// A leaf so many times as far from the surface as it may be is divided. Its parts are a quarter as far.
 const DIVIDED: f64 = 4.0;
 
+/// Curves below this part of the limit are expected to pass: their heights are known at their middles alone.
+const SURE: f64 = 0.95;
+
 /// Where the surface is straight in a direction, curves whose heights are as near to each other as this are as high.
 const ALIKE: f64 = 0.9;
 
@@ -163,7 +166,10 @@ impl Judge<'_> {
         }
         let curves = EdgeCurves::of(corners, middles, open, self.asking);
         match curves.above(DIVIDED * self.limit) {
-            0 => curves.completed(curves.first(self.limit), self.limit),
+            0 => {
+                let limit = SURE * self.limit;
+                curves.completed(curves.first(limit), limit)
+            }
             _ => None,
         }
     }

@@ -4,8 +4,9 @@
 use super::chains::Chains;
 use super::control::Control;
 use super::quadtree::{NodeAddress, Trees, is_split};
-use super::rim::Rim;
+use super::rim::{Rim, bits};
 use super::surface::Surface;
+use super::touched::{Fresh, Touched};
 use super::walk::{EdgeVertex, Node, Visitor, Walk};
 use crate::parallel::IsStopped;
 use crate::patch::ParamTriangle;
@@ -20,6 +21,12 @@ pub(super) struct Cover {
     pub(super) diagonals: Box<[bool]>,
 }
 
+/// A cover, and which of its triangles were not there before.
+pub(super) struct Covered {
+    pub(super) cover: Cover,
+    pub(super) fresh: Fresh,
+}
+
 /// The trees of all control faces, with the vertices on their edges.
 #[derive(Clone, Copy)]
 pub(super) struct Covering<'a> {
@@ -28,6 +35,8 @@ pub(super) struct Covering<'a> {
     pub(super) chains: &'a Chains,
     /// Whether all diagonals start at the unsplit edge's start.
     pub(super) has_fixed_diagonals: bool,
+    /// The leaves with other triangles than before, where only some are.
+    pub(super) touched: Option<&'a Touched>,
 }
 
 impl Covering<'_> {
@@ -37,18 +46,23 @@ impl Covering<'_> {
         face: u32,
         edge_vertices: &mut Vec<EdgeVertex>,
         is_stopped: &IsStopped<'_>,
-    ) -> Cover {
+    ) -> Covered {
         let Self {
             control,
             trees,
             chains,
             has_fixed_diagonals,
+            touched,
         } = *self;
         let word = trees.root(face);
         if !is_split(word) && chains.are_none(&control.edges, face) {
-            return Cover {
+            let cover = Cover {
                 triangles: 1,
                 ..Cover::default()
+            };
+            return Covered {
+                cover,
+                fresh: Fresh::All,
             };
         }
         let mut walk = Walk::new(trees, core::mem::take(edge_vertices), 0, is_stopped);
@@ -58,6 +72,8 @@ impl Covering<'_> {
             triangles: 0,
             rim: Rim::default(),
             halved: Vec::new(),
+            touched,
+            fresh: Vec::new(),
         };
         walk.face(face, sides, Surface::Unknown, &mut count);
         *edge_vertices = walk.edge_vertices;
@@ -69,10 +85,14 @@ impl Covering<'_> {
             let piece = piece.get_or_insert_with(|| control.piece(face));
             is_nearer_from_end(piece.over(place, control.rules), unsplit)
         });
-        Cover {
+        let cover = Cover {
             vertices: walk.next,
             triangles: count.triangles as u32,
             diagonals: diagonals.collect(),
+        };
+        Covered {
+            cover,
+            fresh: touched.map_or(Fresh::All, |_| Fresh::Some(count.fresh)),
         }
     }
 }
@@ -88,29 +108,49 @@ pub(super) fn is_nearer_from_end(surface: Surface<'_>, unsplit: usize) -> bool {
     off(end, tip) < off(unsplit, end)
 }
 
-/// Counts the triangles over a face, and lists the leaves with two split edges.
-struct Count {
+/// Counts the triangles over a face, lists the leaves with two split edges, and marks the triangles of leaves that were touched.
+struct Count<'a> {
     triangles: usize,
     rim: Rim,
     /// The leaves, with their unsplit edges.
     halved: Vec<(NodeAddress, usize)>,
+    touched: Option<&'a Touched>,
+    fresh: Vec<bool>,
 }
 
-impl Visitor for Count {
+impl Visitor for Count<'_> {
     fn chain(&mut self, _: &[EdgeVertex], _: usize, _: ParamTriangle, _: Surface<'_>) {}
 
     fn leaves(&mut self, node: &Node<'_>, edge_vertices: &mut [EdgeVertex]) {
+        let first = self.triangles;
         self.triangles += node.triangles();
+        let touched = self.touched;
+        if let Some(touched) = touched {
+            self.fresh.resize(self.triangles, touched.holds(node.place));
+        }
         if node.is_plain() {
             return;
         }
         self.rim.set(node, edge_vertices);
         let n = 1 << node.depth;
+        // Triangles that closed leaves before have more than those.
+        let mut more = 0;
         for (i, j) in Rim::leaves(n) {
-            if let Some(unsplit) = unsplit_edge(self.rim.split(n, i, j)) {
-                self.halved
-                    .push((node.place.leaf(node.depth, (i, j), false), unsplit));
+            let split = self.rim.split(n, i, j);
+            let middles = bits(&split).count_ones() as usize;
+            if middles == 0 {
+                continue;
             }
+            let place = node.place.leaf(node.depth, (i, j), false);
+            if let Some(unsplit) = unsplit_edge(split) {
+                self.halved.push((place, unsplit));
+            }
+            if touched.is_some_and(|touched| touched.holds(place)) {
+                // The rows before it, and the leaves of its own.
+                let own = first + j * (2 * n - j) + 2 * i + more;
+                self.fresh[own..=own + middles].fill(true);
+            }
+            more += middles;
         }
     }
 }

@@ -84,8 +84,9 @@ impl Emitter<'_> {
                 arrays
             }
             None => {
-                // One in so many elements is kept free for later divisions, since arrays that become too short are copied. With balanced vertices a sixth is divided later.
-                let spare = if self.is_balanced { 4 } else { 32 };
+                // One in so many elements is kept free for later divisions, since arrays that become too short are copied. With balanced
+                // vertices a sixth is divided later, with others a tenth.
+                let spare = if self.is_balanced { 4 } else { 8 };
                 Arrays::fresh(length, spare, self.has_origins, watch)?
             }
         };

@@ -171,6 +171,7 @@ fn proven(
     let goal = Goal::Within(floor);
     let look = Look {
         goal: &goal,
+        divided_above: 0,
         length: f64::INFINITY,
         changes: None,
         bulges: None,

@@ -36,6 +36,8 @@ use crate::vector::{DVec3, vector};
 #[derive(Clone, Copy)]
 pub(super) struct Look<'a> {
     pub(super) goal: &'a Goal,
+    /// Leaves above this level that fail are divided: what they have does not count.
+    pub(super) divided_above: u32,
     /// Bounds of distances below this, of triangles that do not fail, need not be tight.
     pub(super) length: f64,
     /// Triangles that these do not concern are not looked at.
@@ -102,6 +104,7 @@ struct Measuring<'a> {
     is_left: Option<Vec<bool>>,
     /// Greatest value.
     limit: f64,
+    divided_above: u32,
     length: f64,
     found: Measured,
     /// The triangles that fail, their leaves, and their values.
@@ -233,6 +236,7 @@ impl<'a> Measuring<'a> {
             first: emission.triangles_of(face).start as u32,
             is_left: None,
             limit: look.goal.allowed(face),
+            divided_above: look.divided_above,
             length: look.length,
             found: Measured::nothing(face),
             failing: Vec::new(),
@@ -298,9 +302,12 @@ impl<'a> Measuring<'a> {
             };
             return;
         }
-        self.found.add(place, &value, height);
-        if exceeds(value.value, self.limit) {
+        let fails = exceeds(value.value, self.limit);
+        if fails {
             self.failing.push((number, place, value.value));
+        }
+        if !fails || place.level >= self.divided_above {
+            self.found.add(place, &value, height);
         }
     }
 

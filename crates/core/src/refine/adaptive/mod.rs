@@ -48,6 +48,7 @@ mod seen;
 mod sides;
 mod state;
 mod surface;
+mod touched;
 mod trial;
 mod walk;
 

@@ -89,6 +89,7 @@ pub(super) fn probe(
         let nothing = Goal::Within(f64::INFINITY);
         let look = Look {
             goal: &nothing,
+            divided_above: 0,
             length,
             changes: None,
             bulges: None,

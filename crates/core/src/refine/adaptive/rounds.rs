@@ -6,7 +6,7 @@ use super::balance::{Pending, balance};
 use super::chains::{Chains, first_of};
 use super::changes::Changes;
 use super::control::Control;
-use super::cover::{Cover, Covering};
+use super::cover::{Covered, Covering};
 use super::dirty::{Dirty, marked};
 use super::emit::{Emission, Emitter};
 use super::flat::Net;
@@ -17,6 +17,7 @@ use super::neighbours::sharp_edges;
 use super::quadtree::{NodeAddress, is_leaf};
 use super::seen::Allowance;
 use super::state::State;
+use super::touched::{Fresh, Touched};
 use super::{Engine, sides};
 use crate::index::VertexId;
 use crate::parallel;
@@ -67,12 +68,13 @@ impl Engine<'_> {
             if state.triangles > most && !has_strips {
                 return Ok(None);
             }
-            let is_changed = core::mem::replace(&mut state.is_changed, vec![false; faces]);
+            let fresh = core::mem::replace(&mut state.fresh, vec![Fresh::None; faces]);
+            let is_changed: Vec<bool> = fresh.iter().map(Fresh::is_any).collect();
             let mut emission = self.emit(&state, &is_changed, last)?;
             if state.triangles > most && state.triangles - self.saved(&emission)? > most {
                 return Ok(None);
             }
-            let failing = self.verify(&mut state, &mut emission, &is_changed)?;
+            let failing = self.verify(&mut state, &mut emission, &fresh)?;
             dirty = Dirty::none(faces);
             let mut is_split = self.split_failing(&mut state, &failing, &mut dirty)?;
             // Triangles that fail may be why others keep less than is assumed of them; they are divided first.
@@ -103,35 +105,46 @@ impl Engine<'_> {
                 .with_inserted(control.mesh, &dirty.inserted(edges), watch)?,
         };
         let (faces, trees) = (dirty.faces(), &state.trees);
+        let touched = (!dirty.is_all).then(|| Touched::by(dirty, trees, edges));
         let covering = Covering {
             control,
             trees,
             chains: &chains,
             has_fixed_diagonals: state.has_fixed_diagonals,
+            touched: touched.as_ref(),
         };
         let covers = watch.long_shares(faces.len(), |block, is_stopped| {
             let mut edge_vertices = Vec::new();
             let covers = faces[block]
                 .iter()
                 .map(|&face| covering.cover(face, &mut edge_vertices, is_stopped));
-            covers.collect::<Vec<Cover>>()
+            covers.collect::<Vec<Covered>>()
         })?;
         let has_other_chain =
             |h: u32| chains.own(first_of(edges, h)).1 != state.chains.own(first_of(edges, h)).1;
+        let mut is_split = vec![false; state.covers.len()];
+        let asking = dirty.asking().iter().map(|(place, _)| place);
+        for place in dirty.split().iter().chain(asking) {
+            is_split[place.face as usize] = true;
+        }
         watch.each(
             faces.iter().zip(covers.into_iter().flatten()),
-            |(&face, cover)| {
-                let own = &mut state.covers[face as usize];
-                let is_other =
-                    dirty.is_all || *own != cover || (3 * face..3 * face + 3).any(has_other_chain);
-                state.is_changed[face as usize] |= is_other;
+            |(&face, covered)| {
+                let Covered { cover, fresh } = covered;
+                let (own, known) = (
+                    &mut state.covers[face as usize],
+                    &mut state.fresh[face as usize],
+                );
+                let has_other_side = || (3 * face..3 * face + 3).any(has_other_chain);
+                if known.is_any() {
+                    // Numbers of triangles may be others since.
+                    *known = Fresh::All;
+                } else if is_split[face as usize] || *own != cover || has_other_side() {
+                    *known = fresh;
+                }
                 *own = cover;
             },
         )?;
-        let asking = dirty.asking().iter().map(|(place, _)| place);
-        for place in dirty.split().iter().chain(asking) {
-            state.is_changed[place.face as usize] = true;
-        }
         state.chains = chains;
         let own = |face: u32| state.covers[face as usize].triangles as usize;
         state.triangles = control.flat.count(control, &state.chains, own);
@@ -221,7 +234,7 @@ impl Engine<'_> {
         &self,
         state: &mut State,
         emission: &mut Emission,
-        is_changed: &[bool],
+        fresh: &[Fresh],
     ) -> Result<Vec<Failing>, RefineError> {
         let Self { control, watch, .. } = *self;
         // Heights that are good enough, where it is known.
@@ -234,10 +247,11 @@ impl Engine<'_> {
         let mut bulges = core::mem::take(&mut state.bulges);
         if self.is_balanced {
             let sources = self.sources(state, emission);
+            let is_changed: Vec<bool> = fresh.iter().map(Fresh::is_any).collect();
             bulges.look(
                 &sources,
                 watch,
-                &marked(is_changed),
+                &marked(&is_changed),
                 allowed,
                 self.max_levels,
             )?;
@@ -247,7 +261,7 @@ impl Engine<'_> {
         watch.stage(Stage::Bounding, None)?;
         let known = self.is_balanced.then_some(&bulges);
         // Of triangles of which nothing but distances is asked it is known what was found of them.
-        let changes = Changes::since(known, is_alone, is_changed, emission, watch)?;
+        let changes = Changes::since(known, is_alone, fresh, emission, watch)?;
         let faces = changes.faces(emission, &control.edges, watch)?;
         let trusted = if self.trusts() {
             &state.is_trusted[..]
@@ -256,6 +270,7 @@ impl Engine<'_> {
         };
         let look = Look {
             goal: &state.goal,
+            divided_above: self.max_levels,
             length: f64::INFINITY,
             changes: Some(&changes),
             bulges: known,
@@ -263,8 +278,7 @@ impl Engine<'_> {
         };
         let found = measure(&self.sources(state, emission), watch, &faces, &look)?;
         watch.each(faces.iter().zip(found), |(&face, mut found)| {
-            let is_other = is_changed[face as usize] && !is_alone;
-            let is_all = bulges.keep(face, &mut found, emission) || is_other;
+            let is_all = bulges.keep(face, &mut found, emission) || changes.are_all(face);
             state.measured[face as usize].replace(found, is_all);
         })?;
         // Leaves that cannot be balanced were not measured.
@@ -309,6 +323,7 @@ impl Engine<'_> {
             .for_each(|&face| state.is_trusted[face as usize] = false);
         let look = Look {
             goal: &state.goal,
+            divided_above: self.max_levels,
             length: f64::INFINITY,
             changes: None,
             bulges: None,

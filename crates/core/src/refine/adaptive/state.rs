@@ -13,6 +13,7 @@ use super::judge::Goal;
 use super::measured::Measured;
 use super::quadtree::{NodeAddress, Piece, Trees};
 use super::seen::{Allowance, Extent};
+use super::touched::Fresh;
 use crate::parallel;
 use crate::progress::{Cancelled, SharedWatch};
 use crate::refine::RefineError;
@@ -32,8 +33,8 @@ pub(super) struct State {
     pub(super) triangles: usize,
     /// Whether leaves fail that must not be divided.
     pub(super) has_failed: bool,
-    /// Control faces whose triangles may have changed since the last emission.
-    pub(super) is_changed: Vec<bool>,
+    /// By control face, what has changed since the last emission.
+    pub(super) fresh: Vec<Fresh>,
     /// The measured bounds, by control face.
     pub(super) measured: Vec<Measured>,
     pub(super) bulges: Bulges,
@@ -53,7 +54,7 @@ impl State {
             triangles: 0,
             has_failed: false,
             is_trusted: vec![true; faces],
-            is_changed: vec![true; faces],
+            fresh: vec![Fresh::All; faces],
             measured: (0..faces as u32).map(Measured::nothing).collect(),
             bulges: Bulges::default(),
             proven,
@@ -86,7 +87,7 @@ impl State {
     /// Keeps the trees, and forgets what is known of their leaves.
     pub(super) fn forget(&mut self) {
         self.is_trusted.fill(false);
-        self.is_changed.fill(true);
+        self.fresh.fill(Fresh::All);
     }
 
     pub(super) fn faces(&self) -> u32 {

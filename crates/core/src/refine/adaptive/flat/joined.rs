@@ -221,6 +221,7 @@ mod tests {
                 let nothing = Goal::Within(f64::INFINITY);
                 let look = Look {
                     goal: &nothing,
+                    divided_above: 0,
                     length: 1e-12,
                     changes: None,
                     bulges: None,

@@ -92,6 +92,7 @@ fn rounds_end_with_what_is_found_anew() {
                 let faces: Vec<u32> = (0..found.state.faces()).collect();
                 let look = Look {
                     goal: &found.state.goal,
+                    divided_above: 0,
                     length: if engine.trusts() { 0.0 } else { f64::INFINITY },
                     changes: None,
                     bulges: engine.is_balanced.then_some(&found.state.bulges),
