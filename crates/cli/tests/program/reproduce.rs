@@ -141,10 +141,14 @@ fn json_agrees(json: &str, rows: &[Vec<String>]) {
         assert!((shd - row[3].parse::<f64>().expect("a number")).abs() < 1e-3 * shd);
     }
     for row in studies.iter().flat_map(|study| list(&study["rows"])) {
-        let [sampled, upper] =
-            [&row["exact"]["shd_percent"], &row["exact_upper_percent"]].map(|x| number(x));
-        // The reference is itself a little off the limit surface.
-        assert!(sampled <= 1.1 * upper, "{row}");
+        let [sampled, upper, uniform] = [
+            &row["exact"]["shd_percent"],
+            &row["exact_upper_percent"],
+            &row["uniform_limit"]["shd_percent"],
+        ]
+        .map(|x| number(x));
+        // The reference is itself off the limit surface: it is two levels finer than the uniform mesh, each of which leaves a third.
+        assert!(sampled <= upper + uniform / 9.0, "{row}");
     }
     // Uniform refinement of the sphere's 360 faces, twice, and fewer where the view matters.
     let sphere = &json["figure_9"]["models"][0];
