@@ -30,6 +30,8 @@
 //! Hidden modules and items are shared by the crates of this workspace; they promise no stability.
 
 #[doc(hidden)]
+pub mod catmull_clark;
+#[doc(hidden)]
 pub mod facing;
 #[cfg(test)]
 mod finer;

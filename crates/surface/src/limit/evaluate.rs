@@ -12,6 +12,7 @@ use super::sharp::SharpStencil;
 use super::sides::SidedNormals;
 use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable};
+use crate::catmull_clark::limits::QuadLimits;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
@@ -64,6 +65,9 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Vec<[f64; 3]>, Cancelled> {
+        if mesh.topology().has_quads() {
+            return QuadLimits::of(mesh, &Sharpness::of(mesh)).positions(poll);
+        }
         let refined = self.refined_for(mesh, stencils.any_moves(), poll)?;
         parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
@@ -115,6 +119,9 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<SidedNormals, Cancelled> {
+        if mesh.topology().has_quads() {
+            return QuadLimits::of(mesh, &Sharpness::of(mesh)).sided_normals(poll);
+        }
         self.normals_or(stencils, mesh, poll, |vertex, side| {
             face_average(mesh, vertex, side)
         })
@@ -127,6 +134,10 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
+        if mesh.topology().has_quads() {
+            let sharpness = Sharpness::of(mesh);
+            return Ok(Ok(QuadLimits::of(mesh, &sharpness).plane_normals(poll)?));
+        }
         match Stencils::of(self, mesh, poll)? {
             Ok(stencils) => Ok(Ok(
                 self.normals_or(&stencils, mesh, poll, |_, _| DVec3::ZERO)?
@@ -182,6 +193,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn normal_at(&self, mesh: &Mesh, corner: HalfEdgeId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).normal_at(corner));
+        }
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         let side = stencil.side_of(mesh, corner);
@@ -200,6 +214,9 @@ impl LimitTable<'_> {
         sharpness: &Sharpness<'_>,
         corner: HalfEdgeId,
     ) -> Result<Option<[[f64; 3]; 2]>, LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, sharpness).tangents_at(corner));
+        }
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, sharpness, vertex)?;
         let Some(side) = stencil.side_of(mesh, corner) else {
@@ -229,6 +246,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn position(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).position(vertex));
+        }
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(match self.scheme().support() {
             Support::TwoRing if !stays(stencil.position()) => {
@@ -244,6 +264,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn normal(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).normal(vertex));
+        }
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(stencil
             .average(|side| self.side_normal(mesh, vertex, side))
@@ -370,6 +393,7 @@ impl Stencil {
 
 /// The stencils of a mesh's vertices, looked up once for each shape that occurs.
 #[doc(hidden)]
+#[derive(Default)]
 pub struct Stencils {
     list: Vec<Stencil>,
     by_vertex: Vec<u32>,
@@ -386,6 +410,10 @@ impl Stencils {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<Self, LimitError>, Cancelled> {
+        if mesh.topology().has_quads() {
+            // Their limits follow from the rings of quads.
+            return Ok(Ok(Self::default()));
+        }
         let nowhere = &mut |_| poll(0);
         let shapes = RingShapes::polled(mesh, nowhere)?;
         let sharpness = Sharpness::of(mesh);

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use super::evaluate::{Stencil, Stencils};
 use super::{LimitError, LimitTable};
+use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::progress::uncancelled;
 
@@ -49,6 +50,15 @@ impl LimitTable<'_> {
     /// The stencils of the vertices of `mesh`, for a scheme with one-ring support.
     #[doc(hidden)]
     pub fn vertex_stencils(&self, mesh: &Mesh) -> Result<VertexStencils, LimitError> {
+        if mesh.topology().has_quads() {
+            let shape = mesh.ring_shape(VertexId(0));
+            let what = "weights for other positions are for triangles";
+            return Err(LimitError::unsuitable(
+                self.scheme(),
+                shape,
+                what.to_owned(),
+            ));
+        }
         let stencils = uncancelled(|_| Stencils::of(self, mesh, &mut |_| Ok(())))?;
         let (mut list, mut known) = (Vec::new(), HashMap::new());
         let by_vertex = (0..mesh.vertex_count()).map(|v| {

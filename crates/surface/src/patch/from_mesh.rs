@@ -6,6 +6,7 @@ use super::rules::Rules;
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
 use super::{Neighbours, Patch, Points, box_spline};
+use crate::catmull_clark::piece::root_piece;
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;
@@ -21,6 +22,9 @@ pub fn root_patch(
     face: FaceId,
     rules: &Rules<'_>,
 ) -> Patch {
+    if mesh.topology().has_quads() {
+        return root_piece(mesh, sharpness, face, rules);
+    }
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
     if !rules.is_certified() {
         return Patch::Mesh(MeshPatch::of(mesh, sharpness, face, rules));

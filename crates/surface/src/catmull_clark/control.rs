@@ -1,0 +1,393 @@
+//! Control meshes of quads: polygons put together again from the triangles that they were cut into, and refined once where not all of them
+//! are quads.
+//!
+//! Takes a mesh of triangles with the polygons of which they are parts; gives a mesh whose triangles are halves of quads. A step of
+//! Catmull–Clark subdivision leaves the limit surface as it is.
+
+use std::collections::HashMap;
+
+use super::quads::halves;
+use crate::index::{HalfEdgeId, VertexId};
+use crate::mesh::{
+    BuildOptions, CornerTag, CreaseTag, Diagnosis, Groups, Junctions, Mesh, MeshError, NONE,
+    PolygonSoup, Sharpness, Tags, Topology, outgoing_half_edges,
+};
+use crate::ring::{SharpRing, VertexRule, decremented};
+use crate::vector::{DVec3, vector};
+
+/// Quads as a mesh of their halves, and from which polygon each is.
+#[derive(Clone, Debug)]
+pub struct QuadControl {
+    pub mesh: Mesh,
+    /// By face of the mesh, the polygon, as the triangles' are numbered.
+    pub polygons: Vec<u32>,
+    /// By corner of the mesh, three a face, the half-edge of the triangles at whose start it stands; `None` where a step has made it.
+    pub corners: Option<Vec<HalfEdgeId>>,
+}
+
+impl QuadControl {
+    /// The quads of a file's polygons.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::from_soup`].
+    pub fn from_soup(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+    ) -> Result<(Self, Diagnosis), MeshError> {
+        let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, options)?;
+        Ok((Self::of(&mesh, &trace.faces)?, diagnosis))
+    }
+
+    /// The quads of a mesh, given by triangle the polygon that it is part of.
+    ///
+    /// # Errors
+    /// There are more elements than can be numbered.
+    pub fn of(mesh: &Mesh, parts: &[u32]) -> Result<Self, MeshError> {
+        let polygons = Polygons::of(mesh.topology(), parts);
+        match polygons.loops.iter().all(|own| own.len() == 4) {
+            true => polygons.as_quads(mesh, parts),
+            false => polygons.refined(mesh, parts),
+        }
+    }
+}
+
+/// Polygons by the half-edges of triangles along their sides.
+struct Polygons {
+    loops: Vec<Vec<HalfEdgeId>>,
+    /// By half-edge, the polygon and the place in its loop; [`NONE`] inside a polygon.
+    places: Vec<[u32; 2]>,
+}
+
+impl Polygons {
+    fn of(topology: &Topology, parts: &[u32]) -> Self {
+        let is_inside = |h: HalfEdgeId| {
+            let part = |h: HalfEdgeId| parts[h.face().index()];
+            topology.twin(h).filter(|&twin| part(twin) == part(h))
+        };
+        let mut polygons = Self {
+            loops: Vec::new(),
+            places: vec![[NONE; 2]; topology.half_edge_count()],
+        };
+        let mut met = vec![false; topology.face_count()];
+        for face in topology.faces() {
+            if met[face.index()] {
+                continue;
+            }
+            // The triangles of the polygon that hang together, and the sides around them.
+            let (mut own, mut sides) = (vec![face], 0);
+            met[face.index()] = true;
+            let mut at = 0;
+            while let Some(&face) = own.get(at) {
+                at += 1;
+                for h in [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner)) {
+                    match is_inside(h) {
+                        None => sides += 1,
+                        Some(twin) if !met[twin.face().index()] => {
+                            met[twin.face().index()] = true;
+                            own.push(twin.face());
+                        }
+                        Some(_) => {}
+                    }
+                }
+            }
+            let first = own
+                .iter()
+                .flat_map(|&face| [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner)))
+                .find(|&h| is_inside(h).is_none());
+            let next = |h: HalfEdgeId| {
+                let mut next = h.next();
+                while let Some(twin) = is_inside(next) {
+                    next = twin.next();
+                }
+                next
+            };
+            let around: Vec<HalfEdgeId> = first.map_or(Vec::new(), |first| {
+                let turn = |&h: &HalfEdgeId| Some(next(h)).filter(|&next| next != first);
+                core::iter::successors(Some(first), turn)
+                    .take(sides)
+                    .collect()
+            });
+            // Triangles around a hole, or that touch themselves, stay triangles.
+            if around.len() == sides && own.len() + 2 == sides {
+                polygons.push(around);
+            } else {
+                for face in own {
+                    polygons.push(
+                        [0, 1, 2]
+                            .map(|corner| HalfEdgeId::of(face, corner))
+                            .to_vec(),
+                    );
+                }
+            }
+        }
+        polygons
+    }
+
+    fn push(&mut self, own: Vec<HalfEdgeId>) {
+        for (place, h) in (0..).zip(&own) {
+            self.places[h.index()] = [self.loops.len() as u32, place];
+        }
+        self.loops.push(own);
+    }
+
+    /// The side that follows one, by so many steps.
+    fn side(&self, h: HalfEdgeId, steps: usize) -> HalfEdgeId {
+        let [polygon, place] = self.places[h.index()];
+        let own = &self.loops[polygon as usize];
+        own[(place as usize + steps) % own.len()]
+    }
+
+    fn before(&self, h: HalfEdgeId) -> HalfEdgeId {
+        let [polygon, _] = self.places[h.index()];
+        self.side(h, self.loops[polygon as usize].len() - 1)
+    }
+
+    /// Quads as they are.
+    fn as_quads(&self, mesh: &Mesh, parts: &[u32]) -> Result<QuadControl, MeshError> {
+        let topology = mesh.topology();
+        // By the half-edge of a triangle, that along a half of a quad.
+        let mut moved = vec![NONE; topology.half_edge_count()];
+        let (mut triangles, mut corners, mut polygons) = (Vec::new(), Vec::new(), Vec::new());
+        for (quad, own) in (0u32..).zip(&self.loops) {
+            let turn = usize::from(is_better_turned(mesh, own));
+            let sides = [0, 1, 2, 3].map(|i| own[(i + turn) % 4]);
+            let vertices = sides.map(|h| topology.origin(h).0);
+            triangles.extend(halves(vertices));
+            let [a, b, c, d] = sides;
+            corners.extend([a, b, d, c, d, b]);
+            polygons.extend([parts[a.face().index()]; 2]);
+            for (h, at) in sides.into_iter().zip([0, 5, 3, 2]) {
+                moved[h.index()] = 6 * quad + at;
+            }
+        }
+        let mut twins = vec![NONE; 3 * triangles.len()];
+        for h in topology.half_edges().filter(|h| moved[h.index()] != NONE) {
+            if let Some(twin) = topology.twin(h) {
+                twins[moved[h.index()] as usize] = moved[twin.index()];
+            }
+        }
+        let mut junctions = mesh.junctions().clone();
+        junctions.edges.rename(|h| moved[h as usize]);
+        let positions = mesh.positions().to_vec();
+        let mesh = assembled(triangles, twins, positions, mesh.tags().clone(), junctions)?;
+        Ok(QuadControl {
+            mesh,
+            polygons,
+            corners: Some(corners),
+        })
+    }
+
+    /// All polygons after a step.
+    fn refined(&self, mesh: &Mesh, parts: &[u32]) -> Result<QuadControl, MeshError> {
+        let topology = mesh.topology();
+        let sharpness = Sharpness::of(mesh);
+        let sides: Vec<HalfEdgeId> = self.loops.iter().flatten().copied().collect();
+        let count = mesh.vertex_count();
+        let mut positions: Vec<[f64; 3]> = Vec::with_capacity(count + 2 * sides.len());
+        positions.extend(
+            topology
+                .vertices()
+                .map(|v| self.vertex_point(mesh, &sharpness, v).to_array()),
+        );
+        let mut on_sides: HashMap<HalfEdgeId, u32> = HashMap::with_capacity(sides.len());
+        for &h in sides
+            .iter()
+            .filter(|&&h| topology.twin(h).is_none_or(|twin| h < twin))
+        {
+            let number = positions.len() as u32;
+            on_sides.insert(h, number);
+            topology
+                .twin(h)
+                .into_iter()
+                .for_each(|twin| _ = on_sides.insert(twin, number));
+            positions.push(self.side_point(mesh, &sharpness, h).to_array());
+        }
+        // The quad at the corner where each side begins.
+        let quads: HashMap<HalfEdgeId, u32> = sides.iter().copied().zip(0..).collect();
+        let (mut triangles, mut polygons) = (Vec::new(), Vec::new());
+        let mut twins = vec![NONE; 6 * sides.len()];
+        for own in &self.loops {
+            let middle = positions.len() as u32;
+            positions.push(self.centroid(mesh, own[0]).to_array());
+            for &h in own {
+                let before = self.before(h);
+                triangles.extend(halves([
+                    topology.origin(h).0,
+                    on_sides[&h],
+                    middle,
+                    on_sides[&before],
+                ]));
+                polygons.extend([parts[own[0].face().index()]; 2]);
+                // Inside the polygon, from the middle of the side to its centre.
+                let (here, next) = (6 * quads[&h] + 5, 6 * quads[&self.side(h, 1)] + 3);
+                (twins[here as usize], twins[next as usize]) = (next, here);
+            }
+        }
+        let parts_of = |h: HalfEdgeId| [6 * quads[&h], 6 * quads[&self.side(h, 1)] + 2];
+        for &h in &sides {
+            if let Some(twin) = topology.twin(h) {
+                let ([first, second], [other_first, other_second]) = (parts_of(h), parts_of(twin));
+                (twins[first as usize], twins[second as usize]) = (other_second, other_first);
+            }
+        }
+        let tags = refined_tags(mesh, |a, b| {
+            let h = topology.edge_between(a, b)?;
+            on_sides.get(&h).copied()
+        });
+        let junctions = refined_junctions(mesh.junctions(), topology, parts_of, |h| on_sides[&h]);
+        let mesh = assembled(triangles, twins, positions, tags, junctions)?;
+        Ok(QuadControl {
+            mesh,
+            polygons,
+            corners: None,
+        })
+    }
+
+    fn centroid(&self, mesh: &Mesh, h: HalfEdgeId) -> DVec3 {
+        let own = &self.loops[self.places[h.index()][0] as usize];
+        let sum: DVec3 = own
+            .iter()
+            .map(|&h| at(mesh, mesh.topology().origin(h)))
+            .sum();
+        sum / own.len() as f64
+    }
+
+    fn side_point(&self, mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> DVec3 {
+        let [from, to] = mesh.topology().ends(h).map(|v| at(mesh, v));
+        let middle = 0.5 * (from + to);
+        let sharp = sharpness.edge(h).min(1.0);
+        let Some(twin) = mesh.topology().twin(h).filter(|_| sharp < 1.0) else {
+            return middle;
+        };
+        let faces = 0.5 * (self.centroid(mesh, h) + self.centroid(mesh, twin));
+        sharp * middle + (1.0 - sharp) * 0.5 * (middle + faces)
+    }
+
+    fn vertex_point(&self, mesh: &Mesh, sharpness: &Sharpness<'_>, vertex: VertexId) -> DVec3 {
+        let topology = mesh.topology();
+        let is_side = |h: &HalfEdgeId| self.places[h.index()][0] != NONE;
+        let outgoing: Vec<HalfEdgeId> = topology.outgoing_ring(vertex).filter(is_side).collect();
+        let mut neighbours: Vec<DVec3> = outgoing
+            .iter()
+            .map(|&h| at(mesh, topology.target(h)))
+            .collect();
+        let mut spokes: Vec<f64> = outgoing.iter().map(|&h| sharpness.edge(h)).collect();
+        let open = topology.is_boundary(vertex);
+        if open {
+            // The last edge of an open ring arrives.
+            let last = outgoing.last().map(|&h| topology.origin(self.before(h)));
+            neighbours.extend(last.map(|v| at(mesh, v)));
+            spokes.push(f64::INFINITY);
+        }
+        let faces: Vec<DVec3> = outgoing.iter().map(|&h| self.centroid(mesh, h)).collect();
+        let ring = SharpRing {
+            open,
+            vertex: sharpness.vertex(vertex),
+            spokes,
+        };
+        let own = at(mesh, vertex);
+        let by = |ring: &SharpRing| match ring.rule() {
+            VertexRule::Smooth | VertexRule::Dart => {
+                let n = neighbours.len() as f64;
+                let mean = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len() as f64;
+                ((n - 2.0) * own + mean(&neighbours) + mean(&faces)) / n
+            }
+            VertexRule::Crease => {
+                let sharp = (0..neighbours.len()).filter(|&slot| ring.is_sharp(slot));
+                0.75 * own + 0.125 * sharp.map(|slot| neighbours[slot]).sum::<DVec3>()
+            }
+            VertexRule::Corner => own,
+        };
+        let now = ring.present_weight();
+        match now < 1.0 {
+            true => now * by(&ring) + (1.0 - now) * by(&ring.refined()),
+            false => by(&ring),
+        }
+    }
+}
+
+fn at(mesh: &Mesh, vertex: VertexId) -> DVec3 {
+    vector(mesh.positions()[vertex.index()])
+}
+
+/// Whether the other diagonal of a quad is nearer to its middle, as far as its corners tell: it is the one that bends less.
+fn is_better_turned(mesh: &Mesh, own: &[HalfEdgeId]) -> bool {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| at(mesh, mesh.topology().origin(own[i])));
+    // Halves are cut from the second corner to the fourth.
+    (a - c).length_squared() < (b - d).length_squared()
+}
+
+fn assembled(
+    triangles: Vec<[u32; 3]>,
+    mut twins: Vec<u32>,
+    positions: Vec<[f64; 3]>,
+    tags: Tags,
+    junctions: Junctions,
+) -> Result<Mesh, MeshError> {
+    if 3 * triangles.len() >= NONE as usize || positions.len() >= NONE as usize {
+        return Err(MeshError::TooMany {
+            what: "faces",
+            count: triangles.len(),
+            limit: NONE as usize / 3,
+        });
+    }
+    for face in 0..triangles.len() as u32 {
+        twins[3 * face as usize + 1] = 3 * (face ^ 1) + 1;
+    }
+    let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
+    let topology = Topology::from_parts(triangles, twins, outgoing).with_quads()?;
+    Ok(Mesh::from_parts(topology, positions, tags, junctions))
+}
+
+/// The tags after a step, given the new vertex between two.
+fn refined_tags(mesh: &Mesh, between: impl Fn(VertexId, VertexId) -> Option<u32>) -> Tags {
+    let mut tags = Tags::default();
+    for tag in &mesh.tags().creases {
+        let [a, b] = tag.vertices;
+        let sharpness = decremented(tag.sharpness);
+        if let Some(middle) = between(VertexId(a), VertexId(b)).filter(|_| sharpness > 0.0) {
+            let halves = [[a, middle], [middle, b]];
+            tags.creases.extend(halves.map(|vertices| CreaseTag {
+                vertices,
+                sharpness,
+            }));
+        }
+    }
+    let corners = mesh.tags().corners.iter().map(|tag| CornerTag {
+        sharpness: decremented(tag.sharpness),
+        ..*tag
+    });
+    tags.corners = corners.filter(|tag| tag.sharpness > 0.0).collect();
+    tags
+}
+
+/// The copies of vertices and edges after a step, given the parts of a half-edge and the new vertex on it.
+fn refined_junctions(
+    junctions: &Junctions,
+    topology: &Topology,
+    parts_of: impl Fn(HalfEdgeId) -> [u32; 2],
+    on_side: impl Fn(HalfEdgeId) -> u32,
+) -> Junctions {
+    let mut refined = Junctions {
+        vertices: junctions.vertices.clone(),
+        edges: Groups::default(),
+    };
+    let first_copies = junctions.first_copies();
+    let first = |v: VertexId| first_copies.get(&v.0).copied().unwrap_or(v.0);
+    for group in junctions.edges.iter() {
+        refined
+            .vertices
+            .push(group.iter().map(|&h| on_side(HalfEdgeId(h))));
+        let start = group
+            .first()
+            .map(|&h| first(topology.origin(HalfEdgeId(h))));
+        for half in [0, 1] {
+            refined.edges.push(group.iter().map(|&h| {
+                let h = HalfEdgeId(h);
+                let runs_along = Some(first(topology.origin(h))) == start;
+                parts_of(h)[if runs_along { half } else { 1 - half }]
+            }));
+        }
+    }
+    refined
+}
