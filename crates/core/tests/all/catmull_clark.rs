@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{BuildOptions, CreaseTag, PolygonSoup};
-use limitmesh::refine::{ExactOptions, exact};
+use limitmesh::refine::{ExactOptions, UniformOptions, exact, uniform};
 use limitmesh::scheme::CatmullClark;
 use limitmesh::{FaceId, LimitSurface, QuadControl};
 
@@ -322,6 +322,78 @@ fn production_cages_are_met_with_few_triangles() {
         let soup = obj(&std::fs::read_to_string(folder.join(name)).unwrap());
         for share in shares {
             check(name, &soup, levels, share);
+        }
+    }
+}
+
+/// Each vertex of a uniform mesh is one of plain subdivision's, and its triangles are halves of the quads there.
+#[test]
+fn uniform_refinement_is_plain_subdivision() {
+    let mut creased = cube();
+    creased.creases.push(CreaseTag {
+        vertices: [0, 2],
+        sharpness: 10.0,
+    });
+    creased.creases.push(CreaseTag {
+        vertices: [2, 3],
+        sharpness: 1.6,
+    });
+    let mut mixed = cube();
+    mixed.faces = Default::default();
+    let faces: [&[u32]; 6] = [
+        &[0, 2, 3, 1],
+        &[4, 5, 7],
+        &[4, 7, 6],
+        &[0, 1, 5, 4],
+        &[2, 6, 7, 3],
+        &[0, 4, 6, 2],
+    ];
+    faces.iter().for_each(|face| mixed.faces.push(face));
+    for (name, soup, step) in [
+        ("cube", cube(), 0),
+        ("creased", creased, 0),
+        ("mixed and open", mixed, 1),
+    ] {
+        let (control, _) = QuadControl::from_soup(&soup, &BuildOptions::default()).unwrap();
+        let mut plain = Plain::of(&soup);
+        (0..step).for_each(|_| plain = plain.refined());
+        for levels in 0..4 {
+            let options = UniformOptions::default().levels(levels).origins(true);
+            let found = uniform(&control.mesh, &CatmullClark, &options).unwrap();
+            found.mesh.validate().unwrap();
+            assert!(found.mesh.topology().has_quads());
+            let bits = |p: &Point| p.map(|x| (x * 1e10 + 0.3713).round() as i64);
+            let sorted = |points: &[Point]| {
+                let mut points: Vec<_> = points.iter().map(bits).collect();
+                points.sort_unstable();
+                points
+            };
+            assert!(
+                sorted(found.mesh.positions()) == sorted(&plain.points),
+                "{name} {levels}"
+            );
+            let centre = |corners: &[Point]| mean(corners);
+            let quads = found.mesh.triangles().as_chunks::<2>().0;
+            let own: Vec<Point> = quads
+                .iter()
+                .map(|[[a, b, d], [c, ..]]| {
+                    centre(&[*a, *b, *c, *d].map(|v| found.mesh.positions()[v as usize]))
+                })
+                .collect();
+            let expected: Vec<Point> = plain
+                .faces
+                .iter()
+                .map(|face| {
+                    centre(
+                        &face
+                            .iter()
+                            .map(|&v| plain.points[v as usize])
+                            .collect::<Vec<_>>(),
+                    )
+                })
+                .collect();
+            assert!(sorted(&own) == sorted(&expected), "{name} {levels}");
+            plain = plain.refined();
         }
     }
 }

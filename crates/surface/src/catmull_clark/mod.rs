@@ -8,6 +8,7 @@ pub mod bicubic;
 mod control;
 pub(crate) mod form;
 pub(crate) mod limits;
+pub(crate) mod masks;
 pub mod piece;
 pub(crate) mod quads;
 pub(crate) mod ring;

@@ -235,30 +235,6 @@ impl Connected for Quads {
 }
 
 impl Quads {
-    /// The quads of a mesh.
-    pub(crate) fn of(quads: &MeshQuads<'_>) -> Self {
-        let topology = quads.mesh.topology();
-        debug_assert!(topology.has_quads(), "the mesh has quads");
-        let pairs = quads.mesh.triangles().as_chunks::<2>().0;
-        let corners = pairs.iter().map(|&[[a, b, d], [c, ..]]| [a, b, c, d]);
-        let half_edges = 0..2 * quads.mesh.face_count() as u32;
-        let twin = |h: u32| quads.twin(h).unwrap_or(NONE);
-        let (mut sharp_edges, mut sharp_vertices) = (Vec::new(), Vec::new());
-        if !quads.sharpness.is_empty() {
-            let edge = |h: u32| quads.twin(h).map_or(0.0, |_| quads.edge(h));
-            sharp_edges = half_edges.clone().map(|h| edge(h).to_bits()).collect();
-            let vertices = topology.vertices();
-            sharp_vertices = vertices.map(|v| quads.vertex(v.0).to_bits()).collect();
-        }
-        Self {
-            corners: corners.collect(),
-            twins: half_edges.clone().map(twin).collect(),
-            outgoing: topology.vertices().map(|v| quads.outgoing(v)).collect(),
-            sharp_edges,
-            sharp_vertices,
-        }
-    }
-
     pub(crate) fn vertex_count(&self) -> usize {
         self.outgoing.len()
     }
