@@ -4,13 +4,13 @@
 //! Takes a mesh of triangles with the polygons of which they are parts; gives a mesh whose triangles are halves of quads. A step of
 //! Catmull–Clark subdivision leaves the limit surface as it is.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use super::quads::halves;
+use super::quads::{halves, in_half};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{
-    BuildOptions, CornerTag, CreaseTag, Diagnosis, Groups, Junctions, Mesh, MeshError, NONE,
-    PolygonSoup, Sharpness, Tags, Topology, outgoing_half_edges,
+    BuildOptions, Channel, CornerTag, CreaseTag, Diagnosis, Domain, Groups, Junctions, Mesh,
+    MeshError, NONE, PolygonSoup, Semantic, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
 };
 use crate::ring::{SharpRing, VertexRule, decremented};
 use crate::vector::{DVec3, vector};
@@ -21,8 +21,8 @@ pub struct QuadControl {
     pub mesh: Mesh,
     /// By face of the mesh, the polygon, as the triangles' are numbered.
     pub polygons: Vec<u32>,
-    /// By corner of the mesh, three a face, the half-edge of the triangles at whose start it stands; `None` where a step has made it.
-    pub corners: Option<Vec<HalfEdgeId>>,
+    /// By corner of the mesh, three a face, the corners of the triangles of which it is the mean, by the half-edges that leave them.
+    corners: Vec<Vec<HalfEdgeId>>,
 }
 
 impl QuadControl {
@@ -36,6 +36,57 @@ impl QuadControl {
     ) -> Result<(Self, Diagnosis), MeshError> {
         let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, options)?;
         Ok((Self::of(&mesh, &trace.faces)?, diagnosis))
+    }
+
+    /// A channel of the triangles on the quads: new corners have the mean of those that they are in the middle of.
+    pub fn channel(&self, channel: &Channel) -> Channel {
+        if channel.domain == Domain::Face {
+            let of_corner =
+                |corners: &[Vec<HalfEdgeId>]| channel.indices[corners[0][0].face().index()];
+            let indices = self
+                .corners
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|own| of_corner(own));
+            return channel
+                .clone()
+                .with(channel.values.clone(), indices.collect());
+        }
+        let mut values = channel.values.clone();
+        let mut known: HashMap<Vec<u32>, u32> = HashMap::new();
+        let indices = self.corners.iter().map(|corners| {
+            let mut own: Vec<u32> = corners.iter().map(|h| channel.indices[h.index()]).collect();
+            own.sort_unstable();
+            if own[0] == own[own.len() - 1] || channel.semantic == Semantic::Label {
+                return own[0];
+            }
+            *known.entry(own).or_insert_with_key(|own| {
+                let value = |at: usize| {
+                    let sum: f64 = own
+                        .iter()
+                        .map(|&i| channel.values[i as usize * channel.arity + at])
+                        .sum();
+                    sum / own.len() as f64
+                };
+                values.extend((0..channel.arity).map(value));
+                (values.len() / channel.arity) as u32 - 1
+            })
+        });
+        let indices = indices.collect();
+        channel.clone().with(values, indices)
+    }
+
+    /// The corners of a soup for those of the mesh, by those of the triangles: of new ones the first.
+    pub fn trace(&self, triangles: &Trace) -> Trace {
+        let mut trace = Trace::default();
+        trace.faces = self.polygons.clone();
+        let corners = self
+            .corners
+            .iter()
+            .map(|own| triangles.corners[own[0].index()]);
+        trace.corners = corners.collect();
+        trace
     }
 
     /// The quads of a mesh, given by triangle the polygon that it is part of.
@@ -145,35 +196,38 @@ impl Polygons {
     /// Quads as they are.
     fn as_quads(&self, mesh: &Mesh, parts: &[u32]) -> Result<QuadControl, MeshError> {
         let topology = mesh.topology();
-        // By the half-edge of a triangle, that along a half of a quad.
-        let mut moved = vec![NONE; topology.half_edge_count()];
-        let (mut triangles, mut corners, mut polygons) = (Vec::new(), Vec::new(), Vec::new());
-        for (quad, own) in (0u32..).zip(&self.loops) {
-            let turn = usize::from(is_better_turned(mesh, own));
-            let sides = [0, 1, 2, 3].map(|i| own[(i + turn) % 4]);
-            let vertices = sides.map(|h| topology.origin(h).0);
-            triangles.extend(halves(vertices));
-            let [a, b, c, d] = sides;
-            corners.extend([a, b, d, c, d, b]);
-            polygons.extend([parts[a.face().index()]; 2]);
-            for (h, at) in sides.into_iter().zip([0, 5, 3, 2]) {
-                moved[h.index()] = 6 * quad + at;
-            }
+        let sides = self.loops.iter().flatten();
+        let mut quads = QuadList::over(sides.map(|&h| topology.ends(h).map(|v| v.0)));
+        for own in &self.loops {
+            let sides = [0, 1, 2, 3].map(|i| own[i]);
+            let [a, b, c, d] = sides.map(|h| topology.origin(h));
+            let square = |a, b| at(mesh, a).distance_squared(at(mesh, b));
+            // The shorter diagonal bends less.
+            let is_turned = square(a, c) < square(b, d);
+            quads.push([a, b, c, d].map(|v| v.0), sides.map(|h| vec![h]), is_turned);
         }
-        let mut twins = vec![NONE; 3 * triangles.len()];
-        for h in topology.half_edges().filter(|h| moved[h.index()] != NONE) {
+        let moved = |h: HalfEdgeId| {
+            let [quad, place] = self.places[h.index()];
+            quads.edge(quad, place)
+        };
+        let mut twins = vec![NONE; 3 * quads.triangles.len()];
+        for &h in self.loops.iter().flatten() {
             if let Some(twin) = topology.twin(h) {
-                twins[moved[h.index()] as usize] = moved[twin.index()];
+                twins[moved(h) as usize] = moved(twin);
             }
         }
         let mut junctions = mesh.junctions().clone();
-        junctions.edges.rename(|h| moved[h as usize]);
+        junctions.edges.rename(|h| moved(HalfEdgeId(h)));
         let positions = mesh.positions().to_vec();
-        let mesh = assembled(triangles, twins, positions, mesh.tags().clone(), junctions)?;
+        let tags = mesh.tags().clone();
+        let polygons = self
+            .loops
+            .iter()
+            .flat_map(|own| [parts[own[0].face().index()]; 2]);
         Ok(QuadControl {
-            mesh,
-            polygons,
-            corners: Some(corners),
+            polygons: polygons.collect(),
+            mesh: assembled(quads.triangles, twins, positions, tags, junctions)?,
+            corners: quads.corners,
         })
     }
 
@@ -182,49 +236,56 @@ impl Polygons {
         let topology = mesh.topology();
         let sharpness = Sharpness::of(mesh);
         let sides: Vec<HalfEdgeId> = self.loops.iter().flatten().copied().collect();
-        let count = mesh.vertex_count();
-        let mut positions: Vec<[f64; 3]> = Vec::with_capacity(count + 2 * sides.len());
-        positions.extend(
-            topology
-                .vertices()
-                .map(|v| self.vertex_point(mesh, &sharpness, v).to_array()),
-        );
+        let mut positions: Vec<[f64; 3]> =
+            Vec::with_capacity(mesh.vertex_count() + 2 * sides.len());
+        let vertices = topology.vertices();
+        positions.extend(vertices.map(|v| self.vertex_point(mesh, &sharpness, v).to_array()));
         let mut on_sides: HashMap<HalfEdgeId, u32> = HashMap::with_capacity(sides.len());
-        for &h in sides
-            .iter()
-            .filter(|&&h| topology.twin(h).is_none_or(|twin| h < twin))
-        {
-            let number = positions.len() as u32;
-            on_sides.insert(h, number);
-            topology
-                .twin(h)
-                .into_iter()
-                .for_each(|twin| _ = on_sides.insert(twin, number));
-            positions.push(self.side_point(mesh, &sharpness, h).to_array());
+        for &h in &sides {
+            let twin = topology.twin(h);
+            if twin.is_none_or(|twin| h < twin) {
+                let number = positions.len() as u32;
+                let both = [Some(h), twin].into_iter().flatten();
+                both.for_each(|h| _ = on_sides.insert(h, number));
+                positions.push(self.side_point(mesh, &sharpness, h).to_array());
+            }
         }
-        // The quad at the corner where each side begins.
-        let quads: HashMap<HalfEdgeId, u32> = sides.iter().copied().zip(0..).collect();
-        let (mut triangles, mut polygons) = (Vec::new(), Vec::new());
-        let mut twins = vec![NONE; 6 * sides.len()];
+        // By side, the quad at the corner where it begins: its corners are that, the middle of the side, the centre, and the middle of the
+        // side before.
+        let numbers: HashMap<HalfEdgeId, u32> = sides.iter().copied().zip(0..).collect();
+        let mut quads = QuadList::default();
+        let mut polygons = Vec::with_capacity(2 * sides.len());
         for own in &self.loops {
             let middle = positions.len() as u32;
             positions.push(self.centroid(mesh, own[0]).to_array());
             for &h in own {
                 let before = self.before(h);
-                triangles.extend(halves([
+                let vertices = [
                     topology.origin(h).0,
                     on_sides[&h],
                     middle,
                     on_sides[&before],
-                ]));
+                ];
+                let sources = [
+                    vec![h],
+                    vec![h, self.side(h, 1)],
+                    own.clone(),
+                    vec![before, h],
+                ];
+                quads.push(vertices, sources, false);
                 polygons.extend([parts[own[0].face().index()]; 2]);
-                // Inside the polygon, from the middle of the side to its centre.
-                let (here, next) = (6 * quads[&h] + 5, 6 * quads[&self.side(h, 1)] + 3);
-                (twins[here as usize], twins[next as usize]) = (next, here);
             }
         }
-        let parts_of = |h: HalfEdgeId| [6 * quads[&h], 6 * quads[&self.side(h, 1)] + 2];
+        let mut twins = vec![NONE; 3 * quads.triangles.len()];
+        let parts_of = |h: HalfEdgeId| {
+            let next = numbers[&self.side(h, 1)];
+            [quads.edge(numbers[&h], 0), quads.edge(next, 3)]
+        };
         for &h in &sides {
+            // From the middle of the side to the centre, and back beyond.
+            let next = numbers[&self.side(h, 1)];
+            let (here, there) = (quads.edge(numbers[&h], 1), quads.edge(next, 2));
+            (twins[here as usize], twins[there as usize]) = (there, here);
             if let Some(twin) = topology.twin(h) {
                 let ([first, second], [other_first, other_second]) = (parts_of(h), parts_of(twin));
                 (twins[first as usize], twins[second as usize]) = (other_second, other_first);
@@ -235,11 +296,10 @@ impl Polygons {
             on_sides.get(&h).copied()
         });
         let junctions = refined_junctions(mesh.junctions(), topology, parts_of, |h| on_sides[&h]);
-        let mesh = assembled(triangles, twins, positions, tags, junctions)?;
         Ok(QuadControl {
-            mesh,
+            mesh: assembled(quads.triangles, twins, positions, tags, junctions)?,
             polygons,
-            corners: None,
+            corners: quads.corners,
         })
     }
 
@@ -310,11 +370,59 @@ fn at(mesh: &Mesh, vertex: VertexId) -> DVec3 {
     vector(mesh.positions()[vertex.index()])
 }
 
-/// Whether the other diagonal of a quad is nearer to its middle, as far as its corners tell: it is the one that bends less.
-fn is_better_turned(mesh: &Mesh, own: &[HalfEdgeId]) -> bool {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| at(mesh, mesh.topology().origin(own[i])));
-    // Halves are cut from the second corner to the fourth.
-    (a - c).length_squared() < (b - d).length_squared()
+/// Quads as pairs of halves.
+#[derive(Default)]
+struct QuadList {
+    triangles: Vec<[u32; 3]>,
+    /// By corner, those that it comes from.
+    corners: Vec<Vec<HalfEdgeId>>,
+    /// By quad, whether its first half begins at its second corner.
+    turns: Vec<bool>,
+    /// Pairs of vertices that an edge or a diagonal joins.
+    joined: HashSet<[u32; 2]>,
+}
+
+impl QuadList {
+    /// None yet, over these edges.
+    fn over(edges: impl Iterator<Item = [u32; 2]>) -> Self {
+        Self {
+            joined: edges.map(pair).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a quad, cut from its second corner to its fourth, or from the first to the third: as is preferred, unless something else
+    /// joins these vertices, as at vertices of two edges.
+    fn push(&mut self, vertices: [u32; 4], sources: [Vec<HalfEdgeId>; 4], prefers_turn: bool) {
+        let [a, b, c, d] = vertices;
+        let diagonal = |is_turned: bool| {
+            if is_turned {
+                pair([a, c])
+            } else {
+                pair([b, d])
+            }
+        };
+        let is_taken = self.joined.contains(&diagonal(prefers_turn));
+        let is_turned =
+            prefers_turn != (is_taken && !self.joined.contains(&diagonal(!prefers_turn)));
+        self.joined.insert(diagonal(is_turned));
+        self.turns.push(is_turned);
+        let turn = |i: usize| (i + usize::from(is_turned)) % 4;
+        self.triangles
+            .extend(halves([0, 1, 2, 3].map(|i| vertices[turn(i)])));
+        let of_halves = [0, 1, 3, 2, 3, 1].map(|i| sources[turn(i)].clone());
+        self.corners.extend(of_halves);
+    }
+
+    /// The half-edge of a quad's half along the edge from this corner.
+    fn edge(&self, quad: u32, corner: u32) -> u32 {
+        let turn = u32::from(self.turns[quad as usize]);
+        in_half(4 * quad + (corner + 4 - turn) % 4).0
+    }
+}
+
+fn pair([a, b]: [u32; 2]) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 fn assembled(

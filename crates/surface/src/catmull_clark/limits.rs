@@ -2,7 +2,7 @@
 
 use super::quads::{Connected, MeshQuads, in_half, of_half, previous};
 use super::ring::{RingLimits, RingSide};
-use super::step::slot;
+use super::step::{slot, summed};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::limit::{SidedNormals, area_weighted_normal};
 use crate::mesh::{Mesh, Sharpness};
@@ -47,6 +47,13 @@ impl<'m> QuadLimits<'m> {
             edges: ring.spokes.len(),
             points: points.into_iter().map(at).collect(),
         }
+    }
+
+    /// The weights of a vertex's limit position.
+    pub(crate) fn row(&self, vertex: VertexId) -> Vec<(u32, f64)> {
+        let (ring, points) = self.quads.ring(self.quads.outgoing(vertex));
+        let weights = RingLimits::of(&ring).position;
+        summed(points.into_iter().zip(weights).collect())
     }
 
     /// The limit position of a vertex.

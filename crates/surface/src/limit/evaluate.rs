@@ -11,7 +11,7 @@ use super::refined::{Refined, RefinedMesh};
 use super::sharp::SharpStencil;
 use super::sides::SidedNormals;
 use super::stencil::LimitStencil;
-use super::{LimitError, LimitTable};
+use super::{LimitError, LimitTable, suits};
 use crate::catmull_clark::limits::QuadLimits;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
@@ -410,6 +410,9 @@ impl Stencils {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<Self, LimitError>, Cancelled> {
+        if let Err(error) = suits(table.scheme(), mesh) {
+            return Ok(Err(error));
+        }
         if mesh.topology().has_quads() {
             // Their limits follow from the rings of quads.
             return Ok(Ok(Self::default()));

@@ -113,7 +113,7 @@ mod stencil;
 mod table;
 mod vertex_stencils;
 
-pub use error::LimitError;
+pub use error::{LimitError, suits};
 pub use evaluate::{Stencils, area_weighted_normal};
 pub use neighbourhood::{difference_matrix, ring_matrix};
 pub(crate) use rows::{LimitRows, summed};

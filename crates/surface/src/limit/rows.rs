@@ -6,6 +6,7 @@
 use super::evaluate::{Stencils, for_each_of_two_ring, stays};
 use super::refined::{Refined, RefinedWeights};
 use super::{LimitError, LimitTable};
+use crate::catmull_clark::limits::QuadLimits;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, Sharpness};
@@ -37,7 +38,13 @@ impl LimitTable<'_> {
             Ok(stencils) => stencils,
             Err(error) => return Ok(Err(error)),
         };
-        let row = |v: usize| self.row(mesh, VertexId(v as u32), stencils.at(v).position());
+        let sharpness = Sharpness::of(mesh);
+        let quads = mesh.topology().has_quads();
+        let quads = quads.then(|| QuadLimits::of(mesh, &sharpness));
+        let row = |v: usize| match &quads {
+            Some(quads) => quads.row(VertexId(v as u32)),
+            None => self.row(mesh, VertexId(v as u32), stencils.at(v).position()),
+        };
         let nowhere = &mut |_| poll(0);
         let pieces = parallel::pieces_polled(mesh.vertex_count(), PIECE, nowhere, |piece| {
             let (mut lengths, mut entries) = (Vec::with_capacity(piece.len()), Vec::new());

@@ -8,7 +8,6 @@ use std::sync::Arc;
 
 use super::evaluate::{Stencil, Stencils};
 use super::{LimitError, LimitTable};
-use crate::index::VertexId;
 use crate::mesh::Mesh;
 use crate::progress::uncancelled;
 
@@ -51,13 +50,10 @@ impl LimitTable<'_> {
     #[doc(hidden)]
     pub fn vertex_stencils(&self, mesh: &Mesh) -> Result<VertexStencils, LimitError> {
         if mesh.topology().has_quads() {
-            let shape = mesh.ring_shape(VertexId(0));
-            let what = "weights for other positions are for triangles";
-            return Err(LimitError::unsuitable(
-                self.scheme(),
-                shape,
-                what.to_owned(),
-            ));
+            return Err(LimitError::Cells {
+                what: "a replay".to_owned(),
+                expected: "triangles",
+            });
         }
         let stencils = uncancelled(|_| Stencils::of(self, mesh, &mut |_| Ok(())))?;
         let (mut list, mut known) = (Vec::new(), HashMap::new());

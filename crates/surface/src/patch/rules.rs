@@ -100,6 +100,12 @@ impl<'s> Rules<'s> {
         self.family.is_some()
     }
 
+    /// Whether the scheme is of the Loop family: regular pieces are quartic polynomials over triangles.
+    #[inline]
+    pub fn are_of_loop_family(&self) -> bool {
+        matches!(self.family, Some(Family::Loop(_)))
+    }
+
     /// Keeps a failure, for whoever looks at results: what is computed after it means nothing.
     #[cold]
     pub(crate) fn fail(&self, why: LimitError) {
