@@ -223,21 +223,24 @@ fn mirrored(mut grid: [[Option<Row>; 4]; 4]) -> Option<[[Row; 4]; 4]> {
                 .collect(),
         )
     };
-    // Columns of the rows that are there, then rows.
-    for row in 0..4 {
+    // In the rows that are there, then beyond them.
+    for row in &mut grid {
         for (beyond, near, far) in [(0, 1, 2), (3, 2, 1)] {
-            if grid[row][beyond].is_none() {
-                let mirrored = grid[row][near].as_ref().zip(grid[row][far].as_ref());
-                grid[row][beyond] = mirrored.map(|(near, far)| image(near, far));
+            if row[beyond].is_none() {
+                let mirrored = row[near].as_ref().zip(row[far].as_ref());
+                row[beyond] = mirrored.map(|(near, far)| image(near, far));
             }
         }
     }
-    for column in 0..4 {
-        for (beyond, near, far) in [(0, 1, 2), (3, 2, 1)] {
-            if grid[beyond][column].is_none() {
-                let mirrored = grid[near][column].as_ref().zip(grid[far][column].as_ref());
-                grid[beyond][column] = mirrored.map(|(near, far)| image(near, far));
-            }
+    for (beyond, near, far) in [(0, 1, 2), (3, 2, 1)] {
+        let inner = [grid[near].clone(), grid[far].clone()];
+        for (at, own) in grid[beyond]
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, own)| own.is_none())
+        {
+            let mirrored = inner[0][at].as_ref().zip(inner[1][at].as_ref());
+            *own = mirrored.map(|(near, far)| image(near, far));
         }
     }
     let mut full: [[Row; 4]; 4] = Default::default();
