@@ -66,15 +66,14 @@ pub mod sqrt3;
 
 use limitmesh_mesh::{geometry, options, parallel, vector};
 pub use limitmesh_mesh::{index, measure, mesh, progress, ring, simplify};
-pub use limitmesh_surface::catmull_clark::QuadControl;
 use limitmesh_surface::{catmull_clark, facing, limit_surface, masks, patch};
 pub use limitmesh_surface::{interpolate, limit, scheme};
 
 pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};
 pub use limitmesh_surface::{
     BarycentricError, Closest, Crossing, Curvature, Derivatives, Facing, Hit, LimitSurface,
-    Membership, NormalCone, Proximity, ProximityError, Ray, RayCaster, RayError, RayOptions,
-    SurfacePoint, barycentric,
+    Membership, NormalCone, Proximity, ProximityError, QuadControl, Ray, RayCaster, RayError,
+    RayOptions, SurfacePoint, barycentric,
 };
 
 #[cfg(doctest)]

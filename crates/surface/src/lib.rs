@@ -49,6 +49,7 @@ pub mod proximity;
 pub mod rays;
 pub mod scheme;
 
+pub use catmull_clark::QuadControl;
 pub use facing::{Facing, NormalCone, Viewpoint};
 pub use limit_surface::{
     BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,

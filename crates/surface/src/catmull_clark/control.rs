@@ -15,11 +15,32 @@ use crate::mesh::{
 use crate::ring::{SharpRing, VertexRule, decremented};
 use crate::vector::{DVec3, vector};
 
-/// Quads as a mesh of their halves, and from which polygon each is.
+/// A control mesh of quads for [`crate::scheme::CatmullClark`], made of polygons.
+///
+/// Its mesh has the halves of quads as triangles: faces 2q and 2q + 1 are those of quad q, whose diagonal is the second edge of both.
+/// Where not all polygons are quads, each of them is divided into as many quads as it has corners, by a step of the scheme, which leaves
+/// the limit surface as it is.
+///
+/// ```
+/// use limitmesh_surface::limit::LimitTable;
+/// use limitmesh_surface::mesh::{BuildOptions, PolygonSoup};
+/// use limitmesh_surface::scheme::CatmullClark;
+/// use limitmesh_surface::QuadControl;
+///
+/// let corner = |i: usize| [0, 1, 2].map(|axis| if i >> axis & 1 == 0 { -1.0 } else { 1.0 });
+/// let mut cube = PolygonSoup { positions: (0..8).map(corner).collect(), ..Default::default() };
+/// let faces = [[0u32, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+/// faces.iter().for_each(|face| cube.faces.push(face));
+/// let (control, _) = QuadControl::from_soup(&cube, &BuildOptions::default())?;
+/// // Each corner of the cube moves half of the way to its centre.
+/// assert!(LimitTable::new(&CatmullClark).positions(&control.mesh)?[7].iter().all(|x| (x - 0.5).abs() < 1e-15));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct QuadControl {
+    /// The mesh.
     pub mesh: Mesh,
-    /// By face of the mesh, the polygon, as the triangles' are numbered.
+    /// By face of the mesh, the polygon of which it is a part: with [`Self::from_soup`] the soup's face.
     pub polygons: Vec<u32>,
     /// By corner of the mesh, three a face, the corners of the triangles of which it is the mean, by the half-edges that leave them.
     corners: Vec<Vec<HalfEdgeId>>,

@@ -1,8 +1,8 @@
 //! Catmull–Clark subdivision of quads: rules, limits and pieces of its surface.
 //!
-//! Its rules need the points opposite a vertex in its quads, so that its rings are not those of triangle schemes ([`ring`]). Quads
-//! ([`quads`]) refine by weights ([`step`]). The surface over half a quad is a bicubic polynomial ([`bicubic`]) where it is regular;
-//! elsewhere it is refined with its surroundings until it is ([`form`]).
+//! Its rules need the points opposite a vertex in its quads, so that its rings (`ring`) are not those of triangle schemes. Quads
+//! (`quads`) refine by weights (`step`, `masks`). The surface over half a quad is a bicubic polynomial (`bicubic`) where it is regular;
+//! elsewhere it is refined with its surroundings until it is (`form`, `piece`). Polygons become quads first (`control`).
 
 pub mod bicubic;
 mod control;

@@ -1,7 +1,7 @@
 //! Catmull–Clark's scheme, for meshes of quads ([`crate::mesh::Topology::has_quads`]).
 //!
 //! Its rules use the corners opposite a vertex in its quads, which rings of triangles do not have: everything that refines or evaluates
-//! a mesh of quads takes them from [`crate::catmull_clark`]. The masks for triangles below leave vertices where they are.
+//! a mesh of quads takes them from there. The masks for triangles below leave vertices where they are.
 
 use super::{EdgeMask, Family, Scheme, Support, VertexMask, stay};
 use crate::ring::{EdgeShape, RingShape};
