@@ -4,8 +4,8 @@ use super::borders::{Borders, Corner, INSIDE, corner};
 use super::deviation::Deviation;
 use super::greater;
 use super::hull_points::{DeviationBound, HullPoint};
-use crate::catmull_clark::sextic::{SEXTIC_EDGES, SEXTIC_INNER, SexticTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::sextic::{SEXTIC_EDGES, SEXTIC_INNER, SexticTriangle};
 use smallvec::SmallVec;
 
 /// A triangular net whose hull holds a piece, and the nets of its edges the curves over them.

@@ -12,8 +12,8 @@ use super::hull_points::{DeviationBound, HullPoint};
 use super::net::Net;
 use super::net_part::NetPart;
 use super::sub_triangle::SubTriangle;
-use crate::catmull_clark::bicubic::Bicubic;
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::{Patch, Points, RefinedPatch, Rules};
 

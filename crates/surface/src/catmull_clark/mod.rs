@@ -1,18 +1,14 @@
-//! Catmull–Clark subdivision of quads: rules, limits and pieces of its surface.
+//! Catmull–Clark subdivision of quads: its rules, and control meshes of quads.
 //!
 //! Its rules need the points opposite a vertex in its quads, so that its rings (`ring`) are not those of triangle schemes. Quads
-//! (`quads`) refine by weights (`step`, `masks`). The surface over half a quad is a bicubic polynomial (`bicubic`) where it is regular;
-//! elsewhere it is refined with its surroundings until it is (`form`, `piece`). Polygons become quads first (`control`).
+//! (`quads`) refine by weights (`step`, `masks`); what a step makes of the surroundings of one is found once (`form`). Polygons become
+//! quads first (`control`).
 
-pub mod bicubic;
 mod control;
 pub(crate) mod form;
-pub(crate) mod limits;
 pub(crate) mod masks;
-pub mod piece;
 pub(crate) mod quads;
 pub(crate) mod ring;
-pub mod sextic;
-mod step;
+pub(crate) mod step;
 
 pub use control::QuadControl;

@@ -7,12 +7,12 @@
 
 use std::sync::Arc;
 
+use super::quads::QuadLimits;
 use super::refined::{Refined, RefinedMesh};
 use super::sharp::SharpStencil;
-use super::sides::SidedNormals;
+use super::sides::{LEAST_SINE, SidedNormals, area_weighted_normal};
 use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable, suits};
-use crate::catmull_clark::limits::QuadLimits;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
@@ -20,10 +20,6 @@ use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
 use crate::scheme::Support;
 use crate::vector::{DVec3, unit_or_zero, vector};
-
-/// Two tangents closer to parallel than this (the sine of their angle) span no plane: rounding alone gives some
-/// 1e-16 for a flat ring, and a few digits are left to coordinates far from the origin.
-const LEAST_SINE: f64 = 1e-12;
 
 /// A tangent shorter than this fraction of the longest difference that entered it is zero within
 /// rounding.
@@ -623,27 +619,4 @@ fn face_average(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let ends = |h: HalfEdgeId| [from(topology.target(h)), from(topology.opposite(h))];
     let faces: Vec<[DVec3; 2]> = twice.skip(side.first).take(side.faces).map(ends).collect();
     area_weighted_normal(&faces)
-}
-
-/// The area-weighted average of the normals of faces at a vertex, each given by its edges from there, of unit length; zero where
-/// it vanishes.
-#[doc(hidden)]
-pub fn area_weighted_normal(faces: &[[DVec3; 2]]) -> DVec3 {
-    // Scaled to the ring's size, so that squares neither vanish nor overflow.
-    let greatest = |size: f64, edge: &DVec3| size.max(edge.abs().max_element());
-    let size = faces.as_flattened().iter().fold(0.0, greatest);
-    if size == 0.0 || !size.is_finite() {
-        return DVec3::ZERO;
-    }
-    let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
-    for [a, b] in faces {
-        let normal = (a / size).cross(b / size);
-        sum += normal;
-        areas += normal.length();
-    }
-    if sum.length() > LEAST_SINE * areas {
-        unit_or_zero(sum)
-    } else {
-        DVec3::ZERO
-    }
 }

@@ -4,9 +4,9 @@
 //! stencil's; for one with two-ring support the stencil's after one refinement, by the weights of that refinement.
 
 use super::evaluate::{Stencils, for_each_of_two_ring, stays};
+use super::quads::QuadLimits;
 use super::refined::{Refined, RefinedWeights};
 use super::{LimitError, LimitTable};
-use crate::catmull_clark::limits::QuadLimits;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, Sharpness};

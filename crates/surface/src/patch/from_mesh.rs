@@ -2,11 +2,11 @@
 
 use super::large_rings::LargeRings;
 use super::mesh_patch::MeshPatch;
+use super::quad::root_piece;
 use super::rules::Rules;
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
 use super::{Neighbours, Patch, Points, box_spline};
-use crate::catmull_clark::piece::root_piece;
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sector, Sharpness, Topology};
 use crate::ring::RingShape;

@@ -6,6 +6,7 @@
 //! forms, also where tags are semi-sharp; for others a piece is a small mesh that is refined as a whole.
 
 pub mod bezier_triangle;
+pub mod bicubic;
 mod box_spline;
 pub mod characteristic;
 pub mod extraordinary;
@@ -15,11 +16,13 @@ pub mod mesh_form;
 pub mod mesh_patch;
 pub mod normal_net;
 mod pole;
+pub mod quad;
 pub mod quartic;
 mod rules;
 mod sector;
 mod semi_sharp;
 pub(crate) mod settling;
+pub mod sextic;
 mod spot;
 pub mod submesh;
 mod support;
@@ -30,13 +33,13 @@ pub use support::Support;
 
 use std::borrow::Cow;
 
-use crate::catmull_clark::bicubic::Bicubic;
-use crate::catmull_clark::piece::{QuadPatch, RefinedQuadPatch};
 use crate::vector::{DVec3, unit_or_zero};
+use bicubic::Bicubic;
 pub use box_spline::{Points, Refined, assemble};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
+use quad::{QuadPatch, RefinedQuadPatch};
 pub use quartic::{Quartic, reciprocal_power};
 pub use sector::VertexSector;
 use sector::{Far, RefinedSectors, SectorPatch};

@@ -1,10 +1,10 @@
 //! Limit positions and normals of the vertices of a mesh of quads.
 
-use super::quads::{Connected, MeshQuads, in_half, of_half, previous};
-use super::ring::{RingLimits, RingSide};
-use super::step::{slot, summed};
+use super::sides::{SidedNormals, area_weighted_normal};
+use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, of_half, previous};
+use crate::catmull_clark::ring::{RingLimits, RingSide};
+use crate::catmull_clark::step::{slot, summed};
 use crate::index::{HalfEdgeId, VertexId};
-use crate::limit::{SidedNormals, area_weighted_normal};
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
@@ -77,7 +77,7 @@ impl<'m> QuadLimits<'m> {
         let ring = self.ring(self.quads.mesh.topology().origin(corner));
         // A diagonal leaves in the middle of a quad, whose next edge there comes after it.
         let spoke = of_half(corner).unwrap_or_else(|| {
-            let before = of_half(corner.previous()).map(super::quads::next);
+            let before = of_half(corner.previous()).map(crate::catmull_clark::quads::next);
             before.unwrap_or(0)
         });
         let side = ring.limits.side_of(slot(&self.quads, spoke), ring.edges);

@@ -6,7 +6,7 @@
 //! others for v. All weights are at least 0 and sum to 1, as the arguments lie in the quad.
 
 use super::sextic::SexticTriangle;
-use crate::patch::{LimitPoint, ParamTriangle};
+use super::{LimitPoint, ParamTriangle};
 use crate::vector::{Blend, DVec3, unit_or_zero};
 
 /// The control points of a bicubic piece, by row (v) and column (u); the quad's corners are in the middle. `part` is the triangle of

@@ -1,6 +1,6 @@
 //! Bézier nets of degree six: the points whose convex hull holds a triangular part of a bicubic piece.
 //!
-//! Points `b_ijk`, i + j + k = 6, stand in the order of k, then of j, as those of [`crate::patch::bezier_triangle`].
+//! Points `b_ijk`, i + j + k = 6, stand in the order of k, then of j, as those of [`super::bezier_triangle`].
 
 use crate::vector::{Blend, DVec3};
 
