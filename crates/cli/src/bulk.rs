@@ -4,7 +4,7 @@
 //! outwards. Open surfaces have none. Limit surfaces are integrated themselves.
 
 use anyhow::bail;
-use limitmesh::scheme::Scheme;
+use limitmesh::scheme::{Family, Scheme};
 use limitmesh::{LimitSurface, Mesh};
 use serde::Serialize;
 
@@ -102,7 +102,7 @@ impl Bulk {
     /// # Errors
     /// The scheme has no limit at some ring, or area or volume is beyond what numbers hold.
     pub(crate) fn of_limit(control: &Mesh, scheme: &dyn Scheme) -> anyhow::Result<Option<Self>> {
-        if scheme.loop_family().is_none() {
+        if !matches!(scheme.family(), Some(Family::Loop(_))) {
             return Ok(None);
         }
         let surface = LimitSurface::without_normals(control, scheme)?;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Trace, Weld};
-use limitmesh::{Mesh, PolygonSoup};
+use limitmesh::{Mesh, PolygonSoup, QuadControl};
 use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::AssetContents;
 use limitmesh_io::threemf::PackageContents;
@@ -62,6 +62,22 @@ impl Input {
         let edges = self.hints().edges(&self.mesh, from, &self.name)?;
         Ok(Self {
             mesh: self.mesh.with_creases(&edges),
+            ..self
+        })
+    }
+
+    /// It with a mesh of quads, as [`limitmesh::scheme::CatmullClark`] needs it.
+    ///
+    /// # Errors
+    /// There are more elements than can be numbered.
+    pub(crate) fn with_quads(self) -> anyhow::Result<Self> {
+        let quads = QuadControl::of(&self.mesh, &self.trace.faces)?;
+        let channels = self.channels.iter().map(|channel| quads.channel(channel));
+        Ok(Self {
+            channels: channels.collect(),
+            normals: self.normals.as_ref().map(|normals| quads.channel(normals)),
+            trace: quads.trace(&self.trace),
+            mesh: quads.mesh,
             ..self
         })
     }

@@ -30,6 +30,8 @@
 //! Hidden modules and items are shared by the crates of this workspace; they promise no stability.
 
 #[doc(hidden)]
+pub mod catmull_clark;
+#[doc(hidden)]
 pub mod facing;
 #[cfg(test)]
 mod finer;
@@ -47,6 +49,7 @@ pub mod proximity;
 pub mod rays;
 pub mod scheme;
 
+pub use catmull_clark::QuadControl;
 pub use facing::{Facing, NormalCone, Viewpoint};
 pub use limit_surface::{
     BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,

@@ -213,9 +213,9 @@ impl<'a> LimitSurface<'a> {
         self.rules.scheme()
     }
 
-    /// Whether bounds are known for it: it is of the Loop family.
+    /// Whether closest points, rays and weights are known for it: it is of the Loop family.
     pub(crate) fn is_certified(&self) -> bool {
-        self.rules.is_certified()
+        self.rules.are_of_loop_family()
     }
 
     /// The limits of the control vertices.

@@ -6,6 +6,7 @@
 mod incident_edge;
 pub(crate) mod views;
 
+use crate::catmull_clark::masks::QuadMasks;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
 use crate::parallel;
@@ -26,6 +27,8 @@ const MOST_WEIGHTS: usize = 1 << 22;
 /// The masks of one scheme for one mesh. Those that recur are evaluated once where many points are wanted.
 pub struct Masks<'a> {
     mesh: &'a Mesh,
+    /// The rules of a mesh of quads, which has no others.
+    quads: Option<QuadMasks<'a>>,
     scheme: &'a dyn Scheme,
     sharpness: Sharpness<'a>,
     /// Whether nothing but boundaries is sharp.
@@ -54,6 +57,9 @@ impl<'a> Masks<'a> {
     /// Prepared for points all over the mesh.
     pub fn new(mesh: &'a Mesh, scheme: &'a dyn Scheme) -> Self {
         let scheme = declared(scheme);
+        if mesh.topology().has_quads() {
+            return Self::on_demand(mesh, scheme);
+        }
         let shapes = RingShapes::of(mesh);
         let vertex_masks = shapes
             .distinct
@@ -86,8 +92,10 @@ impl<'a> Masks<'a> {
             .then(|| Diamond::of(&regular()))
             .flatten();
         let sharpness = Sharpness::of(mesh);
+        let has_quads = mesh.topology().has_quads();
         Self {
             mesh,
+            quads: has_quads.then(|| QuadMasks::of(mesh)),
             scheme,
             is_untagged: sharpness.is_empty(),
             sharpness,
@@ -189,6 +197,9 @@ impl<'a> Masks<'a> {
 
     /// Where `vertex` moves.
     pub fn vertex_point(&self, vertex: VertexId) -> DVec3 {
+        if let Some(quads) = &self.quads {
+            return quads.vertex_point(vertex);
+        }
         if !self.is_untagged && self.sharpness.is_tagged(vertex) {
             return self.tagged_vertex_point(vertex);
         }
@@ -215,6 +226,9 @@ impl<'a> Masks<'a> {
     /// The position of the new vertex on the edge of `h`, with the same bits from both of its
     /// half-edges.
     pub fn edge_point(&self, h: HalfEdgeId) -> DVec3 {
+        if let Some(quads) = &self.quads {
+            return quads.edge_point(h);
+        }
         let topology = self.mesh.topology();
         let h = topology.twin(h).map_or(h, |twin| h.min(twin));
         if self.is_at_tag(h) {

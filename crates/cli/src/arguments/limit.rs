@@ -5,13 +5,13 @@ use clap::Args;
 use super::features::FeatureArguments;
 use super::interpolation::InterpolationArguments;
 use super::quantity::Unit;
-use super::shared::{BuildArguments, SchemeName};
+use super::shared::{BuildArguments, SchemeName, of_triangles};
 
 /// The scheme, and what is done to the mesh that was read before it is the control mesh.
 #[derive(Args, Debug, Clone, Copy)]
 pub(crate) struct LimitArguments {
     /// Scheme of the limit surface [default: loop]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = of_triangles())]
     pub(crate) scheme: Option<SchemeName>,
 
     #[command(flatten)]

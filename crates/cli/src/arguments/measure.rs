@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, value_parser};
 
 use super::limit::LimitArguments;
+use super::shared::SchemeName;
 use super::values::{self, Extent};
 
 const EXAMPLES: &str = "\
@@ -26,7 +27,7 @@ Examples:
 /// With --certified it is bounded from both sides instead.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
-#[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface [default: loop]; with --limit-of only")))]
+#[command(mut_arg("scheme", |scheme| scheme.value_parser(value_parser!(SchemeName)).help("Scheme of the limit surface [default: loop]; with --limit-of only")))]
 pub(crate) struct MeasureArguments {
     /// The mesh to measure: a file, - for standard input, or builtin:NAME
     #[arg(value_name = "A")]

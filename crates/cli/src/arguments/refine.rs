@@ -332,6 +332,11 @@ impl RefineArguments {
         Ok(self.scheme.in_quarters()?.scheme())
     }
 
+    /// Whether the scheme is for quads.
+    pub(crate) fn has_quads(&self) -> bool {
+        self.scheme == RefiningScheme::CatmullClark
+    }
+
     /// The view that makes the angle depend on the viewer.
     pub(crate) fn viewer(&self) -> Option<View> {
         let viewpoint = |viewer: &Viewer| match *viewer {

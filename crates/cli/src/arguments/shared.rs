@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use limitmesh::mesh::{BuildOptions, Weld};
-use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh::scheme::{CatmullClark, Family, Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh_io::Format;
 use serde::Serialize;
 
@@ -36,6 +36,8 @@ pub(crate) enum SchemeName {
     LoopWarren,
     /// The modified butterfly scheme: the surface passes through all vertices
     Butterfly,
+    /// Catmull–Clark for quads, as in modelling programs; other polygons are divided into quads first
+    CatmullClark,
 }
 
 impl SchemeName {
@@ -45,7 +47,13 @@ impl SchemeName {
             Self::Loop => &Loop,
             Self::LoopWarren => &LoopWarren,
             Self::Butterfly => &ModifiedButterfly,
+            Self::CatmullClark => &CatmullClark,
         }
+    }
+
+    /// Whether control meshes have quads.
+    pub(crate) fn has_quads(self) -> bool {
+        self == Self::CatmullClark
     }
 }
 
@@ -61,6 +69,8 @@ pub(crate) enum RefiningScheme {
     LoopWarren,
     /// The modified butterfly scheme: the surface passes through all vertices
     Butterfly,
+    /// Catmull–Clark for quads, as in modelling programs; other polygons are divided into quads first
+    CatmullClark,
     /// √3-subdivision (Kobbelt): each step gives three times the triangles; smooth, approximating
     Sqrt3,
 }
@@ -71,6 +81,7 @@ impl From<SchemeName> for RefiningScheme {
             SchemeName::Loop => Self::Loop,
             SchemeName::LoopWarren => Self::LoopWarren,
             SchemeName::Butterfly => Self::Butterfly,
+            SchemeName::CatmullClark => Self::CatmullClark,
         }
     }
 }
@@ -91,6 +102,7 @@ impl RefiningScheme {
             Self::Loop => Ok(SchemeName::Loop),
             Self::LoopWarren => Ok(SchemeName::LoopWarren),
             Self::Butterfly => Ok(SchemeName::Butterfly),
+            Self::CatmullClark => Ok(SchemeName::CatmullClark),
             Self::Sqrt3 => {
                 usage("--scheme sqrt3 does not split triangles in four, as is needed here")
             }
@@ -152,11 +164,20 @@ impl BuildArguments {
     }
 }
 
-/// The schemes whose limit surfaces are polynomials, as rays and projections need them.
+/// The schemes for triangles.
+pub(super) fn of_triangles() -> impl TypedValueParser<Value = SchemeName> {
+    let own = SchemeName::value_variants()
+        .iter()
+        .filter(|name| !name.has_quads());
+    PossibleValuesParser::new(own.filter_map(ValueEnum::to_possible_value))
+        .try_map(|name| SchemeName::from_str(&name, false))
+}
+
+/// The schemes whose limit surfaces are polynomials over triangles, as rays and projections need them.
 pub(super) fn loop_family() -> impl TypedValueParser<Value = SchemeName> {
     let own = SchemeName::value_variants()
         .iter()
-        .filter(|name| name.scheme().loop_family().is_some());
+        .filter(|name| matches!(name.scheme().family(), Some(Family::Loop(_))));
     PossibleValuesParser::new(own.filter_map(ValueEnum::to_possible_value))
         .try_map(|name| SchemeName::from_str(&name, false))
 }

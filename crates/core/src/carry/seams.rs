@@ -69,7 +69,8 @@ pub(super) fn value_mesh(
             let number = of_corner[root];
             of_corner[corner.index()] = number;
             let fan = &mut fans[number as usize];
-            fan.faces += 1;
+            // A quad counts once, by the edge with which it begins there.
+            fan.faces += usize::from(!topology.is_diagonal(corner));
             match continuous(corner) {
                 Some(_) => fan.is_creased |= sharpness.edge(corner) > 0.0,
                 None => fan.is_open = true,
@@ -104,7 +105,10 @@ pub(super) fn value_mesh(
         }
     }
     let triangles = of_corner.as_chunks::<3>().0.to_vec();
-    let mesh = Mesh::from_triangles(vec![[0.0; 3]; fans.len()], triangles)?.with_tags(tags)?;
+    let mut mesh = Mesh::from_triangles(vec![[0.0; 3]; fans.len()], triangles)?.with_tags(tags)?;
+    if topology.has_quads() {
+        mesh = mesh.with_quads()?;
+    }
     Ok(ValueMesh {
         mesh,
         values: fans.iter().map(|fan| fan.value).collect(),

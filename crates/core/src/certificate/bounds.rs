@@ -177,8 +177,10 @@ impl<'a> Pieces<'a> {
                 let net = self.net.get_or_insert_with(|| BezierTriangle::of(points));
                 search.own_net(&NetPart::own(net, part));
             }
-            (Patch::Extraordinary(_) | Patch::Mesh(_), _) => search.part(self.patch, part, ALL, 0),
-            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
+            (Patch::Extraordinary(_) | Patch::Bicubic(_) | Patch::Mesh(_), _) => {
+                search.part(self.patch, part, ALL, 0);
+            }
+            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_) | Patch::Quad(_), _) => {
                 if !search.is_settled(self.patch, part, ALL, 0) {
                     search.divided(self.refined(rules), part, ALL, 0);
                 }

@@ -1,7 +1,7 @@
 //! The greatest distance of a triangle from the piece of the limit surface that it approximates.
 //! Knows no forest.
 //!
-//! [`Pieces::deviation`] bounds that distance, both ways: proven for the Loop family, an estimate
+//! [`Pieces::deviation`] bounds that distance, both ways: proven for known schemes, an estimate
 //! from samples for other schemes. A triangle is prepared once as a [`TriangleFrame`], and
 //! approximates a [`SubTriangle`] of a patch.
 //!
@@ -17,6 +17,7 @@ mod effort;
 mod greatest;
 mod hull_points;
 mod interpolation;
+mod net;
 mod net_part;
 mod parametric;
 mod quartic_cell;

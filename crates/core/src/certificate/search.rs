@@ -9,9 +9,11 @@ use super::deviation::Deviation;
 use super::effort::Effort;
 use super::exceeds;
 use super::hull_points::{DeviationBound, HullPoint};
+use super::net::Net;
 use super::net_part::NetPart;
 use super::sub_triangle::SubTriangle;
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::{Patch, Points, RefinedPatch, Rules};
 
@@ -117,7 +119,8 @@ impl<'a, P: HullPoint> Search<'a, P> {
                 let piece = self.seen(piece);
                 self.extraordinary(&piece, part, borders, depth);
             }
-            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_), _) => {
+            (Patch::Bicubic(piece), _) => self.bicubic(piece, part, borders),
+            (Patch::Sectors(_) | Patch::Pole(_) | Patch::SemiSharp(_) | Patch::Quad(_), _) => {
                 if !self.is_settled(patch, part, borders, depth) {
                     self.divided(&patch.refined(self.rules), part, borders, depth);
                 }
@@ -132,6 +135,16 @@ impl<'a, P: HullPoint> Search<'a, P> {
         if self.counts(part.2) {
             refined.look(self, part, depth);
         }
+    }
+
+    /// A part of a bicubic piece.
+    fn bicubic(&mut self, piece: &Bicubic, part: SubTriangle, borders: Borders) {
+        let frame = self.bound.frame;
+        let corners = piece.part.corners();
+        let middles = [0, 1, 2].map(|edge| piece.part.along(edge, 0.5));
+        let places = part.corners(corners, middles);
+        let net = piece.net(places, |point| P::of(frame, point));
+        self.net(&net, borders, self.effort.halvings);
     }
 
     fn regular_in_space(&mut self, points: &Points, part: SubTriangle, borders: Borders) {
@@ -193,11 +206,11 @@ impl<'a, P: HullPoint> Search<'a, P> {
         !self.effort.rim_alone || borders.into_iter().any(is_rim)
     }
 
-    fn net(&mut self, net: &BezierTriangle<P>, borders: Borders, halvings: usize) {
+    fn net(&mut self, net: &impl Net<P>, borders: Borders, halvings: usize) {
         if self.found.own == f64::INFINITY || !self.counts(borders) {
             return;
         }
-        let (deviation, attained) = self.bound.net(net, borders);
+        let (deviation, attained) = net.deviation(&self.bound, borders);
         if self.effort.gives_up && exceeds(attained, self.effort.target) {
             self.add(Deviation::alone(f64::INFINITY));
             return;

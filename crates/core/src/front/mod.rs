@@ -585,6 +585,7 @@ impl<'a> Front<'a> {
 
     /// Whether the distance is proven.
     pub fn is_certified(&self) -> bool {
-        self.forest.measure() == Measure::Distance && self.forest.surface().rules().is_certified()
+        self.forest.measure() == Measure::Distance
+            && self.forest.surface().rules().are_of_loop_family()
     }
 }

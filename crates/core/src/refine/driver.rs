@@ -7,7 +7,7 @@ use super::lineage::Lineage;
 use super::split::SplitEdges;
 use super::step::advance;
 use super::{RefineError, Refinement, StepReport, Stop};
-use crate::limit::LimitTable;
+use crate::limit::{LimitTable, suits};
 use crate::mesh::{Mesh, check_finite};
 use crate::progress::{Observer, Stage, Watch};
 use crate::scheme::Scheme;
@@ -31,6 +31,7 @@ impl Driver<'_> {
         flags: impl Fn(&Mesh) -> Result<Vec<bool>, RefineError>,
         moves: impl Fn(&Mesh, &SplitEdges) -> Option<Vec<bool>>,
     ) -> Result<Refinement, RefineError> {
+        suits(self.scheme, control)?;
         let mut refined: Option<Mesh> = None;
         let mut lineage = self.origins.then(|| Lineage::of(control));
         let mut steps = Vec::new();

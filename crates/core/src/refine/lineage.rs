@@ -1,6 +1,7 @@
 //! Where the vertices and triangles of meshes that are refined step by step came from on the control mesh.
 
 use super::Origin;
+use super::quad_order::part_before;
 use super::split::SplitTopology;
 use crate::geometry::NONE;
 use crate::index::{HalfEdgeId, VertexId};
@@ -86,6 +87,10 @@ impl<'a> Lineage<'a> {
                 std::iter::repeat_n(parent, (range[1] - range[0]) as usize)
             })
             .collect();
+        if before.topology().has_quads() {
+            let parents = (0..self.parents.len()).map(|face| self.parents[part_before(face)]);
+            self.parents = parents.collect();
+        }
     }
 
     /// The origins at the end.

@@ -18,6 +18,7 @@ mod levels_of_detail;
 mod limit_distance;
 mod limit_reference;
 mod lineage;
+mod quad_order;
 mod replay;
 mod simplified;
 mod split;

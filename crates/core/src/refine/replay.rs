@@ -163,7 +163,7 @@ impl Replay {
         observer: &mut Observer<'_>,
     ) -> Result<Self, ReplayError> {
         let rules = Rules::of(scheme);
-        if !rules.is_certified() {
+        if !rules.are_of_loop_family() {
             return Err(ReplayError::Scheme {
                 scheme: scheme.name().to_owned(),
             });

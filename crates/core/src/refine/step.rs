@@ -2,10 +2,10 @@
 //!
 //! All points are computed from the old positions and committed together.
 
-use super::RefineError;
 use super::junctions::{edge_groups, join_copies, vertex_groups};
 use super::split::{SplitEdges, SplitTopology};
 use super::tags::refined_tags;
+use super::{RefineError, quad_order};
 use crate::index::VertexId;
 use crate::masks::Masks;
 use crate::mesh::{Junctions, Mesh};
@@ -26,11 +26,15 @@ pub(super) fn advance(
     let vertices = vertex_groups(mesh, &split, &numbered);
     join_copies(&mut positions, &vertices);
     split.choose_diagonals(mesh, &numbered, &positions);
-    let junctions = Junctions {
+    let mut junctions = Junctions {
         vertices,
         edges: edge_groups(mesh, &split, &numbered),
     };
-    let topology = numbered.connect(mesh, &split, watch)?;
+    let mut topology = numbered.connect(mesh, &split, watch)?;
+    if mesh.topology().has_quads() {
+        topology = quad_order::in_order(topology, watch)?.with_quads()?;
+        junctions.edges.rename(quad_order::moved);
+    }
     let tags = refined_tags(mesh, &split, &numbered, moves);
     Ok((
         Mesh::from_parts(topology, positions, tags, junctions),

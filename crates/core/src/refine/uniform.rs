@@ -324,11 +324,12 @@ impl End {
     }
 }
 
-/// How many of the last levels can be done together: none for other schemes, while there are
+/// How many of the last levels can be done together: none for other schemes and for quads, while there are
 /// semi-sharp tags, where sheets were cut apart (whose copies of vertices the steps keep alike),
 /// and at the first level, after which most faces are regular.
 fn levels_together(mesh: &Mesh, rules: &Rules<'_>, levels: usize) -> usize {
-    if !rules.is_certified() || !mesh.junctions().is_empty() {
+    let is_of_triangles = !mesh.topology().has_quads();
+    if !rules.is_certified() || !is_of_triangles || !mesh.junctions().is_empty() {
         return 0;
     }
     let first = levels

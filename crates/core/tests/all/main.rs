@@ -11,6 +11,7 @@ mod backs;
 mod bounds;
 mod carry;
 mod carry_collapsed;
+mod catmull_clark;
 mod certificate;
 mod creases;
 mod exact;

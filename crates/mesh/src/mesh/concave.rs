@@ -67,6 +67,10 @@ impl Mesh {
     /// # Errors
     /// The mesh gets more elements than can be numbered.
     pub fn with_divided_concave_corners(self) -> Result<(Self, ConcaveCorners), MeshError> {
+        if self.topology().has_quads() {
+            // Their halves are what they are.
+            return Ok((self, ConcaveCorners::default()));
+        }
         let sharpness = Sharpness::of(&self);
         let mut ribs = ribs_of(&self, &sharpness.infinitely_sharp());
         if sharpness.is_semi_sharp() {

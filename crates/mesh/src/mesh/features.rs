@@ -42,8 +42,10 @@ impl Mesh {
         }
         let topology = &self.topology;
         let is_kept = |v: VertexId| {
-            let (valence, open) = topology.valence_and_openness(v);
-            open && (rule == BoundaryRule::Fixed || valence == 2)
+            let spokes = topology
+                .outgoing_ring(v)
+                .filter(|&h| !topology.is_diagonal(h));
+            topology.is_boundary(v) && (rule == BoundaryRule::Fixed || spokes.count() == 1)
         };
         let kept: Vec<VertexId> = topology.vertices().filter(|&v| is_kept(v)).collect();
         self.with_corners(&kept)
@@ -102,7 +104,7 @@ impl Mesh {
                 expected,
             });
         }
-        let normals = parallel::map(self.face_count(), |face| self.unit_face_normal(face));
+        let normals = parallel::map(self.face_count(), |face| self.unit_polygon_normal(face));
         let others = self
             .tags
             .creases

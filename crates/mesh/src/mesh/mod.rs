@@ -233,6 +233,15 @@ impl Mesh {
         build::build(soup, options)
     }
 
+    /// The same mesh as one of quads, whose halves its triangles are ([`Topology::with_quads`]).
+    ///
+    /// # Errors
+    /// They are not.
+    pub fn with_quads(mut self) -> Result<Self, MeshError> {
+        self.topology = self.topology.with_quads()?;
+        Ok(self)
+    }
+
     /// The parts put together; `topology` and `positions` must agree.
     #[doc(hidden)]
     pub fn from_parts(
@@ -418,6 +427,14 @@ impl Mesh {
     #[doc(hidden)]
     pub fn unit_face_normal(&self, face: usize) -> DVec3 {
         unit_or_zero(self.scaled_face_normal(face))
+    }
+
+    /// The unit normal of a face, or of the quad of which it is half; zero where it has no area.
+    pub(crate) fn unit_polygon_normal(&self, face: usize) -> DVec3 {
+        match self.topology.has_quads() {
+            true => unit_or_zero(self.face_normal_vector(face) + self.face_normal_vector(face ^ 1)),
+            false => self.unit_face_normal(face),
+        }
     }
 
     /// A normal of a face of any size, of any length; zero where it has no area.

@@ -207,13 +207,16 @@ impl<'m> Sharpness<'m> {
             .map_or(0.0, |i| self.vertices[i].1)
     }
 
-    /// The sharpness of the edges at `vertex`, in ring order; the last edge of an open ring included.
+    /// The half-edges that leave `vertex`, counter-clockwise, without diagonals of quads.
+    fn outgoing(&self, vertex: VertexId) -> impl Iterator<Item = HalfEdgeId> + '_ {
+        let outgoing = self.topology.outgoing_ring(vertex);
+        outgoing.filter(|&h| !self.topology.is_diagonal(h))
+    }
+
+    /// The sharpness of the edges at `vertex`, in ring order; the last edge of an open ring included. Diagonals of quads are no edges.
     pub fn spokes(&self, vertex: VertexId) -> impl Iterator<Item = f64> + '_ {
         let boundary = self.topology.is_boundary(vertex).then_some(f64::INFINITY);
-        self.topology
-            .outgoing_ring(vertex)
-            .map(|h| self.edge(h))
-            .chain(boundary)
+        self.outgoing(vertex).map(|h| self.edge(h)).chain(boundary)
     }
 
     /// The ring of `vertex` with the sharpness of its edges.
@@ -238,7 +241,7 @@ impl<'m> Sharpness<'m> {
     /// The sectors of the ring of `vertex`, counter-clockwise, at the present level.
     pub fn sectors(&self, vertex: VertexId) -> Vec<Sector> {
         let sectors = self.ring(vertex).sectors();
-        let mut outgoing = self.topology.outgoing_ring(vertex).enumerate();
+        let mut outgoing = self.outgoing(vertex).enumerate();
         let place = |sector: &RingSector| {
             let (_, first) = outgoing.find(|&(slot, _)| slot == sector.first)?;
             Some(Sector {

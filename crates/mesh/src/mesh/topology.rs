@@ -24,6 +24,8 @@ pub struct Topology {
     triangles: Vec<[u32; 3]>,
     twins: Vec<u32>,
     outgoing: Vec<u32>,
+    /// Whether faces 2q and 2q + 1 are the halves of a quad.
+    has_quads: bool,
 }
 
 impl Topology {
@@ -42,6 +44,7 @@ impl Topology {
             triangles,
             twins,
             outgoing,
+            has_quads: false,
         };
         topology.check_fans()?;
         Ok(topology)
@@ -54,7 +57,44 @@ impl Topology {
             triangles,
             twins,
             outgoing,
+            has_quads: false,
         }
+    }
+
+    /// The same triangles as halves of quads: faces 2q and 2q + 1 share a diagonal, which is the second edge of both.
+    ///
+    /// # Errors
+    /// Two such faces share no diagonal.
+    pub fn with_quads(mut self) -> Result<Self, MeshError> {
+        self.has_quads = true;
+        self.check_quads()?;
+        Ok(self)
+    }
+
+    fn check_quads(&self) -> Result<(), MeshError> {
+        let is_half = |&face: &usize| {
+            let (own, other) = (face as u32, face as u32 ^ 1);
+            self.twins[3 * face + 1] == 3 * other + 1 && own != other
+        };
+        let wrong = (0..self.face_count()).find(|face| !is_half(face));
+        wrong.map_or(Ok(()), |face| {
+            Err(MeshError::Broken {
+                place: format!("face {face}"),
+                what: "the second edges of faces 2q and 2q + 1 are one diagonal",
+            })
+        })
+    }
+
+    /// Whether the faces are halves of quads: 2q and 2q + 1 those of quad q, whose diagonal is the second edge of both.
+    #[inline]
+    pub fn has_quads(&self) -> bool {
+        self.has_quads
+    }
+
+    /// Whether a half-edge runs along the diagonal of a quad.
+    #[inline]
+    pub fn is_diagonal(&self, h: HalfEdgeId) -> bool {
+        self.has_quads && h.corner() == 1
     }
 
     /// Number of vertices.
@@ -240,6 +280,9 @@ impl Topology {
     /// The first element that breaks one.
     pub fn validate(&self) -> Result<(), MeshError> {
         check_indices(&self.triangles, self.vertex_count())?;
+        if self.has_quads {
+            self.check_quads()?;
+        }
         let broken = |place: String, what| Err(MeshError::Broken { place, what });
         if self.twins.len() != 3 * self.triangles.len() {
             return broken(

@@ -149,11 +149,11 @@ pub fn back_but_for(
         Patch::Regular(points) => {
             return is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0);
         }
-        Patch::Mesh(_) => return None,
+        Patch::Mesh(_) | Patch::Bicubic(_) => return None,
         Patch::Extraordinary(patch) => {
             tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
         }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => None,
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => None,
     };
     if let Some(known) = look.filter(|look| look.is_known()) {
         return (known == Look::All(Side::Back)).then_some(0.0);
@@ -197,8 +197,10 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
                 levels,
             )
         }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => (Look::Unknown, levels),
-        Patch::Mesh(_) => (Look::Unknown, 0),
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => {
+            (Look::Unknown, levels)
+        }
+        Patch::Mesh(_) | Patch::Bicubic(_) => (Look::Unknown, 0),
     };
     if at_once.is_known() || levels == 0 {
         return at_once;
@@ -230,14 +232,14 @@ pub(crate) fn cone_of_patch(
             points.extend(net.0);
             return Cone::of(&NormalNet::of(&net)?);
         }
-        Patch::Mesh(_) => return None,
+        Patch::Mesh(_) | Patch::Bicubic(_) => return None,
         Patch::Extraordinary(patch) => {
             if let Some(cone) = tip::cone(patch, rules).filter(|cone| cone.sine < tip::NARROW) {
                 points.extend(patch.points());
                 return Some(cone);
             }
         }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) => {}
+        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => {}
     }
     if levels == 0 {
         return None;

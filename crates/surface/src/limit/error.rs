@@ -1,7 +1,8 @@
 //! Why a scheme has no limit stencil at a ring.
 
+use crate::mesh::Mesh;
 use crate::ring::RingShape;
-use crate::scheme::Scheme;
+use crate::scheme::{Family, Scheme};
 
 /// Why a scheme has no limit stencil at a ring.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -17,6 +18,35 @@ pub enum LimitError {
         /// The expected and the actual property of the masks.
         what: String,
     },
+    /// A scheme for quads and a mesh of triangles, or the other way round, or a function that is for triangles alone.
+    #[error("{what} needs a mesh of {expected}, which this one is not")]
+    Cells {
+        /// The scheme or the function.
+        what: String,
+        /// The faces that it is for.
+        expected: &'static str,
+    },
+}
+
+/// Refuses a scheme for quads on a mesh of triangles, and others on a mesh of quads.
+///
+/// # Errors
+/// The scheme is for other faces.
+#[doc(hidden)]
+pub fn suits(scheme: &dyn Scheme, mesh: &Mesh) -> Result<(), LimitError> {
+    let is_for_quads = scheme.family() == Some(Family::CatmullClark);
+    let what = || format!("the scheme {}", scheme.name());
+    match (is_for_quads, mesh.topology().has_quads()) {
+        (true, false) => Err(LimitError::Cells {
+            what: what(),
+            expected: "quads (QuadControl makes them of polygons)",
+        }),
+        (false, true) => Err(LimitError::Cells {
+            what: what(),
+            expected: "triangles",
+        }),
+        _ => Ok(()),
+    }
 }
 
 impl LimitError {

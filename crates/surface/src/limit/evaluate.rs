@@ -7,11 +7,12 @@
 
 use std::sync::Arc;
 
+use super::quads::QuadLimits;
 use super::refined::{Refined, RefinedMesh};
 use super::sharp::SharpStencil;
-use super::sides::SidedNormals;
+use super::sides::{LEAST_SINE, SidedNormals, area_weighted_normal};
 use super::stencil::LimitStencil;
-use super::{LimitError, LimitTable};
+use super::{LimitError, LimitTable, suits};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
@@ -19,10 +20,6 @@ use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
 use crate::scheme::Support;
 use crate::vector::{DVec3, unit_or_zero, vector};
-
-/// Two tangents closer to parallel than this (the sine of their angle) span no plane: rounding alone gives some
-/// 1e-16 for a flat ring, and a few digits are left to coordinates far from the origin.
-const LEAST_SINE: f64 = 1e-12;
 
 /// A tangent shorter than this fraction of the longest difference that entered it is zero within
 /// rounding.
@@ -64,6 +61,9 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Vec<[f64; 3]>, Cancelled> {
+        if mesh.topology().has_quads() {
+            return QuadLimits::of(mesh, &Sharpness::of(mesh)).positions(poll);
+        }
         let refined = self.refined_for(mesh, stencils.any_moves(), poll)?;
         parallel::map_polled(mesh.vertex_count(), poll, |v| {
             let (vertex, weights) = (VertexId(v as u32), stencils.at(v).position());
@@ -115,6 +115,9 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<SidedNormals, Cancelled> {
+        if mesh.topology().has_quads() {
+            return QuadLimits::of(mesh, &Sharpness::of(mesh)).sided_normals(poll);
+        }
         self.normals_or(stencils, mesh, poll, |vertex, side| {
             face_average(mesh, vertex, side)
         })
@@ -127,6 +130,10 @@ impl LimitTable<'_> {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<SidedNormals, LimitError>, Cancelled> {
+        if mesh.topology().has_quads() {
+            let sharpness = Sharpness::of(mesh);
+            return Ok(Ok(QuadLimits::of(mesh, &sharpness).plane_normals(poll)?));
+        }
         match Stencils::of(self, mesh, poll)? {
             Ok(stencils) => Ok(Ok(
                 self.normals_or(&stencils, mesh, poll, |_, _| DVec3::ZERO)?
@@ -182,6 +189,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn normal_at(&self, mesh: &Mesh, corner: HalfEdgeId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).normal_at(corner));
+        }
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         let side = stencil.side_of(mesh, corner);
@@ -200,6 +210,9 @@ impl LimitTable<'_> {
         sharpness: &Sharpness<'_>,
         corner: HalfEdgeId,
     ) -> Result<Option<[[f64; 3]; 2]>, LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, sharpness).tangents_at(corner));
+        }
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, sharpness, vertex)?;
         let Some(side) = stencil.side_of(mesh, corner) else {
@@ -229,6 +242,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn position(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).position(vertex));
+        }
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(match self.scheme().support() {
             Support::TwoRing if !stays(stencil.position()) => {
@@ -244,6 +260,9 @@ impl LimitTable<'_> {
     /// # Errors
     /// The scheme has no limit at the shape of its ring.
     pub fn normal(&self, mesh: &Mesh, vertex: VertexId) -> Result<[f64; 3], LimitError> {
+        if mesh.topology().has_quads() {
+            return Ok(QuadLimits::of(mesh, &Sharpness::of(mesh)).normal(vertex));
+        }
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(stencil
             .average(|side| self.side_normal(mesh, vertex, side))
@@ -370,6 +389,7 @@ impl Stencil {
 
 /// The stencils of a mesh's vertices, looked up once for each shape that occurs.
 #[doc(hidden)]
+#[derive(Default)]
 pub struct Stencils {
     list: Vec<Stencil>,
     by_vertex: Vec<u32>,
@@ -386,6 +406,13 @@ impl Stencils {
         mesh: &Mesh,
         poll: &mut Poll<'_>,
     ) -> Result<Result<Self, LimitError>, Cancelled> {
+        if let Err(error) = suits(table.scheme(), mesh) {
+            return Ok(Err(error));
+        }
+        if mesh.topology().has_quads() {
+            // Their limits follow from the rings of quads.
+            return Ok(Ok(Self::default()));
+        }
         let nowhere = &mut |_| poll(0);
         let shapes = RingShapes::polled(mesh, nowhere)?;
         let sharpness = Sharpness::of(mesh);
@@ -592,27 +619,4 @@ fn face_average(mesh: &Mesh, vertex: VertexId, side: &Side<'_>) -> DVec3 {
     let ends = |h: HalfEdgeId| [from(topology.target(h)), from(topology.opposite(h))];
     let faces: Vec<[DVec3; 2]> = twice.skip(side.first).take(side.faces).map(ends).collect();
     area_weighted_normal(&faces)
-}
-
-/// The area-weighted average of the normals of faces at a vertex, each given by its edges from there, of unit length; zero where
-/// it vanishes.
-#[doc(hidden)]
-pub fn area_weighted_normal(faces: &[[DVec3; 2]]) -> DVec3 {
-    // Scaled to the ring's size, so that squares neither vanish nor overflow.
-    let greatest = |size: f64, edge: &DVec3| size.max(edge.abs().max_element());
-    let size = faces.as_flattened().iter().fold(0.0, greatest);
-    if size == 0.0 || !size.is_finite() {
-        return DVec3::ZERO;
-    }
-    let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
-    for [a, b] in faces {
-        let normal = (a / size).cross(b / size);
-        sum += normal;
-        areas += normal.length();
-    }
-    if sum.length() > LEAST_SINE * areas {
-        unit_or_zero(sum)
-    } else {
-        DVec3::ZERO
-    }
 }

@@ -18,7 +18,7 @@
 use super::LimitError;
 use crate::masks::views::{LabelledRing, edge_views, vertex_views};
 use crate::ring::{RingShape, SharpRing};
-use crate::scheme::{Scheme, Support};
+use crate::scheme::{Family, Scheme, Support};
 
 /// How far the weights of a mask may sum from 1: rounding of a thousand weights stays well below.
 const SUM_TOLERANCE: f64 = 1e-10;
@@ -206,7 +206,7 @@ impl<'s> Neighbourhood<'s> {
     /// Those of [`Self::row`].
     pub(super) fn pulled_back(&self, weights: &[f64]) -> Result<Vec<f64>, LimitError> {
         let mut before = vec![0.0; weights.len()];
-        let is_family = self.scheme.loop_family().is_some();
+        let is_family = matches!(self.scheme.family(), Some(Family::Loop(_)));
         for (point, &weight) in weights
             .iter()
             .enumerate()

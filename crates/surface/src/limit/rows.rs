@@ -4,6 +4,7 @@
 //! stencil's; for one with two-ring support the stencil's after one refinement, by the weights of that refinement.
 
 use super::evaluate::{Stencils, for_each_of_two_ring, stays};
+use super::quads::QuadLimits;
 use super::refined::{Refined, RefinedWeights};
 use super::{LimitError, LimitTable};
 use crate::index::{HalfEdgeId, VertexId};
@@ -37,7 +38,13 @@ impl LimitTable<'_> {
             Ok(stencils) => stencils,
             Err(error) => return Ok(Err(error)),
         };
-        let row = |v: usize| self.row(mesh, VertexId(v as u32), stencils.at(v).position());
+        let sharpness = Sharpness::of(mesh);
+        let quads = mesh.topology().has_quads();
+        let quads = quads.then(|| QuadLimits::of(mesh, &sharpness));
+        let row = |v: usize| match &quads {
+            Some(quads) => quads.row(VertexId(v as u32)),
+            None => self.row(mesh, VertexId(v as u32), stencils.at(v).position()),
+        };
         let nowhere = &mut |_| poll(0);
         let pieces = parallel::pieces_polled(mesh.vertex_count(), PIECE, nowhere, |piece| {
             let (mut lengths, mut entries) = (Vec::with_capacity(piece.len()), Vec::new());

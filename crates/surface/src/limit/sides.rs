@@ -2,6 +2,11 @@
 
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::Topology;
+use crate::vector::{DVec3, unit_or_zero};
+
+/// Two tangents closer to parallel than this (the sine of their angle) span no plane: rounding alone gives some
+/// 1e-16 for a flat ring, and a few digits are left to coordinates far from the origin.
+pub(super) const LEAST_SINE: f64 = 1e-12;
 
 /// Unit limit normals of a mesh's vertices; vertices on sharp edges have one for each side.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,5 +89,28 @@ impl SidedNormals {
     /// The normals by vertex, without those of further sides.
     pub fn into_by_vertex(self) -> Vec<[f64; 3]> {
         self.by_vertex
+    }
+}
+
+/// The area-weighted average of the normals of faces at a vertex, each given by its edges from there, of unit length; zero where
+/// it vanishes.
+#[doc(hidden)]
+pub fn area_weighted_normal(faces: &[[DVec3; 2]]) -> DVec3 {
+    // Scaled to the ring's size, so that squares neither vanish nor overflow.
+    let greatest = |size: f64, edge: &DVec3| size.max(edge.abs().max_element());
+    let size = faces.as_flattened().iter().fold(0.0, greatest);
+    if size == 0.0 || !size.is_finite() {
+        return DVec3::ZERO;
+    }
+    let (mut sum, mut areas) = (DVec3::ZERO, 0.0);
+    for [a, b] in faces {
+        let normal = (a / size).cross(b / size);
+        sum += normal;
+        areas += normal.length();
+    }
+    if sum.length() > LEAST_SINE * areas {
+        unit_or_zero(sum)
+    } else {
+        DVec3::ZERO
     }
 }

@@ -49,6 +49,12 @@ impl LimitTable<'_> {
     /// The stencils of the vertices of `mesh`, for a scheme with one-ring support.
     #[doc(hidden)]
     pub fn vertex_stencils(&self, mesh: &Mesh) -> Result<VertexStencils, LimitError> {
+        if mesh.topology().has_quads() {
+            return Err(LimitError::Cells {
+                what: "a replay".to_owned(),
+                expected: "triangles",
+            });
+        }
         let stencils = uncancelled(|_| Stencils::of(self, mesh, &mut |_| Ok(())))?;
         let (mut list, mut known) = (Vec::new(), HashMap::new());
         let by_vertex = (0..mesh.vertex_count()).map(|v| {

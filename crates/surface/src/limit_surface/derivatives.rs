@@ -163,7 +163,7 @@ impl LimitSurface<'_> {
     }
 
     fn derivatives_on(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<Option<Derivatives>> {
-        if !self.rules.is_certified() {
+        if !self.rules.are_of_loop_family() {
             return vec![None; places.len()];
         }
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);

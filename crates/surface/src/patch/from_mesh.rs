@@ -2,6 +2,7 @@
 
 use super::large_rings::LargeRings;
 use super::mesh_patch::MeshPatch;
+use super::quad::root_piece;
 use super::rules::Rules;
 use super::sector::{Centre, Far, SectorPatch, VertexSector};
 use super::semi_sharp::{SemiSharpPatch, SemiSharpVertex};
@@ -21,6 +22,9 @@ pub fn root_patch(
     face: FaceId,
     rules: &Rules<'_>,
 ) -> Patch {
+    if mesh.topology().has_quads() {
+        return root_piece(mesh, sharpness, face, rules);
+    }
     let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
     if !rules.is_certified() {
         return Patch::Mesh(MeshPatch::of(mesh, sharpness, face, rules));

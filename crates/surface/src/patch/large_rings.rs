@@ -44,7 +44,7 @@ impl LargeRings {
         poll: &mut Poll<'_>,
     ) -> Result<Self, Cancelled> {
         let mut large = Self::of(mesh);
-        if sharpness.is_empty() || !rules.is_certified() {
+        if sharpness.is_empty() || !rules.are_of_loop_family() {
             return Ok(large);
         }
         let levels = sharpness.semi_sharp_levels();

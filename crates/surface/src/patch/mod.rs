@@ -6,6 +6,7 @@
 //! forms, also where tags are semi-sharp; for others a piece is a small mesh that is refined as a whole.
 
 pub mod bezier_triangle;
+pub mod bicubic;
 mod box_spline;
 pub mod characteristic;
 pub mod extraordinary;
@@ -15,11 +16,13 @@ pub mod mesh_form;
 pub mod mesh_patch;
 pub mod normal_net;
 mod pole;
+pub mod quad;
 pub mod quartic;
 mod rules;
 mod sector;
 mod semi_sharp;
 pub(crate) mod settling;
+pub mod sextic;
 mod spot;
 pub mod submesh;
 mod support;
@@ -31,10 +34,12 @@ pub use support::Support;
 use std::borrow::Cow;
 
 use crate::vector::{DVec3, unit_or_zero};
+use bicubic::Bicubic;
 pub use box_spline::{Points, Refined, assemble};
 use extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use mesh_patch::{MeshPatch, RefinedMeshPatch};
 use pole::{LARGEST_RING, PolePatch, RefinedPole};
+use quad::{QuadPatch, RefinedQuadPatch};
 pub use quartic::{Quartic, reciprocal_power};
 pub use sector::VertexSector;
 use sector::{Far, RefinedSectors, SectorPatch};
@@ -59,6 +64,10 @@ pub enum Patch {
     Sectors(Box<SectorPatch>),
     /// One with semi-sharp tags, of the Loop family.
     SemiSharp(Box<SemiSharpPatch>),
+    /// Over half a quad, where the surface is a bicubic polynomial.
+    Bicubic(Box<Bicubic>),
+    /// Over half of any other quad.
+    Quad(Box<QuadPatch>),
     /// Of a scheme outside the Loop family.
     Mesh(MeshPatch),
 }
@@ -127,6 +136,9 @@ pub enum RefinedPatch<'a> {
     Sectors(RefinedSectors<'a>),
     /// Of a semi-sharp one.
     SemiSharp(RefinedSemiSharp<'a>),
+    /// Of one over half a quad.
+    Bicubic(&'a Bicubic),
+    Quad(RefinedQuadPatch<'a>),
     /// Of one without a form of its own.
     Mesh(RefinedMeshPatch<'a>),
 }
@@ -166,6 +178,8 @@ impl Patch {
             Self::Pole(patch) => RefinedPatch::Pole(patch.refined(rules.beta(patch.valence()))),
             Self::Sectors(sectors) => RefinedPatch::Sectors(sectors.refined(rules)),
             Self::SemiSharp(patch) => RefinedPatch::SemiSharp(patch.refined(rules)),
+            Self::Bicubic(piece) => RefinedPatch::Bicubic(piece),
+            Self::Quad(patch) => RefinedPatch::Quad(patch.refined(rules)),
             Self::Mesh(local) => RefinedPatch::Mesh(local.refined(rules)),
         }
     }
@@ -176,6 +190,7 @@ impl Patch {
             Self::Extraordinary(patch) => patch.corner == corner,
             Self::Pole(patch) => patch.corner() == corner,
             Self::Regular(_) | Self::Sectors(_) | Self::SemiSharp(_) | Self::Mesh(_) => false,
+            Self::Bicubic(_) | Self::Quad(_) => false,
         }
     }
 
@@ -187,6 +202,8 @@ impl Patch {
             Self::Pole(patch) => patch.control_point(corner),
             Self::Sectors(sectors) => sectors.0[corner].at,
             Self::SemiSharp(patch) => patch.control_point(corner),
+            Self::Bicubic(piece) => piece.control_point(corner),
+            Self::Quad(patch) => patch.control_point(corner),
             Self::Mesh(local) => local.control_point(corner),
         }
     }
@@ -203,6 +220,8 @@ impl Patch {
             Self::Extraordinary(patch) => patch.moved_to_origin(),
             Self::Pole(patch) => patch.moved_to_origin(),
             Self::Sectors(sectors) => sectors.moved_to_origin(),
+            Self::Bicubic(piece) => piece.moved_to_origin(),
+            Self::Quad(patch) => patch.moved_to_origin(),
             Self::SemiSharp(_) | Self::Mesh(_) => DVec3::ZERO,
         }
     }
@@ -215,6 +234,12 @@ impl Patch {
             Self::Pole(patch) => patch.points().for_each(visit),
             Self::Sectors(sectors) => sectors.points().for_each(visit),
             Self::SemiSharp(patch) => patch.for_each_point(visit),
+            Self::Bicubic(piece) => piece
+                .points
+                .as_flattened()
+                .iter()
+                .for_each(|&point| visit(point)),
+            Self::Quad(patch) => patch.points().iter().for_each(|&point| visit(point)),
             Self::Mesh(local) => local.points().for_each(visit),
         }
     }
@@ -239,6 +264,8 @@ impl RefinedPatch<'_> {
             Self::Extraordinary(refined) => refined.is_regular(part),
             Self::Pole(refined) => refined.is_regular(part),
             Self::Sectors(refined) => refined.is_regular(part),
+            Self::Bicubic(_) => true,
+            Self::Quad(refined) => refined.is_regular(part),
             // Parts without semi-sharp tags may be, too; they are few.
             Self::SemiSharp(_) | Self::Mesh(_) => false,
         }
@@ -254,6 +281,8 @@ impl RefinedPatch<'_> {
             Self::Pole(refined) => refined.part(part),
             Self::Sectors(refined) => refined.piece(part),
             Self::SemiSharp(refined) => refined.part(part),
+            Self::Bicubic(piece) => Patch::Bicubic(Box::new(piece.child(part))),
+            Self::Quad(refined) => refined.part(part),
             Self::Mesh(refined) => refined.part(part),
         }
     }
@@ -266,7 +295,7 @@ impl RefinedPatch<'_> {
             Self::Extraordinary(refined) => refined.points(part),
             Self::Pole(refined) => refined.points(part),
             Self::Sectors(refined) => refined.points(part),
-            Self::SemiSharp(_) | Self::Mesh(_) => None,
+            Self::Bicubic(_) | Self::Quad(_) | Self::SemiSharp(_) | Self::Mesh(_) => None,
         }
     }
 
@@ -305,6 +334,11 @@ impl RefinedPatch<'_> {
                 let LimitPoint { position, normal } = refined.middle(edge);
                 L::of(position, || normal)
             }
+            Self::Bicubic(piece) => {
+                let LimitPoint { position, normal } = piece.middle(edge);
+                L::of(position, || normal)
+            }
+            Self::Quad(refined) => refined.middle(edge),
             Self::Mesh(refined) => refined.middle(edge),
         }
     }

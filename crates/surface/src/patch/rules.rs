@@ -6,8 +6,9 @@ use std::sync::{Arc, OnceLock};
 use super::characteristic::Characteristic;
 use super::mesh_form::Forms;
 use super::settling;
+use crate::catmull_clark::form::QuadForms;
 use crate::limit::{LimitError, LimitTable};
-use crate::scheme::{LoopFamily, Scheme};
+use crate::scheme::{Family, Scheme};
 
 /// Valences whose weights are kept.
 const KEPT: usize = 32;
@@ -15,7 +16,7 @@ const KEPT: usize = 32;
 /// A scheme, and its weights if it is of the Loop family.
 pub struct Rules<'s> {
     scheme: &'s dyn Scheme,
-    family: Option<LoopFamily>,
+    family: Option<Family>,
     betas: [f64; KEPT],
     found: Arc<Found<'s>>,
     /// The first error.
@@ -25,6 +26,7 @@ pub struct Rules<'s> {
 /// Values that take long to find, and depend on nothing but the scheme.
 struct Found<'s> {
     forms: Forms<'s>,
+    quad_forms: QuadForms,
     characteristics: [OnceLock<Characteristic>; KEPT],
     settling: [OnceLock<Option<f64>>; KEPT],
 }
@@ -32,15 +34,14 @@ struct Found<'s> {
 impl<'s> Rules<'s> {
     /// The rules of `scheme`; those of the family's member if it says that it is one, whatever its own masks are.
     pub fn of(scheme: &'s dyn Scheme) -> Self {
-        let family = scheme.loop_family();
+        let family = scheme.family();
         let scheme = match family {
             Some(family) => family.scheme(),
             None => scheme,
         };
-        let kept = |k| {
-            family
-                .filter(|_| k >= 2)
-                .map_or(0.0, |family| family.beta(k as u32))
+        let kept = |k| match family {
+            Some(Family::Loop(family)) if k >= 2 => family.beta(k as u32),
+            _ => 0.0,
         };
         Self {
             scheme,
@@ -48,6 +49,7 @@ impl<'s> Rules<'s> {
             betas: core::array::from_fn(kept),
             found: Arc::new(Found {
                 forms: Forms::of(scheme),
+                quad_forms: QuadForms::default(),
                 characteristics: [const { OnceLock::new() }; KEPT],
                 settling: [const { OnceLock::new() }; KEPT],
             }),
@@ -87,10 +89,21 @@ impl<'s> Rules<'s> {
         &self.found.forms
     }
 
-    /// Whether the scheme is of the Loop family: pieces without semi-sharp tags have forms of their own, and bounds hold.
+    /// The forms of pieces over quads.
+    pub(crate) fn quad_forms(&self) -> &QuadForms {
+        &self.found.quad_forms
+    }
+
+    /// Whether the scheme is a known one: pieces have forms of their own, and bounds hold.
     #[inline]
     pub fn is_certified(&self) -> bool {
         self.family.is_some()
+    }
+
+    /// Whether the scheme is of the Loop family: regular pieces are quartic polynomials over triangles.
+    #[inline]
+    pub fn are_of_loop_family(&self) -> bool {
+        matches!(self.family, Some(Family::Loop(_)))
     }
 
     /// Keeps a failure, for whoever looks at results: what is computed after it means nothing.
@@ -110,8 +123,8 @@ impl<'s> Rules<'s> {
     pub fn beta(&self, valence: usize) -> f64 {
         match (self.betas.get(valence), self.family) {
             (Some(&beta), _) => beta,
-            (None, Some(family)) => family.beta(valence as u32),
-            (None, None) => 0.0,
+            (None, Some(Family::Loop(family))) => family.beta(valence as u32),
+            (None, _) => 0.0,
         }
     }
 }

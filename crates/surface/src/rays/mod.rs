@@ -167,7 +167,7 @@ impl<'a> RayCaster<'a> {
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
     ) -> Result<Self, RayError> {
-        if !surface.rules().is_certified() {
+        if !surface.rules().are_of_loop_family() {
             return Err(RayError::Scheme {
                 name: surface.rules().scheme().name().to_owned(),
             });

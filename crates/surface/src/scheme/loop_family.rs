@@ -7,7 +7,7 @@
 
 use core::f64::consts::TAU;
 
-use super::{EdgeMask, Scheme, Support, VertexMask, stay};
+use super::{EdgeMask, Family, Scheme, Support, VertexMask, stay};
 use crate::ring::{EdgeShape, RingShape, VertexKind};
 
 /// A member of the Loop family: [`Loop`] or [`LoopWarren`]. There are no others, as only their
@@ -113,7 +113,7 @@ impl Scheme for LoopFamily {
         mask
     }
 
-    fn loop_family(&self) -> Option<LoopFamily> {
-        Some(*self)
+    fn family(&self) -> Option<Family> {
+        Some(Family::Loop(*self))
     }
 }

@@ -4,9 +4,11 @@
 //! meshes nor positions. Everything else (refinement, limit positions, limit normals) follows from the masks.
 
 mod butterfly;
+mod catmull_clark;
 mod loop_family;
 
 pub use butterfly::ModifiedButterfly;
+pub use catmull_clark::CatmullClark;
 pub use loop_family::{Loop, LoopFamily, LoopWarren};
 
 use crate::ring::{EdgeShape, RingShape};
@@ -78,17 +80,36 @@ pub trait Scheme: Send + Sync {
     /// Position of the new vertex on an edge.
     fn edge_mask(&self, shape: EdgeShape) -> EdgeMask;
 
-    /// The member of the Loop family that is this scheme, if any. Distances are proven for these
-    /// only. A scheme that returns a member has that member's masks everywhere, regardless of its
-    /// own methods.
-    fn loop_family(&self) -> Option<LoopFamily> {
+    /// The known scheme that this is, if any. Distances are proven for these only. A scheme that returns one has
+    /// its rules everywhere, regardless of its own methods.
+    fn family(&self) -> Option<Family> {
         None
     }
 }
 
-/// The scheme whose masks count: the member of the Loop family that a scheme says it is, else the scheme itself.
+/// A scheme whose limit surface is known piece by piece.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[non_exhaustive]
+pub enum Family {
+    /// A member of the Loop family.
+    Loop(LoopFamily),
+    /// [`CatmullClark`], for meshes of quads.
+    CatmullClark,
+}
+
+impl Family {
+    /// The scheme as a static reference.
+    pub(crate) fn scheme(self) -> &'static dyn Scheme {
+        match self {
+            Self::Loop(family) => family.scheme(),
+            Self::CatmullClark => &CatmullClark,
+        }
+    }
+}
+
+/// The scheme whose masks count: the known one that a scheme says it is, else the scheme itself.
 pub(crate) fn declared(scheme: &dyn Scheme) -> &dyn Scheme {
-    match scheme.loop_family() {
+    match scheme.family() {
         Some(family) => family.scheme(),
         None => scheme,
     }

@@ -52,7 +52,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
 }
 
 /// Whether a rule is broken, and why it holds.
-fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 12] {
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 14] {
     let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
     let has_angle = arguments.angle.is_some();
     let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
@@ -61,7 +61,17 @@ fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 12] {
     let is_uniform = method == Method::Uniform;
     let has_limit_normals = matches!(method, Method::Exact | Method::LimitNormal);
     let is_whole = has_angle || arguments.has_cameras() || exact.balance;
+    let by_quads = arguments.has_quads();
+    let is_led = arguments.interpolation.given().is_some();
     [
+        (
+            by_quads && !matches!(method, Method::Exact | Method::Uniform),
+            "--scheme catmull-clark is for --method exact and uniform; the others are for triangles",
+        ),
+        (
+            by_quads && (is_led || exact.within.is_some() || exact.optimize),
+            "--scheme catmull-clark does not go with --interpolate, --within and --optimize, which are for triangles",
+        ),
         (
             viewers == 0 && arguments.dilatation.is_some(),
             "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",
@@ -151,6 +161,12 @@ pub(super) fn together(
 
 /// Refuses glTF assets and 3MF packages, which are edited mesh by mesh, where that cannot be.
 pub(super) fn scenes(arguments: &RefineArguments) -> anyhow::Result<()> {
+    if arguments.has_quads() {
+        return usage(
+            "--scheme catmull-clark is for polygons, of which glTF assets and 3MF packages have none but triangles; OBJ, PLY and OFF \
+             files have others",
+        );
+    }
     match arguments.way() {
         Way::Exact | Way::Stepwise => Ok(()),
         Way::Sqrt3 | Way::Sqrt3Steps => usage(
@@ -232,7 +248,7 @@ impl Limited {
 /// Refuses goals and caps that do not go together.
 fn goals(arguments: &RefineArguments) -> anyhow::Result<()> {
     let exact = &arguments.exact;
-    if exact.within.is_some() && arguments.scheme()?.loop_family().is_none() {
+    if exact.within.is_some() && arguments.scheme()?.family().is_none() {
         return usage(format!(
             "--scheme {} passes through the vertices of the input, so that --within has nothing to smooth; loop and loop-warren do not",
             arguments.scheme()?.name()

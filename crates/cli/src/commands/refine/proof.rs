@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use limitmesh::Triangles;
+use limitmesh::scheme::Family;
 use limitmesh_check::proof::Proof as Claim;
 use limitmesh_check::{mesh::Mesh as Plain, read, verdict};
 use limitmesh_io::{Format, Proof};
@@ -27,7 +28,8 @@ pub(super) fn check(arguments: &RefineArguments, format: Option<Format>) -> anyh
         return Ok(());
     }
     let exact = &arguments.exact;
-    let is_proven = arguments.way() == Way::Exact && arguments.scheme()?.loop_family().is_some();
+    let is_proven = arguments.way() == Way::Exact
+        && matches!(arguments.scheme()?.family(), Some(Family::Loop(_)));
     let given = [
         ("--dry-run", exact.dry_run, "writes no mesh"),
         (
@@ -106,7 +108,7 @@ fn proven(path: &Path, refined: &Refined, task: &Task<'_>) -> anyhow::Result<Res
             written.display()
         )));
     }
-    let Some(scheme) = arguments.scheme()?.loop_family() else {
+    let Some(Family::Loop(scheme)) = arguments.scheme()?.family() else {
         return Ok(Err("the scheme has none".to_owned()));
     };
     let own = Plain {

@@ -75,8 +75,8 @@ fn met(found: Exact, upper: f64, options: &ExactOptions) -> Exact {
     }
 }
 
-/// Whether the distances that [`exact`] reports for a scheme are proven: those of the Loop family
-/// are ([`Scheme::loop_family`]), for others they are estimated from samples.
+/// Whether the distances that [`exact`] reports for a scheme are proven: those of known schemes are ([`Scheme::family`]), for others
+/// they are estimated from samples.
 pub fn is_certified(scheme: &dyn Scheme) -> bool {
-    scheme.loop_family().is_some()
+    scheme.family().is_some()
 }

@@ -4,7 +4,9 @@
 use limitmesh::measure::{SamplingOptions, hausdorff};
 use limitmesh::refine::{UniformOptions, is_certified, uniform};
 use limitmesh::ring::{EdgeShape, RingShape};
-use limitmesh::scheme::{EdgeMask, Loop, LoopFamily, LoopWarren, Scheme, Support, VertexMask};
+use limitmesh::scheme::{
+    EdgeMask, Family, Loop, LoopFamily, LoopWarren, Scheme, Support, VertexMask,
+};
 use limitmesh::{Mesh, Triangles};
 
 use crate::support::{divided, exact, octahedron, sheet, within};
@@ -68,8 +70,8 @@ impl Scheme for Liar {
         }
     }
 
-    fn loop_family(&self) -> Option<LoopFamily> {
-        self.says
+    fn family(&self) -> Option<Family> {
+        self.says.map(Family::Loop)
     }
 }
 

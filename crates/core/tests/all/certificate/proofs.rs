@@ -2,7 +2,7 @@
 
 use limitmesh::Mesh;
 use limitmesh::refine::{Exact, Origin, exact};
-use limitmesh::scheme::{Loop, Scheme};
+use limitmesh::scheme::{Family, Loop, Scheme};
 use limitmesh_check::mesh::Mesh as Plain;
 use limitmesh_check::proof::Proof as Claim;
 use limitmesh_check::tiling::Refusal;
@@ -26,7 +26,7 @@ pub(crate) fn refused(
     within: f64,
 ) -> Result<Option<Vec<Refusal>>, String> {
     // Triangles that came of collapses are over several control faces.
-    let (Some(scheme), false) = (scheme.loop_family(), result.is_collapsed()) else {
+    let (Some(Family::Loop(scheme)), false) = (scheme.family(), result.is_collapsed()) else {
         return Ok(None);
     };
     let proof = Proof {

@@ -312,7 +312,10 @@ fn masks_that_break_the_contract_are_named() {
             scheme,
             shape: met,
             what,
-        } = &error;
+        } = &error
+        else {
+            panic!("{name}: {error}");
+        };
         assert!(
             scheme == name && *met == shape && what.contains(expected),
             "{name}: {error}"

@@ -39,7 +39,10 @@ impl Source for FileSource {
         let kept = Normals::kept(self.format);
         let (build, channels) = (&arguments.build, &arguments.channels);
         let read = input::read_for(arguments.input(), build, channels, progress)?;
-        let input = input::connect(read, build, kept, progress)?;
+        let mut input = input::connect(read, build, kept, progress)?;
+        if arguments.has_quads() {
+            input = input.with_quads()?;
+        }
         item_of(input, arguments, self.format, progress).map(Some)
     }
 

@@ -1,0 +1,199 @@
+//! Limit positions and normals of the vertices of a mesh of quads.
+
+use super::sides::{SidedNormals, area_weighted_normal};
+use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, of_half, previous};
+use crate::catmull_clark::ring::{RingLimits, RingSide};
+use crate::catmull_clark::step::{slot, summed};
+use crate::index::{HalfEdgeId, VertexId};
+use crate::mesh::{Mesh, Sharpness};
+use crate::parallel::{self, Poll};
+use crate::progress::Cancelled;
+use crate::vector::{DVec3, unit_or_zero, vector};
+
+/// Vertices between two calls of an observer, in each thread.
+const POLLED: usize = 1 << 10;
+
+/// Two tangents whose lengths and sine are above this part of what they are sums of span a plane whatever rounding does.
+const CLEAR: f64 = 1e-12;
+
+/// The limits of a mesh of quads.
+pub(crate) struct QuadLimits<'m> {
+    quads: MeshQuads<'m>,
+}
+
+/// The ring of a vertex, with its limits and its points.
+struct Ring {
+    limits: RingLimits,
+    /// Half-edges that leave the vertex, one a quad.
+    spokes: Vec<u32>,
+    edges: usize,
+    points: Vec<DVec3>,
+}
+
+impl<'m> QuadLimits<'m> {
+    pub(crate) fn of(mesh: &'m Mesh, sharpness: &'m Sharpness<'m>) -> Self {
+        Self {
+            quads: MeshQuads { mesh, sharpness },
+        }
+    }
+
+    fn ring(&self, vertex: VertexId) -> Ring {
+        let first = self.quads.outgoing(vertex);
+        let (ring, points) = self.quads.ring(first);
+        let at = |v: u32| vector(self.quads.mesh.positions()[v as usize]);
+        Ring {
+            limits: RingLimits::of(&ring),
+            spokes: self.quads.around(self.quads.first(first)).collect(),
+            edges: ring.spokes.len(),
+            points: points.into_iter().map(at).collect(),
+        }
+    }
+
+    /// The weights of a vertex's limit position.
+    pub(crate) fn row(&self, vertex: VertexId) -> Vec<(u32, f64)> {
+        let (ring, points) = self.quads.ring(self.quads.outgoing(vertex));
+        let weights = RingLimits::of(&ring).position;
+        summed(points.into_iter().zip(weights).collect())
+    }
+
+    /// The limit position of a vertex.
+    pub(crate) fn position(&self, vertex: VertexId) -> [f64; 3] {
+        let ring = self.ring(vertex);
+        ring.sum(&ring.limits.position).to_array()
+    }
+
+    /// Those of all.
+    pub(crate) fn positions(&self, poll: &mut Poll<'_>) -> Result<Vec<[f64; 3]>, Cancelled> {
+        let count = self.quads.mesh.vertex_count();
+        let found = parallel::pieces_polled(count, POLLED, poll, |block| {
+            let positions = block.map(|v| self.position(VertexId(v as u32)));
+            positions.collect::<Vec<_>>()
+        })?;
+        Ok(found.concat())
+    }
+
+    /// The limit normal at the vertex that a half-edge of a half leaves, on that face's side.
+    pub(crate) fn normal_at(&self, corner: HalfEdgeId) -> [f64; 3] {
+        let ring = self.ring(self.quads.mesh.topology().origin(corner));
+        // A diagonal leaves in the middle of a quad, whose next edge there comes after it.
+        let spoke = of_half(corner).unwrap_or_else(|| {
+            let before = of_half(corner.previous()).map(crate::catmull_clark::quads::next);
+            before.unwrap_or(0)
+        });
+        let side = ring.limits.side_of(slot(&self.quads, spoke), ring.edges);
+        ring.normal(side, true).to_array()
+    }
+
+    /// Two unit vectors that span the tangent plane at the vertex that a half-edge leaves, on its side, the first one along its edge
+    /// where nothing is sharp; `None` without one.
+    pub(crate) fn tangents_at(&self, corner: HalfEdgeId) -> Option<[[f64; 3]; 2]> {
+        let topology = self.quads.mesh.topology();
+        let normal = vector(self.normal_at(corner));
+        let [from, to] = topology.ends(corner).map(|v| vector(self.position(v)));
+        let along = to - from;
+        let first = unit_or_zero(along - along.dot(normal) * normal);
+        let second = normal.cross(first);
+        (second != DVec3::ZERO).then(|| [first.to_array(), second.to_array()])
+    }
+
+    /// The normal of one vertex, the mean of its sides'.
+    pub(crate) fn normal(&self, vertex: VertexId) -> [f64; 3] {
+        self.normals_of(vertex, true).0.to_array()
+    }
+
+    /// The normals of all vertices by side, zero where the surface has no tangent plane.
+    pub(crate) fn plane_normals(&self, poll: &mut Poll<'_>) -> Result<SidedNormals, Cancelled> {
+        self.all_normals(false, poll)
+    }
+
+    /// The normals of all vertices, by side.
+    pub(crate) fn sided_normals(&self, poll: &mut Poll<'_>) -> Result<SidedNormals, Cancelled> {
+        self.all_normals(true, poll)
+    }
+
+    fn all_normals(&self, has_means: bool, poll: &mut Poll<'_>) -> Result<SidedNormals, Cancelled> {
+        let count = self.quads.mesh.vertex_count();
+        let found = parallel::pieces_polled(count, POLLED, poll, |block| {
+            let normals = block.map(|v| self.normals_of(VertexId(v as u32), has_means));
+            normals.collect::<Vec<_>>()
+        })?;
+        let found = found.concat();
+        let by_vertex = found.iter().map(|(normal, _)| normal.to_array()).collect();
+        let mut normals = SidedNormals::new(by_vertex);
+        for (vertex, (_, sides)) in (0..).map(VertexId).zip(found) {
+            for (corners, normal) in sides {
+                normals.add_side(vertex, corners.into_iter(), normal.to_array());
+            }
+        }
+        Ok(normals.finished())
+    }
+
+    /// The mean normal of a vertex, and those of its sides by the corners of halves there, if there are several.
+    fn normals_of(
+        &self,
+        vertex: VertexId,
+        has_means: bool,
+    ) -> (DVec3, Vec<(Vec<HalfEdgeId>, DVec3)>) {
+        let ring = self.ring(vertex);
+        if let [side] = &ring.limits.sides[..] {
+            return (ring.normal(side, has_means), Vec::new());
+        }
+        let mut sum = DVec3::ZERO;
+        let sides = ring.limits.sides.iter().map(|side| {
+            let normal = ring.normal(side, has_means);
+            sum += normal;
+            let quads = (0..side.quads).map(|i| ring.spokes[(side.first + i) % ring.spokes.len()]);
+            let corners = quads.flat_map(|h| self.corners_at(h));
+            (corners.collect(), normal)
+        });
+        let sides = sides.collect();
+        (unit_or_zero(sum), sides)
+    }
+
+    /// The corners of halves at the vertex that a quad's half-edge leaves: two where the diagonal ends there.
+    fn corners_at(&self, h: u32) -> impl Iterator<Item = HalfEdgeId> {
+        let own = in_half(h);
+        // The half on the other side has the edge before.
+        let other = in_half(previous(h)).next();
+        let differs = own.face() != other.face();
+        core::iter::once(own).chain(differs.then_some(other))
+    }
+}
+
+impl Ring {
+    fn sum(&self, weights: &[f64]) -> DVec3 {
+        weights.iter().zip(&self.points).map(|(&w, &p)| w * p).sum()
+    }
+
+    /// The unit normal of a side. Where the surface has no tangent plane, the mean of its quads' if that is asked for, and zero where
+    /// that vanishes.
+    fn normal(&self, side: &RingSide, has_means: bool) -> DVec3 {
+        let plane = side.tangents.as_ref().and_then(|tangents| {
+            let [first, second] = tangents.each_ref().map(|row| {
+                let size = |(&w, p): (&f64, &DVec3)| (w * (p - self.points[0])).abs().max_element();
+                let greatest = row.iter().zip(&self.points).map(size).fold(0.0, f64::max);
+                let differences = row
+                    .iter()
+                    .zip(&self.points)
+                    .map(|(&w, p)| w * (p - self.points[0]));
+                let tangent = differences.sum::<DVec3>();
+                let is_clear = tangent.abs().max_element() > CLEAR * greatest;
+                is_clear.then(|| unit_or_zero(tangent))
+            });
+            let normal = first?.cross(second?);
+            (normal.length() > CLEAR).then(|| unit_or_zero(normal))
+        });
+        if !has_means {
+            return plane.unwrap_or(DVec3::ZERO);
+        }
+        plane.unwrap_or_else(|| {
+            let quads = self.points.len() - 1 - self.edges;
+            let edge = |slot: usize| self.points[1 + slot % self.edges] - self.points[0];
+            let faces = (0..side.quads).map(|i| {
+                let slot = (side.first + i) % quads.max(1);
+                [edge(slot), edge(slot + 1)]
+            });
+            area_weighted_normal(&faces.collect::<Vec<_>>())
+        })
+    }
+}

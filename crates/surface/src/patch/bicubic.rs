@@ -1,0 +1,253 @@
+//! Regular pieces: a quad whose corners have four quads each, or lie on straight creases or at square corners, carries a bicubic
+//! polynomial. Points beyond creases are mirror images.
+//!
+//! Takes the sixteen control points around a quad; gives points, normals and nets of triangular parts of the quad. The net of a part is
+//! of degree six. Its points are means of blossoms: of the six arguments that a point has, three at a time are taken for u and the
+//! others for v. All weights are at least 0 and sum to 1, as the arguments lie in the quad.
+
+use super::sextic::SexticTriangle;
+use super::{LimitPoint, ParamTriangle};
+use crate::vector::{Blend, DVec3, unit_or_zero};
+
+/// The control points of a bicubic piece, by row (v) and column (u); the quad's corners are in the middle. `part` is the triangle of
+/// the quad's domain that the piece covers.
+#[derive(Clone, Debug)]
+pub struct Bicubic {
+    pub(crate) points: [[DVec3; 4]; 4],
+    pub part: ParamTriangle,
+}
+
+/// Weights of four points in a row.
+type Weights = [f64; 4];
+
+/// The weights of the blossom of a uniform cubic spline on its middle segment, for three arguments in any order.
+fn blossom([a, b, c]: [f64; 3]) -> Weights {
+    // Between the knots −1, 0, 1 and 2: first by a, then by b, then by c.
+    let first = [
+        [(1.0 - a) / 3.0, (a + 2.0) / 3.0],
+        [(2.0 - a) / 3.0, (a + 1.0) / 3.0],
+        [(3.0 - a) / 3.0, a / 3.0],
+    ];
+    let second = [
+        [(1.0 - b) / 2.0, (b + 1.0) / 2.0],
+        [(2.0 - b) / 2.0, b / 2.0],
+    ];
+    let third = [1.0 - c, c];
+    let mut weights = [0.0; 4];
+    for (i, share) in third.into_iter().enumerate() {
+        for (j, part) in second[i].into_iter().enumerate() {
+            for (k, own) in first[i + j].into_iter().enumerate() {
+                weights[i + j + k] += share * part * own;
+            }
+        }
+    }
+    weights
+}
+
+/// The derivative of a uniform cubic spline on its middle segment.
+fn derivative(t: f64) -> Weights {
+    let s = 1.0 - t;
+    let b = [0.5 * s * s, 0.5 + t * s, 0.5 * t * t];
+    [-b[0], b[0] - b[1], b[1] - b[2], b[2]]
+}
+
+/// The multisets of three of the numbers 0 to 2, by how often each occurs.
+const TRIPLES: [[usize; 3]; 10] = [
+    [3, 0, 0],
+    [2, 1, 0],
+    [1, 2, 0],
+    [0, 3, 0],
+    [2, 0, 1],
+    [1, 1, 1],
+    [0, 2, 1],
+    [1, 0, 2],
+    [0, 1, 2],
+    [0, 0, 3],
+];
+
+/// The place of a multiset among [`TRIPLES`].
+fn triple([_, second, third]: [usize; 3]) -> usize {
+    [0, 4, 7, 9][third] + second
+}
+
+/// The number of ways to take some of a number of things.
+const CHOICES: [[f64; 4]; 7] = [
+    [1.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0],
+    [1.0, 4.0, 6.0, 4.0],
+    [1.0, 5.0, 10.0, 10.0],
+    [1.0, 6.0, 15.0, 20.0],
+];
+
+impl Bicubic {
+    /// The weights of a sum over all points.
+    fn sum(&self, u: Weights, v: Weights) -> DVec3 {
+        let row = |row: &[DVec3; 4]| (0..4).map(|i| u[i] * row[i]).sum::<DVec3>();
+        (0..4).map(|j| v[j] * row(&self.points[j])).sum()
+    }
+
+    /// The point at a place of the quad.
+    pub fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
+        self.sum(blossom([u; 3]), blossom([v; 3]))
+    }
+
+    /// The derivatives along both edges of the quad.
+    pub fn derivatives(&self, [u, v]: [f64; 2]) -> [DVec3; 2] {
+        [
+            self.sum(derivative(u), blossom([v; 3])),
+            self.sum(blossom([u; 3]), derivative(v)),
+        ]
+    }
+
+    /// The point at a place of the quad, and the unit normal there.
+    pub fn limit(&self, at: [f64; 2]) -> LimitPoint {
+        let [along, across] = self.derivatives(at);
+        LimitPoint {
+            position: self.point(at),
+            normal: unit_or_zero(along.cross(across)),
+        }
+    }
+
+    /// The control point of a corner of the half that the quad's first part is.
+    pub(crate) fn control_point(&self, corner: usize) -> DVec3 {
+        self.points[[1, 1, 2][corner]][[1, 2, 1][corner]]
+    }
+
+    /// Moves the piece so that one of its points is at the origin, and gives where that was.
+    pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
+        let from = self.points[1][1];
+        let all = self.points.as_flattened_mut().iter_mut();
+        all.for_each(|point| *point -= from);
+        from
+    }
+
+    /// The corners of its part.
+    pub fn corners(&self) -> [LimitPoint; 3] {
+        self.part.corners().map(|at| self.limit(at))
+    }
+
+    /// The limits in the middles of the edges of its part.
+    pub fn middle(&self, edge: usize) -> LimitPoint {
+        self.limit(self.part.along(edge, 0.5))
+    }
+
+    /// A part of its part.
+    pub fn child(&self, child: usize) -> Self {
+        Self {
+            points: self.points,
+            part: self.part.child(child),
+        }
+    }
+
+    /// The net of a triangle in the quad's domain.
+    pub fn net<V: Blend>(
+        &self,
+        places: [[f64; 2]; 3],
+        seen: impl Fn(DVec3) -> V,
+    ) -> SexticTriangle<V> {
+        let points = self.points.map(|row| row.map(&seen));
+        let weights = |axis: usize| {
+            TRIPLES.map(|counts| {
+                let mut arguments = [0.0; 3];
+                let all = (0..3).flat_map(|i| core::iter::repeat_n(places[i][axis], counts[i]));
+                arguments
+                    .iter_mut()
+                    .zip(all)
+                    .for_each(|(to, argument)| *to = argument);
+                blossom(arguments)
+            })
+        };
+        let (by_u, by_v) = (weights(0), weights(1));
+        let along =
+            |u: &Weights| points.map(|[a, b, c, d]| a * u[0] + b * u[1] + (c * u[2] + d * u[3]));
+        let rows = by_u.each_ref().map(along);
+        let blossom = |u: usize, v: usize| {
+            let ([a, b, c, d], v) = (rows[u], by_v[v]);
+            a * v[0] + b * v[1] + (c * v[2] + d * v[3])
+        };
+        SexticTriangle::by(|counts| {
+            let mut sum = V::default();
+            for (number, taken) in TRIPLES.iter().enumerate() {
+                let Some(left) = less(counts, *taken) else {
+                    continue;
+                };
+                let ways: f64 = (0..3).map(|i| CHOICES[counts[i]][taken[i]]).product();
+                sum = sum + blossom(number, triple(left)) * (ways / 20.0);
+            }
+            sum
+        })
+    }
+}
+
+fn less(all: [usize; 3], taken: [usize; 3]) -> Option<[usize; 3]> {
+    let [a, b, c] = [0, 1, 2].map(|i| all[i].checked_sub(taken[i]));
+    Some([a?, b?, c?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arbitrary(part: ParamTriangle) -> Bicubic {
+        let at = |i: usize| {
+            let t = i as f64;
+            DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin())
+        };
+        Bicubic {
+            points: [0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| at(4 * j + i))),
+            part,
+        }
+    }
+
+    /// Against the spline's own polynomials.
+    #[test]
+    fn points_are_those_of_the_spline() {
+        let piece = arbitrary(ParamTriangle::WHOLE);
+        let basis = |t: f64| {
+            let s = 1.0 - t;
+            [
+                s * s * s / 6.0,
+                (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
+                (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0,
+                t * t * t / 6.0,
+            ]
+        };
+        for (u, v) in [(0.0, 0.0), (0.3, 0.8), (1.0, 0.5)] {
+            assert!(piece.point([u, v]).distance(piece.sum(basis(u), basis(v))) < 1e-14);
+            let step = 1e-5;
+            let near = |du: f64, dv: f64| piece.point([u + du, v + dv]);
+            let [along, across] = piece.derivatives([u, v]);
+            assert!(along.distance((near(step, 0.0) - near(-step, 0.0)) / (2.0 * step)) < 1e-9);
+            assert!(across.distance((near(0.0, step) - near(0.0, -step)) / (2.0 * step)) < 1e-9);
+        }
+    }
+
+    /// Nets of any triangles in the quad give its points, by convex combinations.
+    #[test]
+    fn nets_are_nets_of_the_piece() {
+        for places in [
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            [[1.0, 1.0], [0.0, 1.0], [1.0, 0.0]],
+            [[0.25, 0.5], [0.75, 0.5], [0.5, 0.625]],
+        ] {
+            let piece = arbitrary(ParamTriangle::WHOLE);
+            let net = piece.net(places, |point| point);
+            for weights in [[1.0, 0.0, 0.0], [0.2, 0.5, 0.3], [0.0, 0.4, 0.6]] {
+                let at = [0, 1].map(|axis| (0..3).map(|i| weights[i] * places[i][axis]).sum());
+                assert!(
+                    net.point(weights).distance(piece.point(at)) < 1e-13,
+                    "{places:?}"
+                );
+            }
+            for i in 0..16 {
+                let mut own = piece.clone();
+                own.points = [[DVec3::ZERO; 4]; 4];
+                own.points[i / 4][i % 4] = DVec3::X;
+                let net = own.net(places, |point| point);
+                assert!(net.0.iter().all(|point| point.x >= 0.0), "{i}");
+            }
+        }
+    }
+}
