@@ -4,12 +4,13 @@ use limitmesh::carry::borders;
 use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed,
 };
+use limitmesh::limit::suits;
 use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
 use limitmesh::refine::ExactOptions;
 use limitmesh::scheme::Scheme;
-use limitmesh::{Mesh, PolygonSoup};
+use limitmesh::{Mesh, PolygonSoup, QuadControl};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -71,6 +72,19 @@ impl Recipe {
             vertices[input as usize].get_or_insert(own);
         }
         drop(soup);
+        let quads = match suits(self.scheme, &mesh) {
+            Err(_) => Some(QuadControl::of(&mesh, &trace.faces)?),
+            Ok(()) => None,
+        };
+        let (mesh, trace, channels) = match quads {
+            Some(quads) => {
+                let channels = channels.iter().map(|channel| quads.channel(channel));
+                let channels: Vec<Channel> = channels.collect();
+                let trace = quads.trace(&trace);
+                (quads.mesh, trace, channels)
+            }
+            None => (mesh, trace, channels),
+        };
         let mesh = mesh.with_boundary(self.boundary);
         let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
         let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {

@@ -4,7 +4,7 @@ use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::front::MOST_LEVELS;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
 use limitmesh::refine::{AngleGoal, ExactOptions, Finish};
-use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh::scheme::{CatmullClark, Loop, LoopWarren, ModifiedButterfly, Scheme};
 use pyo3::prelude::*;
 
 use crate::errors::{Failure, OptionError};
@@ -70,9 +70,11 @@ impl ControlOptions {
             "loop" => Ok(&Loop),
             "loop-warren" => Ok(&LoopWarren),
             "butterfly" => Ok(&ModifiedButterfly),
+            "catmull-clark" => Ok(&CatmullClark),
             other => {
-                let what =
-                    format!("scheme is '{other}', expected 'loop', 'loop-warren' or 'butterfly'");
+                let what = format!(
+                    "scheme is '{other}', expected 'loop', 'loop-warren', 'butterfly' or 'catmull-clark'"
+                );
                 Err(OptionError::new_err(what))
             }
         }

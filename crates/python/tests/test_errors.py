@@ -74,7 +74,7 @@ def test_meshes_that_are_none(vertices, faces, words):
         ({"creases": [[0, 1.5]]}, r"creases\[0\] names vertex 1.5"),
         ({"corners": [7]}, r"corners\[0\] names vertex 7"),
         ({"boundary": "rough"}, "boundary is 'rough'"),
-        ({"scheme": "catmull-clark"}, "scheme is 'catmull-clark'"),
+        ({"scheme": "doo-sabin"}, "scheme is 'doo-sabin'"),
         ({"method": "magic"}, "method is 'magic'"),
         ({"method": "uniform", "tolerance": 1}, "tolerance is a goal of method='exact'"),
         ({"levels": 3}, "levels are steps"),

@@ -183,3 +183,19 @@ def test_bad_meshes_name_the_row(octahedron):
             limitmesh.refine(vertices, faces, **options)
         with pytest.raises(limitmesh.MeshError, match=r"faces\[0\] names vertex 9"):
             limitmesh.refine(vertices, [[0, 2, 9]], **options)
+
+
+def test_catmull_clark_is_for_polygons():
+    vertices = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    found = limitmesh.refine(vertices, quads, tolerance=0.01, scheme="catmull-clark")
+    assert found.error.certified and found.error.upper <= 0.01
+    # The middles of the cube's faces go to 68/81, its corners half of the way to the centre.
+    sizes = np.abs(found.vertices).max(axis=1)
+    assert abs(sizes.max() - 68 / 81) < 1e-12 and abs(np.linalg.norm(found.vertices[7]) - np.sqrt(0.75)) < 1e-12
+    mixed = quads[:5] + [[1, 3, 7], [1, 7, 5]]
+    assert limitmesh.refine(vertices, mixed, tolerance=0.01, scheme="catmull-clark").error.certified
+    measured = limitmesh.measure((found.vertices, found.faces), limit_of=(vertices, quads), scheme="catmull-clark")
+    assert 0.005 < measured.lower <= 0.011
+    with pytest.raises(limitmesh.OptionError, match="triangles"):
+        limitmesh.refine(vertices, quads, within=0.1, scheme="catmull-clark")

@@ -22,8 +22,8 @@ Count: TypeAlias = int | str
 """A whole number; as a text it may be written "20k", "1.5M", "2e4" or "20,000"."""
 
 Boundary: TypeAlias = Literal["smooth", "corners", "fixed"]
-Scheme: TypeAlias = Literal["loop", "loop-warren", "butterfly"]
-RefiningScheme: TypeAlias = Literal["loop", "loop-warren", "butterfly", "sqrt3"]
+Scheme: TypeAlias = Literal["loop", "loop-warren", "butterfly", "catmull-clark"]
+RefiningScheme: TypeAlias = Literal["loop", "loop-warren", "butterfly", "catmull-clark", "sqrt3"]
 Method: TypeAlias = Literal["exact", "limit-normal", "amresh", "uniform", "planarity", "vertex-error"]
 
 
@@ -286,7 +286,7 @@ def control_of(
     """How the control mesh comes about."""
     for name, value, expected in (
         ("boundary", boundary, ("smooth", "corners", "fixed")),
-        ("scheme", scheme, ("loop", "loop-warren", "butterfly")),
+        ("scheme", scheme, ("loop", "loop-warren", "butterfly", "catmull-clark")),
         ("concave_corners", concave_corners, (None, "divided", "as-tagged")),
     ):
         one_of(value, name, expected)
@@ -381,13 +381,15 @@ def of_refinement(
     **goals: Any,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """How the control mesh comes about, and the goals."""
-    one_of(scheme, "scheme", ("loop", "loop-warren", "butterfly", "sqrt3"))
+    one_of(scheme, "scheme", ("loop", "loop-warren", "butterfly", "catmull-clark", "sqrt3"))
     sqrt3 = scheme == "sqrt3"
     if sqrt3 and interpolate not in (False, None):
         raise OptionError("interpolate does not go with scheme='sqrt3'; it is for the schemes that divide triangles in four")
     is_near = goals.get("within") is not None
     if is_near and interpolate not in (False, None):
         raise OptionError("interpolate does not go with within, which leads the surface as near to the vertices as it has to be")
+    if scheme == "catmull-clark" and (is_near or goals.get("optimize")):
+        raise OptionError("within and optimize do not go with scheme='catmull-clark'; they are for triangles")
     if is_near and scheme == "butterfly":
         raise OptionError("within smooths by moving control points; scheme='butterfly' passes through them")
     control = control_of(

@@ -94,8 +94,9 @@ def refine(
         Corners of 180° and more between sharp edges: "divided", so that flat faces stay flat, or "as-tagged". Default: divided
         with ``crease_angle``, with ``creases="auto"`` and with boundaries that are not smooth.
     scheme
-        "loop", "loop-warren", "butterfly" or "sqrt3"; distances are proven for the first two, and estimated for the others. The last
-        divides triangles by their centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
+        "loop", "loop-warren", "butterfly", "catmull-clark" or "sqrt3"; distances are estimated for "butterfly" and "sqrt3", and proven for
+        the others. "catmull-clark" is for quads: other polygons are divided into quads first. "sqrt3" divides triangles by their
+        centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
     method
         "exact"; or, with ``levels`` steps (default 3), "limit-normal" (the paper's) or "amresh" with ``angle`` (default 10), or
         "uniform", whose vertices are on the limit surface but for "sqrt3". To be compared with, over restricted quadtrees: "planarity", to ``angle`` (default 10) between triangles and limit
