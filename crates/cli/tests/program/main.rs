@@ -13,6 +13,7 @@ mod asset_morphs;
 mod asset_skins;
 mod asset_tangents;
 mod batch;
+mod catmull_clark;
 mod channel_goals;
 mod channels;
 mod compare;

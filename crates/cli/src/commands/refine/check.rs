@@ -62,15 +62,14 @@ fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 14] {
     let has_limit_normals = matches!(method, Method::Exact | Method::LimitNormal);
     let is_whole = has_angle || arguments.has_cameras() || exact.balance;
     let by_quads = arguments.has_quads();
-    let is_led = arguments.interpolation.given().is_some();
     [
         (
             by_quads && !matches!(method, Method::Exact | Method::Uniform),
             "--scheme catmull-clark is for --method exact and uniform; the others are for triangles",
         ),
         (
-            by_quads && (is_led || exact.within.is_some() || exact.optimize),
-            "--scheme catmull-clark does not go with --interpolate, --within and --optimize, which are for triangles",
+            by_quads && (exact.within.is_some() || exact.optimize),
+            "--scheme catmull-clark does not go with --within and --optimize, which are for triangles",
         ),
         (
             viewers == 0 && arguments.dilatation.is_some(),
