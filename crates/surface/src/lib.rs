@@ -47,6 +47,7 @@ pub mod patch;
 pub mod proximity;
 #[doc(hidden)]
 pub mod rays;
+mod row;
 pub mod scheme;
 
 pub use catmull_clark::QuadControl;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Junctions, MeshError, Topology};
 use crate::index::VertexId;
-use crate::ring::INFINITELY_SHARP;
+use crate::ring::{INFINITELY_SHARP, decremented};
 
 /// The tag of a sharp edge.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -42,6 +42,31 @@ impl Tags {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.creases.is_empty() && self.corners.is_empty()
+    }
+
+    /// The tags after a step of refinement: less sharp by one, and on both halves of their edges. `middle` gives the new vertex between
+    /// two; creases without one are left out.
+    #[doc(hidden)]
+    pub fn refined(&self, middle: impl Fn(VertexId, VertexId) -> Option<u32>) -> Self {
+        let left = |sharpness: f64| Some(decremented(sharpness)).filter(|&left| left > 0.0);
+        let halves = |tag: &CreaseTag| {
+            let [a, b] = tag.vertices;
+            let (sharpness, middle) = (left(tag.sharpness)?, middle(VertexId(a), VertexId(b))?);
+            Some([[a, middle], [middle, b]].map(|vertices| CreaseTag {
+                vertices,
+                sharpness,
+            }))
+        };
+        let corner = |tag: &CornerTag| {
+            Some(CornerTag {
+                sharpness: left(tag.sharpness)?,
+                ..*tag
+            })
+        };
+        Self {
+            creases: self.creases.iter().filter_map(halves).flatten().collect(),
+            corners: self.corners.iter().filter_map(corner).collect(),
+        }
     }
 
     /// Whether `vertex` is an infinitely sharp corner.

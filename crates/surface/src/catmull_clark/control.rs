@@ -7,12 +7,13 @@
 use std::collections::{HashMap, HashSet};
 
 use super::quads::{halves, in_half};
+use super::ring::vertex_weights;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{
-    BuildOptions, Channel, CornerTag, CreaseTag, Diagnosis, Domain, Groups, Junctions, Mesh,
-    MeshError, NONE, PolygonSoup, Semantic, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
+    BuildOptions, Channel, Diagnosis, Domain, Groups, Junctions, Mesh, MeshError, NONE,
+    PolygonSoup, Semantic, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
 };
-use crate::ring::{SharpRing, VertexRule, decremented};
+use crate::ring::SharpRing;
 use crate::vector::{DVec3, vector};
 
 /// A control mesh of quads for [`crate::scheme::CatmullClark`], made of polygons.
@@ -312,7 +313,7 @@ impl Polygons {
                 (twins[first as usize], twins[second as usize]) = (other_second, other_first);
             }
         }
-        let tags = refined_tags(mesh, |a, b| {
+        let tags = mesh.tags().refined(|a, b| {
             let h = topology.edge_between(a, b)?;
             on_sides.get(&h).copied()
         });
@@ -360,30 +361,24 @@ impl Polygons {
             neighbours.extend(last.map(|v| at(mesh, v)));
             spokes.push(f64::INFINITY);
         }
-        let faces: Vec<DVec3> = outgoing.iter().map(|&h| self.centroid(mesh, h)).collect();
+        // The corners opposite the vertex in quads with the same centroids.
+        let opposite = (0..outgoing.len()).map(|slot| {
+            let ends = neighbours[slot] + neighbours[(slot + 1) % neighbours.len()];
+            4.0 * self.centroid(mesh, outgoing[slot]) - at(mesh, vertex) - ends
+        });
+        let points = [at(mesh, vertex)]
+            .into_iter()
+            .chain(neighbours.iter().copied());
+        let points = points.chain(opposite);
         let ring = SharpRing {
             open,
             vertex: sharpness.vertex(vertex),
             spokes,
         };
-        let own = at(mesh, vertex);
-        let by = |ring: &SharpRing| match ring.rule() {
-            VertexRule::Smooth | VertexRule::Dart => {
-                let n = neighbours.len() as f64;
-                let mean = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len() as f64;
-                ((n - 2.0) * own + mean(&neighbours) + mean(&faces)) / n
-            }
-            VertexRule::Crease => {
-                let sharp = (0..neighbours.len()).filter(|&slot| ring.is_sharp(slot));
-                0.75 * own + 0.125 * sharp.map(|slot| neighbours[slot]).sum::<DVec3>()
-            }
-            VertexRule::Corner => own,
-        };
-        let now = ring.present_weight();
-        match now < 1.0 {
-            true => now * by(&ring) + (1.0 - now) * by(&ring.refined()),
-            false => by(&ring),
-        }
+        points
+            .zip(vertex_weights(&ring))
+            .map(|(point, weight)| weight * point)
+            .sum()
     }
 }
 
@@ -466,28 +461,6 @@ fn assembled(
     let outgoing = outgoing_half_edges(&triangles, &twins, positions.len());
     let topology = Topology::from_parts(triangles, twins, outgoing).with_quads()?;
     Ok(Mesh::from_parts(topology, positions, tags, junctions))
-}
-
-/// The tags after a step, given the new vertex between two.
-fn refined_tags(mesh: &Mesh, between: impl Fn(VertexId, VertexId) -> Option<u32>) -> Tags {
-    let mut tags = Tags::default();
-    for tag in &mesh.tags().creases {
-        let [a, b] = tag.vertices;
-        let sharpness = decremented(tag.sharpness);
-        if let Some(middle) = between(VertexId(a), VertexId(b)).filter(|_| sharpness > 0.0) {
-            let halves = [[a, middle], [middle, b]];
-            tags.creases.extend(halves.map(|vertices| CreaseTag {
-                vertices,
-                sharpness,
-            }));
-        }
-    }
-    let corners = mesh.tags().corners.iter().map(|tag| CornerTag {
-        sharpness: decremented(tag.sharpness),
-        ..*tag
-    });
-    tags.corners = corners.filter(|tag| tag.sharpness > 0.0).collect();
-    tags
 }
 
 /// The copies of vertices and edges after a step, given the parts of a half-edge and the new vertex on it.

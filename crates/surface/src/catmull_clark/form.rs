@@ -8,8 +8,9 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 use super::quads::{Connected, Quads, next, previous};
 use super::ring::RingLimits;
-use super::step::{Row, Source, slot, summed};
+use super::step::{Source, slot};
 use crate::ring::VertexRule;
+use crate::row::{Row, sum, summed};
 use crate::vector::DVec3;
 
 /// Forms that are kept at most.
@@ -152,38 +153,30 @@ impl Step {
     }
 }
 
-pub(crate) fn sum(row: &Row, points: &[DVec3]) -> DVec3 {
-    row.iter().fold(DVec3::ZERO, |sum, &(at, weight)| {
-        sum + weight * points[at as usize]
-    })
-}
-
-/// How the surface goes on at a corner of a quad, if it is regular there: whether the edges that lead to and from it are sharp.
-fn regular_corner(quads: &Quads, h: u32) -> Option<[bool; 2]> {
+/// Whether the surface is regular at a corner of a quad.
+fn is_regular_corner(quads: &Quads, h: u32) -> bool {
     let (ring, _) = quads.ring(h);
     if ring.semi_sharpness() > 0.0 {
-        return None;
+        return false;
     }
-    let is_sharp = [quads.edge(previous(h)) > 0.0, quads.edge(h) > 0.0];
     let edges = ring.spokes.len();
     let slot = slot(quads, h);
     let sector = ring.sectors().into_iter().find(|sector| {
         let place = (slot + edges - sector.first) % edges;
         place < sector.shape.faces() as usize
-    })?;
-    let is_regular = match (ring.rule(), sector.shape.valence) {
+    });
+    sector.is_some_and(|sector| match (ring.rule(), sector.shape.valence) {
         (VertexRule::Smooth, valence) => valence == 4,
         (VertexRule::Crease, valence) => valence == 3 && sector.shape.open,
         (VertexRule::Corner, valence) => valence == 2 && sector.shape.open,
         (VertexRule::Dart, _) => false,
-    };
-    is_regular.then_some(is_sharp)
+    })
 }
 
 /// The points of a regular quad.
 fn grid(quads: &Quads) -> Option<[[Row; 4]; 4]> {
-    for h in 0..4 {
-        regular_corner(quads, h)?;
+    if !(0..4).all(|h| is_regular_corner(quads, h)) {
+        return None;
     }
     // By corner: its own place, the steps along the edge from it, and across that edge out of the quad.
     let places: [[i32; 2]; 4] = [[1, 1], [2, 1], [2, 2], [1, 2]];

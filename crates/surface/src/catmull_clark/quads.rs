@@ -17,8 +17,6 @@ pub(crate) struct Quads {
     pub(crate) corners: Vec<[u32; 4]>,
     /// By half-edge, the other one along its edge, or [`NONE`].
     twins: Vec<u32>,
-    /// By vertex, a half-edge that leaves it; on a boundary the first one.
-    outgoing: Vec<u32>,
     /// The sharpness of edges by half-edge and of vertices, as bits; empty where all are smooth. Boundaries need none.
     sharp_edges: Vec<u64>,
     sharp_vertices: Vec<u64>,
@@ -40,6 +38,11 @@ pub(crate) fn previous(h: u32) -> u32 {
 pub(crate) fn of_half(h: HalfEdgeId) -> Option<u32> {
     let place = IN_HALVES.iter().position(|&at| at == h.0 % 6)?;
     Some(4 * (h.0 / 6) + place as u32)
+}
+
+/// The half-edge of the quad that begins at the vertex that a half-edge of one of its halves leaves.
+pub(crate) fn spoke(h: HalfEdgeId) -> u32 {
+    4 * (h.0 / 6) + [0, 1, 3, 2, 3, 1][h.0 as usize % 6]
 }
 
 /// The half-edge of a quad's half that runs along an edge of the quad.
@@ -143,10 +146,6 @@ pub(crate) trait Connected {
             .clone()
             .map(|h| self.twin(source(h)).and_then(place).unwrap_or(NONE))
             .collect();
-        let mut outgoing = vec![NONE; sources.len()];
-        for h in half_edges.clone().rev() {
-            outgoing[vertices[h as usize] as usize] = h;
-        }
         let is_corner = |vertex: u32| own.iter().any(|&h| self.origin(h) == vertex);
         let edge = |h: u32| {
             let ends = [source(h), next(source(h))].map(|h| self.origin(h));
@@ -166,7 +165,6 @@ pub(crate) trait Connected {
         let surroundings = Quads {
             corners: vertices.as_chunks::<4>().0.to_vec(),
             twins,
-            outgoing,
             sharp_edges: unless_smooth(sharp_edges),
             sharp_vertices: unless_smooth(sharp_vertices),
         };
@@ -236,12 +234,14 @@ impl Connected for Quads {
 
 impl Quads {
     pub(crate) fn vertex_count(&self) -> usize {
-        self.outgoing.len()
+        let greatest = self.corners.as_flattened().iter().max();
+        greatest.map_or(0, |&vertex| vertex as usize + 1)
     }
 
     /// A half-edge that leaves a vertex.
-    pub(crate) fn outgoing(&self, vertex: u32) -> u32 {
-        self.outgoing[vertex as usize]
+    pub(crate) fn outgoing(&self, vertex: u32) -> Option<u32> {
+        let mut corners = self.corners.as_flattened().iter();
+        Some(corners.position(|&corner| corner == vertex)? as u32)
     }
 
     /// The connectivity after a step, and the half-edges on whose edges its new vertices stand. After the old vertices come those on
@@ -275,24 +275,11 @@ impl Quads {
                 (twins[first as usize], twins[second as usize]) = (other_second, other_first);
             }
         }
-        let mut outgoing = vec![NONE; first_inside as usize + quads as usize];
-        for (h, &vertex) in corners.as_flattened().iter().enumerate().rev() {
-            outgoing[vertex as usize] = h as u32;
-        }
-        for (h, &vertex) in corners.as_flattened().iter().enumerate() {
-            if twins[h] == NONE {
-                outgoing[vertex as usize] = h as u32;
-            }
-        }
         let less = |bits: u64| decremented(f64::from_bits(bits)).to_bits();
-        let mut sharp_edges = vec![
-            0;
-            if self.sharp_edges.is_empty() {
-                0
-            } else {
-                twins.len()
-            }
-        ];
+        let mut sharp_edges = Vec::new();
+        if !self.sharp_edges.is_empty() {
+            sharp_edges.resize(twins.len(), 0);
+        }
         for (h, &bits) in (0..).zip(&self.sharp_edges) {
             parts(h)
                 .into_iter()
@@ -301,12 +288,11 @@ impl Quads {
         let mut sharp_vertices: Vec<u64> =
             self.sharp_vertices.iter().map(|&bits| less(bits)).collect();
         if !sharp_vertices.is_empty() {
-            sharp_vertices.resize(outgoing.len(), 0);
+            sharp_vertices.resize((first_inside + quads) as usize, 0);
         }
         let refined = Self {
             corners,
             twins,
-            outgoing,
             sharp_edges,
             sharp_vertices,
         };

@@ -4,9 +4,7 @@
 
 use super::quads::{Connected, Quads, next};
 use super::ring::vertex_weights;
-
-/// Points and the weights by which they are summed.
-pub(crate) type Row = Vec<(u32, f64)>;
+use crate::row::{Row, summed};
 
 /// Where a vertex of [`Quads::refined`] comes from.
 #[derive(Clone, Copy)]
@@ -34,7 +32,11 @@ impl Source {
     pub(crate) fn row(self, quads: &Quads) -> Row {
         match self {
             Self::Vertex(vertex) => {
-                let (ring, points) = quads.ring(quads.outgoing(vertex));
+                let Some(h) = quads.outgoing(vertex) else {
+                    debug_assert!(false, "each vertex has a quad");
+                    return Row::new();
+                };
+                let (ring, points) = quads.ring(h);
                 let weights = vertex_weights(&ring);
                 summed(points.into_iter().zip(weights).collect())
             }
@@ -63,21 +65,7 @@ fn edge_row(quads: &Quads, h: u32) -> Row {
     summed(ends.into_iter().chain(faces).collect())
 }
 
-/// A row that names each point once.
-pub(crate) fn summed(mut row: Row) -> Row {
-    row.sort_by_key(|&(point, _)| point);
-    row.dedup_by(|next, kept| {
-        let is_same = next.0 == kept.0;
-        if is_same {
-            kept.1 += next.1;
-        }
-        is_same
-    });
-    row.retain(|&(_, weight)| weight != 0.0);
-    row
-}
-
-/// The slot of a half-edge in the ring of its origin ([`Quads::ring`]).
+/// The slot of a half-edge in the ring of its origin that [`Connected::ring`] gives for it: 0 in a closed one.
 pub(crate) fn slot(quads: &impl Connected, h: u32) -> usize {
     let first = quads.first(h);
     quads.around(first).take_while(|&other| other != h).count()

@@ -14,10 +14,11 @@ use super::spacing::even;
 use super::sparse::{Sparse, greatest};
 use super::system::{Solution, Solver, System};
 use crate::index::VertexId;
-use crate::limit::{LimitRows, summed};
+use crate::limit::LimitRows;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, Watch};
+use crate::row::summed;
 use crate::vector::{DVec3, vector};
 use std::collections::{HashMap, HashSet};
 

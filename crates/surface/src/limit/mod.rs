@@ -117,7 +117,7 @@ mod vertex_stencils;
 pub use error::{LimitError, suits};
 pub use evaluate::Stencils;
 pub use neighbourhood::{difference_matrix, ring_matrix};
-pub(crate) use rows::{LimitRows, summed};
+pub(crate) use rows::LimitRows;
 pub use sharp::{SharpSide, SharpStencil};
 pub use sides::{SidedNormals, area_weighted_normal};
 pub use stencil::{LimitStencil, TangentPlane};

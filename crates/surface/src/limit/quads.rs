@@ -1,13 +1,17 @@
 //! Limit positions and normals of the vertices of a mesh of quads.
 
+use core::f64::consts::PI;
+
 use super::sides::{SidedNormals, area_weighted_normal};
-use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, of_half, previous};
+use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, of_half, previous, spoke};
 use crate::catmull_clark::ring::{RingLimits, RingSide};
-use crate::catmull_clark::step::{slot, summed};
+use crate::catmull_clark::step::slot;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
+use crate::ring::VertexRule;
+use crate::row::{Row, summed};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Vertices between two calls of an observer, in each thread.
@@ -27,6 +31,8 @@ struct Ring {
     /// Half-edges that leave the vertex, one a quad.
     spokes: Vec<u32>,
     edges: usize,
+    /// Whether nothing at it is sharp.
+    is_smooth: bool,
     points: Vec<DVec3>,
 }
 
@@ -38,19 +44,24 @@ impl<'m> QuadLimits<'m> {
     }
 
     fn ring(&self, vertex: VertexId) -> Ring {
-        let first = self.quads.outgoing(vertex);
+        self.ring_at(self.quads.outgoing(vertex))
+    }
+
+    /// The ring of the vertex that a half-edge leaves. A closed one begins with it.
+    fn ring_at(&self, first: u32) -> Ring {
         let (ring, points) = self.quads.ring(first);
         let at = |v: u32| vector(self.quads.mesh.positions()[v as usize]);
         Ring {
             limits: RingLimits::of(&ring),
             spokes: self.quads.around(self.quads.first(first)).collect(),
             edges: ring.spokes.len(),
+            is_smooth: ring.rule() == VertexRule::Smooth,
             points: points.into_iter().map(at).collect(),
         }
     }
 
     /// The weights of a vertex's limit position.
-    pub(crate) fn row(&self, vertex: VertexId) -> Vec<(u32, f64)> {
+    pub(crate) fn row(&self, vertex: VertexId) -> Row {
         let (ring, points) = self.quads.ring(self.quads.outgoing(vertex));
         let weights = RingLimits::of(&ring).position;
         summed(points.into_iter().zip(weights).collect())
@@ -74,26 +85,33 @@ impl<'m> QuadLimits<'m> {
 
     /// The limit normal at the vertex that a half-edge of a half leaves, on that face's side.
     pub(crate) fn normal_at(&self, corner: HalfEdgeId) -> [f64; 3] {
-        let ring = self.ring(self.quads.mesh.topology().origin(corner));
-        // A diagonal leaves in the middle of a quad, whose next edge there comes after it.
-        let spoke = of_half(corner).unwrap_or_else(|| {
-            let before = of_half(corner.previous()).map(crate::catmull_clark::quads::next);
-            before.unwrap_or(0)
-        });
+        let spoke = spoke(corner);
+        let ring = self.ring_at(spoke);
         let side = ring.limits.side_of(slot(&self.quads, spoke), ring.edges);
         ring.normal(side, true).to_array()
     }
 
-    /// Two unit vectors that span the tangent plane at the vertex that a half-edge leaves, on its side, the first one along its edge
-    /// where nothing is sharp; `None` without one.
+    /// Two unit vectors that span the tangent plane at the vertex that a half-edge leaves, on its side, the second to the left of the
+    /// first. Away from boundaries and sharp edges the first is the direction in which the surface leaves along the half-edge. `None`
+    /// without a tangent plane.
     pub(crate) fn tangents_at(&self, corner: HalfEdgeId) -> Option<[[f64; 3]; 2]> {
-        let topology = self.quads.mesh.topology();
-        let normal = vector(self.normal_at(corner));
-        let [from, to] = topology.ends(corner).map(|v| vector(self.position(v)));
-        let along = to - from;
-        let first = unit_or_zero(along - along.dot(normal) * normal);
-        let second = normal.cross(first);
-        (second != DVec3::ZERO).then(|| [first.to_array(), second.to_array()])
+        let spoke = spoke(corner);
+        let ring = self.ring_at(spoke);
+        let side = ring.limits.side_of(slot(&self.quads, spoke), ring.edges);
+        let [first, second] = ring.tangents(side)?;
+        plane_normal([first, second])?;
+        // Those of a smooth ring are along its first edge and across it. A diagonal leaves in the middle between two edges.
+        let turned = match ring.is_smooth && of_half(corner).is_none() {
+            true => {
+                let (sine, cosine) = (PI / ring.edges as f64).sin_cos();
+                [
+                    cosine * first + sine * second,
+                    cosine * second - sine * first,
+                ]
+            }
+            false => [first, second],
+        };
+        Some(turned.map(|tangent| unit_or_zero(tangent).to_array()))
     }
 
     /// The normal of one vertex, the mean of its sides'.
@@ -165,24 +183,22 @@ impl Ring {
         weights.iter().zip(&self.points).map(|(&w, &p)| w * p).sum()
     }
 
+    /// The tangents of a side, where rounding leaves them.
+    fn tangents(&self, side: &RingSide) -> Option<[DVec3; 2]> {
+        let [first, second] = side.tangents.as_ref()?.each_ref().map(|row| {
+            let terms = row.iter().zip(&self.points);
+            let terms = terms.map(|(&w, p)| w * (p - self.points[0]));
+            let sizes = terms.clone().map(|term| term.abs().max_element());
+            let (greatest, tangent) = (sizes.fold(0.0, f64::max), terms.sum::<DVec3>());
+            (tangent.abs().max_element() > CLEAR * greatest).then_some(tangent)
+        });
+        Some([first?, second?])
+    }
+
     /// The unit normal of a side. Where the surface has no tangent plane, the mean of its quads' if that is asked for, and zero where
     /// that vanishes.
     fn normal(&self, side: &RingSide, has_means: bool) -> DVec3 {
-        let plane = side.tangents.as_ref().and_then(|tangents| {
-            let [first, second] = tangents.each_ref().map(|row| {
-                let size = |(&w, p): (&f64, &DVec3)| (w * (p - self.points[0])).abs().max_element();
-                let greatest = row.iter().zip(&self.points).map(size).fold(0.0, f64::max);
-                let differences = row
-                    .iter()
-                    .zip(&self.points)
-                    .map(|(&w, p)| w * (p - self.points[0]));
-                let tangent = differences.sum::<DVec3>();
-                let is_clear = tangent.abs().max_element() > CLEAR * greatest;
-                is_clear.then(|| unit_or_zero(tangent))
-            });
-            let normal = first?.cross(second?);
-            (normal.length() > CLEAR).then(|| unit_or_zero(normal))
-        });
+        let plane = self.tangents(side).and_then(plane_normal);
         if !has_means {
             return plane.unwrap_or(DVec3::ZERO);
         }
@@ -196,4 +212,11 @@ impl Ring {
             area_weighted_normal(&faces.collect::<Vec<_>>())
         })
     }
+}
+
+/// The unit normal of the plane that two tangents span, where rounding leaves it.
+fn plane_normal(tangents: [DVec3; 2]) -> Option<DVec3> {
+    let [first, second] = tangents.map(unit_or_zero);
+    let normal = first.cross(second);
+    (normal.length() > CLEAR).then(|| unit_or_zero(normal))
 }

@@ -12,6 +12,7 @@ use crate::masks::Masks;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
+use crate::row::{Row, summed};
 use crate::scheme::Support;
 
 /// Vertices whose weights are found together.
@@ -73,11 +74,7 @@ impl LimitTable<'_> {
     }
 
     /// The weights that the limit position of one vertex has on the mesh's vertices.
-    pub(crate) fn position_row(
-        &self,
-        mesh: &Mesh,
-        vertex: VertexId,
-    ) -> Result<Vec<(u32, f64)>, LimitError> {
+    pub(crate) fn position_row(&self, mesh: &Mesh, vertex: VertexId) -> Result<Row, LimitError> {
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         Ok(self.row(mesh, vertex, stencil.position()))
     }
@@ -89,7 +86,7 @@ impl LimitTable<'_> {
         &self,
         mesh: &Mesh,
         corner: HalfEdgeId,
-    ) -> Result<[Vec<(u32, f64)>; 2], LimitError> {
+    ) -> Result<[Row; 2], LimitError> {
         let vertex = mesh.topology().origin(corner);
         let stencil = self.stencil_at(mesh, &Sharpness::of(mesh), vertex)?;
         let Some(side) = stencil.side_of(mesh, corner) else {
@@ -109,7 +106,7 @@ impl LimitTable<'_> {
         }))
     }
 
-    fn row(&self, mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Vec<(u32, f64)> {
+    fn row(&self, mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Row {
         match self.scheme().support() {
             _ if stays(weights) => vec![(vertex.0, 1.0)],
             Support::OneRing => one_ring_row(mesh, vertex, weights),
@@ -121,7 +118,7 @@ impl LimitTable<'_> {
     }
 }
 
-fn one_ring_row(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Vec<(u32, f64)> {
+fn one_ring_row(mesh: &Mesh, vertex: VertexId, weights: &[f64]) -> Row {
     let ring = mesh
         .topology()
         .ring(vertex)
@@ -136,8 +133,8 @@ fn two_ring_row(
     vertex: VertexId,
     weights: &[f64],
     refined: &RefinedWeights<'_>,
-) -> Vec<(u32, f64)> {
-    let mut row: Vec<(u32, f64)> = Vec::new();
+) -> Row {
+    let mut row: Row = Vec::new();
     let mut add = |weight: f64, point: Vec<(VertexId, f64)>| {
         row.extend(point.into_iter().map(|(v, share)| (v.0, weight * share)));
     };
@@ -146,19 +143,4 @@ fn two_ring_row(
         add(weights[i + 1], point)
     });
     summed(row)
-}
-
-/// A row in which each vertex occurs once, ascending.
-pub(crate) fn summed(mut row: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
-    // Stable, so that weights are always added in the order in which they came.
-    row.sort_by_key(|&(v, _)| v);
-    row.dedup_by(|next, sum| {
-        let same = next.0 == sum.0;
-        if same {
-            sum.1 += next.1;
-        }
-        same
-    });
-    row.retain(|&(_, weight)| weight != 0.0);
-    row
 }

@@ -123,11 +123,6 @@ impl Bicubic {
         from
     }
 
-    /// The corners of its part.
-    pub fn corners(&self) -> [LimitPoint; 3] {
-        self.part.corners().map(|at| self.limit(at))
-    }
-
     /// The limits in the middles of the edges of its part.
     pub fn middle(&self, edge: usize) -> LimitPoint {
         self.limit(self.part.along(edge, 0.5))

@@ -10,9 +10,10 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock, Weak};
 use super::child_corners;
 use super::submesh::{quartered, submesh_of};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
-use crate::limit::{LimitError, LimitTable, summed};
+use crate::limit::{LimitError, LimitTable};
 use crate::masks::Masks;
 use crate::mesh::{Junctions, Mesh, Sharpness};
+use crate::row::{Row, sum, summed};
 use crate::scheme::Scheme;
 use crate::vector::DVec3;
 
@@ -35,9 +36,6 @@ pub const SAMPLED_LEVELS: usize = 3;
 
 /// Barycentric coordinates, multiplied by a power of 2.
 pub type GridPoint = [i32; 3];
-
-/// Points and the weights by which they are summed.
-type Row = Vec<(u32, f64)>;
 
 /// Where limits stand over a face, and the weights of all points of the form in each.
 type Samples = Vec<(GridPoint, Vec<f64>)>;
@@ -306,12 +304,6 @@ fn clear_normal(at: DVec3, tangents: &[Row; 2], points: &[DVec3]) -> Option<DVec
         && square > CLEAR * CLEAR * squares[0] * squares[1]
         && square.is_normal();
     is_clear.then(|| normal / square.sqrt())
-}
-
-fn sum(row: &Row, points: &[DVec3]) -> DVec3 {
-    row.iter().fold(DVec3::ZERO, |sum, &(v, weight)| {
-        sum + weight * points[v as usize]
-    })
 }
 
 /// The forms of one scheme, and its limit stencils.

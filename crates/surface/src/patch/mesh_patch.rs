@@ -1,6 +1,6 @@
 //! Pieces of any limit surface: a face with as much of the mesh around it as decides the surface over it.
 //!
-//! For schemes outside the Loop family. One refinement is a step of uniform refinement of the piece's surroundings, which
+//! For schemes of no known family. One refinement is a step of uniform refinement of the piece's surroundings, which
 //! honours all tags; limits of vertices come from the scheme's stencils. Both are sums of the piece's points, whose weights are those of
 //! its form ([`super::mesh_form`]).
 

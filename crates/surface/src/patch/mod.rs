@@ -3,7 +3,8 @@
 //! Each control face carries a [`Patch`]: its corners and their one-ring, which is all that the surface over it
 //! depends on. Refining a patch gives the four over its parts, at any depth, so that only what is needed is ever
 //! computed; limit positions and normals of new vertices come with it. Schemes of the Loop family have pieces of simple
-//! forms, also where tags are semi-sharp; for others a piece is a small mesh that is refined as a whole.
+//! forms, also where tags are semi-sharp; Catmull–Clark has bicubic pieces over halves of quads; for other schemes a piece is a small mesh
+//! that is refined as a whole.
 
 pub mod bezier_triangle;
 pub mod bicubic;
@@ -68,7 +69,7 @@ pub enum Patch {
     Bicubic(Box<Bicubic>),
     /// Over half of any other quad.
     Quad(Box<QuadPatch>),
-    /// Of a scheme outside the Loop family.
+    /// Of a scheme of no known family.
     Mesh(MeshPatch),
 }
 

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use super::bicubic::Bicubic;
 use super::{Limit, ParamTriangle, Patch, Rules};
-use crate::catmull_clark::form::{Middle, QuadForm, QuadForms, sum};
+use crate::catmull_clark::form::{Middle, QuadForm, QuadForms};
 use crate::catmull_clark::quads::{Connected, MeshQuads};
 use crate::index::FaceId;
 use crate::mesh::{Mesh, Sharpness};
+use crate::row::sum;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// The piece over half a quad, with the points around the quad. The half's right angle is at the quad's first corner.

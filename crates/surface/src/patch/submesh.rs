@@ -9,7 +9,6 @@ use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{
     CornerTag, CreaseTag, Junctions, Mesh, NONE, Sharpness, Tags, Topology, outgoing_half_edges,
 };
-use crate::ring::decremented;
 
 /// The faces of the half-edges in `seeds` and `rings` rings around them. Face `i` of the result is that of seed `i`, its
 /// first half-edge the seed; the others follow.
@@ -99,46 +98,16 @@ pub fn quartered(mesh: &Mesh) -> (Topology, Vec<HalfEdgeId>, Tags) {
         let (outer, inner) = (3 * (face + corner) + 1, 3 * (face + 3) + (corner + 2) % 3);
         (twins[outer as usize], twins[inner as usize]) = (inner, outer);
     }
-    let tags = refined_tags(mesh, &on_edge);
+    let tags = mesh.tags().refined(|a, b| {
+        let h = topology.edge_between(a, b)?;
+        Some(on_edge[h.index()])
+    });
     let outgoing = outgoing_half_edges(&triangles, &twins, mesh.vertex_count() + edges.len());
     (
         Topology::from_parts(triangles, twins, outgoing),
         edges,
         tags,
     )
-}
-
-/// The tags of a mesh after a step, given the new vertex on each half-edge.
-fn refined_tags(mesh: &Mesh, on_edge: &[u32]) -> Tags {
-    let left = |sharpness: f64| Some(decremented(sharpness)).filter(|&left| left > 0.0);
-    let creases = mesh.tags().creases.iter().flat_map(
-        |&CreaseTag {
-             vertices: [a, b],
-             sharpness,
-         }| {
-            let middle = mesh
-                .topology()
-                .edge_between(VertexId(a), VertexId(b))
-                .map(|h| on_edge[h.index()]);
-            let halves = middle.zip(left(sharpness)).map(|(middle, sharpness)| {
-                [[a, middle], [middle, b]].map(|vertices| CreaseTag {
-                    vertices,
-                    sharpness,
-                })
-            });
-            halves.into_iter().flatten()
-        },
-    );
-    let corner = |tag: &CornerTag| {
-        Some(CornerTag {
-            sharpness: left(tag.sharpness)?,
-            ..*tag
-        })
-    };
-    Tags {
-        creases: creases.collect(),
-        corners: mesh.tags().corners.iter().filter_map(corner).collect(),
-    }
 }
 
 /// The faces that are cut out.

@@ -165,7 +165,7 @@ fn darts_have_their_fractions() {
     }
 }
 
-/// The corner of a cube: its vertex, and two more places of its surface.
+/// On a flat ring, counter-clockwise in the plane of x and y, tangents turn as z does, except at corners that are not convex.
 #[test]
 fn normals_point_outwards() {
     for ring in rings() {
