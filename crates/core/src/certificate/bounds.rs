@@ -138,7 +138,7 @@ impl<'a> Pieces<'a> {
     }
 
     /// The deviation of `frame` and the part of the surface that it approximates: the frame's
-    /// corner `i` belongs to the part's. Estimated from samples for schemes outside Loop's family.
+    /// corner `i` belongs to the part's. Estimated from samples for schemes of no known family.
     pub(crate) fn deviation(
         &mut self,
         part: SubTriangle,

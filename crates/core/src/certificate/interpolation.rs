@@ -1,12 +1,13 @@
 //! How far a function over a piece is from its linear interpolation: values at the same places, not surfaces.
 //!
-//! Over a regular piece function and interpolation both are Bézier nets, the latter's points being
+//! Over a regular piece (and over half of a bicubic one, by a net of degree six) function and interpolation both are Bézier nets, the latter's points being
 //! linear in their indices; so is their difference, whose points' lengths bound its own (Farin,
 //! "Triangular Bernstein–Bézier patches", 1986). Around an irregular vertex the piece is refined,
 //! and the rest at the vertex is bounded by its control points: two convex hulls are nowhere
 //! farther from each other than two of their points.
 
 use super::greater;
+use super::net::Net;
 use super::net_part::NetPart;
 use super::sub_triangle::SubTriangle;
 use crate::index::FaceId;
@@ -71,7 +72,7 @@ impl ParamPatch {
     }
 
     /// A bound of how far the function is from the linear one with its values at the corners of a part, anywhere there; tight only
-    /// above `target`. Of schemes outside Loop's family an estimate from samples.
+    /// above `target`. Of schemes of no known family an estimate from samples.
     pub(crate) fn off_linear(&self, part: SubTriangle, target: f64, rules: &Rules<'_>) -> f64 {
         self.off(
             part,
@@ -145,6 +146,10 @@ impl Search<'_> {
             Patch::Regular(points) => {
                 return self.net(&BezierTriangle::of(points), linear, HALVINGS);
             }
+            Patch::Bicubic(piece) => {
+                let net = piece.net(piece.part.corners(), |point| point);
+                return self.net(&net, linear, HALVINGS);
+            }
             Patch::Mesh(_) => return self.samples(patch, linear, SAMPLED_LEVELS),
             _ => {}
         }
@@ -172,14 +177,14 @@ impl Search<'_> {
         }
     }
 
-    fn net(&mut self, net: &BezierTriangle, linear: [DVec3; 3], halvings: usize) {
+    fn net<N: Net<DVec3>>(&mut self, net: &N, linear: [DVec3; 3], halvings: usize) {
         let [a, b, c] = linear;
-        let (mut at, mut apart) = (0, 0.0);
-        for k in 0..5 {
-            for j in 0..5 - k {
-                let [i, j, k] = [4 - j - k, j, k].map(|index| 0.25 * index as f64);
-                apart = greater(apart, net.0[at].distance(i * a + j * b + k * c));
-                at += 1;
+        let share = 1.0 / N::DEGREE as f64;
+        let (mut points, mut apart) = (net.points().iter(), 0.0);
+        for k in 0..=N::DEGREE {
+            for (j, point) in (0..=N::DEGREE - k).zip(&mut points) {
+                let [i, j, k] = [N::DEGREE - j - k, j, k].map(|index| share * index as f64);
+                apart = greater(apart, point.distance(i * a + j * b + k * c));
             }
         }
         if halvings == 0 || apart <= self.aim() {

@@ -10,7 +10,13 @@ use smallvec::SmallVec;
 
 /// A triangular net whose hull holds a piece, and the nets of its edges the curves over them.
 pub(super) trait Net<P: HullPoint>: Sized {
+    /// How often corners are arguments of a point's blossom.
+    const DEGREE: usize;
+
     fn corners(&self) -> [P; 3];
+
+    /// The points b_ijk, i + j + k being the degree, by k, then by j.
+    fn points(&self) -> &[P];
 
     /// Both halves, cut from the middle of an edge.
     fn halves(&self, edge: usize) -> [Self; 2];
@@ -20,6 +26,12 @@ pub(super) trait Net<P: HullPoint>: Sized {
 }
 
 impl<P: HullPoint> Net<P> for BezierTriangle<P> {
+    const DEGREE: usize = 4;
+
+    fn points(&self) -> &[P] {
+        &self.0
+    }
+
     fn corners(&self) -> [P; 3] {
         self.corners()
     }
@@ -34,6 +46,12 @@ impl<P: HullPoint> Net<P> for BezierTriangle<P> {
 }
 
 impl<P: HullPoint> Net<P> for SexticTriangle<P> {
+    const DEGREE: usize = 6;
+
+    fn points(&self) -> &[P] {
+        &self.0
+    }
+
     fn corners(&self) -> [P; 3] {
         self.corners()
     }

@@ -22,7 +22,7 @@ use crate::vector::{DVec3, unit_or_zero};
 #[non_exhaustive]
 pub enum Measure {
     /// The greatest distance between a node's triangle and the surface over it, by place, in the
-    /// control mesh's units; proven for schemes of the Loop family.
+    /// control mesh's units; proven for schemes of a known family ([`crate::scheme::Scheme::family`]).
     #[default]
     Distance,
     /// The greatest angle between the node's triangle and the limit surface at its corners and the middles of its edges, in radians.

@@ -550,7 +550,7 @@ impl<'a> Front<'a> {
     }
 
     /// The greatest distance between mesh and limit surface, both ways and by place, in the control
-    /// mesh's units: proven for schemes of the Loop family, an estimate from samples for others.
+    /// mesh's units: proven for schemes of a known family, an estimate from samples for others.
     /// Infinite where a front does not measure distances.
     pub fn bound(&self) -> f64 {
         match self.forest.measure() {
@@ -586,6 +586,6 @@ impl<'a> Front<'a> {
     /// Whether the distance is proven.
     pub fn is_certified(&self) -> bool {
         self.forest.measure() == Measure::Distance
-            && self.forest.surface().rules().are_of_loop_family()
+            && self.forest.surface().rules().scheme().family().is_some()
     }
 }
