@@ -145,7 +145,7 @@
 //!
 //! # 10. Use a scheme of your own
 //! A scheme is its masks. Limit positions and normals follow from them; distances are proven for
-//! the Loop family alone, and estimated for others.
+//! the Loop family and for Catmull–Clark, and estimated for others.
 //! ```
 //! # let soup = limitmesh_models::find("icosphere").ok_or("no such model")?.soup();
 //! # let mesh = limitmesh::Mesh::from_soup(&soup, &Default::default())?.0;

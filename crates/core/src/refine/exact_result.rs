@@ -38,7 +38,7 @@ pub struct ErrorBounds {
     /// nothing near [`Self::lower`] could be proven. If not, an estimate from points three levels
     /// below the triangles, which the true distance may exceed by some per cent.
     pub upper: f64,
-    /// Whether `upper` is proven, as it is for the Loop family ([`crate::scheme::LoopFamily`]).
+    /// Whether `upper` is proven, as it is for schemes of a known family ([`crate::scheme::Scheme::family`]).
     pub certified: bool,
     /// The point at which `lower` is attained: one of the mesh, or of the limit surface, within an
     /// eighth of `lower`.

@@ -105,7 +105,7 @@ pub fn limit_distance_observed(
         let place = format!("scheme {}", scheme.name());
         return Err(MeshError::Broken {
             place,
-            what: "distances are proven for the Loop family only",
+            what: "distances are proven for the Loop family and Catmull–Clark only",
         }
         .into());
     }

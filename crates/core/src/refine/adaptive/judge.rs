@@ -7,10 +7,10 @@
 //! [`Allowance`]: the greatest normal deviation and the least angle of the triangles in it and adjacent to it. Where a whole leaf is within the limit
 //! on that condition, its bound holds as soon as all these triangles keep the allowance.
 
-use super::asking::Asking;
 use super::back_faces::BackFaces;
 use super::backs::{Behind, Leaf};
 use super::control::Control;
+use super::edge_curves::{Asking, EdgeCurves};
 use super::seen::{
     ANY_SLOPES, Allowance, DISPLACEMENT_SHARE, DIVISIONS, Extent, Fate, HALVINGS, NO_CHORDS, Seen,
 };
@@ -126,6 +126,17 @@ impl Verdict {
 }
 
 impl Judge<'_> {
+    /// The bits of the edges for whose middles a node asks that may not stay whole; `None` if it is divided.
+    pub(super) fn asked(
+        &self,
+        corners: &[LimitPoint; 3],
+        middles: &[LimitPoint; 3],
+        open: [bool; 3],
+    ) -> Option<u8> {
+        let curves = || EdgeCurves::of(corners, middles, open, self.asking);
+        self.asking.may_be.then(curves)?.asked(self.limit)
+    }
+
     /// A node of a regular piece.
     pub(super) fn regular(
         &self,

@@ -27,6 +27,7 @@ mod cover;
 mod demands;
 mod dirty;
 mod divide;
+mod edge_curves;
 mod emit;
 mod emitted;
 mod flat;

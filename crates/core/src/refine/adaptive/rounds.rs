@@ -105,7 +105,8 @@ impl Engine<'_> {
                 .with_inserted(control.mesh, &dirty.inserted(edges), watch)?,
         };
         let (faces, trees) = (dirty.faces(), &state.trees);
-        let touched = (!dirty.is_all).then(|| Touched::by(dirty, trees, edges));
+        let touched =
+            (!dirty.is_all && !self.is_balanced).then(|| Touched::by(dirty, trees, edges));
         let covering = Covering {
             control,
             trees,
