@@ -37,6 +37,7 @@ pub(crate) use interpolation::ParamPatch;
 pub(crate) use net_part::NetPart;
 pub(crate) use parametric::SecondDerivatives;
 pub(crate) use quartic_cell::{Cell, EdgeBounds, Heights, QuarticJet, quadratic_height};
+pub(crate) use search::QuadPieces;
 pub(crate) use sub_triangle::SubTriangle;
 pub(crate) use triangle_frame::{TriangleFrame, least_slope};
 

@@ -3,6 +3,7 @@
 //! The sum is proven in [`super::bounds`].
 
 mod irregular;
+mod quad;
 
 use super::borders::{Borders, INSIDE};
 use super::deviation::Deviation;
@@ -16,6 +17,8 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::bicubic::Bicubic;
 use crate::patch::extraordinary::{ExtraordinaryPatch, RefinedExtraordinary};
 use crate::patch::{Patch, Points, RefinedPatch, Rules};
+
+pub(crate) use quad::QuadPieces;
 
 /// Pieces that reach this many times as far as the target will not pass; bounds of others stay
 /// tight, so that they can be compared even if they may not be split.

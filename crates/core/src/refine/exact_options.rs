@@ -46,6 +46,9 @@ pub struct ExactOptions {
     /// regions. The scheme's surface is kept where limit curves around it are smooth, or cross so
     /// that nothing can be triangulated, and without this option. Default: no.
     pub unfold: bool,
+    /// Whether faces are divided as a whole, rather than edge by edge, so that most triangles of a mesh of quads pair up
+    /// ([`quads`](super::quads)): it takes about half more of them. Default: no.
+    pub for_quads: bool,
     /// Whether adjacent triangles in one plane are merged; with [`Self::flat_regions`].
     pub(crate) strips: bool,
     /// Whether bounds that are far above the distance found are measured anew.
@@ -163,6 +166,7 @@ impl Default for ExactOptions {
             origins: true,
             flat_regions: true,
             unfold: false,
+            for_quads: false,
             strips: true,
             tightens: true,
         }
@@ -255,6 +259,12 @@ impl ExactOptions {
     /// Sets [`Self::unfold`].
     pub fn unfold(mut self, unfold: bool) -> Self {
         self.unfold = unfold;
+        self
+    }
+
+    /// Sets [`Self::for_quads`].
+    pub fn for_quads(mut self, for_quads: bool) -> Self {
+        self.for_quads = for_quads;
         self
     }
 

@@ -31,7 +31,7 @@ mod within;
 pub use attribute_goal::AttributeGoal;
 pub use exact::{
     Frames, exact, exact_estimate, exact_estimate_observed, exact_frames, exact_frames_observed,
-    exact_observed, is_certified,
+    exact_observed, is_certified, quads, quads_observed,
 };
 pub use exact_options::{AngleGoal, Caps, ExactOptions, Finish, Goals, PixelGoal};
 pub use exact_result::{ErrorBounds, Estimate, Exact, ExactStop, Origin, Statistics};

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use limitmesh::front::{Demand, Front};
 use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{BuildOptions, CornerTag, CreaseTag, PolygonSoup};
-use limitmesh::refine::{ExactOptions, UniformOptions, exact, uniform};
+use limitmesh::refine::{ExactOptions, Finish, UniformOptions, exact, quads, uniform};
 use limitmesh::scheme::CatmullClark;
 use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl};
 
@@ -342,6 +342,79 @@ fn fronts_are_where_plain_subdivision_leads() {
         let (sampled, rest) = from_plain(&front.mesh().unwrap(), &soup, 5);
         assert!(front.bound() <= tolerance);
         assert!(sampled <= front.bound() + rest, "{sampled} {rest}");
+    }
+}
+
+/// Quads stay within the bound if they are cut by their other diagonals, which replaces all of them here; plain subdivision says so.
+/// Gives the shares of triangles that have become quads without and with the option for them.
+fn quads_cut_otherwise(
+    name: &str,
+    soup: &PolygonSoup,
+    finish: Finish,
+    levels: usize,
+    share: f64,
+) -> [f64; 2] {
+    let (control, _) = QuadControl::from_soup(soup, &BuildOptions::default()).unwrap();
+    [false, true].map(|for_quads| {
+        let goal = ExactOptions::default().tolerance(share * control.mesh.diagonal());
+        let goal = goal.finish(finish).for_quads(for_quads);
+        let found = exact(&control.mesh, &CatmullClark, &goal).unwrap();
+        let pairs = quads(&found, &control.mesh, &CatmullClark).unwrap();
+        let topology = found.mesh.topology();
+        let mut triangles = found.mesh.triangles().to_vec();
+        let mut met = vec![false; triangles.len()];
+        for &[h, twin] in &pairs {
+            assert_eq!(topology.twin(h), Some(twin), "{name}");
+            for half in [h, twin] {
+                assert!(
+                    !std::mem::replace(&mut met[half.face().index()], true),
+                    "{name}"
+                );
+            }
+            let [a, b, c, d] =
+                [h, h.previous(), twin, twin.previous()].map(|h| topology.origin(h).0);
+            triangles[h.face().index()] = [b, a, d];
+            triangles[twin.face().index()] = [d, c, b];
+        }
+        let (sampled, rest) = from_plain(
+            &Mesh::from_triangles(found.mesh.positions().to_vec(), triangles).unwrap(),
+            soup,
+            levels,
+        );
+        assert!(
+            sampled <= found.error.upper + rest,
+            "{name}: {sampled} {rest} {:?}",
+            found.error
+        );
+        2.0 * pairs.len() as f64 / met.len() as f64
+    })
+}
+
+#[test]
+fn quads_are_near_however_they_are_cut() {
+    let twisted = {
+        let mut soup = cube();
+        soup.positions[7] = [1.9, 0.4, 1.3];
+        soup
+    };
+    let mut open = creased_cube(1.6);
+    open.faces = Default::default();
+    let faces: [&[u32]; 5] = [
+        &[0, 2, 3, 1],
+        &[4, 5, 7, 6],
+        &[0, 1, 5, 4],
+        &[2, 6, 7],
+        &[2, 7, 3],
+    ];
+    faces.iter().for_each(|face| open.faces.push(face));
+    for (name, soup) in [("cube", cube()), ("twisted", twisted), ("open", open)] {
+        for finish in [Finish::OnSurface, Finish::Balanced] {
+            let [plain, asked] = quads_cut_otherwise(name, &soup, finish, 5, 1e-2);
+            assert!(
+                plain > 0.0 && asked > 0.6,
+                "{name} {finish:?}: {plain} {asked}"
+            );
+        }
     }
 }
 

@@ -36,6 +36,8 @@ pub(super) struct Control<'a> {
     pub(super) kept: &'a KeptFaces,
     /// The nodes that are divided in any case.
     pub(super) demands: &'a Demands,
+    /// Whether leaves may ask for middles of their edges.
+    pub(super) leaves_ask: bool,
 }
 
 impl Control<'_> {

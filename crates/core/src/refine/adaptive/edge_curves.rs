@@ -41,7 +41,7 @@ impl Asking {
         Self {
             may_be: control.criteria.is_none()
                 && control.rules.is_certified()
-                && control.demands.let_leaves_ask(),
+                && control.leaves_ask,
             rim_alone: control.flat.is_its_rim(face),
             is_straight: control.flat.is_straight(face),
         }

@@ -56,6 +56,7 @@ mod walk;
 pub(super) use caps::within;
 pub(super) use frames::frames;
 pub(super) use nested::nested;
+pub(super) use probe::rounding;
 
 use super::RefineError;
 use super::exact_options::{ExactOptions, Finish};
@@ -324,6 +325,7 @@ impl Task<'_> {
             back_faces: BackFaces::default(),
             kept: &kept,
             demands,
+            leaves_ask: demands.let_leaves_ask() && !options.for_quads,
         };
         if options.flat_regions
             && (!options.is_balanced() || options.unfold)

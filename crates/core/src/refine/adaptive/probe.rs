@@ -347,7 +347,7 @@ impl ErrorBounds {
 /// The greatest rounding error of a distance: positions are convex combinations of convex combinations, one for
 /// each level, and each adds a few units in the last place of the coordinates' size; those of a control vertex add one for
 /// each neighbour. Points near an edge of a triangle count as on it ([`TriangleFrame::on_edge`]), on either side.
-pub(super) fn rounding(
+pub(in crate::refine) fn rounding(
     control: &Mesh,
     max_levels: usize,
     watch: &SharedWatch<'_>,

@@ -4,11 +4,13 @@
 
 mod estimate;
 mod frames;
+mod quads;
 pub(super) mod scale;
 mod tighter;
 
 pub use estimate::{exact_estimate, exact_estimate_observed};
 pub use frames::{Frames, exact_frames, exact_frames_observed};
+pub use quads::{quads, quads_observed};
 
 use super::RefineError;
 use super::adaptive::adaptive;
