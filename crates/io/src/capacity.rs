@@ -5,6 +5,7 @@ use crate::error::WriteError;
 use crate::format::Format;
 use crate::output::{Output, Property, PropertyValues};
 use crate::reading::MOST;
+use limitmesh::HalfEdgeId;
 use limitmesh::mesh::Channel;
 
 /// Whether something is held, and how exactly.
@@ -89,6 +90,7 @@ impl Check<'_> {
     fn all(&self) -> Checked {
         self.counts()?;
         self.indices()?;
+        self.quads()?;
         self.numbers()?;
         self.rounding()?;
         self.channels()?;
@@ -143,6 +145,32 @@ impl Check<'_> {
             "normal",
             output.normals.map_or(0, <[_]>::len),
         )
+    }
+
+    /// Refuses quads that are not two triangles on both sides of an edge.
+    fn quads(&self) -> Checked {
+        let triangles = self.output.surface.triangles;
+        let mut is_taken = vec![
+            false;
+            if self.output.quads.is_empty() {
+                0
+            } else {
+                triangles.len()
+            }
+        ];
+        for (quad, &[h, twin]) in self.output.quads.iter().enumerate() {
+            let vertex = |h: HalfEdgeId| Some(triangles.get(h.face().index())?[h.corner()]);
+            let [from, to] = [h, twin].map(|h| [vertex(h), vertex(h.next())]);
+            let is_edge = from[0].is_some() && from[0] == to[1] && from[1] == to[0];
+            let mut is_new =
+                |h: HalfEdgeId| !core::mem::replace(&mut is_taken[h.face().index()], true);
+            if !is_edge || !is_new(h) || !is_new(twin) {
+                return Err(format!(
+                    "quad {quad} is not two triangles on both sides of an edge that no other quad has"
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses what the readers of files refuse: NaN and infinity, also where they come of rounding to `f32`.

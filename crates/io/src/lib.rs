@@ -1,4 +1,4 @@
-//! OBJ, PLY, STL, OFF, glTF and 3MF files: read into a [`PolygonSoup`], written from triangles.
+//! OBJ, PLY, STL, OFF, glTF and 3MF files: read into a [`PolygonSoup`], written from triangles, pairs of which may be quads.
 //!
 //! The format is chosen by the file's extension and checked against its content. Reading keeps every number
 //! at the precision the file has it; a damaged file is an [error](ReadError) that names the line or byte, the
@@ -35,6 +35,7 @@ pub mod channels;
 mod codec;
 mod content;
 mod error;
+mod faces;
 mod files;
 mod flaw;
 mod format;

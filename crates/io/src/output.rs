@@ -2,6 +2,7 @@
 
 use crate::mtl::MaterialLibraries;
 use crate::unit::LengthUnit;
+use limitmesh::HalfEdgeId;
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Triangles};
 
 /// Methods that set a field.
@@ -20,6 +21,9 @@ macro_rules! setters {
 pub struct Output<'a> {
     /// Positions and triangles.
     pub surface: Triangles<'a>,
+    /// Pairs of triangles that are quads, by the half-edges between them ([`limitmesh::refine::quads`]): no triangle is in two. OBJ, PLY
+    /// and OFF hold them, with the values of faces of the first triangle; other formats hold the triangles.
+    pub quads: &'a [[HalfEdgeId; 2]],
     /// A normal for each vertex. OBJ, PLY and glTF (both as `float`), and OFF hold them.
     pub normals: Option<&'a [[f64; 3]]>,
     /// By triangle, the normals of its corners among these, where vertices have several: then there may be any number of normals. Only
@@ -53,6 +57,7 @@ impl<'a> Output<'a> {
     pub fn new(surface: Triangles<'a>) -> Self {
         Self {
             surface,
+            quads: &[],
             normals: None,
             corner_normals: None,
             colours: None,
@@ -69,6 +74,7 @@ impl<'a> Output<'a> {
     }
 
     setters! {
+        quads: &'a [[HalfEdgeId; 2]] = quads;
         normals: &'a [[f64; 3]] = Some(normals);
         colours: &'a [[u8; 3]] = Some(colours);
         quality: &'a [f64] = Some(quality);

@@ -40,7 +40,7 @@ pub(crate) use measure::MeasureArguments;
 pub(crate) use models::ModelsArguments;
 pub(crate) use project::ProjectArguments;
 pub(crate) use quantity::{Length, Unit};
-pub(crate) use refine::{MOST_EXACT, Method, RefineArguments, Way};
+pub(crate) use refine::{FaceKind, MOST_EXACT, Method, RefineArguments, Way};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
 pub(crate) use shared::{BuildArguments, OverwriteArguments, RefiningScheme, SchemeName};

@@ -53,6 +53,15 @@ impl Method {
     }
 }
 
+/// What faces a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FaceKind {
+    /// Triangles alone
+    Triangles,
+    /// Quads where the distance allows it, and triangles between them
+    Quads,
+}
+
 /// How a mesh is refined: what method and scheme mean together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
@@ -235,6 +244,14 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_enum, default_value = "loop")]
     pub(crate) scheme: RefiningScheme,
 
+    /// Faces to write [default: quads for --scheme catmull-clark in OBJ, PLY and OFF files, else triangles]
+    ///
+    /// Two triangles become a quad where the distance holds for both of its diagonals. Between smaller and larger quads there are triangles;
+    /// with --method uniform all faces are quads. Triangles alone are fewer for the same distance. Quads are for distances: with --angle,
+    /// cameras, --attribute-tolerance and --shared-topology there are triangles.
+    #[arg(long, value_enum)]
+    pub(crate) faces: Option<FaceKind>,
+
     /// Give no more triangles
     ///
     /// The mesh that was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
@@ -335,6 +352,30 @@ impl RefineArguments {
     /// Whether the scheme is for quads.
     pub(crate) fn has_quads(&self) -> bool {
         self.scheme == RefiningScheme::CatmullClark
+    }
+
+    /// Why there can be no quads, if there cannot.
+    pub(crate) fn no_quads(&self, format: Option<Format>) -> Option<&'static str> {
+        let is_by_distance = self.angle.is_none()
+            && !self.has_cameras()
+            && !self.shared_topology
+            && self.channels.given_tolerance().is_none();
+        if !self.has_quads() {
+            Some("--faces quads is for --scheme catmull-clark, whose meshes have some")
+        } else if !is_by_distance {
+            Some(
+                "--faces quads keeps distances; not --angle, cameras, --attribute-tolerance and --shared-topology",
+            )
+        } else if !matches!(format, None | Some(Format::Obj | Format::Ply | Format::Off)) {
+            Some("--faces quads is for OBJ, PLY and OFF files; the others hold triangles alone")
+        } else {
+            None
+        }
+    }
+
+    /// Whether quads are written.
+    pub(crate) fn has_quads_out(&self, format: Option<Format>) -> bool {
+        self.faces != Some(FaceKind::Triangles) && self.no_quads(format).is_none()
     }
 
     /// The view that makes the angle depend on the viewer.

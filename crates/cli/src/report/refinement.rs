@@ -523,8 +523,10 @@ pub(crate) struct OutputReport {
     pub(crate) path: String,
     /// Its vertices.
     pub(crate) vertices: usize,
-    /// Its triangles.
+    /// Its triangles, the halves of quads among them.
     pub(crate) triangles: usize,
+    /// Quads, each of which holds two of the triangles.
+    pub(crate) quads: usize,
     /// Edges with one face.
     pub(crate) boundary_edges: usize,
     /// Edges with more than two faces.
@@ -545,12 +547,18 @@ pub(crate) struct OutputReport {
 
 impl OutputReport {
     /// Examines a mesh.
-    pub(crate) fn of(path: String, mesh: &Mesh, inverted_triangles: Option<usize>) -> Self {
+    pub(crate) fn of(
+        path: String,
+        mesh: &Mesh,
+        quads: usize,
+        inverted_triangles: Option<usize>,
+    ) -> Self {
         let tightness = watertightness(mesh.as_triangles());
         Self {
             path,
             vertices: mesh.vertex_count(),
             triangles: mesh.face_count(),
+            quads,
             boundary_edges: tightness.boundary_edges,
             non_manifold_edges: tightness.non_manifold_edges,
             watertight: tightness.is_watertight(),

@@ -2,6 +2,7 @@
 //! together is refused.
 
 use super::support::{channel, output, read, skip, text, try_written, unwritten, values, written};
+use limitmesh::HalfEdgeId;
 use limitmesh::mesh::{Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic};
 use limitmesh_io::{
     Format, Output, Property, WriteError, WriteOptions, check_writable, read_bytes, rounding,
@@ -680,4 +681,57 @@ fn long_lists_are_the_same_for_any_number_of_threads() {
             }
         }
     }
+}
+
+/// Two triangles of an edge are written as a quad, with the values of its corners, and read back as one; others are left alone.
+#[test]
+fn quads_are_faces_of_files_that_hold_polygons() {
+    let positions = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [2.0, 0.0, 0.0],
+    ];
+    let triangles = [[1, 4, 2], [0, 1, 3], [2, 3, 1]];
+    let quads = [[HalfEdgeId(4), HalfEdgeId(7)]];
+    let places: Vec<f64> = (0..9).flat_map(|corner| [f64::from(corner), 0.5]).collect();
+    // Both triangles have the same values at the ends of their edge.
+    let numbers = vec![0, 1, 2, 3, 4, 5, 6, 5, 4];
+    let textures = Channel::new(
+        limitmesh_io::TEXTURE,
+        Semantic::TextureCoordinates,
+        Domain::Corner,
+        2,
+    );
+    let channels = [textures.with(places, numbers)];
+    let own = output(&positions, &triangles)
+        .quads(&quads)
+        .channels(&channels);
+    let obj = text(Format::Obj, &own);
+    let faces: Vec<&str> = obj.lines().filter(|line| line.starts_with('f')).collect();
+    assert_eq!(faces, ["f 2/1 5/2 3/3", "f 2/5 3/7 4/6 1/4"]);
+    for (format, ascii) in [
+        (Format::Obj, false),
+        (Format::Ply, false),
+        (Format::Ply, true),
+        (Format::Off, false),
+    ] {
+        let soup = read_back(format, &own, ascii);
+        let faces: Vec<&[u32]> = soup.faces.iter().collect();
+        assert_eq!(faces, [&[1, 4, 2][..], &[1, 2, 3, 0]], "{format}");
+        if format != Format::Off {
+            let found: Vec<f64> = (0..7)
+                .map(|corner| soup.channels[0].value(corner)[0])
+                .collect();
+            assert_eq!(found, [0.0, 1.0, 2.0, 4.0, 6.0, 5.0, 3.0], "{format}");
+        }
+    }
+    assert_eq!(read_back(Format::Stl, &own, false).faces.len(), 3);
+    for wrong in [[4, 5], [4, 100], [4, 4]] {
+        let quads = [wrong.map(HalfEdgeId)];
+        assert!(try_written(Format::Off, &own.quads(&quads), false).is_err());
+    }
+    let twice = [quads[0], [HalfEdgeId(7), HalfEdgeId(4)]];
+    assert!(try_written(Format::Off, &own.quads(&twice), false).is_err());
 }

@@ -91,6 +91,16 @@ impl Topology {
         self.has_quads
     }
 
+    /// The half-edges on both sides of each quad's diagonal; none without quads.
+    pub fn quads(&self) -> impl Iterator<Item = [HalfEdgeId; 2]> {
+        let quads = if self.has_quads {
+            self.face_count() as u32 / 2
+        } else {
+            0
+        };
+        (0..quads).map(|quad| [6 * quad + 1, 6 * quad + 4].map(HalfEdgeId))
+    }
+
     /// Whether a half-edge runs along the diagonal of a quad.
     #[inline]
     pub fn is_diagonal(&self, h: HalfEdgeId) -> bool {

@@ -8,7 +8,7 @@ use limitmesh_io::Format;
 
 use super::super::picture;
 use super::proof;
-use crate::arguments::{MAX_STEPS, Method, MorphTolerance, RefineArguments, Viewer, Way};
+use crate::arguments::{FaceKind, MAX_STEPS, Method, MorphTolerance, RefineArguments, Viewer, Way};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
 use crate::format::thousands;
@@ -35,6 +35,11 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     }
     goals(arguments)?;
     let format = arguments.format()?;
+    if let Some(why) = arguments.no_quads(format)
+        && arguments.faces == Some(FaceKind::Quads)
+    {
+        return usage(why);
+    }
     let is_other = format.is_some_and(|format| format != Format::Ply);
     if arguments.exact.provenance && is_other {
         let name = arguments.output_name();

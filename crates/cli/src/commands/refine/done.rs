@@ -72,7 +72,12 @@ impl Done {
                 interpolation: control.interpolation,
                 method: refined.report,
                 size,
-                output: OutputReport::of(name, &refined.mesh, refined.inverted),
+                output: OutputReport::of(
+                    name,
+                    &refined.mesh,
+                    refined.quads.len(),
+                    refined.inverted,
+                ),
             },
         });
     }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use limitmesh::progress::{Progress as At, Stage};
-use limitmesh::refine::{Exact, ExactStop, exact_observed, turned_over_triangles};
+use limitmesh::refine::{Exact, ExactStop, exact_observed, quads_observed, turned_over_triangles};
 
 use super::super::normals::Normals;
 use super::goals::Goals;
@@ -32,6 +32,10 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
     let options = goals.options(task);
     let mut observer = watch(task, &mut rounds);
     let mut found = exact_observed(task.mesh(), task.scheme()?, &options, &mut observer)?;
+    let quads = match task.has_quads_out() {
+        true => quads_observed(&found, task.mesh(), task.scheme()?, &mut observer)?,
+        false => Vec::new(),
+    };
     drop(observer);
     let moved = input_distance::measured(task, &found, goals)?;
     let rounding = rounding(arguments, found.mesh.positions())?;
@@ -83,6 +87,7 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
     };
     let how = counted(found.statistics.levels, "level", "levels");
     Ok(Refined {
+        quads,
         normals,
         channels,
         trail,

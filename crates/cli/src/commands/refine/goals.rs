@@ -99,7 +99,8 @@ impl Goals {
             .attributes(self.attributes.options())
             .flat_regions(has_flat_regions)
             .unfold(arguments.features.concave_corners() == ConcaveCorners::Fixed)
-            .origins(is_traced);
+            .origins(is_traced)
+            .for_quads(task.has_quads_out());
         if let Some(pixels) = self.pixels {
             options = options.pixels(pixels, self.cameras.clone());
         }

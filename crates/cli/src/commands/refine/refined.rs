@@ -1,7 +1,7 @@
 //! The result of a method, and its report.
 
-use limitmesh::Mesh;
 use limitmesh::refine::ExactStop;
+use limitmesh::{HalfEdgeId, Mesh};
 
 use super::super::channels::Channels;
 use super::super::normals::Normals;
@@ -16,6 +16,8 @@ use crate::report::{MethodReport, SizeReport};
 /// A refined mesh.
 pub(super) struct Refined {
     pub(super) mesh: Mesh,
+    /// Pairs of its triangles that are written as quads, by the half-edges between them.
+    pub(super) quads: Vec<[HalfEdgeId; 2]>,
     pub(super) normals: Option<Normals>,
     pub(super) channels: Channels,
     pub(super) provenance: Option<Provenance>,
@@ -42,6 +44,7 @@ impl Refined {
     pub(super) fn new(mesh: Mesh, how: String, report: MethodReport, outcome: Outcome) -> Self {
         Self {
             mesh,
+            quads: Vec::new(),
             normals: None,
             channels: Channels::default(),
             provenance: None,
@@ -82,12 +85,27 @@ impl Refined {
         };
         let first = format!(
             "{name}: {}, {}, {edges} ({}; {})",
-            counted(self.mesh.face_count(), "triangle", "triangles"),
+            self.faces_in_words(),
             counted(self.mesh.vertex_count(), "vertex", "vertices"),
             self.how,
             seconds(took)
         );
         [vec![first], self.achieved.clone()].concat().join("\n  ")
+    }
+
+    /// How many faces there are, of each kind.
+    fn faces_in_words(&self) -> String {
+        let quads = self.quads.len();
+        let triangles = self.mesh.face_count() - 2 * quads;
+        let triangles_in_words = counted(triangles, "triangle", "triangles");
+        match (quads, triangles) {
+            (0, _) => triangles_in_words,
+            (_, 0) => counted(quads, "quad", "quads"),
+            _ => format!(
+                "{} and {triangles_in_words}",
+                counted(quads, "quad", "quads")
+            ),
+        }
     }
 
     /// A note about triangles that are turned over.

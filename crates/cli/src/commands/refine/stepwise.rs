@@ -50,7 +50,12 @@ pub(super) fn run(task: &Task<'_>) -> anyhow::Result<Refined> {
     };
     let how = counted(steps.len(), "step", "steps") + early;
     let outcome = outcome(arguments, &mesh, &steps, stop);
+    let quads = match task.has_quads_out() {
+        true => mesh.topology().quads().collect(),
+        false => Vec::new(),
+    };
     Ok(Refined {
+        quads,
         normals,
         channels,
         trail: Trail {

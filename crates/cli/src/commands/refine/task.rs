@@ -42,6 +42,11 @@ impl<'a> Task<'a> {
         self.format.is_some_and(Normals::are_held) || self.arguments.picture.is_some()
     }
 
+    /// Whether the file has quads.
+    pub(super) fn has_quads_out(&self) -> bool {
+        self.arguments.has_quads_out(self.format)
+    }
+
     /// ` mm`, or nothing where no unit is known.
     pub(super) fn unit(&self) -> String {
         self.arguments.build.unit_in_words()

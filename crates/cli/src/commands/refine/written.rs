@@ -45,7 +45,8 @@ pub(super) fn write(
     refined: &Refined,
 ) -> anyhow::Result<()> {
     let (mesh, normals) = (&refined.mesh, refined.normals.as_ref());
-    let mut output = refined.channels.add_to(Output::new(mesh.as_triangles()));
+    let surface = Output::new(mesh.as_triangles()).quads(&refined.quads);
+    let mut output = refined.channels.add_to(surface);
     if let Some(normals) = normals {
         output = normals.add_to(output, format, is_split);
     }

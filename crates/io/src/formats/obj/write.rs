@@ -3,6 +3,7 @@
 use super::attributes::LABELS;
 use crate::capacity::{Capacity, Held};
 use crate::channels::by_vertex;
+use crate::faces::Faces;
 use crate::names;
 use crate::output::Output;
 use crate::pieces::{Piece, Pieces};
@@ -44,13 +45,15 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
     let is_label = |own: &Channel, name| own.semantic == Semantic::Label && own.name == name;
     let labelled = |name| held.iter().find(|own| is_label(own, name));
     let labels = LABELS.map(|(keyword, name)| (keyword, labelled(name)));
-    out.each(output.surface.triangles.len(), |out, at| {
+    let faces = Faces::of(output);
+    out.each(faces.count(), |out, at| {
+        let before = at.checked_sub(1).map(|before| faces.triangle(before));
         for (keyword, channel) in &labels {
             if let Some(channel) = channel {
-                change_of_label(out, keyword, channel, at);
+                change_of_label(out, keyword, channel, faces.triangle(at), before);
             }
         }
-        face(out, output, textures, at);
+        face(out, output, textures, &faces.corners(at));
     })?;
     for tag in output.creases {
         out.element(|out| self::tag(out, b"t crease 2/1/0", &tag.vertices, tag.sharpness))?;
@@ -105,20 +108,21 @@ fn vertices(
     })
 }
 
-/// A triangle, with the numbers of its texture coordinates and normals.
-fn face(out: &mut Piece, output: &Output<'_>, textures: Option<&Channel>, at: usize) {
-    let triangle = &output.surface.triangles[at];
-    out.bytes(b"f");
+/// A face with these corners, with the numbers of their texture coordinates and normals.
+fn face(out: &mut Piece, output: &Output<'_>, textures: Option<&Channel>, corners: &[usize]) {
+    let vertices = output.surface.triangles.as_flattened();
     let normals = output.corner_normals;
-    let normals = normals.map_or(triangle, |corners| &corners[at]);
-    for (corner, (&vertex, &normal)) in triangle.iter().zip(normals).enumerate() {
+    let normals = normals.map_or(vertices, |corners| corners.as_flattened());
+    out.bytes(b"f");
+    for &corner in corners {
+        let (vertex, normal) = (vertices[corner], normals[corner]);
         // There may be 2³² − 1 vertices, so that the last one's number fits.
         out.integer(vertex + 1);
         if let Some(channel) = textures {
             let element = match channel.domain {
                 Domain::Vertex => vertex as usize,
-                Domain::Corner => 3 * at + corner,
-                Domain::Face => at,
+                Domain::Corner => corner,
+                Domain::Face => corner / 3,
             };
             out.bytes(b"/");
             out.bare_integer(channel.indices[element] + 1);
@@ -131,16 +135,22 @@ fn face(out: &mut Piece, output: &Output<'_>, textures: Option<&Channel>, at: us
     out.end_line();
 }
 
-/// Says what a triangle belongs to, where the one before it belonged to something else.
-fn change_of_label(out: &mut Piece, keyword: &[u8], channel: &Channel, triangle: usize) {
+/// Says what a triangle's face belongs to, where the one `before` it belonged to something else.
+fn change_of_label(
+    out: &mut Piece,
+    keyword: &[u8],
+    channel: &Channel,
+    triangle: usize,
+    before: Option<usize>,
+) {
     let number = channel.indices[triangle];
-    if triangle > 0 && channel.indices[triangle - 1] == number {
+    if before.is_some_and(|before| channel.indices[before] == number) {
         return;
     }
     let name = channel.labels.get(number as usize);
     let name = name.map_or("", String::as_str);
     // What comes before the first name has none.
-    if triangle > 0 || !name.is_empty() {
+    if before.is_some() || !name.is_empty() {
         named(out, keyword, name);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::capacity::{Capacity, Held};
 use crate::channels::by_vertex;
+use crate::faces::Faces;
 use crate::output::Output;
 use crate::pieces::{Piece, Pieces};
 use limitmesh::mesh::{Channel, Domain, Semantic, Storage};
@@ -19,6 +20,7 @@ pub(super) fn capacity() -> Capacity {
 pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<()> {
     let mut out = Pieces::new(writer);
     let (positions, triangles) = (output.surface.positions, output.surface.triangles);
+    let faces = Faces::of(output);
     let held = capacity().held(output);
     let (of_faces, of_vertices): (Vec<&Channel>, Vec<&Channel>) =
         held.into_iter().partition(|own| own.domain == Domain::Face);
@@ -33,7 +35,7 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
     } else {
         b""
     })?;
-    out.bytes(format!("OFF\n{} {} 0\n", positions.len(), triangles.len()).as_bytes())?;
+    out.bytes(format!("OFF\n{} {} 0\n", positions.len(), faces.count()).as_bytes())?;
     out.each(positions.len(), |out, vertex| {
         out.point(positions[vertex]);
         if let Some(normals) = output.vertex_normals() {
@@ -48,11 +50,14 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>) -> io::Result<(
         }
         out.end_line();
     })?;
-    out.each(triangles.len(), |out, face| {
-        out.bytes(b"3");
-        out.integers(&triangles[face]);
+    out.each(faces.count(), |out, face| {
+        let corners = faces.corners(face);
+        out.bare_integer(corners.len() as u32);
+        for &corner in corners.iter() {
+            out.integer(triangles.as_flattened()[corner]);
+        }
         if let Some(channel) = of_faces {
-            colour(out, channel, channel.indices[face]);
+            colour(out, channel, channel.indices[faces.triangle(face)]);
         }
         out.end_line();
     })?;

@@ -4,6 +4,7 @@
 use super::split::Split;
 use super::write_columns::{Columns, capacity, single};
 use crate::channels::TEXTURE_LISTS;
+use crate::faces::Faces;
 use crate::names;
 use crate::output::Output;
 use crate::pieces::Pieces;
@@ -18,7 +19,8 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
     if let Some(split) = &split {
         (count, triangles, sources) = (split.sources.len(), &split.triangles, Some(&split.sources));
     }
-    out.bytes(&header(output, &columns, count, ascii))?;
+    let faces = Faces::of(output);
+    out.bytes(&header(output, &columns, [count, faces.count()], ascii))?;
     out.each(count, |out, vertex| {
         let source = sources.map_or(vertex, |all| all[vertex] as usize);
         match ascii {
@@ -34,26 +36,29 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
             out.end_line();
         }
     })?;
-    out.each(triangles.len(), |out, face| {
+    out.each(faces.count(), |out, face| {
+        let corners = faces.corners(face);
         match ascii {
-            true => out.bytes(b"3"),
-            false => out.bytes(&[3]),
+            true => out.bare_integer(corners.len() as u32),
+            false => out.bytes(&[corners.len() as u8]),
         }
-        match ascii {
-            true => out.integers(&triangles[face]),
-            false => triangles[face]
-                .iter()
-                .for_each(|v| out.bytes(&v.to_le_bytes())),
+        for vertex in corners.iter().map(|&at| triangles.as_flattened()[at]) {
+            match ascii {
+                true => out.integer(vertex),
+                false => out.bytes(&vertex.to_le_bytes()),
+            }
         }
+        let triangle = faces.triangle(face);
         for own in columns.faces.iter() {
-            own.write(out, face, face, ascii);
+            own.write(out, triangle, triangle, ascii);
         }
         if let Some(channel) = columns.textures {
+            let numbers = 2 * corners.len();
             match ascii {
-                true => out.integer(6),
-                false => out.bytes(&[6]),
+                true => out.integer(numbers as u32),
+                false => out.bytes(&[numbers as u8]),
             }
-            for value in (3 * face..3 * face + 3).map(|corner| channel.value(corner)) {
+            for value in corners.iter().map(|&corner| channel.value(corner)) {
                 // A texture of one number has its other at 0.
                 let v = value.get(1).copied().unwrap_or(0.0);
                 for x in [value[0], v] {
@@ -68,7 +73,12 @@ pub(super) fn write(writer: &mut dyn Write, output: &Output<'_>, ascii: bool) ->
     out.finish()
 }
 
-fn header(output: &Output<'_>, columns: &Columns<'_>, vertices: usize, ascii: bool) -> Vec<u8> {
+fn header(
+    output: &Output<'_>,
+    columns: &Columns<'_>,
+    [vertices, faces]: [usize; 2],
+    ascii: bool,
+) -> Vec<u8> {
     let encoding = if ascii {
         "ascii"
     } else {
@@ -95,7 +105,6 @@ fn header(output: &Output<'_>, columns: &Columns<'_>, vertices: usize, ascii: bo
     } else {
         "int"
     };
-    let faces = output.surface.triangles.len();
     header.extend(
         format!("element face {faces}\nproperty list uchar {index} vertex_indices\n").bytes(),
     );
