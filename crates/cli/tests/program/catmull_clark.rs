@@ -40,6 +40,55 @@ fn a_cage_is_refined_measured_and_keeps_its_texture_coordinates() {
     assert!(upper < 0.035, "{upper}");
 }
 
+/// Quads come out unless triangles are asked for, in files that hold them; uniform meshes have no triangles at all.
+#[test]
+fn quads_come_out() {
+    let place = folder();
+    let cage = file(&place, "cube.obj", CUBE);
+    let report = place.path().join("out.json");
+    let quads = |name: &str, words: &str| {
+        let out = place.path().join(name);
+        let words = format!("refine {{}} -o {{}} --scheme catmull-clark --report {{}} {words}");
+        done(&words, &[&cage, &out, &report]);
+        let sides: Vec<usize> = soup(&out).faces.iter().map(<[u32]>::len).collect();
+        let quads = sides.iter().filter(|&&sides| sides == 4).count();
+        let output = &json_file(&report)["output"];
+        assert_eq!(number(&output["quads"]) as usize, quads, "{name}");
+        assert_eq!(
+            number(&output["triangles"]) as usize,
+            sides.len() + quads,
+            "{name}"
+        );
+        (quads, sides.len())
+    };
+    for name in ["out.obj", "out.ply", "out.off"] {
+        let (quads, faces) = quads(name, "--tolerance 0.5%");
+        assert!(
+            quads > faces / 2 && quads < faces,
+            "{name}: {quads} of {faces}"
+        );
+    }
+    assert_eq!(
+        quads("uniform.ply", "--method uniform --levels 2 --limit"),
+        (96, 96)
+    );
+    assert_eq!(
+        quads("triangles.ply", "--tolerance 1% --faces triangles").0,
+        0
+    );
+    assert_eq!(quads("out.stl", "--tolerance 1%").0, 0);
+    assert_eq!(quads("angle.ply", "--angle 10").0, 0);
+    let out = place.path().join("out.glb");
+    let words = "refine {} -o {} --scheme catmull-clark --faces quads";
+    usage_error(words, &[&cage, &out], "the others hold triangles");
+    let words = "refine {} -o {} --overwrite --faces quads --scheme loop";
+    usage_error(
+        words,
+        &[&cage, &place.path().join("out.ply")],
+        "catmull-clark",
+    );
+}
+
 #[test]
 fn polygons_of_any_size_are_divided_and_what_is_for_triangles_is_refused() {
     let place = folder();

@@ -2,7 +2,7 @@
 //!
 //! Takes channels of the control mesh, and a refined mesh whose triangles each come from one
 //! control face and whose vertices have origins on the control mesh; gives the channels of the
-//! refined mesh. Linear ones are linear over each control face, so exact on every triangle; smooth
+//! refined mesh. Linear ones are linear over each control face, so exact on every triangle, and over quads bilinear; smooth
 //! ones take their values from the limit surface of a mesh of values with the same faces (`seams`),
 //! at the same places as the vertices: a channel whose values are positions gives the vertices'
 //! positions. Where control faces meet, corners of the refined mesh have one value if the channel
@@ -104,7 +104,7 @@ fn one(
         Interpolation::Nearest => nearest(by_corner, places),
         Interpolation::Linear => {
             let sites = Sites::of(&by_corner, places)?;
-            let values = linear(&by_corner, &sites);
+            let values = linear(&by_corner, control, &sites);
             Ok(by_corner.with(values, sites.indices))
         }
         Interpolation::Smooth(rule) => {
@@ -173,20 +173,28 @@ fn nearest(mut channel: Channel, places: &Places<'_>) -> Result<Channel, Channel
     Ok(channel)
 }
 
-/// Values on the plane of the control faces.
-fn linear(channel: &Channel, sites: &Sites<'_>) -> Vec<f64> {
+/// Values that are linear over the control faces, and bilinear over quads.
+fn linear(channel: &Channel, control: &Mesh, sites: &Sites<'_>) -> Vec<f64> {
     let mut values = limitmesh_pages::with_capacity(channel.arity * sites.len());
-    for &Origin {
-        face,
-        barycentric: [at_first, at_second, at_third],
-    } in sites.iter()
-    {
+    let has_quads = control.topology().has_quads();
+    for &Origin { face, barycentric } in sites.iter() {
         let [first, second, third] =
             [0, 1, 2].map(|corner| channel.value(3 * face as usize + corner));
-        for ((&a, &b), &c) in first.iter().zip(second).zip(third) {
-            // A value that is equal at all three corners is copied to the bit.
-            let is_one = a == b && b == c;
+        let [at_first, at_second, at_third] = barycentric;
+        // The corner beyond the diagonal. It counts nothing on the edges of the quad.
+        let (beyond, twist) = match has_quads {
+            true => (channel.value(3 * (face ^ 1) as usize), at_second * at_third),
+            false => (first, 0.0),
+        };
+        for (((&a, &b), &c), &d) in first.iter().zip(second).zip(third).zip(beyond) {
+            // A value that is equal at all corners is copied to the bit.
+            let is_one = a == b && b == c && (twist == 0.0 || c == d);
             let sum = at_first * a + at_second * b + at_third * c;
+            let sum = if twist == 0.0 {
+                sum
+            } else {
+                sum + twist * (a - b + d - c)
+            };
             values.push(if is_one { a } else { sum });
         }
     }

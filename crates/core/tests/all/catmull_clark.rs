@@ -4,10 +4,11 @@
 
 use std::collections::BTreeMap;
 
+use limitmesh::carry::carried;
 use limitmesh::front::{Demand, Front};
 use limitmesh::limit::LimitTable;
-use limitmesh::mesh::{BuildOptions, CornerTag, CreaseTag, PolygonSoup};
-use limitmesh::refine::{ExactOptions, Finish, UniformOptions, exact, quads, uniform};
+use limitmesh::mesh::{BuildOptions, Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic};
+use limitmesh::refine::{ExactOptions, Finish, Traced, UniformOptions, exact, quads, uniform};
 use limitmesh::scheme::CatmullClark;
 use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl};
 
@@ -416,6 +417,47 @@ fn quads_are_near_however_they_are_cut() {
             );
         }
     }
+}
+
+/// Linear channels are bilinear over quads, whichever diagonal cuts these: by the corners of the polygons.
+#[test]
+fn linear_channels_are_bilinear_over_quads() {
+    let soup = creased_cube(1.6);
+    let (control, _) = QuadControl::from_soup(&soup, &BuildOptions::default()).unwrap();
+    let mesh = &control.mesh;
+    let polygons: Vec<&[u32]> = soup.faces.iter().collect();
+    let mut random = Random::new(5);
+    let values: Vec<f64> = (0..24).map(|_| random.signed()).collect();
+    let place = |face: usize, vertex: u32| {
+        let polygon = control.polygons[face] as usize;
+        4 * polygon + polygons[polygon].iter().position(|&v| v == vertex).unwrap()
+    };
+    let corners = mesh.triangles().as_flattened().iter().enumerate();
+    let indices = corners.map(|(corner, &v)| place(corner / 3, v) as u32);
+    let channel = Channel::new("x", Semantic::Other, Domain::Corner, 1)
+        .with(values.clone(), indices.collect());
+    let options = UniformOptions::default().levels(2).origins(true);
+    let fine = uniform(mesh, &CatmullClark, &options).unwrap();
+    let found = carried(&[channel], mesh, &CatmullClark, &fine)
+        .unwrap()
+        .remove(0);
+    let mut met = [0; 2];
+    for corner in fine.mesh.topology().half_edges() {
+        let origin = fine.corner_origin(mesh.triangles(), corner).unwrap();
+        let own = mesh.triangles()[origin.face as usize];
+        let at = |steps: usize| {
+            let first = place(origin.face as usize, own[0]);
+            values[first / 4 * 4 + (first + steps) % 4]
+        };
+        let expected = match origin.barycentric {
+            [0.0, 0.5, 0.5] => (at(0) + at(1) + at(2) + at(3)) / 4.0,
+            [0.5, 0.25, 0.25] => (9.0 * at(0) + 3.0 * at(1) + at(2) + 3.0 * at(3)) / 16.0,
+            _ => continue,
+        };
+        met[usize::from(origin.barycentric[0] == 0.0)] += 1;
+        assert!((found.value(corner.index())[0] - expected).abs() < 1e-14);
+    }
+    assert!(met[0] >= 6 && met[1] >= 12, "{met:?}");
 }
 
 /// The polygons and tags of an OBJ file.
