@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use limitmesh::{PolygonSoup, Triangles};
+use limitmesh::{HalfEdgeId, PolygonSoup, Triangles};
 use limitmesh_io::{Format, Output, WriteOptions};
 use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -88,6 +88,7 @@ pub(crate) fn save(
     path: PathBuf,
     vertices: PyReadonlyArray2<'_, f64>,
     faces: PyReadonlyArray2<'_, u32>,
+    quads: Vec<[u32; 2]>,
     normals: Option<PyReadonlyArray2<'_, f64>>,
     normals_of_corners: Option<PyReadonlyArray2<'_, u32>>,
     channels: Vec<ChannelIn<'_>>,
@@ -96,6 +97,7 @@ pub(crate) fn save(
 ) -> PyResult<Vec<String>> {
     let [material_libraries, texture_files] = linked;
     let (positions, triangles) = (soup::positions(&vertices)?, soup::triangles(&faces)?);
+    let quads: Vec<_> = quads.into_iter().map(|pair| pair.map(HalfEdgeId)).collect();
     let normals = normals.as_ref().map(soup::positions).transpose()?;
     let normals_of_corners = normals_of_corners
         .as_ref()
@@ -115,6 +117,7 @@ pub(crate) fn save(
             limitmesh_io::holds(format, &WriteOptions::default().ascii(ascii), channel)
         });
         let output = Output::new(surface)
+            .quads(&quads)
             .channels(&held)
             .material_libraries(&material_libraries);
         let mut output = output.texture_files(&texture_files);

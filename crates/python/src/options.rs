@@ -136,6 +136,8 @@ pub(crate) struct Goals {
     optimize: bool,
     balance: bool,
     flat_regions: bool,
+    /// Whether triangles are to be paired to quads.
+    pub(crate) quads: bool,
     pub(crate) origins: bool,
     pub(crate) max_triangles: Option<usize>,
     pub(crate) max_levels: Option<usize>,
@@ -187,7 +189,8 @@ impl Goals {
             .finish(finish)
             .flat_regions(self.flat_regions && !tells_faces_apart)
             .unfold(unfolds)
-            .origins(self.origins || tells_faces_apart);
+            .origins(self.origins || tells_faces_apart || self.quads)
+            .for_quads(self.quads);
         if let Some(cap) = self.max_triangles {
             options = options.max_triangles(Some(cap));
         }

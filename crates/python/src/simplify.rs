@@ -118,7 +118,8 @@ pub(crate) fn repair<'py>(
         })
     })?;
     let dict = PyDict::new(py);
-    let corners: Bound<'py, PyArray2<u32>> = tell::rows(py, mended.corners.as_chunks().0.to_vec())?;
+    let corners: Bound<'py, PyArray2<u32>> =
+        tell::rows(py, mended.corners.as_chunks::<3>().0.to_vec())?;
     dict.set_item("vertices", tell::rows(py, mended.positions)?)?;
     dict.set_item("faces", tell::rows(py, mended.triangles)?)?;
     dict.set_item("parent_face", PyArray1::from_vec(py, mended.faces))?;

@@ -5,13 +5,13 @@ use numpy::{Element, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// Rows of three as an array.
-pub(crate) fn rows<T: Element>(
+/// Rows as an array.
+pub(crate) fn rows<T: Element, const N: usize>(
     py: Python<'_>,
-    rows: Vec<[T; 3]>,
+    rows: Vec<[T; N]>,
 ) -> PyResult<Bound<'_, PyArray2<T>>> {
     let count = rows.len();
-    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, N])
 }
 
 /// What was found in the input, for the Python half; none where nothing was, as in most meshes.

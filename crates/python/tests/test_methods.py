@@ -185,6 +185,27 @@ def test_bad_meshes_name_the_row(octahedron):
             limitmesh.refine(vertices, [[0, 2, 9]], **options)
 
 
+def test_quads_of_catmull_clark_are_pairs_of_triangles(tmp_path):
+    vertices = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], dtype=float)
+    cube = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    for how in ({"tolerance": 0.01}, {"method": "uniform", "levels": 2}):
+        found = limitmesh.refine(vertices, cube, scheme="catmull-clark", quads=True, **how)
+        assert len(found.quads) > 0 and 2 * len(found.quads) + len(found.triangles) == len(found.faces)
+        # Both halves of a quad, cut either way, have the edges of the triangles that it replaces.
+        def edges(faces):
+            return {tuple(sorted(edge)) for face in faces.tolist() for edge in zip(face, face[1:] + face[:1], strict=True)}
+        assert edges(found.quads) | edges(found.triangles) <= edges(found.faces)
+        assert len(edges(found.faces)) - len(edges(found.quads) | edges(found.triangles)) == len(found.quads)
+        path = tmp_path / "quads.ply"
+        found.save(path)
+        sides = [len(face) for face in limitmesh.load(path).faces]
+        assert sides.count(4) == len(found.quads)
+    with pytest.raises(limitmesh.OptionError, match="catmull-clark"):
+        limitmesh.refine(vertices, cube, quads=True)
+    with pytest.raises(limitmesh.OptionError, match="distances"):
+        limitmesh.refine(vertices, cube, quads=True, angle=5, scheme="catmull-clark")
+
+
 def test_catmull_clark_is_for_polygons():
     vertices = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
     quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]

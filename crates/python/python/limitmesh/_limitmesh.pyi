@@ -116,6 +116,7 @@ def save(
     path: str,
     vertices: _Floats,
     faces: _Indices,
+    quads: list[list[int]],
     normals: _Floats | None,
     normals_of_corners: _Indices | None,
     channels: list[_Record],

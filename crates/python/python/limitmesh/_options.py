@@ -390,6 +390,8 @@ def of_refinement(
         raise OptionError("interpolate does not go with within, which leads the surface as near to the vertices as it has to be")
     if scheme == "catmull-clark" and (is_near or goals.get("optimize")):
         raise OptionError("within and optimize do not go with scheme='catmull-clark'; they are for triangles")
+    if goals.get("quads") and scheme != "catmull-clark":
+        raise OptionError("quads are for scheme='catmull-clark', whose meshes have some")
     if is_near and scheme == "butterfly":
         raise OptionError("within smooths by moving control points; scheme='butterfly' passes through them")
     control = control_of(
@@ -470,6 +472,7 @@ def goals_of(
     optimize: bool = False,
     balance: bool = False,
     flat_regions: bool = True,
+    quads: bool = False,
     origins: bool = True,
     max_triangles: Count | None = None,
     max_levels: int | None = None,
@@ -503,6 +506,8 @@ def goals_of(
             tolerance = "0.1%"
         elif method == "planarity":
             angle = 10.0
+    if quads and (method not in ("exact", "uniform") or given["angle"] or given["pixels"]):
+        raise OptionError("quads go with method='exact' and 'uniform', and keep distances; not angle and pixels")
     if view is not None and eye is not None:
         raise OptionError("view and eye: one of them says where the viewer is")
     return {
@@ -521,6 +526,7 @@ def goals_of(
         "optimize": bool(optimize),
         "balance": bool(balance),
         "flat_regions": bool(flat_regions),
+        "quads": bool(quads),
         "origins": bool(origins),
         "max_triangles": None if max_triangles is None else whole(max_triangles, "max_triangles", 1),
         "max_levels": None if max_levels is None else whole(max_levels, "max_levels", 1),

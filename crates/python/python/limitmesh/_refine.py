@@ -42,6 +42,7 @@ def refine(
     optimize: bool = False,
     balance: bool = False,
     flat_regions: bool = True,
+    quads: bool = False,
     channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
     origins: bool = True,
     weld: float | None = 0.0,
@@ -110,6 +111,9 @@ def refine(
         Lets vertices leave the limit surface by up to half the local error: fewer triangles.
     flat_regions
         Whether regions in a plane are triangulated from their rims alone, and what is straight in one direction by long triangles.
+    quads
+        With "catmull-clark", whether triangles are paired to quads where the tolerance holds for both diagonals: ``quads`` of the
+        result, which `save` writes. It takes about half more triangles.
     channels
         What is carried along, by name: `Channel`, or arrays with a row for each vertex, corner or face.
     origins
@@ -176,6 +180,7 @@ def refine(
         optimize=optimize,
         balance=balance,
         flat_regions=flat_regions,
+        quads=quads,
         origins=origins,
         max_triangles=max_triangles,
         max_levels=max_levels,

@@ -105,6 +105,10 @@ class Refined:
         of the control mesh come first.
     faces
         (m, 3) vertex numbers, counter-clockwise seen from outside, of the type ``index_dtype``.
+    quads
+        (k, 4) vertex numbers of the pairs of triangles that make quads, if ``quads`` was asked for.
+    triangles
+        (r, 3) vertex numbers of the triangles that are in no quad: with ``quads`` the faces of a file.
     normals
         (n, 3) unit limit normals of the vertices; at sharp edges an average of the sides, zero where there is none.
     parent_face
@@ -172,6 +176,7 @@ class Refined:
     crease_angle: float | None
     interpolation: Mapping[str, Any] | None
     seconds: float
+    _quads: AnyIntegers
     _sides: tuple[AnyIntegers, Floats]
     _parents: AnyIntegers | None
     _origins: _limitmesh.Origins | None
@@ -186,6 +191,16 @@ class Refined:
         return Refined(**told)
 
     # These are made when they are asked for: for most who refine they would be the greater part of what is handed over.
+
+    @property
+    def quads(self) -> AnyIntegers:
+        corners = self._quads.astype(np.int64)
+        around = [_after(corners[:, 1], 1), _after(corners[:, 1], 2), _after(corners[:, 0], 1), _after(corners[:, 0], 2)]
+        return self.faces.reshape(-1)[np.stack(around, axis=1)]
+
+    @property
+    def triangles(self) -> AnyIntegers:
+        return np.delete(self.faces, self._quads.reshape(-1) // 3, axis=0)
 
     @functools.cached_property
     def parent_face(self) -> AnyIntegers | None:
@@ -338,7 +353,7 @@ class Refined:
         """
         corners, of_sides = self._sides
         if not len(corners):
-            write(path, self.vertices, self.faces, self.normals, self.channels, ascii=ascii)
+            write(path, self.vertices, self.faces, self.normals, self.channels, quads=self._quads, ascii=ascii)
         elif os.fspath(path).lower().endswith((".glb", ".gltf")):
             # Their vertices have one normal each: those on sharp edges stand once for each side.
             split = self.split()
@@ -348,7 +363,8 @@ class Refined:
             rows = self.faces.astype(np.uint32).reshape(-1)
             rows[corners] = len(self.normals) + np.arange(len(corners), dtype=np.uint32)
             normals = np.concatenate([self.normals, of_sides])
-            write(path, self.vertices, self.faces, normals, self.channels, normals_of_corners=rows.reshape(-1, 3), ascii=ascii)
+            of_corners = rows.reshape(-1, 3)
+            write(path, self.vertices, self.faces, normals, self.channels, normals_of_corners=of_corners, quads=self._quads, ascii=ascii)
 
     def __repr__(self) -> str:
         error = ""
@@ -409,6 +425,11 @@ class Refined:
             frozenset(name for name, channel in self.channels.items() if channel.semantic == "texture"),
             self.parent_face,
         )
+
+
+def _after(corners: AnyIntegers, steps: int) -> AnyIntegers:
+    """Corners so many steps farther around their triangles."""
+    return corners // 3 * 3 + (corners % 3 + steps) % 3
 
 
 def by_corner(normals: Floats, faces: AnyIntegers, sides: tuple[AnyIntegers, Floats]) -> Floats:

@@ -2,7 +2,7 @@
 
 use limitmesh::carry::carried;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{Exact, ExactStop, exact_observed};
+use limitmesh::refine::{Exact, ExactStop, exact_observed, quads_observed};
 
 use super::within::Near;
 use super::{Indices, Refined};
@@ -38,7 +38,12 @@ pub(super) fn refined(
         true => Vec::new(),
         false => carried(&control.channels, &control.mesh, recipe.scheme, &found)?,
     };
+    let quads = match goals.quads {
+        true => quads_observed(&found, &control.mesh, recipe.scheme, observer)?,
+        false => Vec::new(),
+    };
     let mut refined = Refined::of_exact(found, control.tables).with_channels(channels);
+    refined.quads = quads.into_iter().map(|pair| pair.map(|h| h.0)).collect();
     if let (Some(near), Some(distance)) = (near, distance) {
         near.tell(distance, &mut refined);
         refined.inverted = inverted;
@@ -61,6 +66,7 @@ impl Refined {
             tables,
             positions,
             triangles: Indices::Narrow(triangles),
+            quads: Vec::new(),
             normals: found.normals,
             side_corners,
             side_normals,

@@ -36,6 +36,8 @@ pub(crate) struct Refined {
     tables: Tables,
     positions: Vec<[f64; 3]>,
     triangles: Indices,
+    /// Pairs of triangles that make quads, by the two corners where the edges between them begin.
+    quads: Vec<[u32; 2]>,
     normals: Vec<[f64; 3]>,
     /// Corners, three a triangle, whose normal is not that of their vertex, and these normals.
     side_corners: Vec<u32>,
@@ -179,6 +181,7 @@ impl Refined {
             tables,
             positions,
             triangles: Indices::Narrow(triangles),
+            quads: Vec::new(),
             normals: normals.by_vertex,
             side_corners: normals.corners,
             side_normals: normals.of_corners,
@@ -235,6 +238,7 @@ impl Refined {
             Indices::Narrow(rows) => dict.set_item(intern!(py, "faces"), tell::rows(py, rows)?)?,
             Indices::Wide(rows) => dict.set_item(intern!(py, "faces"), tell::rows(py, rows)?)?,
         }
+        dict.set_item(intern!(py, "_quads"), tell::rows(py, self.quads)?)?;
         dict.set_item(intern!(py, "normals"), tell::rows(py, self.normals)?)?;
         let sides = (
             PyArray1::from_vec(py, self.side_corners),

@@ -53,6 +53,13 @@ pub(super) fn refined(
         of_corners,
         by_vertex: normals,
     };
+    let quads = if goals.quads {
+        0..triangles.len() as u32 / 2
+    } else {
+        0..0
+    };
+    // As the control mesh has them: the diagonal is the second edge of both halves.
+    let quads = quads.map(|quad| [6 * quad + 1, 6 * quad + 4]).collect();
     let faces = 0..control.mesh.face_count() as u32;
     Ok(Refined {
         // The triangles of a face stand together: Python repeats its number for each.
@@ -66,6 +73,7 @@ pub(super) fn refined(
         } else {
             Trail::default()
         },
+        quads,
         channels,
         stop: stop_name(&stop, goals),
         levels,
