@@ -7,7 +7,7 @@ use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
 use limitmesh::progress::Observer;
 use limitmesh::refine::{Origin, UniformOptions, uniform_observed};
-use limitmesh::scheme::Loop;
+use limitmesh::scheme::{CatmullClark, Loop, Scheme};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -49,7 +49,12 @@ impl Trail {
                 let (control, levels) = (Arc::clone(control), *levels);
                 let options = UniformOptions::default().levels(levels).origins(true);
                 let job = move |observer: &mut Observer<'_>| {
-                    Ok(uniform_observed(&control, &Loop, &options, observer)?.origins)
+                    // Any scheme for such faces.
+                    let scheme: &dyn Scheme = match control.topology().has_quads() {
+                        true => &CatmullClark,
+                        false => &Loop,
+                    };
+                    Ok(uniform_observed(&control, scheme, &options, observer)?.origins)
                 };
                 run(py, 1, None, job).map(Cow::Owned)
             }

@@ -22,8 +22,8 @@ struct Fan {
     faces: usize,
     /// Whether a seam or the control mesh's boundary ends it.
     is_open: bool,
-    /// Whether a sharp edge runs inside.
-    is_creased: bool,
+    /// The greatest sharpness of an edge inside.
+    sharpest: f64,
 }
 
 /// The mesh of a channel of corners. Values are kept by `rule`, and wherever one value belongs to two fans.
@@ -63,7 +63,7 @@ pub(super) fn value_mesh(
                     value,
                     faces: 0,
                     is_open: false,
-                    is_creased: false,
+                    sharpest: 0.0,
                 });
             }
             let number = of_corner[root];
@@ -72,7 +72,7 @@ pub(super) fn value_mesh(
             // A quad counts once, by the edge with which it begins there.
             fan.faces += usize::from(!topology.is_diagonal(corner));
             match continuous(corner) {
-                Some(_) => fan.is_creased |= sharpness.edge(corner) > 0.0,
+                Some(_) => fan.sharpest = fan.sharpest.max(sharpness.edge(corner)),
                 None => fan.is_open = true,
             }
             fan.is_open |= continuous(corner.previous()).is_none();
@@ -94,8 +94,8 @@ pub(super) fn value_mesh(
         let tagged = sharpness.vertex(VertexId(vertex as u32));
         for number in own[0]..own[1] {
             let is_rim = topology.is_boundary(VertexId(vertex as u32));
-            let is_kept = is_kept((&fans[own[0]..own[1]], is_rim), number - own[0], rule);
-            let sharpness = if is_kept { f64::INFINITY } else { tagged };
+            let sharpness =
+                tagged.max(kept((&fans[own[0]..own[1]], is_rim), number - own[0], rule));
             if sharpness > 0.0 {
                 tags.corners.push(CornerTag {
                     vertex: number as u32,
@@ -115,35 +115,35 @@ pub(super) fn value_mesh(
     })
 }
 
-/// Whether the value of a fan is kept, given all fans of its vertex and whether that is on the
-/// control mesh's boundary.
-fn is_kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> bool {
+/// How long the value of a fan is kept, as the sharpness of a corner, given all fans of its vertex and whether that is on the control
+/// mesh's boundary. At semi-sharp edges it is kept as long as these are sharp.
+fn kept((fans, is_rim): (&[Fan], bool), own: usize, rule: SeamRule) -> f64 {
     let fan = &fans[own];
     if (0..fans.len()).any(|other| other != own && fans[other].value == fan.value) {
-        return true;
+        return f64::INFINITY;
     }
     // No value has two fans but those that are kept anyway.
     let mut values: Vec<u32> = fans.iter().map(|fan| fan.value).collect();
     values.sort_unstable();
     values.dedup();
     let corners_only = fan.is_open && fan.faces == 1;
-    let plus1 = values.len() > 2 || values.len() == 2 && fans.iter().any(|fan| fan.is_creased);
-    match rule {
+    let has_one_face = |&value: &u32| {
+        let own = fans.iter().filter(|fan| fan.value == value);
+        own.map(|fan| fan.faces).sum::<usize>() == 1
+    };
+    let beside_corner = values.len() == 2 && values.iter().any(has_one_face);
+    let is_dart = fans.len() == 1 && fan.is_open && !is_rim;
+    let is_kept = match rule {
         SeamRule::None => false,
         SeamRule::CornersOnly => corners_only,
-        SeamRule::CornersPlus1 => corners_only || plus1,
-        SeamRule::CornersPlus2 => {
-            let has_one_face = |&value: &u32| {
-                fans.iter()
-                    .filter(|fan| fan.value == value)
-                    .map(|fan| fan.faces)
-                    .sum::<usize>()
-                    == 1
-            };
-            let beside_corner = values.len() == 2 && values.iter().any(has_one_face);
-            let is_dart = fans.len() == 1 && fan.is_open && !is_rim;
-            corners_only || plus1 || beside_corner || is_dart
-        }
+        SeamRule::CornersPlus1 => corners_only || values.len() > 2,
+        SeamRule::CornersPlus2 => corners_only || values.len() > 2 || beside_corner || is_dart,
         SeamRule::Boundaries => fan.is_open,
+    };
+    let sees_creases = matches!(rule, SeamRule::CornersPlus1 | SeamRule::CornersPlus2);
+    match (is_kept, sees_creases && values.len() == 2) {
+        (true, _) => f64::INFINITY,
+        (false, true) => fans.iter().map(|fan| fan.sharpest).fold(0.0, f64::max),
+        (false, false) => 0.0,
     }
 }
