@@ -197,8 +197,12 @@ pub struct Trace {
     pub faces: Vec<u32>,
     /// For each corner of the mesh, three a face, the soup's corner, counted over all its faces.
     /// Where a repair gave a face a corner that its polygon has not, it is a corner of another
-    /// polygon at that vertex.
+    /// polygon at that vertex. For a corner that a step of subdivision put between others it is the
+    /// first of these.
     pub corners: Vec<u32>,
+    /// By corner of the mesh, all corners of the soup that it was put between; empty where there
+    /// was no step.
+    pub means: Vec<Vec<u32>>,
 }
 
 impl Trace {
@@ -208,6 +212,22 @@ impl Trace {
             .iter()
             .map(|&corner| soup.faces.corner(corner as usize))
             .collect()
+    }
+
+    /// By vertex of the soup, the mesh's, the first of copies; none where no face of it was kept.
+    pub fn of_soup(&self, soup: &PolygonSoup, mesh: &Mesh) -> Vec<Option<u32>> {
+        let mut vertices = vec![None; soup.positions.len()];
+        let corners = mesh.triangles().as_flattened().iter().zip(&self.corners);
+        for (place, (&own, &corner)) in corners.enumerate() {
+            if self
+                .means
+                .get(place)
+                .is_none_or(|between| between.len() == 1)
+            {
+                vertices[soup.faces.corner(corner as usize) as usize].get_or_insert(own);
+            }
+        }
+        vertices
     }
 }
 
@@ -353,16 +373,26 @@ impl Channel {
                 ..self.clone()
             });
         }
-        let indices = trace
-            .corners
-            .iter()
-            .map(|&corner| self.indices[element(corner)])
-            .collect();
-        let carried = Self {
-            indices,
+        let index = |&corner: &u32| self.indices[element(corner)];
+        let mut carried = Self {
+            indices: trace.corners.iter().map(index).collect(),
             domain: Domain::Corner,
             ..self.clone()
         };
+        if self.semantic != Semantic::Label {
+            for (own, between) in carried.indices.iter_mut().zip(&trace.means) {
+                let mut values: Vec<u32> = between.iter().map(index).collect();
+                values.sort_unstable();
+                if values.first() != values.last() {
+                    *own = carried.values.len() as u32 / carried.arity as u32;
+                    let mean = |at: usize| {
+                        let value = |&i: &u32| self.values[i as usize * self.arity + at];
+                        values.iter().map(value).sum::<f64>() / values.len() as f64
+                    };
+                    carried.values.extend((0..self.arity).map(mean));
+                }
+            }
+        }
         Ok(if self.semantic == Semantic::Label {
             carried
         } else {

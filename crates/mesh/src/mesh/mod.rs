@@ -21,6 +21,8 @@ mod topology;
 
 pub use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
+#[doc(hidden)]
+pub use build::Fans;
 pub use build::{BuildOptions, Weld, weld_within};
 pub use channel::{
     Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace,
