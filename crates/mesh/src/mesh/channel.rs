@@ -7,7 +7,7 @@
 
 use thiserror::Error;
 
-use super::{FaceParts, Mesh, PolygonSoup};
+use super::{FaceParts, Mesh, PolygonFaces, PolygonSoup};
 use crate::index::HalfEdgeId;
 
 /// The elements that have the values of a channel.
@@ -200,9 +200,12 @@ pub struct Trace {
     /// polygon at that vertex. For a corner that a step of subdivision put between others it is the
     /// first of these.
     pub corners: Vec<u32>,
-    /// By corner of the mesh, all corners of the soup that it was put between; empty where there
-    /// was no step.
-    pub means: Vec<Vec<u32>>,
+    /// By corner of the mesh, the row of `rows` with all corners of the soup that it was put
+    /// between; empty where there was no step.
+    #[doc(hidden)]
+    pub between: Vec<u32>,
+    #[doc(hidden)]
+    pub rows: PolygonFaces,
 }
 
 impl Trace {
@@ -219,11 +222,8 @@ impl Trace {
         let mut vertices = vec![None; soup.positions.len()];
         let corners = mesh.triangles().as_flattened().iter().zip(&self.corners);
         for (place, (&own, &corner)) in corners.enumerate() {
-            if self
-                .means
-                .get(place)
-                .is_none_or(|between| between.len() == 1)
-            {
+            let row = self.between.get(place);
+            if row.is_none_or(|&row| self.rows.get(row as usize).len() == 1) {
                 vertices[soup.faces.corner(corner as usize) as usize].get_or_insert(own);
             }
         }
@@ -379,25 +379,35 @@ impl Channel {
             domain: Domain::Corner,
             ..self.clone()
         };
-        if self.semantic != Semantic::Label {
-            for (own, between) in carried.indices.iter_mut().zip(&trace.means) {
-                let mut values: Vec<u32> = between.iter().map(index).collect();
-                values.sort_unstable();
-                if values.first() != values.last() {
-                    *own = carried.values.len() as u32 / carried.arity as u32;
-                    let mean = |at: usize| {
-                        let value = |&i: &u32| self.values[i as usize * self.arity + at];
-                        values.iter().map(value).sum::<f64>() / values.len() as f64
-                    };
-                    carried.values.extend((0..self.arity).map(mean));
-                }
-            }
+        if self.semantic != Semantic::Label && !trace.between.is_empty() {
+            let rows = trace.rows.iter();
+            let own: Vec<u32> = rows
+                .map(|row| carried.mean(row.iter().map(index)))
+                .collect();
+            let between = trace.between.iter();
+            carried.indices = between.map(|&row| own[row as usize]).collect();
         }
         Ok(if self.semantic == Semantic::Label {
             carried
         } else {
             carried.joined(mesh)
         })
+    }
+
+    /// The number of the mean of some values, which is added where they are not one.
+    fn mean(&mut self, of: impl Iterator<Item = u32>) -> u32 {
+        let mut of: Vec<u32> = of.collect();
+        of.sort_unstable();
+        if of.first() == of.last() {
+            return of.first().copied().unwrap_or(0);
+        }
+        for at in 0..self.arity {
+            let value = |&i: &u32| self.values[i as usize * self.arity + at];
+            let sum: f64 = of.iter().map(value).sum();
+            self.values.push(sum / of.len() as f64);
+        }
+        // The last one that is whole.
+        (self.values.len() / self.arity) as u32 - 1
     }
 
     /// The channel with one value where corners at a vertex have equal ones.

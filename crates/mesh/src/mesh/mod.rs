@@ -235,6 +235,18 @@ impl Mesh {
         build::build(soup, options)
     }
 
+    /// [`Self::from_soup`] with each polygon whole, as a fan of triangles around a vertex of its own. Polygons without area stay.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_soup`].
+    #[doc(hidden)]
+    pub fn fans_from_soup(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+    ) -> Result<(Fans, Diagnosis), MeshError> {
+        build::build_fans(soup, options)
+    }
+
     /// The same mesh as one of quads, whose halves its triangles are ([`Topology::with_quads`]).
     ///
     /// # Errors

@@ -7,7 +7,6 @@
 use core::ops::Range;
 
 use super::triangulate::{Cutter, Faces, clean};
-use super::{BuildOptions, built};
 use crate::geometry::NONE;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{Diagnosis, Mesh, MeshError, PolygonFaces, PolygonSoup, Topology, Trace};
@@ -25,29 +24,6 @@ pub struct Fans {
 }
 
 impl Fans {
-    /// The fans of a soup's polygons, with the repairs of [`Mesh::from_soup`] that polygons need: faces without area stay.
-    ///
-    /// # Errors
-    /// Those of [`Mesh::from_soup`].
-    pub fn from_soup(
-        soup: &PolygonSoup,
-        options: &BuildOptions,
-    ) -> Result<(Self, Diagnosis), MeshError> {
-        let mut count = 0;
-        let (mesh, diagnosis, trace, vertices) = built(soup, options, |kept, diagnosis| {
-            let (faces, centres) = fans(soup, kept, diagnosis)?;
-            count = centres.len();
-            Ok((faces, centres))
-        })?;
-        let fans = Self {
-            mesh,
-            // The input's vertices stand before them, copies of cut ones behind.
-            centres: (vertices - count) as u32..vertices as u32,
-            trace,
-        };
-        Ok((fans, diagnosis))
-    }
-
     /// The half-edge of a triangle that is a side of its polygon.
     pub fn side(&self, face: FaceId) -> Option<HalfEdgeId> {
         let corners = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
@@ -65,7 +41,7 @@ impl Fans {
 }
 
 /// Triangles, and the positions of the centres, which are numbered from the soup's vertices on.
-fn fans(
+pub(super) fn fans(
     soup: &PolygonSoup,
     kept: &[u32],
     diagnosis: &mut Diagnosis,

@@ -70,6 +70,26 @@ pub(super) fn build(
     Ok((mesh, diagnosis, trace))
 }
 
+/// [`build`] with a fan of triangles for each polygon.
+pub(super) fn build_fans(
+    soup: &PolygonSoup,
+    options: &BuildOptions,
+) -> Result<(Fans, Diagnosis), MeshError> {
+    let mut count = 0;
+    let (mesh, diagnosis, trace, vertices) = built(soup, options, |kept, diagnosis| {
+        let (faces, centres) = fans::fans(soup, kept, diagnosis)?;
+        count = centres.len();
+        Ok((faces, centres))
+    })?;
+    let fans = Fans {
+        mesh,
+        // The input's vertices stand before them, copies of cut ones behind.
+        centres: (vertices - count) as u32..vertices as u32,
+        trace,
+    };
+    Ok((fans, diagnosis))
+}
+
 /// [`build`] of triangles that are made of the soup's polygons over welded vertices; they may have vertices of their own, at positions
 /// that come with them and with numbers from the soup's on. Gives also the vertices before cutting.
 fn built(
@@ -244,7 +264,7 @@ fn assemble(
         Trace {
             faces: inputs,
             corners,
-            means: Vec::new(),
+            ..Trace::default()
         },
         vertex_count,
     )

@@ -3,7 +3,7 @@
 use super::*;
 
 fn fans_of(soup: &PolygonSoup) -> (Fans, Diagnosis) {
-    let (fans, diagnosis) = Fans::from_soup(soup, &BuildOptions::default()).unwrap();
+    let (fans, diagnosis) = Mesh::fans_from_soup(soup, &BuildOptions::default()).unwrap();
     check_mesh(&fans.mesh);
     (fans, diagnosis)
 }

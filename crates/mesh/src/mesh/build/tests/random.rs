@@ -79,7 +79,7 @@ proptest! {
     #[test]
     fn any_soup_gives_fans_that_name_what_is_not_in_them(soup in soups(), weld in welds()) {
         let options = BuildOptions::default().weld(weld);
-        match Fans::from_soup(&soup, &options) {
+        match Mesh::fans_from_soup(&soup, &options) {
             Ok((fans, diagnosis)) => {
                 check_mesh(&fans.mesh);
                 let is_centre = |v: &u32| fans.centres.contains(v);
@@ -89,7 +89,7 @@ proptest! {
                 let there: HashSet<u32> = fans.trace.faces.iter().copied().collect();
                 let named = diagnosis.collapsed_faces.count + diagnosis.repeated_faces.count;
                 prop_assert!(there.len() + named >= soup.faces.len());
-                let strict = Fans::from_soup(&soup, &options.strict(true));
+                let strict = Mesh::fans_from_soup(&soup, &options.strict(true));
                 prop_assert_eq!(strict.is_ok(), diagnosis.is_clean());
             }
             Err(error) => prop_assert!(matches!(error, MeshError::NoFaces { .. }), "{}", error),
