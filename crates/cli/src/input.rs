@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Trace, Weld};
-use limitmesh::{Mesh, PolygonSoup, QuadControl};
+use limitmesh::{Mesh, PolygonSoup, QuadControl, QuadOptions};
 use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::AssetContents;
 use limitmesh_io::threemf::PackageContents;
@@ -40,6 +40,8 @@ pub(crate) struct Soup {
     pub(crate) package: Option<PackageContents>,
     /// The unit of its numbers, by itself or by `--unit`.
     pub(crate) unit: Option<Unit>,
+    /// The rules by which its polygons become quads, where they are to.
+    pub(crate) quads: Option<QuadOptions>,
     /// Time taken to read or generate it.
     pub(crate) reading: Duration,
 }
@@ -62,22 +64,6 @@ impl Input {
         let edges = self.hints().edges(&self.mesh, from, &self.name)?;
         Ok(Self {
             mesh: self.mesh.with_creases(&edges),
-            ..self
-        })
-    }
-
-    /// It with a mesh of quads, as [`limitmesh::scheme::CatmullClark`] needs it.
-    ///
-    /// # Errors
-    /// There are more elements than can be numbered.
-    pub(crate) fn with_quads(self) -> anyhow::Result<Self> {
-        let quads = QuadControl::of(&self.mesh, &self.trace.faces)?;
-        let channels = self.channels.iter().map(|channel| quads.channel(channel));
-        Ok(Self {
-            channels: channels.collect(),
-            normals: self.normals.as_ref().map(|normals| quads.channel(normals)),
-            trace: quads.trace(&self.trace),
-            mesh: quads.mesh,
             ..self
         })
     }
@@ -206,6 +192,7 @@ pub(crate) fn read(
         asset: document,
         package: held,
         unit,
+        quads: None,
         reading: start.elapsed(),
     })
 }
@@ -397,17 +384,26 @@ pub(crate) fn connected(
     let faces = counted(soup.faces.len(), "face", "faces");
     progress.stage(format!("connecting {faces}"));
     let start = Instant::now();
-    let (mesh, diagnosis, trace) =
-        Mesh::from_soup_traced(&soup, options).map_err(|error| describe(&name, error))?;
+    let built = match &read.quads {
+        None => Mesh::from_soup_traced(&soup, options),
+        Some(rules) => QuadControl::from_soup_with(&soup, options, rules)
+            .map(|(quads, diagnosis)| (quads.mesh, diagnosis, quads.trace)),
+    };
+    let (mesh, diagnosis, trace) = built.map_err(|error| describe(&name, error))?;
     let on_mesh = |channel: &Channel| channel.on_mesh(&soup, &mesh, &trace);
     let channels = soup.channels.iter().map(on_mesh).collect::<Result<_, _>>();
     let channels = channels.with_context(|| name.clone())?;
     let normals = read.normals.as_ref().map(on_mesh).transpose();
     let normals = normals.with_context(|| name.clone())?;
-    let near = nearly_closed(&mesh, options.weld, |weld| {
+    let triangles = |weld| {
         let options = BuildOptions::default().weld(weld);
         Some(Mesh::from_soup(&soup, &options).ok()?.0)
-    });
+    };
+    // Quads may be halves of the polygons' edges.
+    let is_open = mesh.topology().boundary_edge_count() > 0;
+    let plain = read.quads.filter(|_| is_open);
+    let plain = plain.and_then(|_| triangles(options.weld));
+    let near = nearly_closed(plain.as_ref().unwrap_or(&mesh), options.weld, triangles);
     progress.notes(near.map(|near| format!("{name}: {near}")));
     let input = Input {
         name,

@@ -72,8 +72,8 @@ pub use limitmesh_surface::{interpolate, limit, scheme};
 pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};
 pub use limitmesh_surface::{
     BarycentricError, Closest, Crossing, Curvature, Derivatives, Facing, Hit, LimitSurface,
-    Membership, NormalCone, Proximity, ProximityError, QuadControl, Ray, RayCaster, RayError,
-    RayOptions, SurfacePoint, barycentric,
+    Membership, NormalCone, Proximity, ProximityError, QuadControl, QuadOptions, Ray, RayCaster,
+    RayError, RayOptions, SurfacePoint, barycentric,
 };
 
 #[cfg(doctest)]

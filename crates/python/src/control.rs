@@ -4,13 +4,12 @@ use limitmesh::carry::borders;
 use limitmesh::interpolate::{
     InterpolateOptions, Interpolated, InterpolationMethod, interpolate_observed,
 };
-use limitmesh::limit::suits;
-use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts};
+use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts, Trace};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
 use limitmesh::refine::ExactOptions;
-use limitmesh::scheme::Scheme;
-use limitmesh::{Mesh, PolygonSoup, QuadControl};
+use limitmesh::scheme::{Family, Scheme};
+use limitmesh::{Mesh, PolygonSoup, QuadControl, QuadOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -50,6 +49,21 @@ impl Recipe {
         Ok((mesh, trace.faces, diagnosis))
     }
 
+    /// The mesh of a soup as the scheme needs it, before anything else is done to it.
+    ///
+    /// # Errors
+    /// No mesh can be made of it.
+    fn built(&self, soup: &PolygonSoup) -> Result<(Mesh, Diagnosis, Trace), Failure> {
+        let build = self.options.build();
+        if !matches!(self.scheme.family(), Some(Family::CatmullClark)) {
+            return Ok(Mesh::from_soup_traced(soup, &build)?);
+        }
+        let rules = QuadOptions::default().boundary(self.boundary);
+        let rules = rules.smooth_triangles(self.options.smooth_triangles);
+        let (quads, diagnosis) = QuadControl::from_soup_with(soup, &build, &rules)?;
+        Ok((quads.mesh, diagnosis, quads.trace))
+    }
+
     /// The control mesh of a soup.
     ///
     /// # Errors
@@ -60,31 +74,15 @@ impl Recipe {
         observer: &mut Observer<'_>,
     ) -> Result<Control, Failure> {
         let options = &self.options;
-        let (mesh, mut diagnosis, trace) = Mesh::from_soup_traced(&soup, &options.build())?;
+        let (mesh, mut diagnosis, trace) = self.built(&soup)?;
         let channels = soup
             .channels
             .iter()
             .map(|channel| channel.on_mesh(&soup, &mesh, &trace));
         let channels: Vec<Channel> = channels.collect::<Result<_, _>>()?;
         let corners = trace.vertices(&soup);
-        let mut vertices = vec![None; soup.positions.len()];
-        for (&own, &input) in mesh.triangles().as_flattened().iter().zip(&corners) {
-            vertices[input as usize].get_or_insert(own);
-        }
+        let vertices = trace.of_soup(&soup, &mesh);
         drop(soup);
-        let quads = match suits(self.scheme, &mesh) {
-            Err(_) => Some(QuadControl::of(&mesh, &trace.faces)?),
-            Ok(()) => None,
-        };
-        let (mesh, trace, channels) = match quads {
-            Some(quads) => {
-                let channels = channels.iter().map(|channel| quads.channel(channel));
-                let channels: Vec<Channel> = channels.collect();
-                let trace = quads.trace(&trace);
-                (quads.mesh, trace, channels)
-            }
-            None => (mesh, trace, channels),
-        };
         let mesh = mesh.with_boundary(self.boundary);
         let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
         let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {

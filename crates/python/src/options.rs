@@ -29,6 +29,8 @@ pub(crate) struct ControlOptions {
     /// How near the limit surface is to pass to the vertices.
     pub(crate) interpolate: Option<Extent>,
     scheme: String,
+    /// Whether the surface is rounder where a cage for Catmull–Clark has triangles.
+    pub(crate) smooth_triangles: bool,
 }
 
 /// A length, or a part of the diagonal.

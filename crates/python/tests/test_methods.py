@@ -222,3 +222,31 @@ def test_catmull_clark_is_for_polygons():
     assert 0.005 < measured.lower <= 0.011
     with pytest.raises(limitmesh.OptionError, match="triangles"):
         limitmesh.refine(vertices, quads, within=0.1, scheme="catmull-clark")
+
+
+def test_smooth_triangles_are_a_rule_of_catmull_clark():
+    vertices = np.array([[1.0, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+    faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+    plain, smooth = (
+        limitmesh.limit(vertices, faces, scheme="catmull-clark", smooth_triangles=smooth).positions for smooth in (False, True)
+    )
+    # A corner after a step is (v + mean of edges + mean of faces) / 3; its limit (2 v' + 2 mean of e' + 4 mean of F') / 8 on quads.
+    for found, middle in ((plain, 2 / 3), (smooth, 0.03 * 2 + 0.47 * 2 / 3)):
+        v = vertices[0]
+        point = (v - v / 3 + v / 9) / 3
+        edges, centres = middle * v / 3, v / 9
+        quads = (point + 2 * edges + centres) / 4
+        assert np.abs(found[0] - (2 * point + 2 * edges + 4 * quads) / 8).max() < 1e-12
+    with pytest.raises(limitmesh.OptionError, match="catmull-clark"):
+        limitmesh.refine(vertices, faces, smooth_triangles=True)
+
+
+def test_cages_know_their_vertices_and_polygons():
+    vertices = np.array([[x, y, z] for z in (-1.0, 1.0) for y in (-1.0, 1.0) for x in (-1.0, 1.0)])
+    quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    mixed = quads[:5] + [[1, 3, 7], [1, 7, 5]]
+    for faces in (quads, mixed):
+        positions = limitmesh.limit(vertices, faces, scheme="catmull-clark").positions
+        assert (np.sign(positions) == np.sign(vertices)).all()
+        assert (positions[[0, 2, 4, 6]].round(9) != 0).all()
+    assert np.abs(limitmesh.limit(vertices, quads, scheme="catmull-clark").positions - vertices / 2).max() < 1e-12

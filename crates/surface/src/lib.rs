@@ -50,7 +50,7 @@ pub mod rays;
 mod row;
 pub mod scheme;
 
-pub use catmull_clark::QuadControl;
+pub use catmull_clark::{QuadControl, QuadOptions};
 pub use facing::{Facing, NormalCone, Viewpoint};
 pub use limit_surface::{
     BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,

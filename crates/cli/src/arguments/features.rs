@@ -1,9 +1,9 @@
 //! Options that say where the surface of a control mesh is sharp.
 
 use clap::{Args, ValueEnum};
-use limitmesh::Mesh;
 use limitmesh::mesh::{BoundaryRule, MeshError};
 use limitmesh::part::Part;
+use limitmesh::{Mesh, QuadOptions};
 use serde::Serialize;
 
 use super::values;
@@ -204,17 +204,27 @@ impl FeatureArguments {
         self.concave_corners.unwrap_or(usual)
     }
 
+    /// The rule of boundaries.
+    pub(super) fn boundary_rule(&self) -> BoundaryRule {
+        match self.boundary.unwrap_or_default() {
+            Boundary::Smooth => BoundaryRule::Smooth,
+            Boundary::Corners => BoundaryRule::Corners,
+            Boundary::Fixed => BoundaryRule::Fixed,
+        }
+    }
+
+    /// The rules by which polygons become quads.
+    pub(super) fn quads(&self, smooth_triangles: bool) -> QuadOptions {
+        let options = QuadOptions::default().boundary(self.boundary_rule());
+        options.smooth_triangles(smooth_triangles)
+    }
+
     /// The control mesh with the tags that these options put on it.
     ///
     /// # Errors
     /// None that the command line's own checks leave.
     pub(crate) fn apply(&self, mesh: Mesh) -> Result<Featured, MeshError> {
-        let rule = match self.boundary.unwrap_or_default() {
-            Boundary::Smooth => BoundaryRule::Smooth,
-            Boundary::Corners => BoundaryRule::Corners,
-            Boundary::Fixed => BoundaryRule::Fixed,
-        };
-        let mesh = mesh.with_boundary(rule);
+        let mesh = mesh.with_boundary(self.boundary_rule());
         let (mesh, along_needles) = match self.crease_angle {
             Some(CreaseAngle::Above(degrees)) => {
                 let found = mesh.creases_above(degrees.to_radians())?;

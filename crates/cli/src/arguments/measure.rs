@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, value_parser};
+use limitmesh::QuadOptions;
 
 use super::limit::LimitArguments;
 use super::shared::SchemeName;
@@ -85,6 +86,12 @@ pub(crate) struct MeasureArguments {
     #[command(flatten)]
     pub(crate) limit: LimitArguments,
 
+    /// Make the surface rounder where a cage for Catmull–Clark has triangles, as `refine` does
+    ///
+    /// With --limit-of and --scheme catmull-clark only.
+    #[arg(long, requires = "limit_of")]
+    pub(crate) smooth_triangles: bool,
+
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
@@ -95,4 +102,12 @@ pub(crate) struct MeasureArguments {
     /// cent of the control mesh's diagonal with --limit-of, else of B's.
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
+}
+
+impl MeasureArguments {
+    /// The rules by which the control mesh's polygons become quads, where the scheme is for these.
+    pub(crate) fn quads(&self) -> Option<QuadOptions> {
+        let options = self.limit.features.quads(self.smooth_triangles);
+        self.limit.scheme().has_quads().then_some(options)
+    }
 }

@@ -43,7 +43,9 @@ pub(crate) use quantity::{Length, Unit};
 pub(crate) use refine::{FaceKind, MOST_EXACT, Method, RefineArguments, Way};
 pub(crate) use render::RenderArguments;
 pub(crate) use reproduce::ReproduceArguments;
-pub(crate) use shared::{BuildArguments, OverwriteArguments, RefiningScheme, SchemeName};
+pub(crate) use shared::{
+    BuildArguments, OverwriteArguments, RefiningScheme, SMOOTH_TRIANGLES, SchemeName,
+};
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, MAX_STEPS, Size};
 pub(crate) use viewer::Viewer;

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, Args, ValueEnum};
+use limitmesh::QuadOptions;
 use limitmesh::criterion::{Camera, View, Viewpoint};
 use limitmesh::scheme::Scheme;
 use limitmesh_io::{Format, WriteOptions};
@@ -252,6 +253,12 @@ pub(crate) struct RefineArguments {
     #[arg(long, value_enum)]
     pub(crate) faces: Option<FaceKind>,
 
+    /// Make the surface rounder where a cage for Catmull–Clark has triangles
+    ///
+    /// OpenSubdiv's rule: edges of triangles have other weights in the first step. With --scheme catmull-clark only.
+    #[arg(long)]
+    pub(crate) smooth_triangles: bool,
+
     /// Give no more triangles
     ///
     /// The mesh that was reached by then is written, and the exit code is 3; the stepwise methods stop before the step that
@@ -376,6 +383,12 @@ impl RefineArguments {
     /// Whether quads are written.
     pub(crate) fn has_quads_out(&self, format: Option<Format>) -> bool {
         self.faces != Some(FaceKind::Triangles) && self.no_quads(format).is_none()
+    }
+
+    /// The rules by which polygons become quads, where the scheme is for these.
+    pub(crate) fn quads(&self) -> Option<QuadOptions> {
+        let options = self.features.quads(self.smooth_triangles);
+        self.has_quads().then_some(options)
     }
 
     /// The view that makes the angle depend on the viewer.

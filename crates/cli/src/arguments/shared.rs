@@ -57,6 +57,10 @@ impl SchemeName {
     }
 }
 
+/// Why a rule for triangles in cages is refused.
+pub(crate) const SMOOTH_TRIANGLES: &str =
+    "--smooth-triangles is a rule of Catmull–Clark's scheme; it needs --scheme catmull-clark";
+
 /// Which scheme `refine` follows: those that split triangles in four, and one that does not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Default)]
 #[cfg_attr(test, derive(schemars::JsonSchema))]

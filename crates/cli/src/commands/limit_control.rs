@@ -54,10 +54,6 @@ pub(super) fn as_asked(
     progress: &Progress,
 ) -> anyhow::Result<Prepared> {
     let (features, interpolation) = (arguments.features, arguments.interpolation);
-    let input = match arguments.scheme().has_quads() {
-        true => input.with_quads()?,
-        false => input,
-    };
     let (mesh, faces) = (&input.mesh, &input.trace.faces);
     let decided = parts::decided(features, interpolation, mesh, faces, &input.hints(), true);
     progress.notes(decided.note.map(|note| format!("{}: {note}", input.name)));

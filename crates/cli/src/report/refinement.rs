@@ -184,6 +184,8 @@ pub(crate) struct ParametersReport {
     pub(crate) levels: Option<usize>,
     /// The subdivision scheme.
     pub(crate) scheme: RefiningScheme,
+    /// Whether the surface was to be rounder where a cage for Catmull–Clark has triangles.
+    pub(crate) smooth_triangles: bool,
     /// Where the viewer looks from.
     pub(crate) view: Option<ViewReport>,
     /// Whether vertices were moved to the limit at the end.
@@ -215,6 +217,7 @@ impl ParametersReport {
             angle_degrees: None,
             levels: None,
             scheme: arguments.scheme,
+            smooth_triangles: arguments.smooth_triangles,
             view: None,
             limit: false,
             features: (&arguments.features).into(),

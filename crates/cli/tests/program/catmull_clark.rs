@@ -118,3 +118,57 @@ fn polygons_of_any_size_are_divided_and_what_is_for_triangles_is_refused() {
         "loop",
     );
 }
+
+/// Edges of triangles have the weights that OpenSubdiv gives them: the middles of a tetrahedron's are nearer to its centre.
+#[test]
+fn smooth_triangles_are_for_catmull_clark_alone() {
+    let place = folder();
+    let tetrahedron =
+        "v 1 1 1\nv 1 -1 -1\nv -1 1 -1\nv -1 -1 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    let cage = file(&place, "tetrahedron.obj", tetrahedron);
+    let (out, report) = (place.path().join("out.ply"), place.path().join("out.json"));
+    let words = "refine {} -o {} --scheme catmull-clark --smooth-triangles --method uniform --levels 0 --report {}";
+    done(words, &[&cage, &out, &report]);
+    // ((½ − 0.47) · 2 + 0.47 · ⅔) towards the edge's own middle.
+    let is_middle =
+        |p: &&[f64; 3]| (p[0] - 28.0 / 75.0).abs() < 1e-6 && p[1].abs() + p[2].abs() < 1e-6;
+    assert_eq!(soup(&out).positions.iter().filter(is_middle).count(), 1);
+    assert_eq!(json_file(&report)["parameters"]["smooth_triangles"], true);
+    let measure = "measure {} --limit-of {} --json --scheme catmull-clark";
+    done(
+        "refine {} -o {} --overwrite --scheme catmull-clark --smooth-triangles --tolerance 0.5%",
+        &[&cage, &out],
+    );
+    let near = json_of(&format!("{measure} --smooth-triangles"), &[&out, &cage]);
+    let far = json_of(measure, &[&out, &cage]);
+    let distance = |of: &serde_json::Value| number(&of["hausdorff"]["symmetric"]);
+    assert!(distance(&near) < 0.2 * distance(&far), "{near} {far}");
+    usage_error(
+        "refine {} -o {} --overwrite --smooth-triangles",
+        &[&cage, &out],
+        "--scheme catmull-clark",
+    );
+    usage_error(
+        "measure {} --limit-of {} --smooth-triangles",
+        &[&out, &cage],
+        "--scheme catmull-clark",
+    );
+}
+
+/// What is not in the surface is said by the file's own faces.
+#[test]
+fn repairs_of_cages_name_the_file_s_faces() {
+    let place = folder();
+    let vertices = "v -1 -3 -1\nv 1 -3 -1\nv 7 7 7";
+    let faces = "f 2/1 6/2 8/3 4/4\nf 1/1 1/2 2/3\nf 1/1 2/2 9/3 10/4\n";
+    let bad = format!("{CUBE}{vertices}\n{faces}");
+    let cage = file(&place, "bad.obj", &bad);
+    let (out, report) = (place.path().join("out.ply"), place.path().join("out.json"));
+    let words = "refine {} -o {} --scheme catmull-clark --tolerance 1% --report {}";
+    done(words, &[&cage, &out, &report]).saying("1 face that repeats another: left out (face 6)");
+    let found = &json_file(&report)["diagnosis"];
+    assert_eq!(found["collapsed_faces"]["first"][0], 7);
+    assert_eq!(found["non_manifold_edges"]["count"], 1);
+    assert_eq!(found["isolated_vertices"]["first"][0], 10);
+    assert_eq!(found["polygons"]["count"], 0);
+}

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod bad_cages;
+
 use std::collections::BTreeMap;
 
 use limitmesh::carry::carried;
@@ -10,7 +12,7 @@ use limitmesh::limit::LimitTable;
 use limitmesh::mesh::{BuildOptions, Channel, CornerTag, CreaseTag, Domain, PolygonSoup, Semantic};
 use limitmesh::refine::{ExactOptions, Finish, Traced, UniformOptions, exact, quads, uniform};
 use limitmesh::scheme::CatmullClark;
-use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl};
+use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl, QuadOptions};
 
 use crate::support::{Point, Random, shared_models};
 
@@ -76,6 +78,7 @@ struct Plain {
     faces: Vec<Vec<u32>>,
     sharp: BTreeMap<[u32; 2], f64>,
     corners: BTreeMap<u32, f64>,
+    smooth_triangles: bool,
 }
 
 fn sum(points: impl IntoIterator<Item = Point>) -> Point {
@@ -107,6 +110,7 @@ impl Plain {
                 .map(|tag| (key(tag.vertices[0], tag.vertices[1]), tag.sharpness))
                 .collect(),
             corners: corners.map(|tag| (tag.vertex, tag.sharpness)).collect(),
+            smooth_triangles: false,
         }
     }
 
@@ -190,7 +194,15 @@ impl Plain {
             let middle = mean(&[at(edge[0]), at(edge[1])]);
             let s = sharpness(edge).min(1.0);
             let smooth = match faces[..] {
-                [a, b] => mean(&[middle, mean(&[centres[a], centres[b]])]),
+                [a, b] => {
+                    let weight = |face: usize| match self.faces[face].len() {
+                        3 if self.smooth_triangles => 0.47,
+                        _ => 0.25,
+                    };
+                    let w = 0.5 * (weight(a) + weight(b));
+                    let ends = times(0.5 - w, sum(edge.map(at)));
+                    sum([ends, times(w, sum([centres[a], centres[b]]))])
+                }
                 _ => middle,
             };
             let number = points.len() as u32;
@@ -220,6 +232,7 @@ impl Plain {
             faces,
             sharp,
             corners: corners.filter(|&(_, s)| s > 0.0).collect(),
+            smooth_triangles: self.smooth_triangles,
         }
     }
 
@@ -429,7 +442,7 @@ fn linear_channels_are_bilinear_over_quads() {
     let mut random = Random::new(5);
     let values: Vec<f64> = (0..24).map(|_| random.signed()).collect();
     let place = |face: usize, vertex: u32| {
-        let polygon = control.polygons[face] as usize;
+        let polygon = control.trace.faces[face] as usize;
         4 * polygon + polygons[polygon].iter().position(|&v| v == vertex).unwrap()
     };
     let corners = mesh.triangles().as_flattened().iter().enumerate();
@@ -515,13 +528,26 @@ fn uniform_refinement_is_plain_subdivision() {
         &[0, 4, 6, 2],
     ];
     faces.iter().for_each(|face| mixed.faces.push(face));
-    for (name, soup, step) in [
-        ("cube", cube(), 0),
-        ("creased", creased_cube(1.6), 0),
-        ("mixed and open", mixed, 1),
+    let mut tagged = mixed.clone();
+    tagged.faces.push(&[1, 3, 7, 5]);
+    for (vertices, sharpness) in [([4, 7], 0.4), ([7, 5], 1.7), ([0, 2], 10.0)] {
+        tagged.creases.push(CreaseTag {
+            vertices,
+            sharpness,
+        });
+    }
+    for (name, soup, step, smooths) in [
+        ("cube", cube(), 0, false),
+        ("creased", creased_cube(1.6), 0, true),
+        ("mixed and open", mixed.clone(), 1, false),
+        ("smooth triangles", mixed, 1, true),
+        ("smooth triangles with tags", tagged, 1, true),
     ] {
-        let (control, _) = QuadControl::from_soup(&soup, &BuildOptions::default()).unwrap();
+        let rules = QuadOptions::default().smooth_triangles(smooths);
+        let (control, _) =
+            QuadControl::from_soup_with(&soup, &BuildOptions::default(), &rules).unwrap();
         let mut plain = Plain::of(&soup);
+        plain.smooth_triangles = smooths;
         (0..step).for_each(|_| plain = plain.refined());
         for levels in 0..4 {
             let options = UniformOptions::default().levels(levels).origins(true);
@@ -561,6 +587,26 @@ fn uniform_refinement_is_plain_subdivision() {
             assert!(sorted(&own) == sorted(&expected), "{name} {levels}");
             plain = plain.refined();
         }
+    }
+}
+
+/// The middle of an edge of a tetrahedron, by hand: (½ − 0.47) · 2 + 0.47 · ⅔ towards the edge's own middle.
+#[test]
+fn smooth_triangles_have_their_weights() {
+    let corners = [
+        [1.0, 1.0, 1.0],
+        [1.0, -1.0, -1.0],
+        [-1.0, 1.0, -1.0],
+        [-1.0, -1.0, 1.0],
+    ];
+    let cage = soup(&corners, &[&[0, 1, 2], &[0, 3, 1], &[0, 2, 3], &[1, 3, 2]]);
+    for (smooths, expected) in [(false, 2.0 / 3.0), (true, 28.0 / 75.0)] {
+        let rules = QuadOptions::default().smooth_triangles(smooths);
+        let (control, _) =
+            QuadControl::from_soup_with(&cage, &BuildOptions::default(), &rules).unwrap();
+        let points = control.mesh.positions();
+        let is_there = |&p: &Point| near(p, [expected, 0.0, 0.0], 1e-15);
+        assert_eq!(points.iter().filter(|p| is_there(p)).count(), 1);
     }
 }
 

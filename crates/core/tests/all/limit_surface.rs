@@ -3,8 +3,9 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use crate::support::{crease, mapped, octahedron};
+use limitmesh::mesh::BuildOptions;
 use limitmesh::scheme::{CatmullClark, Loop, ModifiedButterfly, Scheme};
-use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl};
+use limitmesh::{FaceId, LimitSurface, Mesh, PolygonSoup, QuadControl};
 
 #[track_caller]
 fn near(found: f64, expected: f64, within: f64) {
@@ -623,8 +624,16 @@ fn tangents_at_irregular_vertices_are_where_the_surface_goes() {
     let unit = |a: [f64; 3]| a.map(|x| x / dot(a, a).sqrt());
     for valence in [3, 4, 5, 7, 12] {
         let triangles = fan(valence);
-        let parts: Vec<u32> = (0..triangles.face_count() as u32).collect();
-        let quads = QuadControl::of(&triangles, &parts).unwrap().mesh;
+        let mut soup = PolygonSoup {
+            positions: triangles.positions().to_vec(),
+            ..PolygonSoup::default()
+        };
+        triangles
+            .triangles()
+            .iter()
+            .for_each(|t| soup.faces.push(t));
+        let (quads, _) = QuadControl::from_soup(&soup, &BuildOptions::default()).unwrap();
+        let quads = quads.mesh;
         for (mesh, scheme) in [
             (&triangles, &Loop as &dyn Scheme),
             (&triangles, &ModifiedButterfly),

@@ -7,7 +7,7 @@
 
 use thiserror::Error;
 
-use super::{FaceParts, Mesh, PolygonSoup};
+use super::{FaceParts, Mesh, PolygonFaces, PolygonSoup};
 use crate::index::HalfEdgeId;
 
 /// The elements that have the values of a channel.
@@ -197,8 +197,15 @@ pub struct Trace {
     pub faces: Vec<u32>,
     /// For each corner of the mesh, three a face, the soup's corner, counted over all its faces.
     /// Where a repair gave a face a corner that its polygon has not, it is a corner of another
-    /// polygon at that vertex.
+    /// polygon at that vertex. For a corner that a step of subdivision put between others it is the
+    /// first of these.
     pub corners: Vec<u32>,
+    /// By corner of the mesh, the row of `rows` with all corners of the soup that it was put
+    /// between; empty where there was no step.
+    #[doc(hidden)]
+    pub between: Vec<u32>,
+    #[doc(hidden)]
+    pub rows: PolygonFaces,
 }
 
 impl Trace {
@@ -208,6 +215,19 @@ impl Trace {
             .iter()
             .map(|&corner| soup.faces.corner(corner as usize))
             .collect()
+    }
+
+    /// By vertex of the soup, the mesh's, the first of copies; none where no face of it was kept.
+    pub fn of_soup(&self, soup: &PolygonSoup, mesh: &Mesh) -> Vec<Option<u32>> {
+        let mut vertices = vec![None; soup.positions.len()];
+        let corners = mesh.triangles().as_flattened().iter().zip(&self.corners);
+        for (place, (&own, &corner)) in corners.enumerate() {
+            let row = self.between.get(place);
+            if row.is_none_or(|&row| self.rows.get(row as usize).len() == 1) {
+                vertices[soup.faces.corner(corner as usize) as usize].get_or_insert(own);
+            }
+        }
+        vertices
     }
 }
 
@@ -353,21 +373,41 @@ impl Channel {
                 ..self.clone()
             });
         }
-        let indices = trace
-            .corners
-            .iter()
-            .map(|&corner| self.indices[element(corner)])
-            .collect();
-        let carried = Self {
-            indices,
+        let index = |&corner: &u32| self.indices[element(corner)];
+        let mut carried = Self {
+            indices: trace.corners.iter().map(index).collect(),
             domain: Domain::Corner,
             ..self.clone()
         };
+        if self.semantic != Semantic::Label && !trace.between.is_empty() {
+            let rows = trace.rows.iter();
+            let own: Vec<u32> = rows
+                .map(|row| carried.mean(row.iter().map(index)))
+                .collect();
+            let between = trace.between.iter();
+            carried.indices = between.map(|&row| own[row as usize]).collect();
+        }
         Ok(if self.semantic == Semantic::Label {
             carried
         } else {
             carried.joined(mesh)
         })
+    }
+
+    /// The number of the mean of some values, which is added where they are not one.
+    fn mean(&mut self, of: impl Iterator<Item = u32>) -> u32 {
+        let mut of: Vec<u32> = of.collect();
+        of.sort_unstable();
+        if of.first() == of.last() {
+            return of.first().copied().unwrap_or(0);
+        }
+        for at in 0..self.arity {
+            let value = |&i: &u32| self.values[i as usize * self.arity + at];
+            let sum: f64 = of.iter().map(value).sum();
+            self.values.push(sum / of.len() as f64);
+        }
+        // The last one that is whole.
+        (self.values.len() / self.arity) as u32 - 1
     }
 
     /// The channel with one value where corners at a vertex have equal ones.

@@ -21,6 +21,8 @@ mod topology;
 
 pub use crate::geometry::NONE;
 pub use crate::ring::{INFINITELY_SHARP, SharpRing, VertexRule};
+#[doc(hidden)]
+pub use build::Fans;
 pub use build::{BuildOptions, Weld, weld_within};
 pub use channel::{
     Channel, ChannelError, Domain, Interpolation, SeamRule, Semantic, Storage, Trace,
@@ -231,6 +233,18 @@ impl Mesh {
         options: &BuildOptions,
     ) -> Result<(Self, Diagnosis, Trace), MeshError> {
         build::build(soup, options)
+    }
+
+    /// [`Self::from_soup`] with each polygon whole, as a fan of triangles around a vertex of its own. Polygons without area stay.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_soup`].
+    #[doc(hidden)]
+    pub fn fans_from_soup(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+    ) -> Result<(Fans, Diagnosis), MeshError> {
+        build::build_fans(soup, options)
     }
 
     /// The same mesh as one of quads, whose halves its triangles are ([`Topology::with_quads`]).

@@ -3,7 +3,7 @@
 use super::{Channel, CornerTag, CreaseTag};
 
 /// Polygons of any number of corners, stored one after another.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PolygonFaces {
     /// Start of each polygon in `corners`, and the end of the last.
     starts: Vec<u32>,

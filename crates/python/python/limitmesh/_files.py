@@ -68,6 +68,7 @@ def refine_file(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: Scheme = "loop",
+    smooth_triangles: bool = False,
     method: Method = "exact",
     levels: int | None = None,
     optimize: bool = False,
@@ -112,7 +113,7 @@ def refine_file(
         edges are sharp; "none" keeps none but those that it does. By default "auto" for exact refinement, as in the program.
     overwrite
         Whether the target may be a file that is read.
-    tolerance, within, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, method, levels, optimize, balance, \
+    tolerance, within, triangles, angle, interpolate, crease_angle, boundary, concave_corners, scheme, smooth_triangles, method, levels, optimize, balance, \
 weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         As for `refine`.
 
@@ -149,6 +150,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         boundary=boundary,
         concave_corners=concave_corners,
         scheme=scheme,
+        smooth_triangles=smooth_triangles,
         weld=weld,
     )
     goals = _options.goals_of(
@@ -181,6 +183,7 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         ("balance", balance),
         ("split-normals", split_normals),
         ("provenance", provenance),
+        ("smooth-triangles", smooth_triangles),
         ("ascii", ascii),
         ("overwrite", overwrite),
         ("strict", not repair),

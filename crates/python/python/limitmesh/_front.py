@@ -49,7 +49,7 @@ class Front:
     ----------
     vertices, faces
         The control mesh, as for `refine`.
-    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld, repair
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, smooth_triangles, weld, repair
         What the limit surface is, as for `refine`; distances are proven for ``"loop"`` and ``"loop-warren"``.
     threads, progress
         As for `refine`; the threads are those of all updates, ``progress`` is about the beginning.
@@ -82,6 +82,7 @@ class Front:
         boundary: Boundary = "smooth",
         concave_corners: str | None = None,
         scheme: Scheme = "loop",
+        smooth_triangles: bool = False,
         weld: float | None = 0.0,
         repair: bool = True,
         threads: int | None = None,
@@ -90,7 +91,7 @@ class Front:
         native, control = _inputs.surface_of(
             vertices, faces, creases, corners,
             interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
-            scheme=scheme, weld=weld, repair=repair,
+            scheme=scheme, smooth_triangles=smooth_triangles, weld=weld, repair=repair,
         )
         native["channels"] = []
         workers, callback = _options.work_of(threads, progress)

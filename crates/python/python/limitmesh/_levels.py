@@ -33,6 +33,7 @@ def levels_of_detail(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: Scheme = "loop",
+    smooth_triangles: bool = False,
     channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
     weld: float | None = 0.0,
     repair: bool = True,
@@ -59,7 +60,7 @@ def levels_of_detail(
         the tolerance of the coarser one (default 0.25).
     morph
         Whether geomorphs are wanted.
-    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, channels, weld, repair, index_dtype
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, smooth_triangles, channels, weld, repair, index_dtype
         As for `refine`.
     max_triangles, max_memory
         Caps of a level. The first level that a cap ends is the last one; a `StoppedShort` warning says so.
@@ -95,7 +96,7 @@ def levels_of_detail(
     native, control = _inputs.surface_of(
         vertices, faces, creases, corners, channels,
         interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
-        scheme=scheme, weld=weld, repair=repair,
+        scheme=scheme, smooth_triangles=smooth_triangles, weld=weld, repair=repair,
     )
     told = _limitmesh.levels_of_detail(
         native, control, detail, dtype == np.int64, *_options.work_of(threads, progress)

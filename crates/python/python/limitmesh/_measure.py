@@ -87,6 +87,7 @@ def measure(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: Scheme = "loop",
+    smooth_triangles: bool = False,
     weld: float | None = 0.0,
     threads: int | None = None,
     progress: ProgressCallback | None = None,
@@ -111,7 +112,7 @@ def measure(
     levels
         Of uniform refinement that stands for a limit surface when sampling, at least 1. Default: 5, or fewer for large meshes, but two
         more than ``a`` has.
-    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
+    interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, smooth_triangles, weld
         What the limit surface is, as for `refine`.
     threads, progress
         As for `refine`.
@@ -148,7 +149,7 @@ def measure(
         reference, control = _inputs.surface_of(
             limit_of, None, creases, corners,
             interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
-            scheme=scheme, weld=weld,
+            scheme=scheme, smooth_triangles=smooth_triangles, weld=weld,
         )
         told = _limitmesh.measure_limit(surface, reference, control, how, steps, *work)
     return Distance(
@@ -184,6 +185,7 @@ def limit(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: Scheme = "loop",
+    smooth_triangles: bool = False,
     weld: float | None = 0.0,
     repair: bool = True,
     threads: int | None = None,
@@ -209,7 +211,7 @@ def limit(
     native, control = _inputs.surface_of(
         vertices, faces, creases, corners,
         interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
-        scheme=scheme, weld=weld, repair=repair,
+        scheme=scheme, smooth_triangles=smooth_triangles, weld=weld, repair=repair,
     )
     return Limit(*_limitmesh.limit(native, control, *_options.work_of(threads, progress)))
 

@@ -268,6 +268,7 @@ class ControlOptions(TypedDict, total=False):
     boundary: str
     concave_corners: str | None
     scheme: str
+    smooth_triangles: bool
     weld: float | None
     repair: bool
 
@@ -280,6 +281,7 @@ def control_of(
     boundary: str = "smooth",
     concave_corners: str | None = None,
     scheme: str = "loop",
+    smooth_triangles: bool = False,
     weld: float | None = 0.0,
     repair: bool = True,
 ) -> dict[str, Any]:
@@ -290,6 +292,8 @@ def control_of(
         ("concave_corners", concave_corners, (None, "divided", "as-tagged")),
     ):
         one_of(value, name, expected)
+    if smooth_triangles and scheme != "catmull-clark":
+        raise OptionError(f"smooth_triangles is a rule of scheme='catmull-clark'; it does not go with {scheme!r}")
     if crease_angle is not None:
         if auto_creases:
             raise OptionError("creases='auto' finds an angle; crease_angle does not go with it")
@@ -312,6 +316,7 @@ def control_of(
         "divides_concave_corners": (concave_corners or usual) == "divided",
         "interpolate": within,
         "scheme": scheme,
+        "smooth_triangles": bool(smooth_triangles),
     }
 
 
@@ -376,6 +381,7 @@ def of_refinement(
     boundary: str,
     concave_corners: str | None,
     scheme: str,
+    smooth_triangles: bool,
     weld: float | None,
     repair: bool,
     **goals: Any,
@@ -403,6 +409,7 @@ def of_refinement(
         concave_corners=concave_corners,
         # Nothing but what is refused above asks for the control mesh's scheme.
         scheme="loop" if sqrt3 else scheme,
+        smooth_triangles=smooth_triangles,
         weld=weld,
         repair=repair,
     )

@@ -34,6 +34,7 @@ def refine(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: RefiningScheme = "loop",
+    smooth_triangles: bool = False,
     method: Method = "exact",
     levels: int | None = None,
     view: npt.ArrayLike | None = None,
@@ -98,6 +99,8 @@ def refine(
         "loop", "loop-warren", "butterfly", "catmull-clark" or "sqrt3"; distances are estimated for "butterfly" and "sqrt3", and proven for
         the others. "catmull-clark" is for quads: other polygons are divided into quads first. "sqrt3" divides triangles by their
         centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
+    smooth_triangles
+        Makes the surface rounder where a cage for "catmull-clark" has triangles: OpenSubdiv's rule of that name.
     method
         "exact"; or, with ``levels`` steps (default 3), "limit-normal" (the paper's) or "amresh" with ``angle`` (default 10), or
         "uniform", whose vertices are on the limit surface but for "sqrt3". To be compared with, over restricted quadtrees: "planarity", to ``angle`` (default 10) between triangles and limit
@@ -164,6 +167,7 @@ def refine(
         boundary=boundary,
         concave_corners=concave_corners,
         scheme=scheme,
+        smooth_triangles=smooth_triangles,
         weld=weld,
         repair=repair,
         method=method,
@@ -228,6 +232,7 @@ def estimate(
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
     scheme: Scheme = "loop",
+    smooth_triangles: bool = False,
     view: npt.ArrayLike | None = None,
     eye: npt.ArrayLike | None = None,
     dilatation: float = 1.0,
@@ -260,6 +265,6 @@ def estimate(
     native, control = _inputs.surface_of(
         vertices, faces, creases, corners,
         interpolate=interpolate, crease_angle=crease_angle, boundary=boundary, concave_corners=concave_corners,
-        scheme=scheme, weld=weld, repair=repair,
+        scheme=scheme, smooth_triangles=smooth_triangles, weld=weld, repair=repair,
     )
     return Estimate(*_limitmesh.estimate(native, control, goals, *_options.work_of(threads, progress)))

@@ -1,8 +1,7 @@
-//! Control meshes of quads: polygons put together again from the triangles that they were cut into, and refined once where not all of them
-//! are quads.
+//! Control meshes of quads: those of a file's polygons, refined once where not all of them are quads.
 //!
-//! Takes a mesh of triangles with the polygons of which they are parts; gives a mesh whose triangles are halves of quads. A step of
-//! Catmull–Clark subdivision leaves the limit surface as it is.
+//! Takes polygons as fans of triangles; gives a mesh whose triangles are halves of quads. A step of Catmull–Clark subdivision leaves the
+//! limit surface as it is.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,11 +9,24 @@ use super::quads::{halves, in_half};
 use super::ring::vertex_weights;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{
-    BuildOptions, Channel, Diagnosis, Domain, Groups, Junctions, Mesh, MeshError, NONE,
-    PolygonSoup, Semantic, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
+    BoundaryRule, BuildOptions, Diagnosis, Fans, Groups, Junctions, Mesh, MeshError, NONE,
+    PolygonFaces, PolygonSoup, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
 };
+use crate::options;
 use crate::ring::SharpRing;
 use crate::vector::{DVec3, vector};
+
+options! {
+    /// What is done to polygons before they are quads.
+    #[derive(Clone, Copy, Debug)]
+    pub struct QuadOptions {
+        /// Whether edges of triangles follow OpenSubdiv's `smooth triangles` in the step that makes quads of them: the surface over
+        /// triangles is rounder.
+        pub smooth_triangles: bool = false,
+        /// The rule of the boundary, as [`Mesh::with_boundary`] has it for meshes that are already there.
+        pub boundary: BoundaryRule = BoundaryRule::Smooth,
+    }
+}
 
 /// A control mesh of quads for [`crate::scheme::CatmullClark`], made of polygons.
 ///
@@ -41,14 +53,13 @@ use crate::vector::{DVec3, vector};
 pub struct QuadControl {
     /// The mesh.
     pub mesh: Mesh,
-    /// By face of the mesh, the polygon of which it is a part: with [`Self::from_soup`] the soup's face.
-    pub polygons: Vec<u32>,
-    /// By corner of the mesh, three a face, the corners of the triangles of which it is the mean, by the half-edges that leave them.
-    corners: Vec<Vec<HalfEdgeId>>,
+    /// The faces and corners of the soup that those of the mesh are from.
+    pub trace: Trace,
 }
 
 impl QuadControl {
-    /// The quads of a file's polygons.
+    /// The quads of a file's polygons. Defects are repaired as for [`Mesh::from_soup`], but that polygons without area stay; those that
+    /// visit a vertex twice are cut into triangles.
     ///
     /// # Errors
     /// Those of [`Mesh::from_soup`].
@@ -56,151 +67,85 @@ impl QuadControl {
         soup: &PolygonSoup,
         options: &BuildOptions,
     ) -> Result<(Self, Diagnosis), MeshError> {
-        let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, options)?;
-        Ok((Self::of(&mesh, &trace.faces)?, diagnosis))
+        Self::from_soup_with(soup, options, &QuadOptions::default())
     }
 
-    /// A channel of the triangles on the quads: new corners have the mean of those that they are in the middle of.
-    pub fn channel(&self, channel: &Channel) -> Channel {
-        if channel.domain == Domain::Face {
-            let of_corner =
-                |corners: &[Vec<HalfEdgeId>]| channel.indices[corners[0][0].face().index()];
-            let indices = self
-                .corners
-                .as_chunks::<3>()
-                .0
-                .iter()
-                .map(|own| of_corner(own));
-            return channel
-                .clone()
-                .with(channel.values.clone(), indices.collect());
-        }
-        let mut values = channel.values.clone();
-        let mut known: HashMap<Vec<u32>, u32> = HashMap::new();
-        let indices = self.corners.iter().map(|corners| {
-            let mut own: Vec<u32> = corners.iter().map(|h| channel.indices[h.index()]).collect();
-            own.sort_unstable();
-            if own[0] == own[own.len() - 1] || channel.semantic == Semantic::Label {
-                return own[0];
-            }
-            *known.entry(own).or_insert_with_key(|own| {
-                let value = |at: usize| {
-                    let sum: f64 = own
-                        .iter()
-                        .map(|&i| channel.values[i as usize * channel.arity + at])
-                        .sum();
-                    sum / own.len() as f64
-                };
-                values.extend((0..channel.arity).map(value));
-                (values.len() / channel.arity) as u32 - 1
-            })
-        });
-        let indices = indices.collect();
-        channel.clone().with(values, indices)
-    }
-
-    /// The corners of a soup for those of the mesh, by those of the triangles: of new ones the first.
-    pub fn trace(&self, triangles: &Trace) -> Trace {
-        let mut trace = Trace::default();
-        trace.faces = self.polygons.clone();
-        let corners = self
-            .corners
-            .iter()
-            .map(|own| triangles.corners[own[0].index()]);
-        trace.corners = corners.collect();
-        trace
-    }
-
-    /// The quads of a mesh, given by triangle the polygon that it is part of.
+    /// [`Self::from_soup`] by other rules.
     ///
     /// # Errors
-    /// There are more elements than can be numbered.
-    pub fn of(mesh: &Mesh, parts: &[u32]) -> Result<Self, MeshError> {
-        let polygons = Polygons::of(mesh.topology(), parts);
-        match polygons.loops.iter().all(|own| own.len() == 4) {
-            true => polygons.as_quads(mesh, parts),
-            false => polygons.refined(mesh, parts),
-        }
+    /// Those of [`Mesh::from_soup`].
+    pub fn from_soup_with(
+        soup: &PolygonSoup,
+        options: &BuildOptions,
+        rules: &QuadOptions,
+    ) -> Result<(Self, Diagnosis), MeshError> {
+        let (mut fans, diagnosis) = Mesh::fans_from_soup(soup, options)?;
+        let polygons = Polygons::of(&fans);
+        let control = match polygons.as_quads(&fans)? {
+            Some(quads) => quads,
+            None => {
+                let kept = polygons.kept_corners(&fans.mesh, rules.boundary);
+                fans.mesh = fans.mesh.with_corners(&kept);
+                polygons.refined(&fans, rules.smooth_triangles)?
+            }
+        };
+        let mesh = control.mesh.with_boundary(rules.boundary);
+        Ok((Self { mesh, ..control }, diagnosis))
     }
 }
 
-/// Polygons by the half-edges of triangles along their sides.
+/// What a face beside an edge weighs where it is a triangle that is to be smooth, as in OpenSubdiv; others weigh a quarter.
+const SMOOTH_TRIANGLE: f64 = 0.47;
+
+/// Polygons by the half-edges of their fans along their sides.
 struct Polygons {
     loops: Vec<Vec<HalfEdgeId>>,
     /// By half-edge, the polygon and the place in its loop; [`NONE`] inside a polygon.
     places: Vec<[u32; 2]>,
+    centroids: Vec<DVec3>,
 }
 
 impl Polygons {
-    fn of(topology: &Topology, parts: &[u32]) -> Self {
-        let is_inside = |h: HalfEdgeId| {
-            let part = |h: HalfEdgeId| parts[h.face().index()];
-            topology.twin(h).filter(|&twin| part(twin) == part(h))
-        };
+    fn of(fans: &Fans) -> Self {
+        let topology = fans.mesh.topology();
         let mut polygons = Self {
             loops: Vec::new(),
             places: vec![[NONE; 2]; topology.half_edge_count()],
+            centroids: Vec::new(),
         };
-        let mut met = vec![false; topology.face_count()];
-        for face in topology.faces() {
-            if met[face.index()] {
-                continue;
-            }
-            // The triangles of the polygon that hang together, and the sides around them.
-            let (mut own, mut sides) = (vec![face], 0);
-            met[face.index()] = true;
-            let mut at = 0;
-            while let Some(&face) = own.get(at) {
-                at += 1;
-                for h in [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner)) {
-                    match is_inside(h) {
-                        None => sides += 1,
-                        Some(twin) if !met[twin.face().index()] => {
-                            met[twin.face().index()] = true;
-                            own.push(twin.face());
-                        }
-                        Some(_) => {}
-                    }
+        for first in topology.faces().filter_map(|face| fans.side(face)) {
+            if polygons.places[first.index()][0] == NONE {
+                let own: Vec<HalfEdgeId> = fans.sides(first).collect();
+                for (place, h) in (0..).zip(&own) {
+                    polygons.places[h.index()] = [polygons.loops.len() as u32, place];
                 }
-            }
-            let first = own
-                .iter()
-                .flat_map(|&face| [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner)))
-                .find(|&h| is_inside(h).is_none());
-            let next = |h: HalfEdgeId| {
-                let mut next = h.next();
-                while let Some(twin) = is_inside(next) {
-                    next = twin.next();
-                }
-                next
-            };
-            let around: Vec<HalfEdgeId> = first.map_or(Vec::new(), |first| {
-                let turn = |&h: &HalfEdgeId| Some(next(h)).filter(|&next| next != first);
-                core::iter::successors(Some(first), turn)
-                    .take(sides)
-                    .collect()
-            });
-            // Triangles around a hole, or that touch themselves, stay triangles.
-            if around.len() == sides && own.len() + 2 == sides {
-                polygons.push(around);
-            } else {
-                for face in own {
-                    polygons.push(
-                        [0, 1, 2]
-                            .map(|corner| HalfEdgeId::of(face, corner))
-                            .to_vec(),
-                    );
-                }
+                let corners = own.iter().map(|&h| at(&fans.mesh, topology.origin(h)));
+                let sum: DVec3 = corners.sum();
+                polygons.centroids.push(sum / own.len() as f64);
+                polygons.loops.push(own);
             }
         }
         polygons
     }
 
-    fn push(&mut self, own: Vec<HalfEdgeId>) {
-        for (place, h) in (0..).zip(&own) {
-            self.places[h.index()] = [self.loops.len() as u32, place];
-        }
-        self.loops.push(own);
+    /// The sides that leave a vertex, in their order around it.
+    fn outgoing(&self, topology: &Topology, vertex: VertexId) -> Vec<HalfEdgeId> {
+        let is_side = |h: &HalfEdgeId| self.places[h.index()][0] != NONE;
+        topology.outgoing_ring(vertex).filter(is_side).collect()
+    }
+
+    /// The vertices of the boundary that a rule keeps where they are.
+    fn kept_corners(&self, mesh: &Mesh, rule: BoundaryRule) -> Vec<VertexId> {
+        let topology = mesh.topology();
+        let is_kept = |&v: &VertexId| {
+            topology.is_boundary(v)
+                && match rule {
+                    BoundaryRule::Fixed => true,
+                    BoundaryRule::Corners => self.outgoing(topology, v).len() == 1,
+                    _ => false,
+                }
+        };
+        topology.vertices().filter(is_kept).collect()
     }
 
     /// The side that follows one, by so many steps.
@@ -215,18 +160,39 @@ impl Polygons {
         self.side(h, self.loops[polygon as usize].len() - 1)
     }
 
-    /// Quads as they are.
-    fn as_quads(&self, mesh: &Mesh, parts: &[u32]) -> Result<QuadControl, MeshError> {
-        let topology = mesh.topology();
+    /// Quads as they are, without the vertices in their middles; nothing where not all polygons are quads, or a quad has no diagonal whose
+    /// ends nothing else joins.
+    fn as_quads(&self, fans: &Fans) -> Result<Option<QuadControl>, MeshError> {
+        if self.loops.iter().any(|own| own.len() != 4) {
+            return Ok(None);
+        }
+        let (mesh, topology) = (&fans.mesh, fans.mesh.topology());
+        let centres = &fans.centres;
+        let name = |v: u32| {
+            if v < centres.start {
+                v
+            } else {
+                v - centres.len() as u32
+            }
+        };
         let sides = self.loops.iter().flatten();
-        let mut quads = QuadList::over(sides.map(|&h| topology.ends(h).map(|v| v.0)));
+        let mut quads = QuadList::over(sides.map(|&h| topology.ends(h).map(|v| name(v.0))));
+        let mut rows = PolygonFaces::default();
         for own in &self.loops {
             let sides = [0, 1, 2, 3].map(|i| own[i]);
             let [a, b, c, d] = sides.map(|h| topology.origin(h));
             let square = |a, b| at(mesh, a).distance_squared(at(mesh, b));
             // The shorter diagonal bends less.
             let is_turned = square(a, c) < square(b, d);
-            quads.push([a, b, c, d].map(|v| v.0), sides.map(|h| vec![h]), is_turned);
+            let sources = sides.map(|h| {
+                rows.push(&[fans.trace.corners[h.index()]]);
+                rows.len() as u32 - 1
+            });
+            let input = fans.trace.faces[sides[0].face().index()];
+            quads.push([a, b, c, d].map(|v| name(v.0)), sources, input, is_turned);
+        }
+        if quads.has_doubles {
+            return Ok(None);
         }
         let moved = |h: HalfEdgeId| {
             let [quad, place] = self.places[h.index()];
@@ -240,28 +206,35 @@ impl Polygons {
         }
         let mut junctions = mesh.junctions().clone();
         junctions.edges.rename(|h| moved(HalfEdgeId(h)));
-        let positions = mesh.positions().to_vec();
-        let tags = mesh.tags().clone();
-        let polygons = self
-            .loops
-            .iter()
-            .flat_map(|own| [parts[own[0].face().index()]; 2]);
-        Ok(QuadControl {
-            polygons: polygons.collect(),
-            mesh: assembled(quads.triangles, twins, positions, tags, junctions)?,
-            corners: quads.corners,
-        })
+        junctions.vertices.rename(name);
+        let mut positions = mesh.positions().to_vec();
+        positions.drain(centres.start as usize..centres.end as usize);
+        let mut tags = mesh.tags().clone();
+        for tag in &mut tags.creases {
+            tag.vertices = tag.vertices.map(name);
+        }
+        for tag in &mut tags.corners {
+            tag.vertex = name(tag.vertex);
+        }
+        let mut trace = quads.trace(rows);
+        (trace.between, trace.rows) = Default::default();
+        let mesh = assembled(quads.triangles, twins, positions, tags, junctions)?;
+        Ok(Some(QuadControl { mesh, trace }))
     }
 
-    /// All polygons after a step.
-    fn refined(&self, mesh: &Mesh, parts: &[u32]) -> Result<QuadControl, MeshError> {
-        let topology = mesh.topology();
+    /// All polygons after a step. The vertices in their middles go where it puts them.
+    fn refined(&self, fans: &Fans, smooths: bool) -> Result<QuadControl, MeshError> {
+        let (mesh, topology) = (&fans.mesh, fans.mesh.topology());
         let sharpness = Sharpness::of(mesh);
         let sides: Vec<HalfEdgeId> = self.loops.iter().flatten().copied().collect();
-        let mut positions: Vec<[f64; 3]> =
-            Vec::with_capacity(mesh.vertex_count() + 2 * sides.len());
-        let vertices = topology.vertices();
-        positions.extend(vertices.map(|v| self.vertex_point(mesh, &sharpness, v).to_array()));
+        let mut positions: Vec<[f64; 3]> = Vec::with_capacity(mesh.vertex_count() + sides.len());
+        positions.extend(topology.vertices().map(|v| {
+            let point = match fans.centres.contains(&v.0) {
+                true => self.centroid(topology.outgoing(v).next()),
+                false => self.vertex_point(mesh, &sharpness, v),
+            };
+            point.to_array()
+        }));
         let mut on_sides: HashMap<HalfEdgeId, u32> = HashMap::with_capacity(sides.len());
         for &h in &sides {
             let twin = topology.twin(h);
@@ -269,34 +242,23 @@ impl Polygons {
                 let number = positions.len() as u32;
                 let both = [Some(h), twin].into_iter().flatten();
                 both.for_each(|h| _ = on_sides.insert(h, number));
-                positions.push(self.side_point(mesh, &sharpness, h).to_array());
+                positions.push(self.side_point(mesh, &sharpness, h, smooths).to_array());
             }
         }
         // By side, the quad at the corner where it begins: its corners are that, the middle of the side, the centre, and the middle of the
         // side before.
         let numbers: HashMap<HalfEdgeId, u32> = sides.iter().copied().zip(0..).collect();
         let mut quads = QuadList::default();
-        let mut polygons = Vec::with_capacity(2 * sides.len());
-        for own in &self.loops {
-            let middle = positions.len() as u32;
-            positions.push(self.centroid(mesh, own[0]).to_array());
-            for &h in own {
-                let before = self.before(h);
-                let vertices = [
-                    topology.origin(h).0,
-                    on_sides[&h],
-                    middle,
-                    on_sides[&before],
-                ];
-                let sources = [
-                    vec![h],
-                    vec![h, self.side(h, 1)],
-                    own.clone(),
-                    vec![before, h],
-                ];
-                quads.push(vertices, sources, false);
-                polygons.extend([parts[own[0].face().index()]; 2]);
-            }
+        for &h in &sides {
+            let before = self.before(h);
+            let [corner, centre] = [h, h.previous()].map(|h| topology.origin(h).0);
+            let vertices = [corner, on_sides[&h], centre, on_sides[&before]];
+            // As the rows are numbered.
+            let (own, count) = (numbers[&h], sides.len() as u32);
+            let polygon = 2 * count + self.places[h.index()][0];
+            let sources = [own, count + own, polygon, count + numbers[&before]];
+            let input = fans.trace.faces[h.face().index()];
+            quads.push(vertices, sources, input, false);
         }
         let mut twins = vec![NONE; 3 * quads.triangles.len()];
         let parts_of = |h: HalfEdgeId| {
@@ -318,37 +280,55 @@ impl Polygons {
             on_sides.get(&h).copied()
         });
         let junctions = refined_junctions(mesh.junctions(), topology, parts_of, |h| on_sides[&h]);
-        Ok(QuadControl {
-            mesh: assembled(quads.triangles, twins, positions, tags, junctions)?,
-            polygons,
-            corners: quads.corners,
-        })
+        let trace = quads.trace(self.rows(&sides, &fans.trace));
+        let mesh = assembled(quads.triangles, twins, positions, tags, junctions)?;
+        Ok(QuadControl { mesh, trace })
     }
 
-    fn centroid(&self, mesh: &Mesh, h: HalfEdgeId) -> DVec3 {
-        let own = &self.loops[self.places[h.index()][0] as usize];
-        let sum: DVec3 = own
-            .iter()
-            .map(|&h| at(mesh, mesh.topology().origin(h)))
-            .sum();
-        sum / own.len() as f64
+    /// The soup's corners that those after a step are put between: by side one where it begins, by side both at its ends, by polygon all.
+    fn rows(&self, sides: &[HalfEdgeId], trace: &Trace) -> PolygonFaces {
+        let corner = |&h: &HalfEdgeId| trace.corners[h.index()];
+        let mut rows = PolygonFaces::with_capacity(2 * sides.len(), 4 * sides.len());
+        sides.iter().for_each(|h| rows.push(&[corner(h)]));
+        for &h in sides {
+            rows.push(&[h, self.side(h, 1)].map(|h| corner(&h)));
+        }
+        for own in &self.loops {
+            rows.push(&own.iter().map(corner).collect::<Vec<_>>());
+        }
+        rows
     }
 
-    fn side_point(&self, mesh: &Mesh, sharpness: &Sharpness<'_>, h: HalfEdgeId) -> DVec3 {
+    fn centroid(&self, h: HalfEdgeId) -> DVec3 {
+        self.centroids[self.places[h.index()][0] as usize]
+    }
+
+    /// The new point on a side. Triangles beside it weigh more where they are to be smooth.
+    fn side_point(
+        &self,
+        mesh: &Mesh,
+        sharpness: &Sharpness<'_>,
+        h: HalfEdgeId,
+        smooths: bool,
+    ) -> DVec3 {
         let [from, to] = mesh.topology().ends(h).map(|v| at(mesh, v));
         let middle = 0.5 * (from + to);
         let sharp = sharpness.edge(h).min(1.0);
         let Some(twin) = mesh.topology().twin(h).filter(|_| sharp < 1.0) else {
             return middle;
         };
-        let faces = 0.5 * (self.centroid(mesh, h) + self.centroid(mesh, twin));
-        sharp * middle + (1.0 - sharp) * 0.5 * (middle + faces)
+        let faces = 0.5 * (self.centroid(h) + self.centroid(twin));
+        let share = |h: HalfEdgeId| match self.loops[self.places[h.index()][0] as usize].len() {
+            3 if smooths => SMOOTH_TRIANGLE,
+            _ => 0.25,
+        };
+        let share = share(h) + share(twin);
+        sharp * middle + (1.0 - sharp) * ((1.0 - share) * middle + share * faces)
     }
 
     fn vertex_point(&self, mesh: &Mesh, sharpness: &Sharpness<'_>, vertex: VertexId) -> DVec3 {
         let topology = mesh.topology();
-        let is_side = |h: &HalfEdgeId| self.places[h.index()][0] != NONE;
-        let outgoing: Vec<HalfEdgeId> = topology.outgoing_ring(vertex).filter(is_side).collect();
+        let outgoing = self.outgoing(topology, vertex);
         let mut neighbours: Vec<DVec3> = outgoing
             .iter()
             .map(|&h| at(mesh, topology.target(h)))
@@ -364,7 +344,7 @@ impl Polygons {
         // The corners opposite the vertex in quads with the same centroids.
         let opposite = (0..outgoing.len()).map(|slot| {
             let ends = neighbours[slot] + neighbours[(slot + 1) % neighbours.len()];
-            4.0 * self.centroid(mesh, outgoing[slot]) - at(mesh, vertex) - ends
+            4.0 * self.centroid(outgoing[slot]) - at(mesh, vertex) - ends
         });
         let points = [at(mesh, vertex)]
             .into_iter()
@@ -390,12 +370,16 @@ fn at(mesh: &Mesh, vertex: VertexId) -> DVec3 {
 #[derive(Default)]
 struct QuadList {
     triangles: Vec<[u32; 3]>,
-    /// By corner, those that it comes from.
-    corners: Vec<Vec<HalfEdgeId>>,
+    /// By triangle, the face of the soup.
+    inputs: Vec<u32>,
+    /// By corner, the row of those that it comes from.
+    sources: Vec<u32>,
     /// By quad, whether its first half begins at its second corner.
     turns: Vec<bool>,
     /// Pairs of vertices that an edge or a diagonal joins.
     joined: HashSet<[u32; 2]>,
+    /// Whether some of them are joined twice.
+    has_doubles: bool,
 }
 
 impl QuadList {
@@ -409,7 +393,7 @@ impl QuadList {
 
     /// Adds a quad, cut from its second corner to its fourth, or from the first to the third: as is preferred, unless something else
     /// joins these vertices, as at vertices of two edges.
-    fn push(&mut self, vertices: [u32; 4], sources: [Vec<HalfEdgeId>; 4], prefers_turn: bool) {
+    fn push(&mut self, vertices: [u32; 4], sources: [u32; 4], input: u32, prefers_turn: bool) {
         let [a, b, c, d] = vertices;
         let diagonal = |is_turned: bool| {
             if is_turned {
@@ -421,13 +405,24 @@ impl QuadList {
         let is_taken = self.joined.contains(&diagonal(prefers_turn));
         let is_turned =
             prefers_turn != (is_taken && !self.joined.contains(&diagonal(!prefers_turn)));
-        self.joined.insert(diagonal(is_turned));
+        self.has_doubles |= !self.joined.insert(diagonal(is_turned));
         self.turns.push(is_turned);
         let turn = |i: usize| (i + usize::from(is_turned)) % 4;
         self.triangles
             .extend(halves([0, 1, 2, 3].map(|i| vertices[turn(i)])));
-        let of_halves = [0, 1, 3, 2, 3, 1].map(|i| sources[turn(i)].clone());
-        self.corners.extend(of_halves);
+        let of_halves = [0, 1, 3, 2, 3, 1].map(|i| sources[turn(i)]);
+        self.sources.extend(of_halves);
+        self.inputs.extend([input; 2]);
+    }
+
+    /// The soup's faces and corners, given the rows of the corners.
+    fn trace(&self, rows: PolygonFaces) -> Trace {
+        let corners = self.sources.iter().map(|&row| rows.get(row as usize)[0]);
+        let mut trace = Trace::default();
+        trace.corners = corners.collect();
+        trace.faces = self.inputs.clone();
+        (trace.between, trace.rows) = (self.sources.clone(), rows);
+        trace
     }
 
     /// The half-edge of a quad's half along the edge from this corner.

@@ -11,4 +11,4 @@ pub(crate) mod quads;
 pub(crate) mod ring;
 pub(crate) mod step;
 
-pub use control::QuadControl;
+pub use control::{QuadControl, QuadOptions};

@@ -8,7 +8,9 @@ use limitmesh_io::Format;
 
 use super::super::picture;
 use super::proof;
-use crate::arguments::{FaceKind, MAX_STEPS, Method, MorphTolerance, RefineArguments, Viewer, Way};
+use crate::arguments::{
+    FaceKind, MAX_STEPS, Method, MorphTolerance, RefineArguments, SMOOTH_TRIANGLES, Viewer, Way,
+};
 use crate::failure::usage;
 use crate::file_identity::FileIdentity;
 use crate::format::thousands;
@@ -57,7 +59,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
 }
 
 /// Whether a rule is broken, and why it holds.
-fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 14] {
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 15] {
     let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
     let has_angle = arguments.angle.is_some();
     let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
@@ -76,6 +78,7 @@ fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 14] {
             by_quads && (exact.within.is_some() || exact.optimize),
             "--scheme catmull-clark does not go with --within and --optimize, which are for triangles",
         ),
+        (arguments.smooth_triangles && !by_quads, SMOOTH_TRIANGLES),
         (
             viewers == 0 && arguments.dilatation.is_some(),
             "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",

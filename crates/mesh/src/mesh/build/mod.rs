@@ -7,6 +7,7 @@
 //! thousands of corners, which may take n^1.5.
 
 mod cut;
+mod fans;
 mod inside_out;
 mod orient;
 mod repeated;
@@ -23,6 +24,7 @@ use crate::geometry::NONE;
 use crate::options;
 use crate::vector::vector;
 use cut::Sheets;
+pub use fans::Fans;
 use retag::VertexMaps;
 use triangulate::{Faces, Flatness};
 pub use weld::weld_within;
@@ -62,13 +64,46 @@ pub(super) fn build(
     soup: &PolygonSoup,
     options: &BuildOptions,
 ) -> Result<(Mesh, Diagnosis, Trace), MeshError> {
+    let (mesh, diagnosis, trace, _) = built(soup, options, |kept, diagnosis| {
+        Ok((repair_faces(soup, kept, diagnosis)?, Vec::new()))
+    })?;
+    Ok((mesh, diagnosis, trace))
+}
+
+/// [`build`] with a fan of triangles for each polygon.
+pub(super) fn build_fans(
+    soup: &PolygonSoup,
+    options: &BuildOptions,
+) -> Result<(Fans, Diagnosis), MeshError> {
+    let mut count = 0;
+    let (mesh, diagnosis, trace, vertices) = built(soup, options, |kept, diagnosis| {
+        let (faces, centres) = fans::fans(soup, kept, diagnosis)?;
+        count = centres.len();
+        Ok((faces, centres))
+    })?;
+    let fans = Fans {
+        mesh,
+        // The input's vertices stand before them, copies of cut ones behind.
+        centres: (vertices - count) as u32..vertices as u32,
+        trace,
+    };
+    Ok((fans, diagnosis))
+}
+
+/// [`build`] of triangles that are made of the soup's polygons over welded vertices; they may have vertices of their own, at positions
+/// that come with them and with numbers from the soup's on. Gives also the vertices before cutting.
+fn built(
+    soup: &PolygonSoup,
+    options: &BuildOptions,
+    triangles: impl FnOnce(&[u32], &mut Diagnosis) -> Result<(Faces, Vec<[f64; 3]>), MeshError>,
+) -> Result<(Mesh, Diagnosis, Trace, usize), MeshError> {
     let mut diagnosis = Diagnosis {
         input_vertices: soup.positions.len(),
         input_faces: soup.faces.len(),
         ..Diagnosis::default()
     };
     let used = check(soup)?;
-    let kept = weld(soup, &used, options.weld)?;
+    let mut kept = weld(soup, &used, options.weld)?;
     for v in 0..used.len() {
         if !used[v] {
             diagnosis.isolated_vertices.add(v as u32);
@@ -77,15 +112,20 @@ pub(super) fn build(
         }
     }
     drop(used);
-    let faces = repair_faces(soup, &kept, &mut diagnosis)?;
-    let (mesh, trace) = assemble(soup, faces, kept, options.keep_windings, &mut diagnosis);
+    let (faces, centres) = triangles(&kept, &mut diagnosis)?;
+    if faces.triangles.is_empty() {
+        return Err(no_faces(soup, &diagnosis));
+    }
+    kept.extend((kept.len() as u32..).take(centres.len()));
+    let keeps = options.keep_windings;
+    let (mesh, trace, count) = assemble(soup, &centres, faces, kept, keeps, &mut diagnosis);
     if options.strict && !diagnosis.is_clean() {
         return Err(MeshError::NeedsRepair {
             summary: diagnosis.defects(),
         });
     }
     debug_assert_eq!(mesh.validate(), Ok(()));
-    Ok((mesh, diagnosis, trace))
+    Ok((mesh, diagnosis, trace, count))
 }
 
 /// Refuses invalid coordinates and indices; reports which vertices have a face.
@@ -142,9 +182,11 @@ fn repair_faces(
     repeated::drop_repeated(&mut faces, flatness, diagnosis);
     let is_polygon = |input: u32| soup.faces.get(input as usize).len() > 3;
     zero_area::remove_zero_area(&mut faces, flatness, vertex_count, is_polygon, diagnosis);
-    if !faces.triangles.is_empty() {
-        return Ok(faces);
-    }
+    Ok(faces)
+}
+
+/// Why no face is left.
+fn no_faces(soup: &PolygonSoup, diagnosis: &Diagnosis) -> MeshError {
     let reason = if soup.faces.is_empty() {
         "the input has none".to_owned()
     } else {
@@ -154,27 +196,33 @@ fn repair_faces(
             diagnosis.defects()
         )
     };
-    Err(MeshError::NoFaces { reason })
+    MeshError::NoFaces { reason }
 }
 
 /// Connects the faces, turns and cuts them where they need it, and puts the mesh together; gives also from which
-/// faces and corners of the input those of the mesh are.
+/// faces and corners of the input those of the mesh are, and the vertices before cutting.
 fn assemble(
     soup: &PolygonSoup,
+    centres: &[[f64; 3]],
     mut faces: Faces,
     mut kept: Vec<u32>,
     keeps_windings: bool,
     diagnosis: &mut Diagnosis,
-) -> (Mesh, Trace) {
+) -> (Mesh, Trace, usize) {
     let names = renumber(&mut faces.triangles, &mut kept);
     let name = |v: u32| names[v as usize];
+    let place = |input: u32| {
+        let own = soup.positions.get(input as usize);
+        own.unwrap_or_else(|| &centres[input as usize - soup.positions.len()])
+    };
     let vertex_count = names.len();
     let mut neighbours = orient::connect(&faces.triangles, vertex_count, name, diagnosis);
+    let first = (vertex_count - centres.len()) as u32;
     let components =
-        (!keeps_windings).then(|| orient::orient(&mut faces, &mut neighbours, diagnosis));
+        (!keeps_windings).then(|| orient::orient(&mut faces, &mut neighbours, first, diagnosis));
     orient::cut_opposed(&faces, &mut neighbours, diagnosis);
     if let Some(components) = components {
-        let position = |v: u32| soup.positions[names[v as usize] as usize];
+        let position = |v: u32| *place(name(v));
         inside_out::turn_inside_out(
             &mut faces,
             &mut neighbours,
@@ -192,7 +240,7 @@ fn assemble(
         corners,
     } = cut::cut(faces, neighbours, vertex_count, name, diagnosis);
     let mut positions = limitmesh_pages::with_capacity(vertex_count + copied.len());
-    positions.extend(names.iter().map(|&v| soup.positions[v as usize]));
+    positions.extend(names.iter().map(|&v| place(v)));
     let mut middle = middles.iter();
     for &original in &copied {
         // Only the first copy of a vertex in the middle of an edge names a position that is not yet there.
@@ -216,7 +264,9 @@ fn assemble(
         Trace {
             faces: inputs,
             corners,
+            ..Trace::default()
         },
+        vertex_count,
     )
 }
 

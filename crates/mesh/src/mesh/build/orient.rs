@@ -4,6 +4,8 @@
 //! apart: those with more than two faces, and those where neighbours run against each other: in a
 //! one-sided component, or because none is to be turned.
 
+use core::ops::Range;
+
 use super::triangulate::Faces;
 use crate::geometry::{NONE, every_edge};
 use crate::index::{FaceId, HalfEdgeId};
@@ -64,13 +66,15 @@ impl Components {
 }
 
 /// Turns faces so that neighbours run opposite ways along their edge. In each component the smaller part is
-/// turned; of two equal ones that without the lowest face.
+/// turned; of two equal ones that without the lowest face. Vertices from `centres` on are in the middles of polygons, whose triangles
+/// around them turn together.
 pub(super) fn orient(
     faces: &mut Faces,
     neighbours: &mut Neighbours,
+    centres: u32,
     diagnosis: &mut Diagnosis,
 ) -> Components {
-    let (components, turned) = faces_to_turn(&faces.triangles, &neighbours.twins);
+    let (components, turned) = faces_to_turn(&faces.triangles, &neighbours.twins, centres);
     if turned.contains(&true) {
         let named = faces
             .inputs
@@ -87,7 +91,7 @@ pub(super) fn orient(
 }
 
 /// Breadth-first from the lowest face of each component.
-fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool>) {
+fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32], centres: u32) -> (Components, Vec<bool>) {
     let origins = triangles.as_flattened();
     let mut visited = vec![false; triangles.len()];
     let mut turned = vec![false; triangles.len()];
@@ -97,12 +101,13 @@ fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool
         if visited[root] {
             continue;
         }
-        visited[root] = true;
         let start = order.len();
         starts.push(start);
         let mut next = start;
         let mut turned_here = 0;
-        order.push(root as u32);
+        let own = together(triangles, root, centres);
+        visited[own.clone()].fill(true);
+        order.extend(own.map(|face| face as u32));
         while let Some(&face) = order.get(next) {
             next += 1;
             for corner in 0..3 {
@@ -113,10 +118,12 @@ fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool
                 }
                 let other = (twin / 3) as usize;
                 let against = origins[h] == origins[twin as usize];
-                visited[other] = true;
-                turned[other] = turned[face as usize] != against;
-                turned_here += usize::from(turned[other]);
-                order.push(other as u32);
+                let turns = turned[face as usize] != against;
+                let own = together(triangles, other, centres);
+                visited[own.clone()].fill(true);
+                turned[own.clone()].fill(turns);
+                turned_here += if turns { own.len() } else { 0 };
+                order.extend(own.map(|face| face as u32));
             }
         }
         let component = &order[start..];
@@ -133,6 +140,18 @@ fn faces_to_turn(triangles: &[[u32; 3]], twins: &[u32]) -> (Components, Vec<bool
         },
         turned,
     )
+}
+
+/// The faces that turn with one: those of its polygon, which stand next to each other and have its centre last.
+fn together(triangles: &[[u32; 3]], face: usize, centres: u32) -> Range<usize> {
+    let centre = triangles[face][2];
+    if centre < centres {
+        return face..face + 1;
+    }
+    let is_own = |triangle: &&[u32; 3]| triangle[2] == centre;
+    let before = triangles[..face].iter().rev().take_while(is_own).count();
+    let from = triangles[face..].iter().take_while(is_own).count();
+    face - before..face + from
 }
 
 /// Swaps the last two corners of the marked faces, and renames their half-edges.

@@ -35,7 +35,23 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    fn push(&mut self, triangle: [u32; 3], input: u32) {
+    /// # Errors
+    /// There would be more triangles than can be indexed.
+    pub(super) fn with_capacity(count: usize) -> Result<Self, MeshError> {
+        if count > MAX_FACES {
+            return Err(MeshError::TooMany {
+                what: "faces",
+                count,
+                limit: MAX_FACES,
+            });
+        }
+        Ok(Self {
+            triangles: limitmesh_pages::with_capacity(count),
+            inputs: limitmesh_pages::with_capacity(count),
+        })
+    }
+
+    pub(super) fn push(&mut self, triangle: [u32; 3], input: u32) {
         let [a, b, c] = triangle;
         if a != b && b != c && c != a {
             self.triangles.push(triangle);
@@ -61,22 +77,8 @@ pub(super) fn triangulate(
     kept: &[u32],
     diagnosis: &mut Diagnosis,
 ) -> Result<Faces, MeshError> {
-    let count = soup
-        .faces
-        .iter()
-        .map(|face| face.len().saturating_sub(2))
-        .sum();
-    if count > MAX_FACES {
-        return Err(MeshError::TooMany {
-            what: "faces",
-            count,
-            limit: MAX_FACES,
-        });
-    }
-    let mut faces = Faces {
-        triangles: limitmesh_pages::with_capacity(count),
-        inputs: limitmesh_pages::with_capacity(count),
-    };
+    let sizes = soup.faces.iter().map(|face| face.len().saturating_sub(2));
+    let mut faces = Faces::with_capacity(sizes.sum())?;
     let mut cutter = Cutter::default();
     let mut polygon = Vec::new();
     for (input, face) in soup.faces.iter().enumerate() {
@@ -99,7 +101,7 @@ pub(super) fn triangulate(
 }
 
 /// The corners without those that repeat the one before, and without spikes (there and straight back).
-fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
+pub(super) fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
     polygon.clear();
     for v in corners {
         let n = polygon.len();
@@ -129,7 +131,7 @@ fn clean(corners: impl Iterator<Item = u32>, polygon: &mut Vec<u32>) {
 
 /// Cuts single polygons; keeps its buffers between them.
 #[derive(Default)]
-struct Cutter {
+pub(super) struct Cutter {
     earcut: Earcut<f64>,
     refiner: Refiner,
     plane: Vec<[f64; 2]>,
@@ -139,7 +141,7 @@ struct Cutter {
 
 impl Cutter {
     /// Emits the polygon's triangles; false if it crosses itself in its best-fit plane.
-    fn cut(
+    pub(super) fn cut(
         &mut self,
         positions: &[[f64; 3]],
         polygon: &[u32],

@@ -38,11 +38,9 @@ impl Source for FileSource {
     ) -> anyhow::Result<Option<(Read, Item<()>)>> {
         let kept = Normals::kept(self.format);
         let (build, channels) = (&arguments.build, &arguments.channels);
-        let read = input::read_for(arguments.input(), build, channels, progress)?;
-        let mut input = input::connect(read, build, kept, progress)?;
-        if arguments.has_quads() {
-            input = input.with_quads()?;
-        }
+        let mut read = input::read_for(arguments.input(), build, channels, progress)?;
+        read.quads = arguments.quads();
+        let input = input::connect(read, build, kept, progress)?;
         item_of(input, arguments, self.format, progress).map(Some)
     }
 

@@ -1,6 +1,7 @@
 //! Helpers of the tests of building: small soups, and a count of the elements of a mesh.
 
 mod cuts;
+mod fans;
 mod inside_out;
 mod polygons;
 mod random;

@@ -77,6 +77,26 @@ proptest! {
     }
 
     #[test]
+    fn any_soup_gives_fans_that_name_what_is_not_in_them(soup in soups(), weld in welds()) {
+        let options = BuildOptions::default().weld(weld);
+        match Mesh::fans_from_soup(&soup, &options) {
+            Ok((fans, diagnosis)) => {
+                check_mesh(&fans.mesh);
+                let is_centre = |v: &u32| fans.centres.contains(v);
+                for triangle in fans.mesh.triangles() {
+                    prop_assert_eq!(triangle.iter().filter(|v| is_centre(v)).count(), 1);
+                }
+                let there: HashSet<u32> = fans.trace.faces.iter().copied().collect();
+                let named = diagnosis.collapsed_faces.count + diagnosis.repeated_faces.count;
+                prop_assert!(there.len() + named >= soup.faces.len());
+                let strict = Mesh::fans_from_soup(&soup, &options.strict(true));
+                prop_assert_eq!(strict.is_ok(), diagnosis.is_clean());
+            }
+            Err(error) => prop_assert!(matches!(error, MeshError::NoFaces { .. }), "{}", error),
+        }
+    }
+
+    #[test]
     fn no_triangle_is_lost(soup in triangle_soups()) {
         let Ok((mesh, diagnosis)) = Mesh::from_soup(&soup, &BuildOptions::default()) else { return Ok(()) };
         check_mesh(&mesh);
