@@ -4,7 +4,7 @@
 //! outwards. Open surfaces have none. Limit surfaces are integrated themselves.
 
 use anyhow::bail;
-use limitmesh::scheme::{Family, Scheme};
+use limitmesh::scheme::Scheme;
 use limitmesh::{LimitSurface, Mesh};
 use serde::Serialize;
 
@@ -97,12 +97,12 @@ impl Bulk {
         }
     }
 
-    /// Of the limit surface of a control mesh; `None` for schemes outside the Loop family.
+    /// Of the limit surface of a control mesh; `None` for schemes but the Loop family and Catmull–Clark.
     ///
     /// # Errors
     /// The scheme has no limit at some ring, or area or volume is beyond what numbers hold.
     pub(crate) fn of_limit(control: &Mesh, scheme: &dyn Scheme) -> anyhow::Result<Option<Self>> {
-        if !matches!(scheme.family(), Some(Family::Loop(_))) {
+        if scheme.family().is_none() {
             return Ok(None);
         }
         let surface = LimitSurface::without_normals(control, scheme)?;

@@ -220,6 +220,10 @@ def test_catmull_clark_is_for_polygons():
     assert limitmesh.refine(vertices, mixed, tolerance=0.01, scheme="catmull-clark").error.certified
     measured = limitmesh.measure((found.vertices, found.faces), limit_of=(vertices, quads), scheme="catmull-clark")
     assert 0.005 < measured.lower <= 0.011
+    found = limitmesh.project([[0, 0, 3], [0, 0.5, 0]], vertices, quads, scheme="catmull-clark")
+    assert abs(found.signed[0] - (3 - 68 / 81)) < 1e-6 and found.signed[1] < 0
+    hits = limitmesh.intersect([[5, 0, 0]], [-1, 0, 0], vertices, quads, scheme="catmull-clark")
+    assert np.allclose(hits.t, [5 - 68 / 81, 5 + 68 / 81], atol=1e-9) and hits.crossing.tolist() == [1, -1]
     with pytest.raises(limitmesh.OptionError, match="triangles"):
         limitmesh.refine(vertices, quads, within=0.1, scheme="catmull-clark")
 

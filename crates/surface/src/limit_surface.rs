@@ -213,9 +213,9 @@ impl<'a> LimitSurface<'a> {
         self.rules.scheme()
     }
 
-    /// Whether closest points, rays and weights are known for it: it is of the Loop family.
+    /// Whether its pieces have hulls, so that closest points and rays are known for it.
     pub(crate) fn is_certified(&self) -> bool {
-        self.rules.are_of_loop_family()
+        self.rules.is_certified()
     }
 
     /// The limits of the control vertices.
@@ -263,6 +263,7 @@ impl<'a> LimitSurface<'a> {
     ) {
         match patch {
             Patch::Regular(points) => found.are_on(points, slices[0]),
+            Patch::Bicubic(piece) => found.are_on_bicubic(piece, slices[0]),
             _ if levels == 0 => take_nearest(corners, slices[0], found),
             Patch::Extraordinary(patch) => {
                 self.descend_to_vertex(patch, corners, slices, levels, found)

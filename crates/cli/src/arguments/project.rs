@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::limit::LimitArguments;
 use super::shared::OverwriteArguments;
-use super::shared::loop_family;
+use super::shared::of_polynomials;
 use super::values::{self, Extent};
 
 const EXAMPLES: &str = "\
@@ -23,9 +23,10 @@ Examples:
 /// be their number), between blanks, commas or semicolons. Each is projected onto the limit surface of CONTROL itself, not onto a mesh
 /// that approximates it: no point of the surface is nearer by more than --tolerance.
 /// Distances are below 0 inside of a closed surface; where it is open, behind it, as its normal at the closest point says.
+/// With --scheme catmull-clark control faces are halves of quads, those of the first quad 0 and 1.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
-#[command(mut_arg("scheme", |scheme| scheme.value_parser(loop_family())))]
+#[command(mut_arg("scheme", |scheme| scheme.value_parser(of_polynomials())))]
 pub(crate) struct ProjectArguments {
     /// Points: a mesh or text file, - for standard input, or builtin:NAME
     #[arg(value_name = "POINTS")]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::features::{CreaseAngle, crease_angle};
-use super::shared::loop_family;
+use super::shared::of_polynomials;
 use super::shared::{BuildArguments, SchemeName};
 use super::values;
 use super::values::Size;
@@ -49,7 +49,7 @@ pub(crate) struct RenderArguments {
     pub(crate) exact: bool,
 
     /// Scheme of the limit surface that --exact draws [default: loop]
-    #[arg(long, value_parser = loop_family())]
+    #[arg(long, value_parser = of_polynomials())]
     pub(crate) scheme: Option<SchemeName>,
 
     /// Shade both sides of edges by themselves where the faces meet at more than this angle [degrees, above 0 to 180, or none; with --exact

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use limitmesh::mesh::{BuildOptions, Weld};
-use limitmesh::scheme::{CatmullClark, Family, Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh::scheme::{CatmullClark, Loop, LoopWarren, ModifiedButterfly, Scheme};
 use limitmesh_io::Format;
 use serde::Serialize;
 
@@ -177,11 +177,11 @@ pub(super) fn of_triangles() -> impl TypedValueParser<Value = SchemeName> {
         .try_map(|name| SchemeName::from_str(&name, false))
 }
 
-/// The schemes whose limit surfaces are polynomials over triangles, as rays and projections need them.
-pub(super) fn loop_family() -> impl TypedValueParser<Value = SchemeName> {
+/// The schemes whose limit surfaces are polynomials in pieces, as rays and projections need them.
+pub(super) fn of_polynomials() -> impl TypedValueParser<Value = SchemeName> {
     let own = SchemeName::value_variants()
         .iter()
-        .filter(|name| matches!(name.scheme().family(), Some(Family::Loop(_))));
+        .filter(|name| name.scheme().family().is_some());
     PossibleValuesParser::new(own.filter_map(ValueEnum::to_possible_value))
         .try_map(|name| SchemeName::from_str(&name, false))
 }

@@ -47,7 +47,7 @@ pub(crate) struct SurfaceReport {
     pub(crate) vertices: usize,
     /// Its triangles.
     pub(crate) triangles: usize,
-    /// In squares of the mesh's unit; null where it is not known, as for limit surfaces outside the Loop family.
+    /// In squares of the mesh's unit; null where it is not known, as for limit surfaces of the butterfly scheme.
     pub(crate) area: Option<f64>,
     /// In cubes of the mesh's unit, above 0 where normals point outwards; null for open surfaces, and where it is not known.
     pub(crate) volume: Option<f64>,

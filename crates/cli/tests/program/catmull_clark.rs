@@ -112,11 +112,27 @@ fn polygons_of_any_size_are_divided_and_what_is_for_triangles_is_refused() {
         let words = format!("refine {{}} -o {{}} --overwrite --scheme catmull-clark {refused}");
         usage_error(&words, &[&cage, &out], "triangles");
     }
-    usage_error(
-        "project {} --onto {} -o {} --scheme catmull-clark",
-        &[&cage, &cage, &out],
-        "loop",
-    );
+}
+
+#[test]
+fn points_are_projected_and_pictures_drawn_by_rays() {
+    let place = folder();
+    let cage = file(&place, "cube.obj", CUBE);
+    let points = file(&place, "points.csv", "0 0 3\n0 0.5 0\n");
+    let words = "project {} --onto {} --scheme catmull-clark --json";
+    let report = json_of(words, &[&points, &cage]);
+    assert_eq!(report["sign"], "inside");
+    let [greatest, least] = ["greatest", "least"].map(|end| number(&report["distance"][end]));
+    // The middle of a face goes to 68/81.
+    assert!((greatest - (3.0 - 68.0 / 81.0)).abs() < 1e-6, "{greatest}");
+    assert!(least < -0.3 && least > -68.0 / 81.0, "{least}");
+    let picture = place.path().join("cube.png");
+    done(
+        "render {} -o {} --exact --scheme catmull-clark --size 60x40",
+        &[&cage, &picture],
+    )
+    .saying("12 control faces");
+    assert!(picture.metadata().is_ok_and(|data| data.len() > 500));
 }
 
 /// Edges of triangles have the weights that OpenSubdiv gives them: the middles of a tetrahedron's are nearer to its centre.

@@ -169,6 +169,6 @@ fn limit_surfaces_are_drawn_by_rays() {
         2 | render builtin:cube -o {path} --exact --wireframe |
         2 | render builtin:cube -o {path} --exact --smooth | --smooth
         2 | render builtin:cube -o {path} --scheme loop | it needs --exact
-        2 | render builtin:cube -o {path} --exact --scheme butterfly | loop, loop-warren]",
+        2 | render builtin:cube -o {path} --exact --scheme butterfly | loop, loop-warren, catmull-clark]",
     );
 }

@@ -85,7 +85,7 @@ fn help_offers_the_schemes_that_there_are() {
         says!(help, "loop-warren");
         silent!(help, "butterfly");
         let line = format!("{command} --scheme butterfly");
-        usage_error(&line, &[], "loop, loop-warren]");
+        usage_error(&line, &[], "loop, loop-warren, catmull-clark]");
     }
 }
 

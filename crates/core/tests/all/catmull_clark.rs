@@ -45,6 +45,8 @@ fn near(a: Point, b: Point, error: f64) -> bool {
     (0..3).all(|axis| (a[axis] - b[axis]).abs() < error)
 }
 
+mod queries;
+
 /// Values of the design, from exact arithmetic.
 #[test]
 fn the_cube_s_surface_is_where_it_should_be() {

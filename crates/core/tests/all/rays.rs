@@ -71,7 +71,7 @@ fn on_triangle(ray: &Ray, [a, b, c]: [[f64; 3]; 3]) -> Option<(f64, f64)> {
 }
 
 /// A mesh that can be asked for rays: triangles in a grid of boxes, by halves.
-struct Fine {
+pub(crate) struct Fine {
     corners: Vec<[[f64; 3]; 3]>,
     nodes: Vec<BoxNode>,
 }
@@ -85,7 +85,7 @@ struct BoxNode {
 }
 
 impl Fine {
-    fn of(mesh: &Mesh) -> Self {
+    pub(crate) fn of(mesh: &Mesh) -> Self {
         let surface = mesh.as_triangles();
         let mut fine = Self {
             corners: (0..mesh.face_count())
@@ -162,7 +162,7 @@ impl Fine {
     }
 }
 
-fn checked(surface: &LimitSurface<'_>, ray: &Ray, hits: &[Hit], name: &str) {
+pub(crate) fn checked(surface: &LimitSurface<'_>, ray: &Ray, hits: &[Hit], name: &str) {
     for hit in hits {
         let on_ray = [0, 1, 2].map(|i| ray.origin[i] + hit.t * ray.direction[i]);
         let off = minus(on_ray, hit.position);
@@ -183,11 +183,16 @@ fn checked(surface: &LimitSurface<'_>, ray: &Ray, hits: &[Hit], name: &str) {
     assert!(hits.windows(2).all(|pair| pair[0].t <= pair[1].t));
 }
 
-/// Random rays through a mesh and one five levels finer; gives how many were a close thing.
+/// Random rays through a mesh and one some levels finer.
 fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
     let surface = LimitSurface::new(mesh, &Loop).unwrap();
-    let rays = RayCaster::new(&surface).unwrap();
     let fine = Fine::of(&limit_reference(mesh, &Loop, levels).unwrap());
+    agrees_with(name, &surface, &fine, count);
+}
+
+/// Random rays through a surface and a fine mesh of it; few may be a close thing.
+pub(crate) fn agrees_with(name: &str, surface: &LimitSurface<'_>, fine: &Fine, count: usize) {
+    let (rays, mesh) = (RayCaster::new(surface).unwrap(), surface.control());
     let is_closed = mesh.topology().boundary_edge_count() == 0;
     let [low, high] = mesh.as_triangles().bounding_box().unwrap();
     let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
@@ -196,7 +201,7 @@ fn agrees(name: &str, mesh: &Mesh, count: usize, levels: usize) {
     for _ in 0..count {
         let ray = random_ray(&mut random, (middle, size));
         let hits = rays.intersections(&ray, &RayOptions::default());
-        checked(&surface, &ray, &hits, name);
+        checked(surface, &ray, &hits, name);
         grazed += usize::from(hits.iter().any(|hit| hit.crossing == Crossing::Grazing));
         if is_closed {
             assert!(hits.len().is_multiple_of(2), "{name}: {hits:?}");

@@ -67,7 +67,8 @@ def project(
     tolerance
         How much nearer the surface may be than what was found: a length, or a part of the control mesh's diagonal.
     interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
-        What the limit surface is, as for `refine`; the scheme is ``"loop"`` or ``"loop-warren"``.
+        What the limit surface is, as for `refine`; the scheme is ``"loop"``, ``"loop-warren"`` or ``"catmull-clark"``, whose
+        control faces are halves of quads, those of the first quad 0 and 1.
     threads, progress
         As for `refine`.
 

@@ -83,7 +83,8 @@ def intersect(
         A ray that touches the surface without being told to cross it within so little of it grazes it: a length, or a part of the
         control mesh's diagonal. Default: 1e-10 of that.
     interpolate, crease_angle, creases, corners, boundary, concave_corners, scheme, weld
-        What the limit surface is, as for `refine`; the scheme is ``"loop"`` or ``"loop-warren"``.
+        What the limit surface is, as for `refine`; the scheme is ``"loop"``, ``"loop-warren"`` or ``"catmull-clark"``, whose
+        control faces are halves of quads, those of the first quad 0 and 1.
     threads, progress
         As for `refine`.
 

@@ -17,6 +17,7 @@ pub(crate) use normal_net::NormalNet;
 pub use viewpoint::Viewpoint;
 
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::polynomial::Net;
 use crate::patch::{Patch, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -95,7 +96,7 @@ impl From<Look> for Facing {
 }
 
 /// How a regular piece looks from there, by its own coefficients.
-fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
+fn of_net(net: &impl Net, viewpoint: &Viewpoint) -> Look {
     let Some(normals) = NormalNet::of(net) else {
         return Look::Unknown;
     };
@@ -103,7 +104,7 @@ fn of_net(net: &BezierTriangle, viewpoint: &Viewpoint) -> Look {
         Viewpoint::Direction(sight) => return normals.along(unit_or_zero(vector(sight))),
         Viewpoint::Eye(eye) => vector(eye),
     };
-    let by_cone = Cone::of(&normals).map(|cone| cone.look(net.0.into_iter(), viewpoint));
+    let by_cone = Cone::of(&normals).map(|cone| cone.look(net.points().iter().copied(), viewpoint));
     by_cone
         .filter(|look| look.is_known())
         .unwrap_or_else(|| normals.from(eye))
@@ -123,6 +124,10 @@ pub(crate) fn of_patch(
 /// Whether all of a regular piece shows its back, by its own coefficients.
 #[doc(hidden)]
 pub fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
+    has_back(net, viewpoint)
+}
+
+fn has_back(net: &impl Net, viewpoint: &Viewpoint) -> bool {
     let Some(normals) = NormalNet::of(net) else {
         return false;
     };
@@ -135,8 +140,8 @@ pub fn is_back(net: &BezierTriangle, viewpoint: &Viewpoint) -> bool {
 }
 
 /// The distance from one of the given corners of those parts of a piece that are not known to show
-/// their back, `levels` levels down; `None` if that is more than `rest`, and for schemes outside
-/// the Loop family.
+/// their back, `levels` levels down; `None` if that is more than `rest`, and for schemes
+/// whose pieces have no hulls.
 #[doc(hidden)]
 pub fn back_but_for(
     patch: &Patch,
@@ -149,7 +154,10 @@ pub fn back_but_for(
         Patch::Regular(points) => {
             return is_back(&BezierTriangle::of(points), viewpoint).then_some(0.0);
         }
-        Patch::Mesh(_) | Patch::Bicubic(_) => return None,
+        Patch::Bicubic(piece) => {
+            return has_back(&piece.part_net(), viewpoint).then_some(0.0);
+        }
+        Patch::Mesh(_) => return None,
         Patch::Extraordinary(patch) => {
             tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
         }
@@ -190,6 +198,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
             of_net(&BezierTriangle::of(points), viewpoint),
             levels.min(DIVISIONS),
         ),
+        Patch::Bicubic(piece) => (of_net(&piece.part_net(), viewpoint), levels.min(DIVISIONS)),
         Patch::Extraordinary(patch) => {
             let cone = tip::cone(patch, rules);
             (
@@ -200,7 +209,7 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
         Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => {
             (Look::Unknown, levels)
         }
-        Patch::Mesh(_) | Patch::Bicubic(_) => (Look::Unknown, 0),
+        Patch::Mesh(_) => (Look::Unknown, 0),
     };
     if at_once.is_known() || levels == 0 {
         return at_once;
@@ -232,7 +241,12 @@ pub(crate) fn cone_of_patch(
             points.extend(net.0);
             return Cone::of(&NormalNet::of(&net)?);
         }
-        Patch::Mesh(_) | Patch::Bicubic(_) => return None,
+        Patch::Bicubic(piece) => {
+            let net = piece.part_net();
+            points.extend(net.0);
+            return Cone::of(&NormalNet::of(&net)?);
+        }
+        Patch::Mesh(_) => return None,
         Patch::Extraordinary(patch) => {
             if let Some(cone) = tip::cone(patch, rules).filter(|cone| cone.sine < tip::NARROW) {
                 points.extend(patch.points());

@@ -1,19 +1,23 @@
 //! Which way a regular piece looks, by the signs of coefficients.
 //!
-//! Its normals N have a net of degree 6 ([`crate::patch::normal_net`]), so `−d·N` has 28
+//! Its normals N have a net ([`crate::patch::normal_net`]), of degree 6 for a quartic, so `−d·N` has 28
 //! coefficients, and all of the piece shows its front in the direction of sight d if they are
 //! above 0. `(E − S)·N`, whose sign is the side of the tangent planes on which an eye E is, has
-//! a net of degree 10, of 66 coefficients that follow from those of S and of N.
+//! a net of degree 10, of 66 coefficients that follow from those of S and of N. Over half a quad the degrees are 10 and 16.
 
 use super::{Look, Side};
-use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::normal_net::{SEXTIC, cross_products, products, size, tangents};
+use crate::patch::normal_net::{DECIC, SEXTIC, products, size};
+use crate::patch::polynomial::{Net, Normals};
 use crate::vector::DVec3;
+use smallvec::SmallVec;
 
 const QUARTIC: usize = size(4);
-const DECIC: usize = size(10);
+
+/// Coefficients of the greatest degree.
+const MOST: usize = size(16);
 
 static WITH_POINTS: [[(u8, f64); SEXTIC]; QUARTIC] = products::<QUARTIC, SEXTIC, DECIC>(4, 6);
+static WITH_POINTS_OF_HALVES: [[(u8, f64); DECIC]; SEXTIC] = products::<SEXTIC, DECIC, MOST>(6, 10);
 
 /// The places of the values at the corners.
 const fn corners(n: usize) -> [usize; 3] {
@@ -34,39 +38,42 @@ const CROSS_ROUNDING: f64 = 8.0;
 const LONGEST: f64 = 3.0;
 
 /// The normals of a regular piece, scaled so that the greatest coordinate of a difference of neighbouring net points is 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct NormalNet {
-    pub(super) normals: [DVec3; SEXTIC],
+    /// The degree of the piece.
+    degree: usize,
+    pub(super) normals: Normals,
     /// The greatest rounding error of the normals.
     pub(super) rounding: f64,
     /// The net's points, scaled, and their rounding error.
-    points: [DVec3; QUARTIC],
+    points: SmallVec<[DVec3; QUARTIC]>,
     point_rounding: f64,
     scale: f64,
 }
 
 impl NormalNet {
     /// `None` where all points are one or none is finite.
-    pub(crate) fn of(net: &BezierTriangle) -> Option<Self> {
-        let differences = tangents(net);
+    pub(crate) fn of<N: Net>(net: &N) -> Option<Self> {
+        let differences = net.tangents();
         let greatest = |points: &[DVec3]| {
             points
                 .iter()
                 .fold(DVec3::ZERO, |greatest, point| greatest.max(point.abs()))
                 .max_element()
         };
-        let scale = greatest(differences.as_flattened()).recip();
-        let point_rounding = POINT_ROUNDING * (greatest(&net.0) * scale).max(1.0);
+        let [along, across] = differences.each_ref().map(|net| greatest(net.as_ref()));
+        let scale = along.max(across).recip();
+        let point_rounding = POINT_ROUNDING * (greatest(net.points()) * scale).max(1.0);
         if !(scale > 0.0 && scale.is_finite() && point_rounding.is_finite()) {
             return None;
         }
-        let normals =
-            cross_products(&differences.map(|net| net.map(|difference| difference * scale)));
+        let normals = N::normals(differences, scale);
         let rounding = CROSS_ROUNDING * 2.0 * point_rounding + SUM_ROUNDING;
         Some(Self {
+            degree: N::DEGREE,
             normals,
             rounding,
-            points: net.0.map(|point| point * scale),
+            points: net.points().iter().map(|point| point * scale).collect(),
             point_rounding,
             scale,
         })
@@ -74,33 +81,42 @@ impl NormalNet {
 
     /// The side seen along a unit direction of sight.
     pub(super) fn along(&self, sight: DVec3) -> Look {
-        Look::by_signs(
-            &self.normals.map(|normal| -sight.dot(normal)),
-            corners(6),
-            self.rounding + LONGEST * SUM_ROUNDING,
-        )
+        let sides: SmallVec<[f64; SEXTIC]> = self
+            .normals
+            .iter()
+            .map(|normal| -sight.dot(*normal))
+            .collect();
+        let rounding = self.rounding + LONGEST * SUM_ROUNDING;
+        Look::by_signs(&sides, corners(2 * self.degree - 2), rounding)
     }
 
     /// The side seen from an eye.
     pub(super) fn from(&self, eye: DVec3) -> Look {
         let eye = self.scale * eye;
-        let mut sides = [0.0; DECIC];
+        let mut sides = [0.0; MOST];
         let mut farthest = 0.0f64;
-        for (point, row) in self.points.iter().zip(&WITH_POINTS) {
+        let table = match self.degree {
+            4 => WITH_POINTS.as_flattened(),
+            _ => WITH_POINTS_OF_HALVES.as_flattened(),
+        };
+        let rows = table.chunks(self.normals.len());
+        for (point, row) in self.points.iter().zip(rows) {
             let sight = eye - point;
             farthest = farthest.max(sight.length_squared());
             for (normal, &(at, part)) in self.normals.iter().zip(row) {
                 sides[usize::from(at)] += part * sight.dot(*normal);
             }
         }
-        Look::by_signs(&sides, corners(10), self.rounding_of(eye, farthest.sqrt()))
+        let degree = 3 * self.degree - 2;
+        let rounding = self.rounding_of(eye, farthest.sqrt());
+        Look::by_signs(&sides[..size(degree)], corners(degree), rounding)
     }
 
     /// Whether it shows its back to an eye, decided by a ball around its points where that is possible.
     pub(super) fn is_back_from(&self, eye: DVec3) -> bool {
         let scaled = self.scale * eye;
         let sum: DVec3 = self.points.iter().sum();
-        let centre = sum / QUARTIC as f64;
+        let centre = sum / self.points.len() as f64;
         let squared = |point: &DVec3| point.distance_squared(centre);
         let radius = self.points.iter().map(squared).fold(0.0, f64::max).sqrt();
         let sight = scaled - centre;
@@ -123,6 +139,7 @@ mod tests {
     use super::*;
     use crate::facing::test_nets::piece;
     use crate::patch::Quartic;
+    use crate::patch::bezier_triangle::BezierTriangle;
     use crate::patch::normal_net::place;
     use limitmesh_testing::Random;
 

@@ -8,9 +8,10 @@
 //!
 //! Curvature follows from the first and second fundamental forms (do Carmo, Differential Geometry of Curves and Surfaces, 3-3).
 
-use super::{LimitSurface, regular};
+use super::LimitSurface;
 use crate::index::{FaceId, HalfEdgeId};
 use crate::parallel;
+use crate::patch::polynomial::Polynomial;
 use crate::patch::{Patch, root_patch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -100,7 +101,7 @@ impl Derivatives {
 impl LimitSurface<'_> {
     /// The derivatives at a place of a control face, given by barycentric coordinates: weights of
     /// its corners that add up to 1, of which the two least are used. `None` where there are none:
-    /// at irregular vertices, for schemes outside the Loop family, where a weight is below 0 or
+    /// at irregular vertices, for schemes but the Loop family and Catmull–Clark, where a weight is below 0 or
     /// NaN, and on faces that do not exist.
     ///
     /// Near an irregular vertex of valence 3 or above 6 curvature grows without bound, near one of 4 or 5 it depends on the direction
@@ -125,8 +126,8 @@ impl LimitSurface<'_> {
     }
 
     /// Two unit vectors that span the tangent plane at a corner of a control face, by the scheme's
-    /// limit masks: also at irregular vertices, where there are no derivatives, and for schemes
-    /// outside the Loop family. Their cross product points to the side from which the face's
+    /// limit masks: also at irregular vertices, where there are no derivatives, and for any
+    /// scheme. Their cross product points to the side from which the face's
     /// corners run counter-clockwise. Away from boundaries and sharp edges the first is the
     /// direction in which the surface leaves the vertex over the face's edge to the next corner.
     ///
@@ -163,7 +164,7 @@ impl LimitSurface<'_> {
     }
 
     fn derivatives_on(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<Option<Derivatives>> {
-        if !self.rules.are_of_loop_family() {
+        if !self.is_certified() {
             return vec![None; places.len()];
         }
         let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
@@ -178,11 +179,10 @@ impl LimitSurface<'_> {
         let mut own: Option<Patch> = None;
         for _ in 0..DEEPEST {
             let patch = own.as_ref().unwrap_or(patch);
-            if let Patch::Regular(points) = patch {
-                let mut points = *points;
-                let moved = points[0];
-                points.iter_mut().for_each(|point| *point -= moved);
-                let (piece, [_, u, v]) = (regular(&points), weights);
+            if matches!(patch, Patch::Regular(_) | Patch::Bicubic(_)) {
+                let mut patch = patch.clone();
+                let moved = patch.moved_to_origin();
+                let (piece, [_, u, v]) = (Polynomial::of(&patch)?, weights);
                 return Some(Derivatives {
                     position: (origin + moved + piece.point(u, v)).to_array(),
                     first: piece.tangents(u, v).map(|by| (scale * by).to_array()),

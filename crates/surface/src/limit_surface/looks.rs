@@ -14,7 +14,7 @@ const BLOCK: usize = 64;
 impl LimitSurface<'_> {
     /// Whether all of the surface over a control face shows its front to a viewer, or its back:
     /// proven, and [undecided](Facing::Undecided) where both are seen, where rounding or bounds do
-    /// not decide, where the surface has no tangent plane, for schemes outside the Loop family and
+    /// not decide, where the surface has no tangent plane, for schemes but the Loop family and Catmull–Clark and
     /// on faces that do not exist.
     ///
     /// ```

@@ -5,6 +5,7 @@ use core::ops::Range;
 
 use super::{SurfacePoint, regular};
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
 use crate::patch::quartic::{coefficients, values_at};
 use crate::patch::{self, Limit, LimitPoint};
 use crate::vector::{self, DVec3};
@@ -146,6 +147,15 @@ pub(crate) trait Answers {
 
     /// Points on a regular piece, by its twelve points.
     fn are_on(&mut self, piece: &patch::Points, places: &[Place]);
+
+    /// Points on a half of a bicubic piece.
+    fn are_on_bicubic(&mut self, piece: &Bicubic, places: &[Place]) {
+        for place in places {
+            let at = piece.part.at([place.u, place.v]);
+            let limit = Self::Limit::of(piece.point(at), || piece.limit(at).normal);
+            self.is(place.at, limit);
+        }
+    }
 }
 
 /// The weights of up to `N` places, zeros beyond.

@@ -1,14 +1,15 @@
 //! Area and volume of the limit surface.
 //!
 //! By the divergence theorem the volume is ⅓ ∮ S·(S_u × S_v) du dv. On a regular piece that is a
-//! polynomial of degree 10, which a product of Gauss rules with six nodes integrates exactly; the
-//! area's integrand |S_u × S_v| is none, and pieces are divided until two rules agree. Towards
+//! polynomial of degree 10, which a product of Gauss rules with six nodes integrates exactly, or of degree 16 over half a quad, for which
+//! it takes ten; the area's integrand |S_u × S_v| is none, and pieces are divided until two rules agree. Towards
 //! irregular vertices pieces are refined down to a speck, which a flat triangle approximates.
 
-use super::{LimitSurface, regular};
+use super::LimitSurface;
 use crate::index::FaceId;
 use crate::parallel;
-use crate::patch::{ParamTriangle, Patch, Quartic, child_corners, root_patch};
+use crate::patch::polynomial::{Polynomial, RegularPiece as _};
+use crate::patch::{ParamTriangle, Patch, child_corners, root_patch};
 use crate::vector::{DVec3, vector};
 
 /// Faces that are integrated together.
@@ -29,6 +30,13 @@ const AGREEMENT: f64 = 1e-10;
 const MOST_DIVISIONS: u32 = 6;
 
 /// Nodes and weights of Gauss's rule on −1 to 1, the positive ones (Abramowitz and Stegun, table 25.4).
+const TEN: [(f64, f64); 5] = [
+    (0.148_874_338_981_631_2, 0.295_524_224_714_752_9),
+    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
+    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
+    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
+    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
+];
 const SIX: [(f64, f64); 3] = [
     (0.238_619_186_083_196_9, 0.467_913_934_572_691),
     (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
@@ -42,7 +50,7 @@ const FOUR: [(f64, f64); 2] = [
 /// The integrand: its value over a regular piece, given the area of its face, and over the flat
 /// triangle that approximates a speck.
 trait Integrand: Sync {
-    fn of_piece(&self, piece: &Quartic, whole: f64) -> f64;
+    fn of_piece(&self, piece: &Polynomial, whole: f64) -> f64;
     fn of_triangle(&self, corners: [DVec3; 3]) -> f64;
 }
 
@@ -52,7 +60,7 @@ struct Area;
 struct Volume;
 
 impl Integrand for Area {
-    fn of_piece(&self, piece: &Quartic, whole: f64) -> f64 {
+    fn of_piece(&self, piece: &Polynomial, whole: f64) -> f64 {
         area(
             piece,
             ParamTriangle::WHOLE,
@@ -67,8 +75,12 @@ impl Integrand for Area {
 }
 
 impl Integrand for Volume {
-    fn of_piece(&self, piece: &Quartic, _: f64) -> f64 {
-        integral(&SIX, ParamTriangle::WHOLE, |u, v| {
+    fn of_piece(&self, piece: &Polynomial, _: f64) -> f64 {
+        let rule: &[_] = match piece {
+            Polynomial::Quartic(_) => &SIX,
+            Polynomial::Bicubic(_) => &TEN,
+        };
+        integral(rule, ParamTriangle::WHOLE, |u, v| {
             let [by_u, by_v] = piece.tangents(u, v);
             piece.point(u, v).dot(by_u.cross(by_v)) / 3.0
         })
@@ -81,14 +93,14 @@ impl Integrand for Volume {
 
 impl LimitSurface<'_> {
     /// The area, to some 1e-9 of it where the surface has no cusps, in squares of the control
-    /// mesh's unit; `None` for schemes outside the Loop family, and where it overflows.
+    /// mesh's unit; `None` for schemes but the Loop family and Catmull–Clark, and where it overflows.
     pub fn area(&self) -> Option<f64> {
         self.integrated(&Area, 2)
     }
 
     /// The volume that a closed surface encloses, to some 1e-11 of it, in cubes of the control
     /// mesh's unit: below 0 where normals point inwards. `None` for surfaces with a boundary, for
-    /// schemes outside the Loop family, and where it overflows.
+    /// schemes but the Loop family and Catmull–Clark, and where it overflows.
     ///
     /// ```
     /// use limitmesh_surface::{LimitSurface, Mesh, scheme::Loop};
@@ -111,7 +123,7 @@ impl LimitSurface<'_> {
 
     /// The sum over all faces, of an integrand that grows with that power of lengths.
     fn integrated(&self, integrand: &impl Integrand, power: usize) -> Option<f64> {
-        if !self.rules.are_of_loop_family() {
+        if !self.is_certified() {
             return None;
         }
         // Seen from its middle, and about as large as 1, a surface keeps its digits at any position
@@ -160,8 +172,8 @@ impl LimitSurface<'_> {
         (integrand, whole): (&I, f64),
         levels: u32,
     ) -> f64 {
-        if let Patch::Regular(points) = patch {
-            return integrand.of_piece(&regular(points), whole);
+        if let Some(polynomial) = Polynomial::of(patch) {
+            return integrand.of_piece(&polynomial, whole);
         }
         if Area.of_triangle(corners) <= SPECK * whole || levels == 0 {
             return integrand.of_triangle(corners);
@@ -169,7 +181,7 @@ impl LimitSurface<'_> {
         let refined = patch.refined(&self.rules);
         let middles = [0, 1, 2].map(|edge| refined.middle_as::<DVec3>(edge));
         let of_part = |part| match refined.points(part) {
-            Some(points) => integrand.of_piece(&regular(&points), whole),
+            Some(points) => integrand.of_piece(&points.polynomial(&points.net()), whole),
             None => {
                 let corners = child_corners(corners, middles, part);
                 self.integrated_over_piece(
@@ -184,7 +196,7 @@ impl LimitSurface<'_> {
     }
 }
 
-fn area(piece: &Quartic, domain: ParamTriangle, agreement: f64, divisions: u32) -> f64 {
+fn area(piece: &Polynomial, domain: ParamTriangle, agreement: f64, divisions: u32) -> f64 {
     let density = |u: f64, v: f64| {
         let [by_u, by_v] = piece.tangents(u, v);
         by_u.cross(by_v).length()

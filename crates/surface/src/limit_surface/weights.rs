@@ -79,7 +79,7 @@ impl LimitSurface<'_> {
         if face.index() >= self.mesh.face_count() {
             return Ok(found);
         }
-        let rings = RINGS[usize::from(!self.is_certified())];
+        let rings = RINGS[usize::from(!self.rules.are_of_loop_family())];
         let (small, sources) = submesh_of(
             self.mesh,
             &self.sharpness,

@@ -50,18 +50,6 @@ impl<V: Blend> BezierTriangle<V> {
     }
 }
 
-impl BezierTriangle {
-    /// Where its points are, as seen from those of its triangle with the same weights.
-    pub(crate) fn off_flat(&self) -> impl Iterator<Item = DVec3> + '_ {
-        let [a, b, c] = self.corners();
-        let places = (0..5).flat_map(|k| (0..5 - k).map(move |j| (f64::from(j), f64::from(k))));
-        self.0
-            .iter()
-            .zip(places)
-            .map(move |(point, (j, k))| point - 0.25 * ((4.0 - j - k) * a + j * b + k * c))
-    }
-}
-
 impl<V: Blend> BezierTriangle<V> {
     /// The two halves that the line from the middle of the edge from corner `edge` to the corner opposite cuts: the first
     /// with the edge's start, the second with its end. Corners keep their places; the middle takes the other end's.

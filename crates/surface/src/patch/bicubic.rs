@@ -51,6 +51,11 @@ fn derivative(t: f64) -> Weights {
     [-b[0], b[0] - b[1], b[1] - b[2], b[2]]
 }
 
+/// The second derivative of a uniform cubic spline on its middle segment.
+fn second_derivative(t: f64) -> Weights {
+    [1.0 - t, 3.0 * t - 2.0, 1.0 - 3.0 * t, t]
+}
+
 /// The multisets of three of the numbers 0 to 2, by how often each occurs.
 const TRIPLES: [[usize; 3]; 10] = [
     [3, 0, 0],
@@ -101,6 +106,15 @@ impl Bicubic {
         ]
     }
 
+    /// The second derivatives: along the first edge of the quad twice, along both edges, along the other twice.
+    pub fn second_derivatives(&self, [u, v]: [f64; 2]) -> [DVec3; 3] {
+        [
+            self.sum(second_derivative(u), blossom([v; 3])),
+            self.sum(derivative(u), derivative(v)),
+            self.sum(blossom([u; 3]), second_derivative(v)),
+        ]
+    }
+
     /// The point at a place of the quad, and the unit normal there.
     pub fn limit(&self, at: [f64; 2]) -> LimitPoint {
         let [along, across] = self.derivatives(at);
@@ -134,6 +148,11 @@ impl Bicubic {
             points: self.points,
             part: self.part.child(child),
         }
+    }
+
+    /// The net of its part.
+    pub fn part_net(&self) -> SexticTriangle {
+        self.net(self.part.corners(), |point| point)
     }
 
     /// The net of a triangle in the quad's domain.
@@ -216,6 +235,15 @@ mod tests {
             let [along, across] = piece.derivatives([u, v]);
             assert!(along.distance((near(step, 0.0) - near(-step, 0.0)) / (2.0 * step)) < 1e-9);
             assert!(across.distance((near(0.0, step) - near(0.0, -step)) / (2.0 * step)) < 1e-9);
+            let slopes = |du: f64, dv: f64| piece.derivatives([u + du, v + dv]);
+            let [uu, uv, vv] = piece.second_derivatives([u, v]);
+            let [by_u, by_v] = [[step, 0.0], [0.0, step]].map(|[du, dv]| {
+                let (more, less) = (slopes(du, dv), slopes(-du, -dv));
+                [0, 1].map(|i| (more[i] - less[i]) / (2.0 * step))
+            });
+            for (found, expected) in [(uu, by_u[0]), (uv, by_u[1]), (uv, by_v[0]), (vv, by_v[1])] {
+                assert!(found.distance(expected) < 1e-9);
+            }
         }
     }
 

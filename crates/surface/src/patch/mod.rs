@@ -17,6 +17,7 @@ pub mod mesh_form;
 pub mod mesh_patch;
 pub mod normal_net;
 mod pole;
+pub(crate) mod polynomial;
 pub mod quad;
 pub mod quartic;
 mod rules;

@@ -1,4 +1,4 @@
-//! The normals of a regular piece, not of unit length, as a Bézier net of degree 6.
+//! The normals of a regular piece, not of unit length, as a Bézier net: of degree 6 for a quartic, of degree 10 for half a bicubic piece.
 //!
 //! The derivatives of a quartic with the net b are cubics, with the nets `D1_a = b_(a+e1) − b_(a+e0)` and
 //! `D2_a = b_(a+e2) − b_(a+e0)`, |a| = 3, but for a factor of 4. By the product of Bernstein polynomials (Farin, Curves and Surfaces
@@ -12,18 +12,32 @@ use crate::vector::DVec3;
 /// Coefficients of a cubic.
 pub const CUBIC: usize = size(3);
 
+/// Coefficients of a form of degree 5.
+pub(crate) const QUINTIC: usize = size(5);
+
 /// Coefficients of a form of degree 6.
 pub(crate) const SEXTIC: usize = size(6);
 
-static CUBICS: [[(u8, f64); CUBIC]; CUBIC] = products::<CUBIC, CUBIC, SEXTIC>(3, 3);
+/// Coefficients of a form of degree 10.
+pub(crate) const DECIC: usize = size(10);
+
+static CUBICS: Products<CUBIC> = products::<CUBIC, CUBIC, SEXTIC>(3, 3);
+static QUINTICS: Products<QUINTIC> = products::<QUINTIC, QUINTIC, DECIC>(5, 5);
+
+type Products<const N: usize> = [[(u8, f64); N]; N];
 
 /// The nets of the derivatives by the second and by the third corner's weight, a quarter of them.
 pub fn tangents(net: &BezierTriangle) -> [[DVec3; CUBIC]; 2] {
-    let b = |j: usize, k: usize| net.0[place(4, j, k)];
-    let mut tangents = [[DVec3::ZERO; CUBIC]; 2];
-    for k in 0..=3 {
-        for j in 0..=3 - k {
-            let (at, from) = (place(3, j, k), b(j, k));
+    differences(4, &net.0)
+}
+
+/// The same for a net of any degree, divided by the degree.
+pub(crate) fn differences<const LESS: usize>(degree: usize, net: &[DVec3]) -> [[DVec3; LESS]; 2] {
+    let b = |j: usize, k: usize| net[place(degree, j, k)];
+    let mut tangents = [[DVec3::ZERO; LESS]; 2];
+    for k in 0..degree {
+        for j in 0..degree - k {
+            let (at, from) = (place(degree - 1, j, k), b(j, k));
             [tangents[0][at], tangents[1][at]] = [b(j + 1, k) - from, b(j, k + 1) - from];
         }
     }
@@ -31,9 +45,21 @@ pub fn tangents(net: &BezierTriangle) -> [[DVec3; CUBIC]; 2] {
 }
 
 /// The net of the cross products of two cubics.
-pub fn cross_products([along, across]: &[[DVec3; CUBIC]; 2]) -> [DVec3; SEXTIC] {
-    let mut products = [DVec3::ZERO; SEXTIC];
-    for (a, row) in along.iter().zip(&CUBICS) {
+pub fn cross_products(tangents: &[[DVec3; CUBIC]; 2]) -> [DVec3; SEXTIC] {
+    crossed(tangents, &CUBICS)
+}
+
+/// The net of the cross products of two forms of degree 5.
+pub(crate) fn quintic_products(tangents: &[[DVec3; QUINTIC]; 2]) -> [DVec3; DECIC] {
+    crossed(tangents, &QUINTICS)
+}
+
+fn crossed<const N: usize, const PRODUCT: usize>(
+    [along, across]: &[[DVec3; N]; 2],
+    table: &Products<N>,
+) -> [DVec3; PRODUCT] {
+    let mut products = [DVec3::ZERO; PRODUCT];
+    for (a, row) in along.iter().zip(table) {
         for (b, &(at, part)) in across.iter().zip(row) {
             products[usize::from(at)] += part * a.cross(*b);
         }

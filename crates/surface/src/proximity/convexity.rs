@@ -1,7 +1,7 @@
 //! How the squared distance of a point from a regular piece bends at least, which bounds it from below.
 //!
-//! With ½|S − q|² = f, the second derivatives are f_ij = (S_i·S_j + S·S_ij) − q·S_ij. The first term is a polynomial of degree 6 that does not
-//! depend on q, S_ij one of degree 2; both are in the hull of their Bézier coefficients. In parameters that are orthonormal amid the piece f_ij is
+//! With ½|S − q|² = f, the second derivatives are f_ij = (S_i·S_j + S·S_ij) − q·S_ij. For S of degree n the first term is a polynomial of
+//! degree 2n − 2 that does not depend on q, S_ij one of degree n − 2; both are in the hull of their Bézier coefficients. In parameters that are orthonormal amid the piece f_ij is
 //! nearly the identity where the point is near. Intervals around its three entries give a bound λ from below on its eigenvalues, so that
 //! f(y) ≥ f(x) + ∇f(x)·(y − x) + ½ λ |y − x|² in these parameters. The least value of the linear part over the piece is at a corner (Frank and
 //! Wolfe, "An algorithm for quadratic programming", 1956); with λ above 0 f is convex, and at least f(x) − |∇f(x)|² / 2λ anywhere.
@@ -10,7 +10,8 @@ use core::array::from_fn;
 
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
 use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::normal_net::{CUBIC, SEXTIC, multinomials, place, tangents};
+use crate::patch::normal_net::{differences, multinomials, place, size};
+use crate::patch::sextic::SexticTriangle;
 use crate::vector::DVec3;
 
 /// The part of a piece that decides how its distance from points bends.
@@ -27,21 +28,35 @@ pub(super) struct Convexity {
 
 impl Convexity {
     /// Of a net that stands about the origin.
-    pub(crate) fn of(net: &BezierTriangle) -> Self {
+    pub(crate) fn of_quartic(net: &BezierTriangle) -> Self {
+        Self::of::<15, 10, 6, 28>(&net.0)
+    }
+
+    /// Of a net of degree six.
+    pub(crate) fn of_sextic(net: &SexticTriangle) -> Self {
+        Self::of::<28, 21, 15, 66>(&net.0)
+    }
+
+    /// Of any net; `FIRST` and `SECOND` coefficients have its derivatives, `PRODUCT` their products.
+    fn of<const NET: usize, const FIRST: usize, const SECOND: usize, const PRODUCT: usize>(
+        net: &[DVec3; NET],
+    ) -> Self {
+        let degree = const { degree_of(NET) };
+        let (n, factor) = (degree - 1, degree as f64);
         let [by_u, by_v] =
-            tangents(net).map(|quarter| scaled::<3, CUBIC>(quarter.map(|by| 4.0 * by)));
-        let second = second(&net.0);
-        let mut products = [[0.0; SEXTIC]; 3];
-        add_product(&mut products[0], (3, &by_u), (3, &by_u));
-        add_product(&mut products[1], (3, &by_u), (3, &by_v));
-        add_product(&mut products[2], (3, &by_v), (3, &by_v));
+            differences::<FIRST>(degree, net).map(|net| scaled(net.map(|by| factor * by)));
+        let second = second::<SECOND>(degree, net);
+        let mut products = [[0.0; PRODUCT]; 3];
+        add_product(&mut products[0], (n, &by_u), (n, &by_u));
+        add_product(&mut products[1], (n, &by_u), (n, &by_v));
+        add_product(&mut products[2], (n, &by_v), (n, &by_v));
         // The mean over the piece is that of the coefficients.
         let [e, f, g] =
-            products.map(|product| unscaled(product).iter().sum::<f64>() / SEXTIC as f64);
+            products.map(|product| unscaled(product).iter().sum::<f64>() / PRODUCT as f64);
         let factors = orthonormal(e, f, g);
-        let whole = scaled::<4, 15>(net.0);
+        let whole = scaled(*net);
         for (products, second) in products.iter_mut().zip(&second) {
-            add_product(products, (4, &whole), (2, &scaled::<2, 6>(*second)));
+            add_product(products, (degree, &whole), (n - 1, &scaled(*second)));
             *products = unscaled(*products);
         }
         let [uu, uv, vv] = &products;
@@ -131,45 +146,55 @@ fn turned([p, r, s]: [f64; 3], [uu, uv, vv]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The nets of the second derivatives of a quartic: degree 2.
-fn second(net: &[DVec3; 15]) -> [[DVec3; 6]; 3] {
-    let mut derivatives = [[DVec3::ZERO; 6]; 3];
-    for k in 0..3 {
-        for j in 0..3 - k {
-            let at = |by_j: usize, by_k: usize| net[place(4, j + by_j, k + by_k)];
-            let own = place(2, j, k);
-            derivatives[0][own] = 12.0 * ((at(2, 0) - at(1, 0)) - (at(1, 0) - at(0, 0)));
-            derivatives[1][own] = 12.0 * ((at(1, 1) - at(1, 0)) - (at(0, 1) - at(0, 0)));
-            derivatives[2][own] = 12.0 * ((at(0, 2) - at(0, 1)) - (at(0, 1) - at(0, 0)));
+/// The nets of the second derivatives.
+fn second<const SECOND: usize>(degree: usize, net: &[DVec3]) -> [[DVec3; SECOND]; 3] {
+    let mut derivatives = [[DVec3::ZERO; SECOND]; 3];
+    let factor = (degree * (degree - 1)) as f64;
+    for k in 0..degree - 1 {
+        for j in 0..degree - 1 - k {
+            let at = |by_j: usize, by_k: usize| net[place(degree, j + by_j, k + by_k)];
+            let own = place(degree - 2, j, k);
+            derivatives[0][own] = factor * ((at(2, 0) - at(1, 0)) - (at(1, 0) - at(0, 0)));
+            derivatives[1][own] = factor * ((at(1, 1) - at(1, 0)) - (at(0, 1) - at(0, 0)));
+            derivatives[2][own] = factor * ((at(0, 2) - at(0, 1)) - (at(0, 1) - at(0, 0)));
         }
     }
     derivatives
 }
 
+/// The degree of a net by the number of its points.
+const fn degree_of(points: usize) -> usize {
+    let mut degree = 0;
+    while size(degree) < points {
+        degree += 1;
+    }
+    degree
+}
+
 /// A net times its multinomial coefficients: products of such are sums.
-fn scaled<const DEGREE: usize, const SIZE: usize>(mut net: [DVec3; SIZE]) -> [DVec3; SIZE] {
-    let weights = const { &multinomials::<SIZE>(DEGREE) };
+fn scaled<const SIZE: usize>(mut net: [DVec3; SIZE]) -> [DVec3; SIZE] {
+    let weights = const { &multinomials::<SIZE>(degree_of(SIZE)) };
     net.iter_mut()
         .zip(weights)
         .for_each(|(point, &weight)| *point *= weight);
     net
 }
 
-fn unscaled(mut net: [f64; SEXTIC]) -> [f64; SEXTIC] {
-    let weights = const { &multinomials::<SEXTIC>(6) };
+fn unscaled<const SIZE: usize>(mut net: [f64; SIZE]) -> [f64; SIZE] {
+    let weights = const { &multinomials::<SIZE>(degree_of(SIZE)) };
     net.iter_mut()
         .zip(weights)
         .for_each(|(value, weight)| *value /= weight);
     net
 }
 
-/// Adds the scalar product of two scaled nets, whose degrees add up to 6 (Farin, on products in Bernstein form).
-fn add_product(net: &mut [f64; SEXTIC], (m, a): (usize, &[DVec3]), (n, b): (usize, &[DVec3])) {
+/// Adds the scalar product of two scaled nets (Farin, on products in Bernstein form).
+fn add_product(net: &mut [f64], (m, a): (usize, &[DVec3]), (n, b): (usize, &[DVec3])) {
     for (ka, kb) in (0..=m).flat_map(|ka| (0..=n).map(move |kb| (ka, kb))) {
         for ja in 0..=m - ka {
             let own = a[place(m, ja, ka)];
             let others = &b[place(n, 0, kb)..=place(n, n - kb, kb)];
-            let first = place(6, ja, ka + kb);
+            let first = place(m + n, ja, ka + kb);
             net[first..]
                 .iter_mut()
                 .zip(others)
@@ -181,7 +206,9 @@ fn add_product(net: &mut [f64; SEXTIC], (m, a): (usize, &[DVec3]), (n, b): (usiz
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::patch::Quartic;
+    use crate::patch::bicubic::Bicubic;
+    use crate::patch::polynomial::Polynomial;
+    use crate::patch::{ParamTriangle, Quartic};
 
     fn bent(height: f64) -> BezierTriangle {
         let places = (0..5)
@@ -199,6 +226,32 @@ mod tests {
         BezierTriangle(from_fn(|i| points[i]))
     }
 
+    /// Half of a bicubic piece that bends alike, about the origin.
+    fn bent_half(height: f64) -> Bicubic {
+        let at = |i: usize, j: usize| {
+            let (x, y) = (0.9 * i as f64 - 1.2, 0.8 * j as f64 - 1.1);
+            let z = height * (x * x + y * y - 0.6 * x * x * y);
+            DVec3::new(x + 0.1 * y * y, y + 0.2 * x, z)
+        };
+        Bicubic {
+            points: from_fn(|j| from_fn(|i| at(i, j))),
+            part: ParamTriangle::WHOLE.child(3),
+        }
+    }
+
+    fn pieces() -> Vec<(f64, Convexity, Polynomial)> {
+        let of_height = |height: f64| {
+            let (net, half) = (bent(height), bent_half(height));
+            let quartic = Polynomial::Quartic(Quartic::of(&net, 0));
+            let sextic = Convexity::of_sextic(&half.part_net());
+            [
+                (height, Convexity::of_quartic(&net), quartic),
+                (height, sextic, Polynomial::Bicubic(half)),
+            ]
+        };
+        [0.0, 0.3, 1.0].into_iter().flat_map(of_height).collect()
+    }
+
     fn places() -> impl Iterator<Item = [f64; 2]> {
         let steps = (0..=12)
             .flat_map(|i| (0..=12 - i).map(move |j| (f64::from(i) / 12.0, f64::from(j) / 12.0)));
@@ -209,19 +262,17 @@ mod tests {
     #[test]
     fn no_place_is_below_the_bound() {
         let mut answers = [0, 0];
-        for height in [0.0, 0.3, 1.0] {
-            let net = bent(height);
-            let (convexity, quartic) = (Convexity::of(&net), Quartic::of(&net, 0));
+        for (height, convexity, piece) in pieces() {
             for i in 0..200 {
                 let at = |step: f64| 3.0 * (0.3 + step * f64::from(i)).fract() - 1.5;
                 let point = DVec3::new(at(0.618), at(0.7548), at(0.5698));
                 let eigenvalue = convexity.least_eigenvalue(point);
                 answers[usize::from(eigenvalue > 0.0)] += 1;
-                let half = |[u, v]: [f64; 2]| 0.5 * quartic.point(u, v).distance_squared(point);
+                let half = |[u, v]: [f64; 2]| 0.5 * piece.point(u, v).distance_squared(point);
                 let least = places().map(half).fold(f64::INFINITY, f64::min);
                 for from in [[0.0, 0.0], [0.2, 0.3], [0.5, 0.5], [0.0, 0.9]] {
-                    let away = quartic.point(from[0], from[1]) - point;
-                    let gradient = quartic.tangents(from[0], from[1]).map(|by| away.dot(by));
+                    let away = piece.point(from[0], from[1]) - point;
+                    let gradient = piece.tangents(from[0], from[1]).map(|by| away.dot(by));
                     let bound = convexity.bound(half(from), from, gradient, eigenvalue);
                     assert!(
                         bound <= least + 1e-12,
@@ -232,8 +283,8 @@ mod tests {
                 let nearest = places()
                     .min_by(|a, b| half(*a).total_cmp(&half(*b)))
                     .unwrap_or_default();
-                let away = quartic.point(nearest[0], nearest[1]) - point;
-                let gradient = quartic
+                let away = piece.point(nearest[0], nearest[1]) - point;
+                let gradient = piece
                     .tangents(nearest[0], nearest[1])
                     .map(|by| away.dot(by));
                 let bound = convexity.bound(least, nearest, gradient, eigenvalue);
@@ -265,7 +316,7 @@ mod tests {
     #[test]
     fn a_piece_without_area_is_not_called_convex() {
         let net = BezierTriangle([DVec3::ZERO; 15]);
-        let eigenvalue = Convexity::of(&net).least_eigenvalue(DVec3::ONE);
+        let eigenvalue = Convexity::of_quartic(&net).least_eigenvalue(DVec3::ONE);
         assert!(eigenvalue.is_nan() || eigenvalue <= 0.0, "{eigenvalue}");
     }
 }

@@ -1,6 +1,6 @@
 //! The closest point of a limit surface, certified, and whether a point is inside.
 //!
-//! Takes a [`LimitSurface`] of the Loop family and any points. The surface over a control face is
+//! Takes a [`LimitSurface`] of the Loop family or Catmull–Clark and any points. The surface over a control face is
 //! in the hull of control points (`pieces`), so that no point of it is farther from the triangle
 //! of its limit corners than the hull's points are; boxes of hulls are in a tree. A search
 //! (`nearest`) skips a box by its distance, and where the squared distance bends little over a
@@ -43,8 +43,10 @@ const LEAST_TOLERANCE: f64 = 1e-13;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProximityError {
-    /// Bounds exist only for schemes of Loop's family.
-    #[error("closest points are found on surfaces of the Loop family, not of the scheme '{name}'")]
+    /// Bounds exist only for schemes of Loop's family and for Catmull–Clark.
+    #[error(
+        "closest points are found on surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"
+    )]
     Scheme {
         /// The scheme's name.
         name: String,
@@ -155,7 +157,7 @@ impl<'a> Proximity<'a> {
     /// Prepares the surface.
     ///
     /// # Errors
-    /// The scheme is not of the Loop family, the mesh has no faces, or a stencil failed.
+    /// The scheme is neither of the Loop family nor Catmull–Clark, the mesh has no faces, or a stencil failed.
     pub fn new(surface: &'a LimitSurface<'a>) -> Result<Self, ProximityError> {
         Self::new_observed(surface, &mut unobserved)
     }

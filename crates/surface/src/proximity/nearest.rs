@@ -310,9 +310,9 @@ impl<'q> Query<'q> {
         let mut decided = None;
         for step in 0..STEPS {
             let [u, v] = at;
-            let point = piece.quartic.point(u, v);
+            let point = piece.polynomial.point(u, v);
             let away = point - from;
-            let [by_u, by_v] = piece.quartic.tangents(u, v);
+            let [by_u, by_v] = piece.polynomial.tangents(u, v);
             let is_nearest = self.offer(away.length(), point + piece.origin, over, at);
             let gradient = [away.dot(by_u), away.dot(by_v)];
             let lower = convexity.bound(0.5 * away.length_squared(), at, gradient, eigenvalue);
@@ -332,7 +332,7 @@ impl<'q> Query<'q> {
                 return decided;
             }
             let [uu, uv, vv] = piece
-                .quartic
+                .polynomial
                 .second_derivatives(u, v)
                 .map(|second| away.dot(second));
             let first = [by_u.dot(by_u), by_u.dot(by_v), by_v.dot(by_v)];

@@ -9,6 +9,8 @@ use crate::geometry::{SurfaceFrame, closest_to_origin};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
+use crate::patch::polynomial::{Net, Polynomial, RegularPiece as _};
 use crate::patch::{self, ParamTriangle, Patch, Quartic, Rules, child_corners};
 use crate::vector::DVec3;
 
@@ -47,28 +49,35 @@ pub(super) enum Form {
 #[derive(Clone, Debug)]
 pub(super) struct RegularPiece {
     pub(super) origin: DVec3,
-    pub(super) quartic: Quartic,
+    pub(super) polynomial: Polynomial,
     /// `None` where it is not kept.
     pub(super) convexity: Option<Convexity>,
 }
 
 impl RegularPiece {
     pub(crate) fn convexity(&self) -> Convexity {
-        Convexity::of(&self.quartic.net([0.0, 0.0], 1.0))
+        match &self.polynomial {
+            Polynomial::Quartic(quartic) => Convexity::of_quartic(&quartic.net([0.0, 0.0], 1.0)),
+            Polynomial::Bicubic(piece) => Convexity::of_sextic(&piece.part_net()),
+        }
     }
 }
 
 impl Piece {
-    /// Of a net in the frame.
-    fn of_net(net: &BezierTriangle, domain: ParamTriangle) -> Self {
+    /// Of a net in the frame. The last argument gives the polynomial as seen from a point, by the net as seen from there.
+    fn of_net<N: Net>(
+        net: N,
+        domain: ParamTriangle,
+        polynomial: impl FnOnce(&N, DVec3) -> Polynomial,
+    ) -> Self {
         let corners = net.corners();
         let origin = (corners[0] + corners[1] + corners[2]) / 3.0;
-        let net = BezierTriangle(net.0.map(|point| point - origin));
+        let net = net.seen_from(origin);
         let own = corners.map(|corner| corner - origin);
-        let (bounds, height) = hull(net.0.into_iter(), own);
+        let (bounds, height) = hull(net.points().iter().copied(), own);
         let piece = RegularPiece {
             origin,
-            quartic: Quartic::of(&net, 0),
+            polynomial: polynomial(&net, origin),
             convexity: None,
         };
         Self {
@@ -91,8 +100,12 @@ impl Piece {
         corners: [DVec3; 3],
         domain: ParamTriangle,
     ) -> Self {
-        if let Patch::Regular(points) = patch {
-            return Self::of_points(frame, &points, domain);
+        match patch {
+            Patch::Regular(points) => return Self::of_points(frame, &points, domain),
+            Patch::Bicubic(piece) => {
+                return Self::of_bicubic(&piece.moved(|point| frame.inside(point)), domain);
+            }
+            _ => {}
         }
         let mut points = Vec::new();
         patch.for_each_hull_point(|point| points.push(frame.inside(point)));
@@ -112,23 +125,36 @@ impl Piece {
     }
 
     fn of_points(frame: &SurfaceFrame, points: &patch::Points, domain: ParamTriangle) -> Self {
-        Self::of_net(
-            &BezierTriangle::of(&points.map(|point| frame.inside(point))),
-            domain,
-        )
+        Self::of_quartic(points.moved(|point| frame.inside(point)).net(), domain)
+    }
+
+    fn of_quartic(net: BezierTriangle, domain: ParamTriangle) -> Self {
+        Self::of_net(net, domain, |net, _| {
+            Polynomial::Quartic(Quartic::of(net, 0))
+        })
+    }
+
+    fn of_bicubic(piece: &Bicubic, domain: ParamTriangle) -> Self {
+        Self::of_net(piece.part_net(), domain, |_, origin| {
+            Polynomial::Bicubic(piece.moved(|point| point - origin))
+        })
     }
 
     /// The pieces over its four parts.
     pub(crate) fn parts(&self, frame: &SurfaceFrame, rules: &Rules<'_>) -> [Self; 4] {
         match &self.form {
             Form::Regular(regular) => [0, 1, 2, 3].map(|part| {
-                let ParamTriangle { u, v, size } = ParamTriangle::WHOLE.child(part);
-                let net = regular
-                    .quartic
-                    .net([u, v], size)
-                    .0
-                    .map(|point| point + regular.origin);
-                Self::of_net(&BezierTriangle(net), self.domain.child(part))
+                let (domain, back) = (self.domain.child(part), |point| point + regular.origin);
+                match &regular.polynomial {
+                    Polynomial::Quartic(quartic) => {
+                        let ParamTriangle { u, v, size } = ParamTriangle::WHOLE.child(part);
+                        let net = quartic.net([u, v], size);
+                        Self::of_quartic(BezierTriangle(net.0.map(back)), domain)
+                    }
+                    Polynomial::Bicubic(piece) => {
+                        Self::of_bicubic(&piece.child(part).moved(back), domain)
+                    }
+                }
             }),
             Form::Irregular(patch) => {
                 let refined = patch.refined(rules);

@@ -111,8 +111,10 @@ pub struct Hit {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {
-    /// Hulls exist only for schemes of Loop's family.
-    #[error("rays are followed to surfaces of the Loop family, not of the scheme '{name}'")]
+    /// Hulls exist only for schemes of Loop's family and for Catmull–Clark.
+    #[error(
+        "rays are followed to surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"
+    )]
     Scheme {
         /// The scheme's name.
         name: String,
@@ -154,7 +156,7 @@ impl<'a> RayCaster<'a> {
     /// Prepares the search: some kilobytes a control face.
     ///
     /// # Errors
-    /// A scheme outside the Loop family; a stencil that failed.
+    /// A scheme but the Loop family and Catmull–Clark; a stencil that failed.
     pub fn new(surface: &'a LimitSurface<'a>) -> Result<Self, RayError> {
         Self::new_observed(surface, &mut unobserved)
     }
@@ -167,7 +169,7 @@ impl<'a> RayCaster<'a> {
         surface: &'a LimitSurface<'a>,
         observer: &mut Observer<'_>,
     ) -> Result<Self, RayError> {
-        if !surface.rules().are_of_loop_family() {
+        if !surface.is_certified() {
             return Err(RayError::Scheme {
                 name: surface.rules().scheme().name().to_owned(),
             });

@@ -6,7 +6,8 @@ use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
-use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
+use crate::patch::polynomial::{Net, RegularPiece};
 use crate::patch::{ParamTriangle, Patch, Points, Rules};
 use crate::vector::DVec3;
 
@@ -31,8 +32,10 @@ pub(super) struct Piece {
 /// The form of a piece.
 #[derive(Clone, Debug)]
 pub(super) enum Form {
-    /// The points of a polynomial, scaled.
-    Regular(Box<Points>),
+    /// The points of a quartic, scaled.
+    Quartic(Box<Points>),
+    /// Half of a bicubic piece, scaled.
+    Bicubic(Box<Bicubic>),
     /// A piece that is still to be refined, as in the control mesh.
     Irregular(Box<Patch>),
 }
@@ -75,20 +78,19 @@ fn append(
     levels: u32,
 ) {
     let piece = |form| Piece { face, domain, form };
-    let margin = DVec3::splat(ROUNDING);
-    let with_margin = |[low, high]: Bounds| [low - margin, high + margin];
+    let inside = |point: DVec3| frame.inside(point);
     match patch {
         Patch::Regular(points) => {
-            let points = points.map(|point| frame.inside(point));
-            let bounds = BezierTriangle::of(&points)
-                .0
-                .into_iter()
-                .fold(NO_BOUNDS, grown);
-            found.push((with_margin(bounds), piece(Form::Regular(Box::new(points)))));
+            let points = points.moved(inside);
+            found.push((around(&points), piece(Form::Quartic(Box::new(points)))));
+        }
+        Patch::Bicubic(own) => {
+            let own = own.moved(inside);
+            found.push((around(&own), piece(Form::Bicubic(Box::new(own)))));
         }
         patch if levels == 0 => {
             let mut bounds = NO_BOUNDS;
-            patch.for_each_hull_point(|point| bounds = grown(bounds, frame.inside(point)));
+            patch.for_each_hull_point(|point| bounds = grown(bounds, inside(point)));
             found.push((with_margin(bounds), piece(Form::Irregular(Box::new(patch)))));
         }
         patch => {
@@ -104,4 +106,15 @@ fn append(
             }
         }
     }
+}
+
+/// A box around a piece.
+fn around(piece: &impl RegularPiece) -> Bounds {
+    let net = piece.net();
+    with_margin(net.points().iter().copied().fold(NO_BOUNDS, grown))
+}
+
+fn with_margin([low, high]: Bounds) -> Bounds {
+    let margin = DVec3::splat(ROUNDING);
+    [low - margin, high + margin]
 }

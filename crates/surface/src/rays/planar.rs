@@ -4,9 +4,7 @@
 //! decided in the plane.
 
 use crate::geometry::box_tree::{NO_BOUNDS, grown};
-use crate::patch::Quartic;
-use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::normal_net::tangents;
+use crate::patch::polynomial::{Net, Polynomial};
 use crate::vector::DVec3;
 
 /// Points are off by this part of the surface's size at most.
@@ -62,17 +60,18 @@ pub(crate) enum Projection {
 
 /// By cross products of the derivatives' nets: a difference between two places of a piece is a sum of averages of both, so that it
 /// does not vanish where all products have one sign.
-pub(super) fn projection(net: &BezierTriangle) -> Projection {
-    let [along, across] = tangents(net);
-    let greatest = |net: &[DVec3; 10]| {
+pub(super) fn projection(net: &impl Net) -> Projection {
+    let tangents = net.tangents();
+    let [along, across] = tangents.each_ref().map(|net| net.as_ref());
+    let greatest = |net: &[DVec3]| {
         net.iter()
             .map(|by| by.x.abs().max(by.y.abs()).max(by.z.abs()))
             .fold(0.0, f64::max)
     };
-    let rounding = PRODUCT_ROUNDING * greatest(&along) * greatest(&across) + ROUNDING * ROUNDING;
+    let rounding = PRODUCT_ROUNDING * greatest(along) * greatest(across) + ROUNDING * ROUNDING;
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for a in &along {
-        for b in &across {
+    for a in along {
+        for b in across {
             let product = a.x * b.y - a.y * b.x;
             (low, high) = (low.min(product), high.max(product));
         }
@@ -95,14 +94,13 @@ pub(super) struct Meeting {
     pub(super) is_front: bool,
 }
 
-/// Where the ray meets an injective piece, by Newton's method; `None` where that does not converge
+/// Where the ray meets an injective piece with these corners, by Newton's method; `None` where that does not converge
 /// to a point of the piece, which does not prove that there is none.
-pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
-    let quartic = Quartic::of(net, 0);
-    let [mut u, mut v] = on_triangle(net.corners()).unwrap_or([1.0 / 3.0; 2]);
+pub(super) fn meeting(polynomial: &Polynomial, corners: [DVec3; 3]) -> Option<Meeting> {
+    let [mut u, mut v] = on_triangle(corners).unwrap_or([1.0 / 3.0; 2]);
     for _ in 0..MOST_STEPS {
-        let point = quartic.point(u, v);
-        let [by_u, by_v] = quartic.tangents(u, v);
+        let point = polynomial.point(u, v);
+        let [by_u, by_v] = polynomial.tangents(u, v);
         let jacobian = by_u.x * by_v.y - by_u.y * by_v.x;
         let (du, dv) = (
             (point.x * by_v.y - point.y * by_v.x) / jacobian,
@@ -116,7 +114,7 @@ pub(super) fn meeting(net: &BezierTriangle) -> Option<Meeting> {
             let inside = u.min(v).min(1.0 - u - v) >= -OUTSIDE;
             let (u, v) = (u.clamp(0.0, 1.0), v.clamp(0.0, 1.0));
             let v = v.min(1.0 - u);
-            let depth = quartic.point(u, v).z;
+            let depth = polynomial.point(u, v).z;
             // The ray runs along z: normals against it are those of the front.
             return inside.then_some(Meeting {
                 at: [u, v],

@@ -9,8 +9,8 @@ use crate::facing::Viewpoint;
 use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, Search};
 use crate::limit_surface::LimitSurface;
-use crate::patch::bezier_triangle::BezierTriangle;
-use crate::patch::{ParamTriangle, Patch, Points, Refined};
+use crate::patch::polynomial::{Net, RegularPiece};
+use crate::patch::{ParamTriangle, Patch};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// The most pieces visited for a ray. The others then count as grazed: a ray may run within a
@@ -186,15 +186,15 @@ impl<'a> RaySearch<'a> {
     }
 
     /// A regular piece, its points in the ray's frame.
-    fn regular(&mut self, points: &Points, place: (u32, ParamTriangle)) {
+    fn regular(&mut self, piece: &impl RegularPiece, place: (u32, ParamTriangle)) {
         self.looked_at += 1;
-        let net = BezierTriangle::of(points);
-        if self.is_missed(net.0.iter().copied(), Some(net.corners())) {
+        let net = piece.net();
+        if self.is_missed(net.points().iter().copied(), Some(net.corners())) {
             return;
         }
         let projection = projection(&net);
         if projection == Projection::Injective
-            && let Some(meeting) = meeting(&net)
+            && let Some(meeting) = meeting(&piece.polynomial(&net), net.corners())
         {
             let crossing = if meeting.is_front {
                 Crossing::Entering
@@ -208,7 +208,7 @@ impl<'a> RaySearch<'a> {
                 .map(|off| off.abs().max_element())
                 .fold(0.0, f64::max)
         };
-        let is_small = extent(net.0.iter().copied()) < SIZE * self.tolerance;
+        let is_small = extent(net.points().iter().copied()) < SIZE * self.tolerance;
         if is_small
             || self.looked_at > MOST_PIECES
             || projection == Projection::EdgeOn && bulge() < self.tolerance
@@ -219,9 +219,8 @@ impl<'a> RaySearch<'a> {
             }
             return;
         }
-        let refined = Refined::of(points);
-        for part in 0..4 {
-            self.regular(&refined.part(part), (place.0, place.1.child(part)));
+        for (number, part) in piece.parts().iter().enumerate() {
+            self.regular(part, (place.0, place.1.child(number)));
         }
     }
 
@@ -229,8 +228,10 @@ impl<'a> RaySearch<'a> {
     fn irregular(&mut self, patch: &Patch, place: (u32, ParamTriangle)) {
         let (frame, scale) = (self.frame, *self.scale);
         let inside = |point: DVec3| frame.inside(scale.inside(point));
-        if let Patch::Regular(points) = patch {
-            return self.regular(&points.map(inside), place);
+        match patch {
+            Patch::Regular(points) => return self.regular(&points.moved(inside), place),
+            Patch::Bicubic(piece) => return self.regular(&piece.moved(inside), place),
+            _ => {}
         }
         self.looked_at += 1;
         let mut points = smallvec::SmallVec::<[DVec3; 32]>::new();
@@ -271,11 +272,11 @@ impl Search for RaySearch<'_> {
         let pieces = self.pieces;
         let piece = &pieces[item as usize];
         let place = (piece.face, piece.domain);
+        let frame = self.frame;
+        let inside = |point: DVec3| frame.inside(point);
         match &piece.form {
-            Form::Regular(points) => {
-                let frame = self.frame;
-                self.regular(&points.map(|point| frame.inside(point)), place);
-            }
+            Form::Quartic(points) => self.regular(&points.moved(inside), place),
+            Form::Bicubic(piece) => self.regular(&piece.moved(inside), place),
             Form::Irregular(patch) => self.irregular(patch, place),
         }
     }
