@@ -46,6 +46,19 @@ pub(crate) struct Soup {
     pub(crate) reading: Duration,
 }
 
+impl Soup {
+    /// Whether most of its faces are quads: it is then a cage for Catmull–Clark's scheme, as modelling programs mean it.
+    pub(crate) fn is_of_quads(&self) -> bool {
+        let quads = self.soup.faces.iter().filter(|face| face.len() == 4);
+        2 * quads.count() > self.soup.faces.len()
+    }
+}
+
+/// A note that a file's faces decide the scheme.
+pub(crate) fn of_quads(name: &str) -> String {
+    format!("{name}: its faces are quads for the most part, so that --scheme catmull-clark holds")
+}
+
 impl Input {
     /// Its hints of sharp edges, apart from tags.
     pub(crate) fn hints(&self) -> Hints<'_> {

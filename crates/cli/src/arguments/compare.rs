@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::limit::LimitArguments;
+use super::shared::of_triangles;
 use super::values;
 
 const EXAMPLES: &str = "\
@@ -22,6 +23,8 @@ Examples:
 /// √3-subdivision (Kobbelt). Each is measured against its scheme's limit surface.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
+#[command(mut_arg("scheme", |scheme| scheme.value_parser(of_triangles()).help("Scheme of the limit surface [default: loop]")))]
+#[command(mut_arg("smooth_triangles", |smooth| smooth.hide(true)))]
 pub(crate) struct CompareArguments {
     /// Control mesh: a file, - for standard input, or builtin:NAME
     pub(crate) input: PathBuf,

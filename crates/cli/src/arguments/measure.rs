@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, value_parser};
-use limitmesh::QuadOptions;
+use clap::Args;
 
 use super::limit::LimitArguments;
-use super::shared::SchemeName;
 use super::values::{self, Extent};
 
 const EXAMPLES: &str = "\
@@ -28,7 +26,7 @@ Examples:
 /// With --certified it is bounded from both sides instead.
 #[derive(Args, Debug, Clone)]
 #[command(after_help = EXAMPLES)]
-#[command(mut_arg("scheme", |scheme| scheme.value_parser(value_parser!(SchemeName)).help("Scheme of the limit surface [default: loop]; with --limit-of only")))]
+#[command(mut_arg("scheme", |scheme| scheme.help("Scheme of the limit surface [default: catmull-clark for files whose faces are quads for the most part, else loop]; with --limit-of only")))]
 pub(crate) struct MeasureArguments {
     /// The mesh to measure: a file, - for standard input, or builtin:NAME
     #[arg(value_name = "A")]
@@ -86,12 +84,6 @@ pub(crate) struct MeasureArguments {
     #[command(flatten)]
     pub(crate) limit: LimitArguments,
 
-    /// Make the surface rounder where a cage for Catmull–Clark has triangles, as `refine` does
-    ///
-    /// With --limit-of and --scheme catmull-clark only.
-    #[arg(long, requires = "limit_of")]
-    pub(crate) smooth_triangles: bool,
-
     /// Print JSON instead of text
     #[arg(long)]
     pub(crate) json: bool,
@@ -102,12 +94,4 @@ pub(crate) struct MeasureArguments {
     /// cent of the control mesh's diagonal with --limit-of, else of B's.
     #[arg(long, value_name = "FILE")]
     pub(crate) heatmap: Option<PathBuf>,
-}
-
-impl MeasureArguments {
-    /// The rules by which the control mesh's polygons become quads, where the scheme is for these.
-    pub(crate) fn quads(&self) -> Option<QuadOptions> {
-        let options = self.limit.features.quads(self.smooth_triangles);
-        self.limit.scheme().has_quads().then_some(options)
-    }
 }

@@ -242,8 +242,9 @@ pub(crate) struct RefineArguments {
     /// sqrt3 divides triangles by their centres and flips edges, so that no closing triangles are needed; --angle, --tolerance
     /// (estimated from samples, not proven) and --triangles are its goals, and with --method uniform each of --levels steps gives three times
     /// the triangles. It follows boundaries, corners and edges that are sharp for ever; texture coordinates and the like are left out.
-    #[arg(long, value_enum, default_value = "loop")]
-    pub(crate) scheme: RefiningScheme,
+    /// Default: catmull-clark for files whose faces are quads for the most part, where no other option is for triangles alone; else loop.
+    #[arg(long, value_enum)]
+    pub(crate) scheme: Option<RefiningScheme>,
 
     /// Faces to write [default: quads for --scheme catmull-clark in OBJ, PLY and OFF files, else triangles]
     ///
@@ -329,7 +330,7 @@ pub(crate) struct RefineArguments {
 impl RefineArguments {
     /// How the mesh is refined.
     pub(crate) fn way(&self) -> Way {
-        match (self.scheme, self.method) {
+        match (self.scheme_name(), self.method) {
             (RefiningScheme::Sqrt3, Method::Uniform) => Way::Sqrt3Steps,
             (RefiningScheme::Sqrt3, _) => Way::Sqrt3,
             (_, Method::Exact) => Way::Exact,
@@ -353,12 +354,39 @@ impl RefineArguments {
     /// # Errors
     /// It is not.
     pub(crate) fn scheme(&self) -> anyhow::Result<&'static dyn Scheme> {
-        Ok(self.scheme.in_quarters()?.scheme())
+        Ok(self.scheme_name().in_quarters()?.scheme())
+    }
+
+    /// The name of the scheme that holds, once it is decided ([`Self::for_faces`]).
+    pub(crate) fn scheme_name(&self) -> RefiningScheme {
+        self.asked_scheme().unwrap_or_default()
+    }
+
+    /// The scheme that was asked for, if only by an option that goes with no other.
+    pub(crate) fn asked_scheme(&self) -> Option<RefiningScheme> {
+        let needs_quads = self.smooth_triangles || self.faces == Some(FaceKind::Quads);
+        self.scheme
+            .or(needs_quads.then_some(RefiningScheme::CatmullClark))
+    }
+
+    /// The first option that is for triangles alone.
+    pub(crate) fn needs_triangles(&self) -> Option<&'static str> {
+        let exact = &self.exact;
+        let options = [
+            ("--within", exact.within.is_some()),
+            ("--optimize", exact.optimize),
+            ("--proof", self.proof.is_some()),
+            ("--shared-topology", self.shared_topology),
+        ];
+        let is_other = !matches!(self.method, Method::Exact | Method::Uniform);
+        let other = is_other.then_some("--method");
+        let given = options.into_iter().find(|&(_, is_given)| is_given);
+        other.or(given.map(|(name, _)| name))
     }
 
     /// Whether the scheme is for quads.
     pub(crate) fn has_quads(&self) -> bool {
-        self.scheme == RefiningScheme::CatmullClark
+        self.scheme_name() == RefiningScheme::CatmullClark
     }
 
     /// Why there can be no quads, if there cannot.

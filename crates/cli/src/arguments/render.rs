@@ -48,7 +48,7 @@ pub(crate) struct RenderArguments {
     #[arg(long, conflicts_with_all = ["wireframe", "flat", "smooth", "texture"])]
     pub(crate) exact: bool,
 
-    /// Scheme of the limit surface that --exact draws [default: loop]
+    /// Scheme of the limit surface that --exact draws [default: catmull-clark for files whose faces are quads for the most part, else loop]
     #[arg(long, value_parser = of_polynomials())]
     pub(crate) scheme: Option<SchemeName>,
 

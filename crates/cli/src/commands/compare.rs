@@ -13,8 +13,10 @@ use limitmesh::sqrt3::{self, Sqrt3Options};
 use limitmesh_paper::{match_angle, methods, nearest_level};
 
 use super::limit_control;
-use crate::arguments::{CompareArguments, ConcaveCorners, LimitArguments, RefiningScheme};
-use crate::failure::Outcome;
+use crate::arguments::{
+    CompareArguments, ConcaveCorners, LimitArguments, RefiningScheme, SMOOTH_TRIANGLES,
+};
+use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, seconds, table, thousands, upper_bound};
 use crate::input;
 use crate::output;
@@ -24,6 +26,9 @@ use crate::report::{ComparedMethod, IntervalReport, LimitReport, percent};
 
 /// Refines by every method and prints how they compare.
 pub(crate) fn run(arguments: &CompareArguments, progress: &Progress) -> anyhow::Result<Outcome> {
+    if arguments.limit.smooth_triangles {
+        return usage(SMOOTH_TRIANGLES);
+    }
     let input = input::load(&arguments.input, &arguments.limit.build, &[], progress)?;
     let diagonal = input.mesh.diagonal();
     let prepared = limit_control::as_asked(input, &arguments.limit, progress)?;

@@ -28,9 +28,9 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         .map(places)
         .collect::<anyhow::Result<Vec<_>>>()?
         .concat();
-    let input = input::load(&arguments.control, &arguments.limit.build, &[], progress)?;
+    let (input, limit) = limit_control::load(&arguments.control, &arguments.limit, progress)?;
     let name = input.name.clone();
-    let prepared = limit_control::prepared(input, &arguments.limit, progress)?;
+    let prepared = limit_control::prepared(input, &limit, progress)?;
     let (mesh, faces) = (&prepared.input.mesh, prepared.face_inputs());
     if !faces.iter().zip(0..).all(|(&face, own)| face == own) {
         let count = counted(mesh.face_count(), "triangle", "triangles");
@@ -52,8 +52,7 @@ pub(crate) fn run(arguments: &EvaluateArguments, progress: &Progress) -> anyhow:
         "evaluating {}",
         counted(places.len(), "place", "places")
     ));
-    let surface =
-        LimitSurface::new(mesh, arguments.limit.scheme().scheme()).with_context(|| name.clone())?;
+    let surface = LimitSurface::new(mesh, limit.scheme().scheme()).with_context(|| name.clone())?;
     let at: Vec<(FaceId, [f64; 3])> = places
         .iter()
         .map(|place| (FaceId(place.face), place.weights))

@@ -1,10 +1,12 @@
 //! The control mesh of a limit surface: as it was read, with sharp edges and control points as asked for.
 
+use std::path::Path;
+
 use limitmesh::mesh::FaceParts;
 
 use super::interpolation;
 use crate::arguments::LimitArguments;
-use crate::input::Input;
+use crate::input::{self, Input, Soup, of_quads};
 use crate::parts;
 use crate::progress::Progress;
 
@@ -26,6 +28,38 @@ impl Prepared {
             .map(input)
             .collect()
     }
+}
+
+/// Reads the control mesh of a limit surface, and decides its scheme where none was asked for.
+///
+/// # Errors
+/// As for [`input::load`]; or an option is for another scheme.
+pub(super) fn load(
+    path: &Path,
+    arguments: &LimitArguments,
+    progress: &Progress,
+) -> anyhow::Result<(Input, LimitArguments)> {
+    let mut read = input::read(path, &arguments.build, progress)?;
+    let limit = decided(&mut read, arguments, progress)?;
+    let input = input::connect(read, &limit.build, &[], progress)?;
+    Ok((input, limit))
+}
+
+/// Decides the scheme for what was read where none was asked for, and has its polygons become quads where the scheme is for these.
+///
+/// # Errors
+/// An option is for another scheme.
+pub(super) fn decided(
+    read: &mut Soup,
+    arguments: &LimitArguments,
+    progress: &Progress,
+) -> anyhow::Result<LimitArguments> {
+    let limit = arguments.for_faces(read.is_of_quads())?;
+    if arguments.scheme.is_none() && limit.scheme().has_quads() {
+        progress.note(of_quads(&read.name));
+    }
+    read.quads = limit.quads();
+    Ok(limit)
 }
 
 /// Prepares a mesh that was read. What is sharp by its looks counts where nothing else is asked for, as for `refine`.

@@ -86,11 +86,12 @@ pub(crate) fn run(arguments: &LodArguments, progress: &Progress) -> anyhow::Resu
         kept.push(MATERIALS);
     }
     let build = &arguments.limit.build;
-    let read = input::read_for(&arguments.input, build, &arguments.channels, progress)?;
+    let mut read = input::read_for(&arguments.input, build, &arguments.channels, progress)?;
+    let limit = limit_control::decided(&mut read, &arguments.limit, progress)?;
     let input = input::connect(read, build, &kept, progress)?;
     let diagonal = input.mesh.diagonal();
     let report = InputReport::of(&input, &arguments.channels);
-    let prepared = limit_control::prepared(input, &arguments.limit, progress)?;
+    let prepared = limit_control::prepared(input, &limit, progress)?;
     let arguments = &LodArguments {
         limit: prepared.limit,
         ..arguments.clone()

@@ -9,7 +9,7 @@ use limitmesh::{Mesh, Triangles};
 
 use super::limit_control;
 use super::{certified, heatmap};
-use crate::arguments::{ConcaveCorners, MeasureArguments, SMOOTH_TRIANGLES};
+use crate::arguments::{ConcaveCorners, MeasureArguments};
 use crate::bulk::Bulk;
 use crate::failure::{Outcome, usage};
 use crate::format::{counted, number, point, table, thousands, upper_bound};
@@ -33,10 +33,14 @@ pub(crate) fn run(arguments: &MeasureArguments, progress: &Progress) -> anyhow::
         .as_deref()
         .or(arguments.reference.as_deref());
     let second = second.context("there is nothing to measure against")?;
-    let mut second = input::read(second, &arguments.limit.build, progress)?;
-    second.quads = arguments.quads();
-    let second = input::connect(second, &arguments.limit.build, &[], progress)?;
-    let limit = arguments.limit.in_unit(second.unit);
+    let (second, limit) = match arguments.limit_of {
+        Some(_) => limit_control::load(second, &arguments.limit, progress)?,
+        None => {
+            let input = input::load(second, &arguments.limit.build, &[], progress)?;
+            (input, arguments.limit)
+        }
+    };
+    let limit = limit.in_unit(second.unit);
     let arguments = &MeasureArguments {
         limit,
         ..arguments.clone()
@@ -350,9 +354,6 @@ fn check(arguments: &MeasureArguments) -> anyhow::Result<()> {
         return usage(format!(
             "{option} belongs to a limit surface; it needs --limit-of"
         ));
-    }
-    if arguments.smooth_triangles && arguments.quads().is_none() {
-        return usage(SMOOTH_TRIANGLES);
     }
     let given = [
         Some(&arguments.surface),

@@ -33,11 +33,11 @@ pub(crate) fn run(arguments: &ProjectArguments, progress: &Progress) -> anyhow::
     }
     let start = Instant::now();
     let points = points::read(&arguments.points, &arguments.limit.build, progress)?;
-    let control = input::load(&arguments.onto, &arguments.limit.build, &[], progress)?;
+    let (control, limit) = limit_control::load(&arguments.onto, &arguments.limit, progress)?;
     let points = points.in_unit(control.unit, progress);
     let (name, diagonal) = (control.name.clone(), control.mesh.diagonal());
-    let scheme = arguments.limit.scheme();
-    let prepared = limit_control::prepared(control, &arguments.limit, progress)?;
+    let scheme = limit.scheme();
+    let prepared = limit_control::prepared(control, &limit, progress)?;
     let mesh = prepared.input.mesh;
     if kind == Some(Kind::Picture) && points.triangles.is_empty() {
         return usage(format!(

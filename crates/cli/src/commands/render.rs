@@ -90,10 +90,9 @@ const FRAMED: usize = 100_000;
 
 /// Draws the limit surface of a control mesh by rays.
 fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Outcome> {
-    let input = input::load(&arguments.input, &arguments.build, &[], progress)?;
-    let name = input.name.clone();
     let limit = LimitArguments {
         scheme: arguments.scheme,
+        smooth_triangles: false,
         features: FeatureArguments {
             crease_angle: arguments.crease_angle,
             ..FeatureArguments::default()
@@ -101,6 +100,8 @@ fn exact(arguments: &RenderArguments, progress: &Progress) -> anyhow::Result<Out
         interpolation: InterpolationArguments::default(),
         build: arguments.build,
     };
+    let (input, limit) = limit_control::load(&arguments.input, &limit, progress)?;
+    let name = input.name.clone();
     let mesh = limit_control::prepared(input, &limit, progress)?.input.mesh;
     let scheme = limit.scheme().scheme();
     let surface = LimitSurface::new(&mesh, scheme).with_context(|| name.clone())?;

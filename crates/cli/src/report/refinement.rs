@@ -216,7 +216,7 @@ impl ParametersReport {
             method: arguments.method,
             angle_degrees: None,
             levels: None,
-            scheme: arguments.scheme,
+            scheme: arguments.scheme_name(),
             smooth_triangles: arguments.smooth_triangles,
             view: None,
             limit: false,

@@ -67,7 +67,7 @@ def refine_file(
     crease_angle: float | None = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     smooth_triangles: bool = False,
     method: Method = "exact",
     levels: int | None = None,
@@ -158,7 +158,8 @@ weld, repair, max_triangles, max_levels, max_memory, strict, threads, progress
         balance=balance, max_triangles=max_triangles, max_levels=max_levels, max_memory=max_memory,
     )
     arguments = [_name(source, "source"), f"--output={_name(target, 'target')}", f"--method={method}", f"--channel=uv={uv}"]
-    arguments += [f"--scheme={scheme}", f"--boundary={boundary}"]
+    arguments += [] if scheme is None else [f"--scheme={scheme}"]
+    arguments.append(f"--boundary={boundary}")
     arguments.append("--weld=none" if weld is None else f"--weld={weld!r}")
     if interpolate is True:
         arguments.append("--interpolate")

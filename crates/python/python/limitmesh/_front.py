@@ -81,7 +81,7 @@ class Front:
         corners: Any = None,
         boundary: Boundary = "smooth",
         concave_corners: str | None = None,
-        scheme: Scheme = "loop",
+        scheme: Scheme | None = None,
         smooth_triangles: bool = False,
         weld: float | None = 0.0,
         repair: bool = True,

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias, Unpack
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _incoming, _options
@@ -68,8 +69,20 @@ def surface_of(
 ) -> tuple[MeshIn, dict[str, Any]]:
     """A mesh, and how a control mesh comes about from it, whose limit surface is meant."""
     mesh = mesh_of(vertices, faces, creases, corners, channels)
+    if "scheme" in options:
+        options["scheme"] = scheme_of(mesh, options["scheme"], needs_quads=options.get("smooth_triangles", False))
     control = _options.control_of(auto_creases=are_found(mesh, creases), **options)
     return mesh._native(), control
+
+
+def scheme_of(mesh: Mesh, scheme: str | None, *, needs_quads: bool = False, needs_triangles: bool = False) -> str:
+    """The scheme that was asked for, or else that of the mesh's faces: a mesh most of whose faces are quads is a cage for Catmull–Clark."""
+    if scheme is not None:
+        return scheme
+    if needs_quads or needs_triangles:
+        return "catmull-clark" if needs_quads else "loop"
+    _, starts = _arrays.faces_of(mesh.faces)
+    return "loop" if starts is None or 2 * np.count_nonzero(np.diff(starts) == 4) <= len(starts) - 1 else "catmull-clark"
 
 
 def are_found(mesh: Mesh, creases: Any) -> bool:

@@ -32,7 +32,7 @@ def levels_of_detail(
     corners: Any = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     smooth_triangles: bool = False,
     channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
     weld: float | None = 0.0,

@@ -267,7 +267,7 @@ class ControlOptions(TypedDict, total=False):
     crease_angle: float | None
     boundary: str
     concave_corners: str | None
-    scheme: str
+    scheme: str | None
     smooth_triangles: bool
     weld: float | None
     repair: bool
@@ -280,12 +280,13 @@ def control_of(
     crease_angle: float | None = None,
     boundary: str = "smooth",
     concave_corners: str | None = None,
-    scheme: str = "loop",
+    scheme: str | None = None,
     smooth_triangles: bool = False,
     weld: float | None = 0.0,
     repair: bool = True,
 ) -> dict[str, Any]:
-    """How the control mesh comes about."""
+    """How the control mesh comes about; without a scheme by Loop's."""
+    scheme = scheme or ("catmull-clark" if smooth_triangles else "loop")
     for name, value, expected in (
         ("boundary", boundary, ("smooth", "corners", "fixed")),
         ("scheme", scheme, ("loop", "loop-warren", "butterfly", "catmull-clark")),

@@ -59,7 +59,7 @@ def intersect(
     corners: Any = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     weld: float | None = 0.0,
     threads: int | None = None,
     progress: ProgressCallback | None = None,

@@ -33,7 +33,7 @@ def refine(
     corners: Any = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: RefiningScheme = "loop",
+    scheme: RefiningScheme | None = None,
     smooth_triangles: bool = False,
     method: Method = "exact",
     levels: int | None = None,
@@ -96,7 +96,8 @@ def refine(
         Corners of 180° and more between sharp edges: "divided", so that flat faces stay flat, or "as-tagged". Default: divided
         with ``crease_angle``, with ``creases="auto"`` and with boundaries that are not smooth.
     scheme
-        "loop", "loop-warren", "butterfly", "catmull-clark" or "sqrt3"; distances are estimated for "butterfly" and "sqrt3", and proven for
+        "loop", "loop-warren", "butterfly", "catmull-clark" or "sqrt3"; default: "catmull-clark" for a mesh most of whose faces are quads
+        (unless another option is for triangles), else "loop". Distances are estimated for "butterfly" and "sqrt3", and proven for
         the others. "catmull-clark" is for quads: other polygons are divided into quads first. "sqrt3" divides triangles by their
         centres, to tolerance, angle and triangles, or uniformly; it carries no channels.
     smooth_triangles
@@ -156,6 +157,8 @@ def refine(
     (3, dtype('int64'))
     """
     mesh = _inputs.mesh_of(vertices, faces, creases, corners, channels)
+    needs_triangles = within is not None or optimize or method not in ("exact", "uniform")
+    scheme = _inputs.scheme_of(mesh, scheme, needs_quads=quads or smooth_triangles, needs_triangles=needs_triangles)  # type: ignore[assignment]
     if scheme == "sqrt3" and mesh.channels:
         names = ", ".join(map(repr, mesh.channels))
         raise OptionError(f"channels do not go with scheme='sqrt3', which carries none: {names}")
@@ -231,7 +234,7 @@ def estimate(
     corners: Any = None,
     boundary: Boundary = "smooth",
     concave_corners: str | None = None,
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     smooth_triangles: bool = False,
     view: npt.ArrayLike | None = None,
     eye: npt.ArrayLike | None = None,

@@ -29,6 +29,18 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
     if let Some(option) = unknown(arguments) {
         return usage(option.refusal(way, arguments.method));
     }
+    if let (true, Some(option)) = (arguments.has_quads(), arguments.needs_triangles()) {
+        let method = match option {
+            "--method" => format!("--method {}", arguments.method.name()),
+            option => option.to_owned(),
+        };
+        return usage(format!(
+            "{method} is for triangles, and does not go with --scheme catmull-clark"
+        ));
+    }
+    if arguments.smooth_triangles && !arguments.has_quads() {
+        return usage(SMOOTH_TRIANGLES);
+    }
     if let Some((_, why)) = rules(arguments)
         .into_iter()
         .find(|&(is_broken, _)| is_broken)
@@ -59,7 +71,7 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
 }
 
 /// Whether a rule is broken, and why it holds.
-fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 15] {
+fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 12] {
     let (exact, method, way) = (&arguments.exact, arguments.method, arguments.way());
     let has_angle = arguments.angle.is_some();
     let is_one = |viewer: &&Viewer| matches!(viewer, Viewer::Direction(_) | Viewer::Eye(_));
@@ -68,17 +80,7 @@ fn rules(arguments: &RefineArguments) -> [(bool, &'static str); 15] {
     let is_uniform = method == Method::Uniform;
     let has_limit_normals = matches!(method, Method::Exact | Method::LimitNormal);
     let is_whole = has_angle || arguments.has_cameras() || exact.balance;
-    let by_quads = arguments.has_quads();
     [
-        (
-            by_quads && !matches!(method, Method::Exact | Method::Uniform),
-            "--scheme catmull-clark is for --method exact and uniform; the others are for triangles",
-        ),
-        (
-            by_quads && (exact.within.is_some() || exact.optimize),
-            "--scheme catmull-clark does not go with --within and --optimize, which are for triangles",
-        ),
-        (arguments.smooth_triangles && !by_quads, SMOOTH_TRIANGLES),
         (
             viewers == 0 && arguments.dilatation.is_some(),
             "--dilatation widens the angle of faces that look at a viewer; it needs --view X,Y,Z or --view @X,Y,Z",

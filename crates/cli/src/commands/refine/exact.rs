@@ -151,9 +151,9 @@ fn achieved(found: &Exact, error: &ErrorReport, goals: &Goals, task: &Task<'_>) 
         };
         lines.push(why.to_owned());
     } else if !error.certified {
-        let scheme = arguments.scheme.name();
+        let scheme = arguments.scheme_name().name();
         lines.push(format!(
-            "(nothing is proven for the scheme {scheme}, only for Loop's and Warren's)"
+            "(nothing is proven for the scheme {scheme}, only for Loop's, Warren's and Catmull–Clark's)"
         ));
     }
     let is_exact = |upper: f64| upper <= EXACT * task.control.diagonal;

@@ -266,7 +266,7 @@ impl Source for AssetSource {
             refined,
             carried: &carried,
             scale: item.scale,
-            scheme: task.arguments.scheme.in_quarters()?,
+            scheme: task.arguments.scheme_name().in_quarters()?,
         };
         let put = back.put(&mut self.asset, item.number)?;
         task.progress

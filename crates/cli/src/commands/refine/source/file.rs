@@ -8,7 +8,7 @@ use super::super::refined::Refined;
 use super::super::task::Task;
 use super::super::{proof, written};
 use super::item::{Item, Source, sharpened};
-use crate::arguments::RefineArguments;
+use crate::arguments::{RefineArguments, RefiningScheme};
 use crate::bulk::Shown;
 use crate::commands::channels::Channels;
 use crate::commands::named_files::Destination;
@@ -16,7 +16,7 @@ use crate::commands::normals::Normals;
 use crate::commands::{picture, shading};
 use crate::creases::Hints;
 use crate::format::counted;
-use crate::input::{self, Input};
+use crate::input::{self, Input, Soup, of_quads};
 use crate::progress::Progress;
 use crate::report::InputReport;
 
@@ -39,6 +39,7 @@ impl Source for FileSource {
         let kept = Normals::kept(self.format);
         let (build, channels) = (&arguments.build, &arguments.channels);
         let mut read = input::read_for(arguments.input(), build, channels, progress)?;
+        let arguments = &by_faces(arguments, &read, progress);
         read.quads = arguments.quads();
         let input = input::connect(read, build, kept, progress)?;
         item_of(input, arguments, self.format, progress).map(Some)
@@ -61,6 +62,25 @@ impl Source for FileSource {
             draw(path, refined, task)?;
         }
         Ok(())
+    }
+}
+
+/// The arguments with the scheme that a file's faces decide, where none was asked for.
+fn by_faces(arguments: &RefineArguments, read: &Soup, progress: &Progress) -> RefineArguments {
+    if arguments.asked_scheme().is_some() || !read.is_of_quads() {
+        return arguments.clone();
+    }
+    let name = &read.name;
+    if let Some(option) = arguments.needs_triangles() {
+        progress.note(format!(
+            "{name}: its quads are cut into triangles, as {option} is for these: --scheme loop holds"
+        ));
+        return arguments.clone();
+    }
+    progress.note(of_quads(name));
+    RefineArguments {
+        scheme: Some(RefiningScheme::CatmullClark),
+        ..arguments.clone()
     }
 }
 
