@@ -59,7 +59,9 @@ impl Recipe {
             return Ok(Mesh::from_soup_traced(soup, &build)?);
         }
         let rules = QuadOptions::default().boundary(self.boundary);
-        let rules = rules.smooth_triangles(self.options.smooth_triangles);
+        let rules = rules
+            .smooth_triangles(self.options.smooth_triangles)
+            .crease_angle(self.options.crease_angle.map(f64::to_radians));
         let (quads, diagnosis) = QuadControl::from_soup_with(soup, &build, &rules)?;
         Ok((quads.mesh, diagnosis, quads.trace))
     }
@@ -86,6 +88,8 @@ impl Recipe {
         let mesh = mesh.with_boundary(self.boundary);
         let look = options.auto_creases.then(|| Look::of(&mesh, &trace.faces));
         let (mesh, crease_angle, is_led) = match (options.crease_angle, look) {
+            // Quads have theirs from their polygons.
+            (Some(degrees), _) if mesh.topology().has_quads() => (mesh, Some(degrees), false),
             (Some(degrees), _) => (
                 mesh.with_creases_above(degrees.to_radians())?,
                 Some(degrees),

@@ -215,8 +215,14 @@ impl FeatureArguments {
 
     /// The rules by which polygons become quads.
     pub(super) fn quads(&self, smooth_triangles: bool) -> QuadOptions {
+        let crease_angle = match self.crease_angle {
+            Some(CreaseAngle::Above(degrees)) => Some(degrees.to_radians()),
+            _ => None,
+        };
         let options = QuadOptions::default().boundary(self.boundary_rule());
-        options.smooth_triangles(smooth_triangles)
+        options
+            .smooth_triangles(smooth_triangles)
+            .crease_angle(crease_angle)
     }
 
     /// The control mesh with the tags that these options put on it.
@@ -226,6 +232,8 @@ impl FeatureArguments {
     pub(crate) fn apply(&self, mesh: Mesh) -> Result<Featured, MeshError> {
         let mesh = mesh.with_boundary(self.boundary_rule());
         let (mesh, along_needles) = match self.crease_angle {
+            // Quads have theirs from their polygons.
+            Some(CreaseAngle::Above(_)) if mesh.topology().has_quads() => (mesh, 0),
             Some(CreaseAngle::Above(degrees)) => {
                 let found = mesh.creases_above(degrees.to_radians())?;
                 (mesh.with_creases(&found.edges), found.along_needles)

@@ -160,12 +160,12 @@ fn smooth_triangles_are_for_catmull_clark_alone() {
     let distance = |of: &serde_json::Value| number(&of["hausdorff"]["symmetric"]);
     assert!(distance(&near) < 0.2 * distance(&far), "{near} {far}");
     usage_error(
-        "refine {} -o {} --overwrite --smooth-triangles",
+        "refine {} -o {} --overwrite --scheme loop --smooth-triangles",
         &[&cage, &out],
         "--scheme catmull-clark",
     );
     usage_error(
-        "measure {} --limit-of {} --smooth-triangles",
+        "measure {} --limit-of {} --scheme loop --smooth-triangles",
         &[&out, &cage],
         "--scheme catmull-clark",
     );

@@ -14,7 +14,7 @@ use crate::mesh::{
 };
 use crate::options;
 use crate::ring::SharpRing;
-use crate::vector::{DVec3, vector};
+use crate::vector::{DVec3, unit_or_zero, vector};
 
 options! {
     /// What is done to polygons before they are quads.
@@ -25,6 +25,8 @@ options! {
         pub smooth_triangles: bool = false,
         /// The rule of the boundary, as [`Mesh::with_boundary`] has it for meshes that are already there.
         pub boundary: BoundaryRule = BoundaryRule::Smooth,
+        /// Edges at which the polygons' normals differ by more than this angle (radians, 0 to π) are sharp for ever, if it is given.
+        pub crease_angle: Option<f64> = None,
     }
 }
 
@@ -81,6 +83,10 @@ impl QuadControl {
     ) -> Result<(Self, Diagnosis), MeshError> {
         let (mut fans, diagnosis) = Mesh::fans_from_soup(soup, options)?;
         let polygons = Polygons::of(&fans);
+        if let Some(angle) = rules.crease_angle {
+            let edges = polygons.creases_above(&fans.mesh, angle);
+            fans.mesh = fans.mesh.with_creases(&edges);
+        }
         let control = match polygons.as_quads(&fans)? {
             Some(quads) => quads,
             None => {
@@ -126,6 +132,35 @@ impl Polygons {
             }
         }
         polygons
+    }
+
+    /// The edges at which the polygons' normals differ by more than an angle; those of polygons without area do not.
+    fn creases_above(&self, mesh: &Mesh, angle: f64) -> Vec<HalfEdgeId> {
+        let topology = mesh.topology();
+        let normal = |(own, &middle): (&Vec<HalfEdgeId>, &DVec3)| {
+            let area = |&h: &HalfEdgeId| {
+                let [from, to] = topology.ends(h).map(|v| at(mesh, v) - middle);
+                from.cross(to)
+            };
+            unit_or_zero(own.iter().map(area).sum())
+        };
+        let normals: Vec<DVec3> = self.loops.iter().zip(&self.centroids).map(normal).collect();
+        let normal = |h: HalfEdgeId| normals[self.places[h.index()][0] as usize];
+        let is_above = |&h: &HalfEdgeId| {
+            topology
+                .twin(h)
+                .filter(|&twin| h < twin)
+                .is_some_and(|twin| {
+                    let [own, other] = [h, twin].map(normal);
+                    own.cross(other).length().atan2(own.dot(other)) > angle
+                })
+        };
+        self.loops
+            .iter()
+            .flatten()
+            .copied()
+            .filter(is_above)
+            .collect()
     }
 
     /// The sides that leave a vertex, in their order around it.
