@@ -425,7 +425,7 @@ fn sides_are_those_of_all_points() {
     }
     println!("{known} of {all_faces} sides known");
     assert!(
-        all_faces > 100 && 10 * known > 5 * all_faces,
+        all_faces > 100 && 10 * known > 8 * all_faces,
         "{known} of {all_faces}"
     );
 }
