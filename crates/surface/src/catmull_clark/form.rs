@@ -33,7 +33,7 @@ pub(crate) struct Settling {
     pub(crate) functionals: [Row; 3],
     /// The map's points, which a step scales by a factor, with z = 0.
     pub(crate) map: Vec<DVec3>,
-    /// What [`crate::patch::settling`] calls so.
+    /// How much longer differences from the map can become, at its size, where the longest of its points is 1.
     pub(crate) growth: f64,
     /// The least coefficient of the Jacobian of the map's regular pieces, by differences of their nets.
     pub(crate) least_jacobian: f64,
