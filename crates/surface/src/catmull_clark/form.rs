@@ -23,6 +23,22 @@ pub(crate) struct QuadForm {
     /// The sixteen points of a regular one, by row and column, each as weights of the points.
     pub(crate) grid: Option<[[Row; 4]; 4]>,
     step: OnceLock<Step>,
+    settling: OnceLock<Option<Settling>>,
+}
+
+/// How surroundings of one form after another settle to an affine image of the characteristic map, at a smooth irregular vertex.
+#[derive(Debug)]
+pub(crate) struct Settling {
+    /// The weights of the points of the vertex's limit, and of two tangents.
+    pub(crate) functionals: [Row; 3],
+    /// The map's points, which a step scales by a factor, with z = 0.
+    pub(crate) map: Vec<DVec3>,
+    /// How much longer differences from the map can become, at its size, where the longest of its points is 1.
+    pub(crate) growth: f64,
+    /// The least coefficient of the Jacobian of the map's regular pieces, by differences of their nets.
+    pub(crate) least_jacobian: f64,
+    /// The greatest coordinates of these differences.
+    pub(crate) steepest: [f64; 2],
 }
 
 /// The result of a step.
@@ -58,6 +74,7 @@ impl QuadForms {
             grid: grid(&quads),
             quads: quads.clone(),
             step: OnceLock::new(),
+            settling: OnceLock::new(),
         });
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         if known.len() >= MOST_FORMS {
@@ -68,9 +85,37 @@ impl QuadForms {
 }
 
 impl QuadForm {
+    /// How the surroundings settle, found once.
+    pub(crate) fn settling(&self, find: impl FnOnce() -> Option<Settling>) -> Option<&Settling> {
+        match self.settling.get() {
+            Some(known) => known.as_ref(),
+            None => {
+                let found = find();
+                self.settling.get_or_init(|| found).as_ref()
+            }
+        }
+    }
+
+    /// The limit of a smooth irregular vertex that a half-edge of the quad leaves, and two tangents, as weights of the points, and the
+    /// number of its edges; `None` at vertices of other kinds.
+    pub(crate) fn smooth_limits(&self, h: u32) -> Option<([Row; 3], usize)> {
+        let (ring, points) = self.quads.ring(h);
+        let is_smooth = ring.rule() == VertexRule::Smooth && ring.semi_sharpness() == 0.0;
+        let limits = is_smooth.then(|| RingLimits::of(&ring))?;
+        let [first, second] = limits.sides.into_iter().next()?.tangents?;
+        let row = |weights: Vec<f64>| points.iter().copied().zip(weights).collect();
+        let functionals = [limits.position, first, second].map(row);
+        Some((functionals, ring.spokes.len()))
+    }
+
     /// The corners of its quad.
     pub(crate) fn corners(&self) -> [u32; 4] {
         self.quads.corners[0]
+    }
+
+    /// The number of points.
+    pub(crate) fn point_count(&self) -> usize {
+        self.quads.vertex_count()
     }
 
     /// The result of a step.
@@ -145,6 +190,13 @@ impl Step {
         let (form, points) = &self.parts[part];
         let points = points.iter().map(|&at| after[at as usize]).collect();
         (Arc::clone(form), points)
+    }
+
+    /// The part that has this form again.
+    pub(crate) fn same(&self, form: &Arc<QuadForm>) -> Option<usize> {
+        self.parts
+            .iter()
+            .position(|(own, _)| Arc::ptr_eq(own, form))
     }
 
     /// Whether a part is regular.

@@ -228,6 +228,11 @@ fn amplitude(angle: f64) -> f64 {
     1.0 + cosine + (0.5 * angle).cos() * (2.0 * (9.0 + cosine)).sqrt()
 }
 
+/// The subdominant eigenvalue of a smooth vertex with so many edges.
+pub(crate) fn subdominant(edges: usize) -> f64 {
+    (amplitude(TAU / edges as f64) + 4.0) / 16.0
+}
+
 /// The tangents of a smooth vertex; `None` for two edges, at which the surface has no tangent plane.
 fn closed(points: Points) -> Option<[Vec<f64>; 2]> {
     let n = points.edges;

@@ -20,6 +20,7 @@ use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::polynomial::Net;
 use crate::patch::{Patch, Rules};
 use crate::vector::{DVec3, unit_or_zero, vector};
+use smallvec::SmallVec;
 
 /// Levels after which parts at irregular vertices are given up. The subdominant terms there shrink
 /// more slowly the more edges a vertex has.
@@ -158,10 +159,7 @@ pub fn back_but_for(
             return has_back(&piece.part_net(), viewpoint).then_some(0.0);
         }
         Patch::Mesh(_) => return None,
-        Patch::Extraordinary(patch) => {
-            tip::cone(patch, rules).map(|cone| cone.look(patch.points(), viewpoint))
-        }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => None,
+        _ => at_tip(patch, rules, viewpoint),
     };
     if let Some(known) = look.filter(|look| look.is_known()) {
         return (known == Look::All(Side::Back)).then_some(0.0);
@@ -192,6 +190,14 @@ pub fn back_but_for(
     Some(left)
 }
 
+/// How a piece at an irregular vertex looks from there.
+fn at_tip(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint) -> Option<Look> {
+    let cone = tip::cone(patch, rules)?;
+    let mut points = SmallVec::<[DVec3; 32]>::new();
+    patch.for_each_hull_point(|point| points.push(point));
+    Some(cone.look(points.into_iter(), viewpoint))
+}
+
 fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) -> Look {
     let (at_once, levels) = match patch {
         Patch::Regular(points) => (
@@ -199,17 +205,11 @@ fn look(patch: &Patch, rules: &Rules<'_>, viewpoint: &Viewpoint, levels: u32) ->
             levels.min(DIVISIONS),
         ),
         Patch::Bicubic(piece) => (of_net(&piece.part_net(), viewpoint), levels.min(DIVISIONS)),
-        Patch::Extraordinary(patch) => {
-            let cone = tip::cone(patch, rules);
-            (
-                cone.map_or(Look::Unknown, |cone| cone.look(patch.points(), viewpoint)),
-                levels,
-            )
-        }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => {
-            (Look::Unknown, levels)
-        }
         Patch::Mesh(_) => (Look::Unknown, 0),
+        _ => {
+            let look = at_tip(patch, rules, viewpoint);
+            (look.unwrap_or(Look::Unknown), levels)
+        }
     };
     if at_once.is_known() || levels == 0 {
         return at_once;
@@ -247,13 +247,12 @@ pub(crate) fn cone_of_patch(
             return Cone::of(&NormalNet::of(&net)?);
         }
         Patch::Mesh(_) => return None,
-        Patch::Extraordinary(patch) => {
+        _ => {
             if let Some(cone) = tip::cone(patch, rules).filter(|cone| cone.sine < tip::NARROW) {
-                points.extend(patch.points());
+                patch.for_each_hull_point(|point| points.push(point));
                 return Some(cone);
             }
         }
-        Patch::Pole(_) | Patch::Sectors(_) | Patch::SemiSharp(_) | Patch::Quad(_) => {}
     }
     if levels == 0 {
         return None;

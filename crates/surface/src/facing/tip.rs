@@ -1,4 +1,4 @@
-//! Normals at an irregular vertex inside the surface.
+//! Normals at an irregular vertex inside the surface, of triangles or of quads.
 //!
 //! The part at the vertex consists of three regular pieces a level, at all levels. At level j their
 //! points are p + λʲ(t₁χ₁ + t₂χ₂) + r_j, χ being the characteristic map's three regular pieces. A
@@ -12,9 +12,11 @@
 //! t₂. As a piece is refined, ρ falls relative to t: from some level on there is a cone.
 
 use super::Cone;
-use crate::patch::Rules;
 use crate::patch::extraordinary::ExtraordinaryPatch;
+use crate::patch::quad::QuadPatch;
 use crate::patch::settling::settled;
+use crate::patch::{Patch, Rules};
+use crate::row::sum;
 use crate::vector::{DVec3, unit_or_zero};
 
 /// Sines of cones above which a part's own parts are tested.
@@ -25,18 +27,60 @@ const POINT_ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
 /// A cone that holds all normals of a piece at an irregular vertex but that of the vertex itself,
 /// which is its axis; `None` where the vanishing term is still too great.
-pub(super) fn cone(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone> {
+pub(super) fn cone(patch: &Patch, rules: &Rules<'_>) -> Option<Cone> {
+    match patch {
+        Patch::Extraordinary(patch) => at_triangles(patch, rules),
+        Patch::Quad(patch) => at_quads(patch, rules),
+        _ => None,
+    }
+}
+
+fn at_triangles(patch: &ExtraordinaryPatch, rules: &Rules<'_>) -> Option<Cone> {
     let valence = patch.ring.len();
     let (map, growth) = (rules.characteristic(valence)?, rules.settling(valence)?);
-    let [limit, t1, t2] = settled(patch, rules.beta(valence));
+    let bounds = Bounds {
+        growth,
+        least_jacobian: map.least_jacobian,
+        steepest: map.steepest,
+    };
+    let points = patch.points().zip(map.control.points());
+    around(points, settled(patch, rules.beta(valence)), bounds)
+}
+
+fn at_quads(patch: &QuadPatch, rules: &Rules<'_>) -> Option<Cone> {
+    let settling = patch.settling(rules)?;
+    let bounds = Bounds {
+        growth: settling.growth,
+        least_jacobian: settling.least_jacobian,
+        steepest: settling.steepest,
+    };
+    let own = patch.points();
+    let points = own.iter().copied().zip(settling.map.iter().copied());
+    let limits = settling.functionals.each_ref();
+    around(points, limits.map(|row| sum(row, own)), bounds)
+}
+
+/// The ρ that points differ by for each by which they differ from the map, and the map's J and ∂χ.
+struct Bounds {
+    growth: f64,
+    least_jacobian: f64,
+    steepest: [f64; 2],
+}
+
+/// The cone by points, each with that of the map, and their limit and tangents.
+fn around(
+    points: impl Iterator<Item = (DVec3, DVec3)>,
+    [limit, t1, t2]: [DVec3; 3],
+    map: Bounds,
+) -> Option<Cone> {
     let mut longest = 0.0f64;
     let mut greatest = limit.abs();
-    for (point, at) in patch.points().zip(map.control.points()) {
+    for (point, at) in points {
         longest = longest.max((point - limit - at.x * t1 - at.y * t2).abs().max_element());
         greatest = greatest.max(point.abs());
     }
     // A vector is at most √3 times as long as its greatest coordinate.
-    let left = growth * 3f64.sqrt() * (longest + POINT_ROUNDING * greatest.max_element());
+    let left = map.growth * 3f64.sqrt() * (longest + POINT_ROUNDING * greatest.max_element());
     // Scaled: products of very large or small tangents overflow or vanish.
     let scale = t1.abs().max(t2.abs()).max_element().recip();
     let (t1, t2, left) = (scale * t1, scale * t2, scale * left);

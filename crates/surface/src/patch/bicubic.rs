@@ -86,6 +86,40 @@ const CHOICES: [[f64; 4]; 7] = [
     [1.0, 6.0, 15.0, 20.0],
 ];
 
+/// The net of the first half of a square by the square's Bézier points: the place of a point in the net, that of one in the square by
+/// row and column, and its weight.
+static SHARES: [(u8, u8, f64); 100] = shares();
+
+const fn shares() -> [(u8, u8, f64); 100] {
+    let (mut shares, mut count) = ([(0, 0, 0.0); 100], 0);
+    let (mut at, mut k, mut j) = (0, 0, 0);
+    while k <= 6 {
+        let counts = [6 - j - k, j, k];
+        let (mut weights, mut number) = ([0.0; 16], 0);
+        while number < TRIPLES.len() {
+            // The second corner has 1 for u, the third for v, and all else is 0.
+            let taken = TRIPLES[number];
+            if taken[0] <= counts[0] && taken[1] <= counts[1] && taken[2] <= counts[2] {
+                let [a, b, c] = [CHOICES[counts[0]], CHOICES[counts[1]], CHOICES[counts[2]]];
+                weights[4 * (k - taken[2]) + taken[1]] +=
+                    a[taken[0]] * b[taken[1]] * c[taken[2]] / 20.0;
+            }
+            number += 1;
+        }
+        let mut point = 0;
+        while point < 16 {
+            if weights[point] > 0.0 {
+                shares[count] = (at, point as u8, weights[point]);
+                count += 1;
+            }
+            point += 1;
+        }
+        at += 1;
+        (k, j) = if j + k == 6 { (k + 1, 0) } else { (k, j + 1) };
+    }
+    shares
+}
+
 impl Bicubic {
     /// The weights of a sum over all points.
     fn sum(&self, u: Weights, v: Weights) -> DVec3 {
@@ -152,7 +186,24 @@ impl Bicubic {
 
     /// The net of its part.
     pub fn part_net(&self) -> SexticTriangle {
-        self.net(self.part.corners(), |point| point)
+        let ParamTriangle { u, v, size } = self.part;
+        let weights = |from: f64| {
+            let to = from + size;
+            [[from; 3], [from, from, to], [from, to, to], [to; 3]].map(blossom)
+        };
+        let combined = |points: [DVec3; 4], weights: &[Weights; 4]| {
+            let [a, b, c, d] = points;
+            weights.map(|w| a * w[0] + b * w[1] + (c * w[2] + d * w[3]))
+        };
+        let (by_u, by_v) = (weights(u), weights(v));
+        let [a, b, c, d] = self.points.map(|row| combined(row, &by_u));
+        let columns = [0, 1, 2, 3].map(|i| combined([a[i], b[i], c[i], d[i]], &by_v));
+        let mut net = [DVec3::ZERO; 28];
+        for &(to, point, weight) in &SHARES {
+            net[usize::from(to)] +=
+                weight * columns[usize::from(point % 4)][usize::from(point / 4)];
+        }
+        SexticTriangle(net)
     }
 
     /// The net of a triangle in the quad's domain.
@@ -263,6 +314,16 @@ mod tests {
                     net.point(weights).distance(piece.point(at)) < 1e-13,
                     "{places:?}"
                 );
+            }
+            for part in [0, 1, 2, 3].map(|part| piece.part.child(part).child(3)) {
+                let own = Bicubic {
+                    part,
+                    ..piece.clone()
+                };
+                let (found, expected) = (own.part_net(), own.net(part.corners(), |point| point));
+                for (a, b) in found.0.iter().zip(expected.0) {
+                    assert!(a.distance(b) < 1e-14, "{part:?}");
+                }
             }
             for i in 0..16 {
                 let mut own = piece.clone();

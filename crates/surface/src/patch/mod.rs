@@ -19,6 +19,7 @@ pub mod normal_net;
 mod pole;
 pub(crate) mod polynomial;
 pub mod quad;
+mod quad_settling;
 pub mod quartic;
 mod rules;
 mod sector;

@@ -14,7 +14,7 @@ use crate::vector::{DVec3, unit_or_zero, vector};
 /// The piece over half a quad, with the points around the quad. The half's right angle is at the quad's first corner.
 #[derive(Clone, Debug)]
 pub struct QuadPatch {
-    form: Arc<QuadForm>,
+    pub(super) form: Arc<QuadForm>,
     points: Vec<DVec3>,
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn root_piece(
 
 impl QuadPatch {
     /// The piece of some surroundings, in its simplest form.
-    fn piece(form: Arc<QuadForm>, points: Vec<DVec3>) -> Patch {
+    pub(super) fn piece(form: Arc<QuadForm>, points: Vec<DVec3>) -> Patch {
         match &form.grid {
             Some(grid) => Patch::Bicubic(Box::new(Bicubic {
                 points: grid

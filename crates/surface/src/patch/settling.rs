@@ -13,14 +13,11 @@ use super::Patch;
 use super::bezier_triangle::BezierTriangle;
 use super::characteristic::Characteristic;
 use super::extraordinary::ExtraordinaryPatch;
-use super::normal_net::{CUBIC, tangents};
+use super::normal_net::tangents;
 use crate::vector::DVec3;
 
 /// Levels after which it is given up.
 const MOST_LEVELS: usize = 400;
-
-/// Differences of the nets of three pieces, two ways each.
-const DIFFERENCES: usize = 3 * 2 * CUBIC;
 
 /// The greatest factor by rounding.
 const ROUNDING: f64 = 1.0 + 1e-9;
@@ -31,38 +28,53 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {
     let valence = map.control.ring.len();
     let eigenvalue = 0.375 + 0.25 * (core::f64::consts::TAU / valence as f64).cos();
+    let left = |patch: ExtraordinaryPatch| {
+        let [limit, t1, t2] = settled(&patch, beta);
+        let left = |(point, at): (DVec3, DVec3)| point - (limit + at.x * t1 + at.y * t2);
+        let pairs = patch.points().zip(map.control.points());
+        pairs.map(left).collect()
+    };
+    let step = |points: &[DVec3]| {
+        let refined = patch_of(points).refined(beta);
+        let nets = [1, 2, 3].map(|part| tangents(&BezierTriangle::of(&refined.regular(part))));
+        let Patch::Extraordinary(next) = refined.part(0) else {
+            return None;
+        };
+        let differences = nets.as_flattened().as_flattened().to_vec();
+        Some((next.points().collect(), differences))
+    };
+    let left = |points: Vec<DVec3>| left(patch_of(&points));
+    greatest_growth(valence + 6, eigenvalue, left, step)
+}
+
+/// The greatest growth at any level, given the number of points, λ, P, and what gives the points after a step and the differences in the
+/// regular pieces.
+pub(crate) fn greatest_growth(
+    count: usize,
+    eigenvalue: f64,
+    left: impl Fn(Vec<DVec3>) -> Vec<DVec3>,
+    step: impl Fn(&[DVec3]) -> Option<(Vec<DVec3>, Vec<DVec3>)>,
+) -> Option<f64> {
     // A column of P and of what refinements make of it for each point, three at a time.
-    let count = valence + 6;
-    let mut columns: Vec<ExtraordinaryPatch> = (0..count.div_ceil(3))
-        .map(|first| {
-            let mut points = vec![DVec3::ZERO; count];
-            [DVec3::X, DVec3::Y, DVec3::Z]
-                .into_iter()
-                .zip(3 * first..count)
-                .for_each(|(e, at)| points[at] = e);
-            let patch = patch_of(&points);
-            let [limit, t1, t2] = settled(&patch, beta);
-            let left = |(point, at): (DVec3, DVec3)| point - (limit + at.x * t1 + at.y * t2);
-            patch_of(
-                &patch
-                    .points()
-                    .zip(map.control.points())
-                    .map(left)
-                    .collect::<Vec<_>>(),
-            )
-        })
-        .collect();
+    let column = |first: usize| {
+        let mut points = vec![DVec3::ZERO; count];
+        [DVec3::X, DVec3::Y, DVec3::Z]
+            .into_iter()
+            .zip(3 * first..count)
+            .for_each(|(e, at)| points[at] = e);
+        left(points)
+    };
+    let mut columns: Vec<Vec<DVec3>> = (0..count.div_ceil(3)).map(column).collect();
     let (mut greatest, mut scale) = (0.0f64, 1.0);
     for level in 0..MOST_LEVELS {
-        let (mut of_points, mut of_differences) = (vec![0.0; count], [0.0; DIFFERENCES]);
-        for column in &columns {
-            let sum = |(row, point): (&mut f64, DVec3)| *row += point.abs().element_sum();
-            of_points.iter_mut().zip(column.points()).for_each(sum);
-            let refined = column.refined(beta);
-            let differences =
-                [1, 2, 3].map(|part| tangents(&BezierTriangle::of(&refined.regular(part))));
-            let differences = differences.as_flattened().as_flattened().iter().copied();
-            of_differences.iter_mut().zip(differences).for_each(sum);
+        let (mut of_points, mut of_differences) = (vec![0.0; count], Vec::new());
+        for column in &mut columns {
+            let sum = |(row, point): (&mut f64, &DVec3)| *row += point.abs().element_sum();
+            of_points.iter_mut().zip(&*column).for_each(sum);
+            let (next, differences) = step(column)?;
+            of_differences.resize(differences.len(), 0.0);
+            of_differences.iter_mut().zip(&differences).for_each(sum);
+            *column = next;
         }
         let factor = |rows: &[f64]| ROUNDING * scale * rows.iter().copied().fold(0.0, f64::max);
         if level > 0 && factor(&of_points) < 1.0 {
@@ -70,11 +82,6 @@ pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {
         }
         greatest = greatest.max(factor(&of_differences));
         scale /= eigenvalue;
-        for column in &mut columns {
-            if let Patch::Extraordinary(next) = column.refined(beta).part(0) {
-                *column = *next;
-            }
-        }
     }
     None
 }

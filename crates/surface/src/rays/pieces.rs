@@ -41,14 +41,11 @@ pub(super) enum Form {
 }
 
 /// The weights of a part's second and third corner at the one that is a corner of the face, as in
-/// pieces that stay irregular; at its middle where there is none.
-pub(super) fn control_corner(domain: ParamTriangle) -> [f64; 2] {
+/// pieces that stay irregular.
+pub(super) fn control_corner(domain: ParamTriangle) -> Option<[f64; 2]> {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     let is_control = |at: &[f64; 2]| domain.weights(*at).contains(&1.0);
-    corners
-        .into_iter()
-        .find(is_control)
-        .unwrap_or([1.0 / 3.0; 2])
+    corners.into_iter().find(is_control)
 }
 
 /// The pieces over a face of a mesh with `faces` faces, and their boxes.

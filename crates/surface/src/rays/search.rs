@@ -239,7 +239,11 @@ impl<'a> RaySearch<'a> {
         if self.is_missed(points.iter().copied(), None) {
             return;
         }
-        if extent(points.iter().copied()) < SIZE * self.tolerance || self.looked_at > MOST_PIECES {
+        let corner = control_corner(place.1);
+        // Other halves of quads at irregular vertices are regular after a step.
+        let is_last = corner.is_some() || !matches!(patch, Patch::Quad(_));
+        let is_small = is_last && extent(points.iter().copied()) < SIZE * self.tolerance;
+        if is_small || self.looked_at > MOST_PIECES {
             let count = points.len() as f64;
             let middle = points.iter().map(|point| point / count).sum::<DVec3>();
             let crossing = match facing::of_patch(patch, self.surface.rules(), &self.sight, 0) {
@@ -247,7 +251,8 @@ impl<'a> RaySearch<'a> {
                 Facing::Back => Crossing::Leaving,
                 Facing::Undecided => Crossing::Grazing,
             };
-            return self.add(place, control_corner(place.1), middle.z, crossing);
+            let at = corner.unwrap_or([1.0 / 3.0; 2]);
+            return self.add(place, at, middle.z, crossing);
         }
         let refined = patch.refined(self.surface.rules());
         for part in 0..4 {
