@@ -188,3 +188,50 @@ fn repairs_of_cages_name_the_file_s_faces() {
     assert_eq!(found["isolated_vertices"]["first"][0], 10);
     assert_eq!(found["polygons"]["count"], 0);
 }
+
+/// A file whose faces are quads for the most part has Catmull–Clark's surface, in whatever asks for a surface, unless an option is for
+/// triangles; creases by angle are those of the polygons.
+#[test]
+fn the_faces_of_a_file_decide() {
+    let place = folder();
+    let mixed = CUBE.replace("f 2/1 4/2 8/3 6/4", "f 2 4 8\nf 2 8 6");
+    let cage = file(&place, "mixed.obj", &mixed);
+    let [out, report] = ["out.ply", "out.json"].map(|name| place.path().join(name));
+    let scheme = |words: &str| {
+        let words = format!("refine {{}} -o {{}} --overwrite --report {{}} {words}");
+        let said = done(&words, &[&cage, &out, &report]).stderr;
+        let scheme = json_file(&report)["parameters"]["scheme"].clone();
+        (
+            said.contains("quads for the most part"),
+            said.contains("cut into triangles"),
+            scheme,
+        )
+    };
+    assert_eq!(scheme(""), (true, false, "catmull-clark".into()));
+    assert_eq!(scheme("--scheme loop"), (false, false, "loop".into()));
+    assert_eq!(scheme("--optimize"), (false, true, "loop".into()));
+    scheme("--tolerance 0.2%");
+    let measured = json_of("measure {} --limit-of {} --json", &[&out, &cage]);
+    assert!(
+        number(&measured["hausdorff"]["symmetric"]) < 1e-2,
+        "{measured}"
+    );
+    let other = json_of(
+        "measure {} --limit-of {} --scheme loop --json",
+        &[&out, &cage],
+    );
+    assert!(number(&other["hausdorff"]["symmetric"]) > 3e-2, "{other}");
+    // All edges of the cube are sharp, and none that the step makes.
+    scheme("--crease-angle 30");
+    let positions = soup(&out).positions;
+    assert!(
+        positions
+            .iter()
+            .all(|p| p.iter().any(|x| (x.abs() - 1.0).abs() < 1e-12))
+    );
+    assert!(
+        positions
+            .iter()
+            .any(|p| p.iter().all(|x| (x.abs() - 1.0).abs() < 1e-12))
+    );
+}

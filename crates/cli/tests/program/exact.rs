@@ -331,7 +331,7 @@ fn vertices_and_triangles_know_where_they_came_from() {
         0,
         "builtin:cube",
         &output,
-        "--tolerance 0.5% --ascii --provenance",
+        "--tolerance 0.5% --ascii --provenance --scheme loop",
     );
     let (names, vertices, faces) = rows(&output);
     assert_eq!(
@@ -390,7 +390,7 @@ fn vertices_and_triangles_know_where_they_came_from() {
     assert_eq!(soup(&output).faces.len(), faces.len());
     let plain = folder.path().join("plain.ply");
     done(
-        "refine builtin:cube -o {} --tolerance 0.5% --provenance",
+        "refine builtin:cube -o {} --tolerance 0.5% --provenance --scheme loop",
         &[&plain],
     );
     assert_eq!(soup(&plain).positions, soup(&output).positions);
@@ -438,7 +438,7 @@ fn what_a_format_rounds_is_part_of_the_distance() {
         0,
         input,
         &folder.path().join("kept.ply"),
-        "--tolerance 0.004",
+        "--tolerance 0.004 --faces triangles",
     );
     assert!(number(&kept["error"]["upper"]) <= 0.004);
     for (name, code) in [("rounded.stl", 3), ("kept.stl", 0)] {

@@ -53,10 +53,10 @@ fn every_built_in_model_is_refined_by_every_method() {
     for model in limitmesh_models::all() {
         let name = format!("builtin:{}", model.name);
         let methods = [
-            "",
+            "--faces triangles",
             "--method limit-normal --levels 2",
             "--method amresh --levels 2",
-            "--method uniform --levels 1",
+            "--method uniform --levels 1 --faces triangles",
         ];
         for options in methods {
             let report = refine(&name, &output, options);
@@ -91,7 +91,7 @@ fn defaults_of_the_paper_s_method_are_ten_degrees_three_levels_loop() {
         "method": "limit-normal", "angle_degrees": 10.0, "levels": 3, "scheme": "loop",
         "exact": null, "view": null, "limit": false, "boundary": "smooth", "crease_angle_degrees": null, "crease_angle_auto": false, "interpolate_within": null, "within": null,
         "creases_from": "none", "concave_corners": "smooth",
-        "max_triangles": 50_000_000, "weld": 0.0, "strict": false
+        "max_triangles": 50_000_000, "smooth_triangles": false, "weld": 0.0, "strict": false
     });
     assert_eq!(parameters, expected);
 }

@@ -150,7 +150,9 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
     let control = &info["mesh"];
     let own = |key: &str| count(&control[key]);
     for method in ["limit-normal", "uniform"] {
-        let command = format!("refine {{}} -o {{}} --method {method} --levels {levels} --report -");
+        let command = format!(
+            "refine {{}} -o {{}} --method {method} --levels {levels} --scheme loop --report -"
+        );
         let report = json_of(&command, &[path, &output]);
         let (result, written) = (&report["output"], counts(&soup(&output)));
         assert_eq!(written, claimed(result), "{name} {method}");
@@ -171,8 +173,9 @@ fn refines(name: &str, path: &Path, faces: u64, info: &Value) {
             );
         }
     }
-    let command =
-        format!("measure {{}} --limit-of {{}} --reference-levels {levels} --samples 2000 --json");
+    let command = format!(
+        "measure {{}} --limit-of {{}} --reference-levels {levels} --samples 2000 --scheme loop --json"
+    );
     let report = json_of(&command, &[&output, path]);
     let percent = number(&report["hausdorff"]["symmetric_percent"]);
     assert!((0.0..25.0).contains(&percent), "{name}: {percent} %");

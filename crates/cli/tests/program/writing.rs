@@ -35,7 +35,7 @@ fn a_mesh_may_be_refined_in_place() {
     let folder = folder();
     let mesh = folder.path().join("mesh.off");
     done(
-        "refine builtin:cube -o {} --levels 0 --method uniform",
+        "refine builtin:cube -o {} --levels 0 --method uniform --faces triangles",
         &[&mesh],
     );
     assert_eq!(soup(&mesh).faces.len(), 12);

@@ -104,9 +104,7 @@ pub enum InterpolateError {
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// No limits that are near enough were found.
-    #[error(
-        "the limit of vertex {vertex} is at least {distance} from it, but may be at most {within}"
-    )]
+    #[error("the limit of {vertex} is at least {distance} from it, but may be at most {within}")]
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,
@@ -285,12 +283,19 @@ pub fn interpolate_but(
     let relaxed = points.relaxed();
     let (residual, vertex) = farthest(&limits, mesh.positions(), |v, away| points.missed(v, away));
     let rounding = points.rounding();
-    if within > 0.0 && residual > within + rounding + NEAR * mesh.diagonal() {
-        return Err(InterpolateError::TooFar {
-            vertex,
-            distance: residual,
-            within,
-        });
+    let nearest = within + rounding + NEAR * mesh.diagonal();
+    if within > 0.0 && residual > nearest {
+        // The fairest mesh is not found where the rows of limits are nearly singular, as those of a cube of quads are.
+        let through = InterpolateOptions::default();
+        let found = interpolate_but(mesh, scheme, &through, kept, &mut watch.observer())?;
+        return match found.residual <= nearest {
+            true => Ok(found),
+            false => Err(InterpolateError::TooFar {
+                vertex,
+                distance: residual,
+                within,
+            }),
+        };
     }
     let (displacement, most_displaced) =
         farthest(control.positions(), mesh.positions(), |_, away| away);
