@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
-use limitmesh::mesh::{BuildOptions, Channel, Diagnosis, MeshError, Trace, Weld};
+use limitmesh::mesh::{BuildOptions, Channel, ChannelError, Diagnosis, MeshError, Trace, Weld};
 use limitmesh::{Mesh, PolygonSoup, QuadControl, QuadOptions};
 use limitmesh_io::channels::NORMALS;
 use limitmesh_io::gltf::AssetContents;
@@ -383,6 +383,28 @@ pub(crate) fn connect(
     Ok(input)
 }
 
+/// What a soup becomes.
+enum ControlMesh {
+    Triangles(Mesh, Trace),
+    Quads(QuadControl),
+}
+
+impl ControlMesh {
+    fn channel(&self, soup: &PolygonSoup, channel: &Channel) -> Result<Channel, ChannelError> {
+        match self {
+            Self::Triangles(mesh, trace) => channel.on_mesh(soup, mesh, trace),
+            Self::Quads(quads) => quads.channel(soup, channel),
+        }
+    }
+
+    fn into_parts(self) -> (Mesh, Trace) {
+        match self {
+            Self::Triangles(mesh, trace) => (mesh, trace),
+            Self::Quads(quads) => (quads.mesh, quads.trace),
+        }
+    }
+}
+
 /// A control mesh of what was read; notes where edges nearly close.
 ///
 /// # Errors
@@ -398,16 +420,18 @@ pub(crate) fn connected(
     progress.stage(format!("connecting {faces}"));
     let start = Instant::now();
     let built = match &read.quads {
-        None => Mesh::from_soup_traced(&soup, options),
+        None => Mesh::from_soup_traced(&soup, options)
+            .map(|(mesh, diagnosis, trace)| (ControlMesh::Triangles(mesh, trace), diagnosis)),
         Some(rules) => QuadControl::from_soup_with(&soup, options, rules)
-            .map(|(quads, diagnosis)| (quads.mesh, diagnosis, quads.trace)),
+            .map(|(quads, diagnosis)| (ControlMesh::Quads(quads), diagnosis)),
     };
-    let (mesh, diagnosis, trace) = built.map_err(|error| describe(&name, error))?;
-    let on_mesh = |channel: &Channel| channel.on_mesh(&soup, &mesh, &trace);
+    let (control, diagnosis) = built.map_err(|error| describe(&name, error))?;
+    let on_mesh = |channel: &Channel| control.channel(&soup, channel);
     let channels = soup.channels.iter().map(on_mesh).collect::<Result<_, _>>();
     let channels = channels.with_context(|| name.clone())?;
     let normals = read.normals.as_ref().map(on_mesh).transpose();
     let normals = normals.with_context(|| name.clone())?;
+    let (mesh, trace) = control.into_parts();
     let triangles = |weld| {
         let options = BuildOptions::default().weld(weld);
         Some(Mesh::from_soup(&soup, &options).ok()?.0)

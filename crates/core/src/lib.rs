@@ -66,7 +66,7 @@ pub mod sqrt3;
 
 use limitmesh_mesh::{geometry, options, parallel, vector};
 pub use limitmesh_mesh::{index, measure, mesh, progress, ring, simplify};
-use limitmesh_surface::{facing, limit_surface, masks, patch};
+use limitmesh_surface::{facing, limit_surface, masks, patch, value_mesh};
 pub use limitmesh_surface::{interpolate, limit, scheme};
 
 pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};

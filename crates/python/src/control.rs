@@ -24,6 +24,14 @@ pub(crate) struct Recipe {
     pub(crate) scheme: &'static dyn Scheme,
 }
 
+/// What a soup becomes before anything else is done to it.
+struct Built {
+    mesh: Mesh,
+    diagnosis: Diagnosis,
+    trace: Trace,
+    channels: Vec<Channel>,
+}
+
 impl Recipe {
     /// # Errors
     /// A name that stands for nothing.
@@ -53,17 +61,34 @@ impl Recipe {
     ///
     /// # Errors
     /// No mesh can be made of it.
-    fn built(&self, soup: &PolygonSoup) -> Result<(Mesh, Diagnosis, Trace), Failure> {
+    fn built(&self, soup: &PolygonSoup) -> Result<Built, Failure> {
         let build = self.options.build();
         if !matches!(self.scheme.family(), Some(Family::CatmullClark)) {
-            return Ok(Mesh::from_soup_traced(soup, &build)?);
+            let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, &build)?;
+            let channels = soup.channels.iter();
+            let channels = channels.map(|channel| channel.on_mesh(soup, &mesh, &trace));
+            let channels = channels.collect::<Result<_, _>>()?;
+            return Ok(Built {
+                mesh,
+                diagnosis,
+                trace,
+                channels,
+            });
         }
         let rules = QuadOptions::default().boundary(self.boundary);
         let rules = rules
             .smooth_triangles(self.options.smooth_triangles)
             .crease_angle(self.options.crease_angle.map(f64::to_radians));
         let (quads, diagnosis) = QuadControl::from_soup_with(soup, &build, &rules)?;
-        Ok((quads.mesh, diagnosis, quads.trace))
+        let channels = soup.channels.iter();
+        let channels = channels.map(|channel| quads.channel(soup, channel));
+        let channels = channels.collect::<Result<_, _>>()?;
+        Ok(Built {
+            mesh: quads.mesh,
+            diagnosis,
+            trace: quads.trace,
+            channels,
+        })
     }
 
     /// The control mesh of a soup.
@@ -76,12 +101,12 @@ impl Recipe {
         observer: &mut Observer<'_>,
     ) -> Result<Control, Failure> {
         let options = &self.options;
-        let (mesh, mut diagnosis, trace) = self.built(&soup)?;
-        let channels = soup
-            .channels
-            .iter()
-            .map(|channel| channel.on_mesh(&soup, &mesh, &trace));
-        let channels: Vec<Channel> = channels.collect::<Result<_, _>>()?;
+        let Built {
+            mesh,
+            mut diagnosis,
+            trace,
+            channels,
+        } = self.built(&soup)?;
         let corners = trace.vertices(&soup);
         let vertices = trace.of_soup(&soup, &mesh);
         drop(soup);

@@ -49,6 +49,8 @@ pub mod proximity;
 pub mod rays;
 mod row;
 pub mod scheme;
+#[doc(hidden)]
+pub mod value_mesh;
 
 pub use catmull_clark::{QuadControl, QuadOptions};
 pub use facing::{Facing, NormalCone, Viewpoint};

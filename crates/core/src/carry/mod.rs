@@ -3,14 +3,13 @@
 //! Takes channels of the control mesh, and a refined mesh whose triangles each come from one
 //! control face and whose vertices have origins on the control mesh; gives the channels of the
 //! refined mesh. Linear ones are linear over each control face, so exact on every triangle, and over quads bilinear; smooth
-//! ones take their values from the limit surface of a mesh of values with the same faces (`seams`),
+//! ones take their values from the limit surface of a mesh of values with the same faces (`value_mesh`),
 //! at the same places as the vertices: a channel whose values are positions gives the vertices'
 //! positions. Where control faces meet, corners of the refined mesh have one value if the channel
 //! has one there, so seams run only where they ran before.
 
 mod borders;
 mod places;
-mod seams;
 mod sites;
 
 pub use borders::borders;
@@ -19,8 +18,8 @@ use crate::limit_surface::LimitSurface;
 use crate::mesh::{Channel, ChannelError, Domain, Interpolation, Mesh, SeamRule};
 use crate::refine::{AttributeGoal, Origin, Traced};
 use crate::scheme::Scheme;
+use crate::value_mesh::{ValueMesh, value_mesh};
 use places::Places;
-use seams::value_mesh;
 use sites::{Sites, SitesByFace};
 
 /// Numbers that are evaluated together: a value mesh has as many coordinates.
@@ -211,8 +210,10 @@ struct ValueMeshes<'a> {
 
 impl<'a> ValueMeshes<'a> {
     fn of(channel: &'a Channel, rule: SeamRule, control: &Mesh) -> Result<Self, ChannelError> {
-        let seams::ValueMesh { mesh, values } =
-            value_mesh(control, channel, rule).map_err(|error| no_limit(channel, error))?;
+        // A quad counts once, by its own edge at a vertex.
+        let begins_face = |h| !control.topology().is_diagonal(h);
+        let ValueMesh { mesh, values } = value_mesh(control, channel, rule, begins_face)
+            .map_err(|error| no_limit(channel, error))?;
         Ok(Self {
             channel,
             mesh,

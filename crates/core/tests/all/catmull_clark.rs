@@ -434,6 +434,45 @@ fn quads_are_near_however_they_are_cut() {
     }
 }
 
+/// A smooth channel whose values are positions is where the vertices are, also where a step divides polygons first.
+#[test]
+fn positions_as_a_channel_take_the_step() {
+    let mut soup = creased_cube(1.6);
+    soup.faces = Default::default();
+    let faces: [&[u32]; 6] = [
+        &[0, 2, 3, 1],
+        &[4, 5, 7],
+        &[4, 7, 6],
+        &[0, 1, 5, 4],
+        &[2, 6, 7, 3],
+        &[0, 4, 6, 2],
+    ];
+    faces.iter().for_each(|face| soup.faces.push(face));
+    for smooth_triangles in [false, true] {
+        let rules = QuadOptions::default().smooth_triangles(smooth_triangles);
+        let build = BuildOptions::default();
+        let (control, _) = QuadControl::from_soup_with(&soup, &build, &rules).unwrap();
+        let values = soup.positions.as_flattened().to_vec();
+        let channel = Channel::new("positions", Semantic::Displacement, Domain::Vertex, 3)
+            .with(values, (0..8).collect());
+        let channel = control.channel(&soup, &channel).unwrap();
+        let mesh = &control.mesh;
+        let options = UniformOptions::default()
+            .levels(2)
+            .limit(true)
+            .origins(true);
+        let fine = uniform(mesh, &CatmullClark, &options).unwrap();
+        let found = carried(&[channel], mesh, &CatmullClark, &fine)
+            .unwrap()
+            .remove(0);
+        for (corner, &vertex) in fine.mesh.triangles().as_flattened().iter().enumerate() {
+            let value: Point = found.value(corner).try_into().unwrap();
+            let position = fine.mesh.positions()[vertex as usize];
+            assert!(near(position, value, 1e-13), "{position:?} {value:?}");
+        }
+    }
+}
+
 /// Linear channels are bilinear over quads, whichever diagonal cuts these: by the corners of the polygons.
 #[test]
 fn linear_channels_are_bilinear_over_quads() {

@@ -4,6 +4,7 @@
 //! limit surface as it is.
 
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::quads::{halves, in_half};
 use super::ring::vertex_weights;
@@ -57,6 +58,15 @@ pub struct QuadControl {
     pub mesh: Mesh,
     /// The faces and corners of the soup that those of the mesh are from.
     pub trace: Trace,
+    /// The polygons, where a step has divided them.
+    pub(super) divided: Option<Arc<Divided>>,
+}
+
+/// Polygons before a step.
+#[derive(Debug)]
+pub(super) struct Divided {
+    pub(super) fans: Fans,
+    pub(super) smooth_triangles: bool,
 }
 
 impl QuadControl {
@@ -92,7 +102,13 @@ impl QuadControl {
             None => {
                 let kept = polygons.kept_corners(&fans.mesh, rules.boundary);
                 fans.mesh = fans.mesh.with_corners(&kept);
-                polygons.refined(&fans, rules.smooth_triangles)?
+                let smooth_triangles = rules.smooth_triangles;
+                let mut control = polygons.refined(&fans, smooth_triangles)?;
+                control.divided = Some(Arc::new(Divided {
+                    fans,
+                    smooth_triangles,
+                }));
+                control
             }
         };
         let mesh = control.mesh.with_boundary(rules.boundary);
@@ -104,7 +120,7 @@ impl QuadControl {
 const SMOOTH_TRIANGLE: f64 = 0.47;
 
 /// Polygons by the half-edges of their fans along their sides.
-struct Polygons {
+pub(super) struct Polygons {
     loops: Vec<Vec<HalfEdgeId>>,
     /// By half-edge, the polygon and the place in its loop; [`NONE`] inside a polygon.
     places: Vec<[u32; 2]>,
@@ -112,7 +128,7 @@ struct Polygons {
 }
 
 impl Polygons {
-    fn of(fans: &Fans) -> Self {
+    pub(super) fn of(fans: &Fans) -> Self {
         let topology = fans.mesh.topology();
         let mut polygons = Self {
             loops: Vec::new(),
@@ -254,11 +270,15 @@ impl Polygons {
         let mut trace = quads.trace(rows);
         (trace.between, trace.rows) = Default::default();
         let mesh = assembled(quads.triangles, twins, positions, tags, junctions)?;
-        Ok(Some(QuadControl { mesh, trace }))
+        Ok(Some(QuadControl {
+            mesh,
+            trace,
+            divided: None,
+        }))
     }
 
     /// All polygons after a step. The vertices in their middles go where it puts them.
-    fn refined(&self, fans: &Fans, smooths: bool) -> Result<QuadControl, MeshError> {
+    pub(super) fn refined(&self, fans: &Fans, smooths: bool) -> Result<QuadControl, MeshError> {
         let (mesh, topology) = (&fans.mesh, fans.mesh.topology());
         let sharpness = Sharpness::of(mesh);
         let sides: Vec<HalfEdgeId> = self.loops.iter().flatten().copied().collect();
@@ -317,7 +337,11 @@ impl Polygons {
         let junctions = refined_junctions(mesh.junctions(), topology, parts_of, |h| on_sides[&h]);
         let trace = quads.trace(self.rows(&sides, &fans.trace));
         let mesh = assembled(quads.triangles, twins, positions, tags, junctions)?;
-        Ok(QuadControl { mesh, trace })
+        Ok(QuadControl {
+            mesh,
+            trace,
+            divided: None,
+        })
     }
 
     /// The soup's corners that those after a step are put between: by side one where it begins, by side both at its ends, by polygon all.

@@ -4,6 +4,7 @@
 //! (`quads`) refine by weights (`step`, `masks`); what a step makes of the surroundings of one is found once (`form`). Polygons become
 //! quads first (`control`).
 
+mod channels;
 mod control;
 pub(crate) mod form;
 pub(crate) mod masks;

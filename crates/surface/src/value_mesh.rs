@@ -9,11 +9,11 @@ use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Channel, CornerTag, CreaseTag, Mesh, MeshError, SeamRule, Sharpness, Tags};
 
 /// The mesh of a channel, and the number of each of its vertices' values.
-pub(super) struct ValueMesh {
+pub struct ValueMesh {
     /// Without values: all vertices are at zero.
-    pub(super) mesh: Mesh,
+    pub mesh: Mesh,
     /// By vertex, the channel's value.
-    pub(super) values: Vec<u32>,
+    pub values: Vec<u32>,
 }
 
 /// A fan of faces at a control vertex.
@@ -26,14 +26,16 @@ struct Fan {
     sharpest: f64,
 }
 
-/// The mesh of a channel of corners. Values are kept by `rule`, and wherever one value belongs to two fans.
+/// The mesh of a channel of corners. Values are kept by `rule`, and wherever one value belongs to two fans. Several triangles may be one
+/// face: `begins_face` says whether the edge is a face's first at a vertex.
 ///
 /// # Errors
 /// There are more fans than can be numbered.
-pub(super) fn value_mesh(
+pub fn value_mesh(
     control: &Mesh,
     channel: &Channel,
     rule: SeamRule,
+    begins_face: impl Fn(HalfEdgeId) -> bool,
 ) -> Result<ValueMesh, MeshError> {
     let topology = control.topology();
     let continuous = |h: HalfEdgeId| {
@@ -69,8 +71,7 @@ pub(super) fn value_mesh(
             let number = of_corner[root];
             of_corner[corner.index()] = number;
             let fan = &mut fans[number as usize];
-            // A quad counts once, by the edge with which it begins there.
-            fan.faces += usize::from(!topology.is_diagonal(corner));
+            fan.faces += usize::from(begins_face(corner));
             match continuous(corner) {
                 Some(_) => fan.sharpest = fan.sharpest.max(sharpness.edge(corner)),
                 None => fan.is_open = true,
