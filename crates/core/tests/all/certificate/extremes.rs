@@ -9,7 +9,7 @@ use limitmesh::scheme::Loop;
 use crate::support::{Point, corner, exact, octahedron, sheet, within};
 
 /// More than enough for each of these, for an unoptimised build on a busy machine too.
-const PATIENCE: Duration = Duration::from_secs(20);
+const PATIENCE: Duration = Duration::from_secs(120);
 
 fn refined(control: &Mesh, options: &ExactOptions) -> Exact {
     let start = Instant::now();
