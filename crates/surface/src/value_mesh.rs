@@ -6,7 +6,10 @@
 
 use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};
-use crate::mesh::{Channel, CornerTag, CreaseTag, Mesh, MeshError, SeamRule, Sharpness, Tags};
+use crate::mesh::{
+    Channel, CornerTag, CreaseTag, Junctions, Mesh, MeshError, NONE, SeamRule, Sharpness, Tags,
+    Topology, outgoing_half_edges,
+};
 
 /// The mesh of a channel, and the number of each of its vertices' values.
 pub struct ValueMesh {
@@ -106,10 +109,17 @@ pub fn value_mesh(
         }
     }
     let triangles = of_corner.as_chunks::<3>().0.to_vec();
-    let mut mesh = Mesh::from_triangles(vec![[0.0; 3]; fans.len()], triangles)?.with_tags(tags)?;
+    // Edges are those of the control mesh: two of them may have the same ends.
+    let twin = |h: HalfEdgeId| continuous(h).map_or(NONE, |twin| twin.0);
+    let twins: Vec<u32> = topology.half_edges().map(twin).collect();
+    let outgoing = outgoing_half_edges(&triangles, &twins, fans.len());
+    let mut connected = Topology::from_parts(triangles, twins, outgoing);
     if topology.has_quads() {
-        mesh = mesh.with_quads()?;
+        connected = connected.with_quads()?;
     }
+    let positions = vec![[0.0; 3]; fans.len()];
+    let mesh = Mesh::from_parts(connected, positions, Tags::default(), Junctions::default());
+    let mesh = mesh.with_tags(tags)?;
     Ok(ValueMesh {
         mesh,
         values: fans.iter().map(|fan| fan.value).collect(),

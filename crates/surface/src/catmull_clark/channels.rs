@@ -23,8 +23,9 @@ impl QuadControl {
         let by_means = channel.on_mesh(soup, &self.mesh, &self.trace)?;
         match (&self.divided, channel.interpolation) {
             (Some(divided), Interpolation::Smooth(rule)) if channel.domain != Domain::Face => {
-                let smooth = divided.smooth(soup, channel, rule)?;
-                let (values, indices) = smooth.map_err(|error| no_step(channel, &error))?;
+                let own = divided.on_fans(soup, channel)?;
+                let stepped = divided.stepped(&own, rule, self.mesh.triangles());
+                let (values, indices) = stepped.map_err(|error| no_step(channel, &error))?;
                 Ok(by_means.with(values, indices))
             }
             _ => Ok(by_means),
@@ -43,17 +44,6 @@ fn no_step(channel: &Channel, error: &MeshError) -> ChannelError {
 type Table = (Vec<f64>, Vec<u32>);
 
 impl Divided {
-    /// The values of a smooth channel after the step.
-    fn smooth(
-        &self,
-        soup: &PolygonSoup,
-        channel: &Channel,
-        rule: SeamRule,
-    ) -> Result<Result<Table, MeshError>, ChannelError> {
-        let own = self.on_fans(soup, channel)?;
-        Ok(self.stepped(&own, rule))
-    }
-
     /// A channel on the fans; in the middle of a polygon it has the mean of its corners.
     fn on_fans(&self, soup: &PolygonSoup, channel: &Channel) -> Result<Channel, ChannelError> {
         let fans = &self.fans;
@@ -86,12 +76,17 @@ impl Divided {
         Ok(own)
     }
 
-    /// The step of a channel on the fans.
-    fn stepped(&self, own: &Channel, rule: SeamRule) -> Result<Table, MeshError> {
+    /// The step of a channel on the fans, by corner of the triangles that positions have after it.
+    fn stepped(
+        &self,
+        own: &Channel,
+        rule: SeamRule,
+        triangles: &[[u32; 3]],
+    ) -> Result<Table, MeshError> {
         let fans = &self.fans;
         let is_side = |h: HalfEdgeId| fans.side(h.face()) == Some(h);
         let ValueMesh { mesh, values } = value_mesh(&fans.mesh, own, rule, is_side)?;
-        let centres = self.middles(mesh.triangles(), values.len());
+        let centres = self.middles(mesh.triangles());
         let (mut table, mut indices) = (Vec::new(), Vec::new());
         for first in (0..own.arity).step_by(TOGETHER) {
             let last = own.arity.min(first + TOGETHER);
@@ -120,7 +115,12 @@ impl Divided {
             for (row, position) in table.chunks_exact_mut(own.arity).zip(quads.positions()) {
                 row[first..last].copy_from_slice(&position[..last - first]);
             }
-            indices = quads.triangles().as_flattened().to_vec();
+            let before = [fans.mesh.vertex_count(), values.len()];
+            indices = as_cut(
+                triangles,
+                quads.triangles(),
+                before.map(|count| count as u32),
+            );
         }
         // Fans of one value stay where they are, and share it.
         let mut first_of: HashMap<u32, u32> = HashMap::new();
@@ -141,14 +141,29 @@ impl Divided {
         Ok((table, indices))
     }
 
-    /// The vertices of a value mesh that are in the middles of polygons: as those of the fans they come last.
-    fn middles(&self, triangles: &[[u32; 3]], count: usize) -> Range<u32> {
-        let fans = &self.fans;
+    /// The vertices of a value mesh that are in the middles of polygons: as those of the fans they follow each other.
+    fn middles(&self, triangles: &[[u32; 3]]) -> Range<u32> {
         let middle = |face: u32| {
-            let side = fans.side(FaceId(face))?;
+            let side = self.fans.side(FaceId(face))?;
             Some(triangles[face as usize][side.previous().corner()])
         };
-        let first = (0..triangles.len() as u32).filter_map(middle).min();
-        first.unwrap_or(count as u32)..count as u32
+        let all = || (0..triangles.len() as u32).filter_map(middle);
+        let (first, last) = (all().min(), all().max());
+        first.unwrap_or(0)..last.map_or(0, |last| last + 1)
     }
+}
+
+/// The corners of quads for those of others that may be cut by their other diagonals, both after a step, before which there were so many
+/// vertices.
+fn as_cut(others: &[[u32; 3]], own: &[[u32; 3]], [other_count, count]: [u32; 2]) -> Vec<u32> {
+    let mut corners = Vec::with_capacity(3 * own.len());
+    let pairs = others.as_chunks::<2>().0.iter().zip(own.as_chunks::<2>().0);
+    for (other, &[first, second]) in pairs {
+        // A quad begins at the vertex that it keeps, or turned by one at the middle of a side.
+        let turn = usize::from(first[0] >= count) + 4 - usize::from(other[0][0] >= other_count);
+        let quad = [first[0], first[1], second[0], first[2]];
+        // As `halves` has them.
+        corners.extend([0, 1, 3, 2, 3, 1].map(|i| quad[(i + 8 - turn) % 4]));
+    }
+    corners
 }

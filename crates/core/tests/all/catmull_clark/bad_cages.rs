@@ -298,7 +298,7 @@ fn boundaries_of_polygons_keep_what_they_are_asked_to() {
 /// Any polygons over few vertices, some at one place: there is a surface within the tolerance or a reason why not, never a broken mesh.
 #[test]
 fn any_polygons_have_a_surface_or_a_report() {
-    let mut found = 0;
+    let (mut found, mut same) = (0, 0);
     for seed in 0..300 {
         let mut random = Random::new(seed);
         let mut junk = PolygonSoup::default();
@@ -328,10 +328,23 @@ fn any_polygons_have_a_surface_or_a_report() {
         let weld = [Weld::Exact, Weld::Never][random.below(2)];
         let options = BuildOptions::default().weld(weld);
         let rules = QuadOptions::default().smooth_triangles(seed % 3 == 0);
-        let Ok((control, _)) = QuadControl::from_soup_with(&junk, &options, &rules) else {
+        let Ok((control, diagnosis)) = QuadControl::from_soup_with(&junk, &options, &rules) else {
             continue;
         };
         control.mesh.validate().unwrap();
+        // What is carried takes the same step as positions do.
+        let values = junk.positions.as_flattened().to_vec();
+        let places = Channel::new("places", Semantic::Displacement, Domain::Vertex, 3)
+            .with(values, (0..vertices as u32).collect());
+        let places = control.channel(&junk, &places).unwrap();
+        for (corner, &v) in control.mesh.triangles().as_flattened().iter().enumerate() {
+            let place: Point = places.value(corner).try_into().unwrap();
+            let own = control.mesh.positions()[v as usize];
+            // Sheets that many faces share an edge of may be cut apart at vertices that the file has not.
+            let is_there = diagnosis.non_manifold_edges.is_empty();
+            assert!(near(place, own, 1e-12) || !is_there, "{seed}");
+            same += usize::from(is_there);
+        }
         let goal = ExactOptions::default().tolerance(0.02 * control.mesh.diagonal());
         match exact(&control.mesh, &CatmullClark, &goal) {
             Ok(mesh) => {
@@ -341,5 +354,5 @@ fn any_polygons_have_a_surface_or_a_report() {
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }
-    assert!(found > 200, "{found}");
+    assert!(found > 200 && same > 1000, "{found} {same}");
 }
