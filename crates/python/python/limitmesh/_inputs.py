@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from . import _incoming, _options
+from . import _arrays, _incoming, _options
 from ._arrays import MeshIn
 from ._limitmesh import MeshError
 from ._mesh import Channel, Mesh
