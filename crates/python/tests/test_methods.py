@@ -203,7 +203,7 @@ def test_quads_of_catmull_clark_are_pairs_of_triangles(tmp_path):
         sides = [len(face) for face in limitmesh.load(path).faces]
         assert sides.count(4) == len(found.quads)
     with pytest.raises(limitmesh.OptionError, match="catmull-clark"):
-        limitmesh.refine(vertices, cube, quads=True)
+        limitmesh.refine(vertices, cube, quads=True, scheme="loop")
     with pytest.raises(limitmesh.OptionError, match="distances"):
         limitmesh.refine(vertices, cube, quads=True, angle=5, scheme="catmull-clark")
 
@@ -242,7 +242,7 @@ def test_smooth_triangles_are_a_rule_of_catmull_clark():
         quads = (point + 2 * edges + centres) / 4
         assert np.abs(found[0] - (2 * point + 2 * edges + 4 * quads) / 8).max() < 1e-12
     with pytest.raises(limitmesh.OptionError, match="catmull-clark"):
-        limitmesh.refine(vertices, faces, smooth_triangles=True)
+        limitmesh.refine(vertices, faces, smooth_triangles=True, scheme="loop")
 
 
 def test_cages_know_their_vertices_and_polygons():
