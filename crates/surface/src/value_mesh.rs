@@ -19,6 +19,28 @@ pub struct ValueMesh {
     pub values: Vec<u32>,
 }
 
+impl ValueMesh {
+    /// How many numbers of a value fit into a position.
+    pub const TOGETHER: usize = 3;
+
+    /// The mesh with numbers of the channel's values as positions: those from `first` on, and zeros where there are no more.
+    ///
+    /// # Errors
+    /// A value is not finite.
+    pub fn with_numbers(&self, channel: &Channel, first: usize) -> Result<Mesh, MeshError> {
+        let last = channel.arity.min(first + Self::TOGETHER);
+        let position = |&value: &u32| {
+            let mut position = [0.0; Self::TOGETHER];
+            let start = value as usize * channel.arity;
+            let own = &channel.values[start + first..start + last];
+            position[..own.len()].copy_from_slice(own);
+            position
+        };
+        let positions = self.values.iter().map(position).collect();
+        self.mesh.clone().with_positions(positions)
+    }
+}
+
 /// A fan of faces at a control vertex.
 struct Fan {
     value: u32,

@@ -357,7 +357,7 @@ impl RefineArguments {
         Ok(self.scheme_name().in_quarters()?.scheme())
     }
 
-    /// The name of the scheme that holds, once it is decided ([`Self::for_faces`]).
+    /// The name of the scheme that holds: what was asked for, or what a file's faces decided.
     pub(crate) fn scheme_name(&self) -> RefiningScheme {
         self.asked_scheme().unwrap_or_default()
     }
@@ -369,8 +369,8 @@ impl RefineArguments {
             .or(needs_quads.then_some(RefiningScheme::CatmullClark))
     }
 
-    /// The first option that is for triangles alone.
-    pub(crate) fn needs_triangles(&self) -> Option<&'static str> {
+    /// The first option that is for triangles alone, as it was given.
+    pub(crate) fn needs_triangles(&self) -> Option<String> {
         let exact = &self.exact;
         let options = [
             ("--within", exact.within.is_some()),
@@ -378,10 +378,11 @@ impl RefineArguments {
             ("--proof", self.proof.is_some()),
             ("--shared-topology", self.shared_topology),
         ];
-        let is_other = !matches!(self.method, Method::Exact | Method::Uniform);
-        let other = is_other.then_some("--method");
-        let given = options.into_iter().find(|&(_, is_given)| is_given);
-        other.or(given.map(|(name, _)| name))
+        if !matches!(self.method, Method::Exact | Method::Uniform) {
+            return Some(format!("--method {}", self.method.name()));
+        }
+        let mut given = options.into_iter().filter(|&(_, is_given)| is_given);
+        given.next().map(|(name, _)| name.to_owned())
     }
 
     /// Whether the scheme is for quads.

@@ -22,8 +22,8 @@ use crate::value_mesh::{ValueMesh, value_mesh};
 use places::Places;
 use sites::{Sites, SitesByFace};
 
-/// Numbers that are evaluated together: a value mesh has as many coordinates.
-const TOGETHER: usize = 3;
+/// Numbers that are evaluated together.
+const TOGETHER: usize = ValueMesh::TOGETHER;
 
 /// The channels of a refined mesh: of its corners, or of its faces, in the order of the control mesh's.
 ///
@@ -135,10 +135,11 @@ pub fn goal(
         return Ok(None);
     }
     let by_corner = by_corner(channel, control);
-    let values = ValueMeshes::of(&by_corner, rule, control)?;
+    let values = values_of(&by_corner, rule, control)?;
+    let mesh = |first| values.with_numbers(&by_corner, first);
     let meshes = (0..channel.arity)
         .step_by(TOGETHER)
-        .map(|first| values.mesh(first))
+        .map(|first| mesh(first).map_err(|error| no_limit(channel, error)))
         .collect::<Result<_, _>>()?;
     Ok(Some(AttributeGoal::values(meshes, tolerance)))
 }
@@ -200,46 +201,11 @@ fn linear(channel: &Channel, control: &Mesh, sites: &Sites<'_>) -> Vec<f64> {
     values
 }
 
-/// The mesh of a channel's values, with some of their numbers as its positions.
-struct ValueMeshes<'a> {
-    channel: &'a Channel,
-    mesh: Mesh,
-    /// By vertex, the channel's value.
-    values: Vec<u32>,
-}
-
-impl<'a> ValueMeshes<'a> {
-    fn of(channel: &'a Channel, rule: SeamRule, control: &Mesh) -> Result<Self, ChannelError> {
-        // A quad counts once, by its own edge at a vertex.
-        let begins_face = |h| !control.topology().is_diagonal(h);
-        let ValueMesh { mesh, values } = value_mesh(control, channel, rule, begins_face)
-            .map_err(|error| no_limit(channel, error))?;
-        Ok(Self {
-            channel,
-            mesh,
-            values,
-        })
-    }
-
-    /// The one whose positions are the numbers from `first` on, and zeros where there are no more.
-    fn mesh(&self, first: usize) -> Result<Mesh, ChannelError> {
-        let last = self.channel.arity.min(first + TOGETHER);
-        let coordinates = |&value: &u32| {
-            let mut position = [0.0; TOGETHER];
-            let start = value as usize * self.channel.arity;
-            let own = &self.channel.values[start + first..start + last];
-            position
-                .iter_mut()
-                .zip(own)
-                .for_each(|(x, &value)| *x = value);
-            position
-        };
-        let positions = self.values.iter().map(coordinates).collect();
-        self.mesh
-            .clone()
-            .with_positions(positions)
-            .map_err(|error| no_limit(self.channel, error))
-    }
+/// The mesh of a channel's values.
+fn values_of(channel: &Channel, rule: SeamRule, control: &Mesh) -> Result<ValueMesh, ChannelError> {
+    // A quad counts once, by its own edge at a vertex.
+    let begins_face = |h| !control.topology().is_diagonal(h);
+    value_mesh(control, channel, rule, begins_face).map_err(|error| no_limit(channel, error))
 }
 
 fn no_limit(channel: &Channel, why: impl ToString) -> ChannelError {
@@ -257,12 +223,14 @@ fn smooth(
     scheme: &dyn Scheme,
     sites: &Sites<'_>,
 ) -> Result<Vec<f64>, ChannelError> {
-    let meshes = ValueMeshes::of(channel, rule, control)?;
+    let own = values_of(channel, rule, control)?;
     let by_face = sites.by_face(control.face_count());
     let places = |face: usize, visit: &mut dyn FnMut([f64; 3])| by_face.for_each_place(face, visit);
     let mut values = limitmesh_pages::defaults(channel.arity * sites.len());
     for first in (0..channel.arity).step_by(TOGETHER) {
-        let mesh = meshes.mesh(first)?;
+        let mesh = own
+            .with_numbers(channel, first)
+            .map_err(|error| no_limit(channel, error))?;
         let surface = LimitSurface::without_normals(&mesh, scheme)
             .map_err(|error| no_limit(channel, error))?;
         let own = (channel.arity, first);

@@ -231,6 +231,51 @@ fn smooth_channels_of_creased_meshes_are_the_other_implementation_s() {
     }
 }
 
+/// Beside a semi-sharp edge on the other side of a seam a value is kept for as long as the edge is sharp: by hand, the limit of a
+/// boundary whose vertex is half a corner in the first step.
+#[test]
+fn semi_sharp_edges_keep_values_beside_seams_while_they_are_sharp() {
+    let (_, mesh) = samples().swap_remove(0);
+    let topology = mesh.topology();
+    let ring: Vec<_> = topology.outgoing_ring(limitmesh::VertexId(0)).collect();
+    let half = ring.len() / 2;
+    let target = |h| topology.target(h).index();
+    for (sharpness, corner) in [(0.5, 0.5), (INFINITELY_SHARP, 1.0)] {
+        let tag = crease(topology.ends(ring[1]).map(|v| v.0), sharpness);
+        let mesh = mesh
+            .clone()
+            .with_tags(crate::support::creases(vec![tag]))
+            .unwrap();
+        // A value for each vertex, and another for the corners of the first on the side that has not the edge.
+        let mut values: Vec<f64> = (0..mesh.vertex_count()).map(|v| (v as f64).sin()).collect();
+        let other = values.len() as u32;
+        values.push(3.0);
+        let mut indices = mesh.triangles().as_flattened().to_vec();
+        ring[half..].iter().for_each(|h| indices[h.index()] = other);
+        let [a, b] = [values[target(ring[half])], values[target(ring[0])]];
+        let channel = Channel::new("x", Semantic::Other, Domain::Corner, 1)
+            .with(values, indices)
+            .interpolated(Interpolation::Smooth(SeamRule::CornersPlus1));
+        let fine = twice_divided(&mesh);
+        let found = carried(&[channel], &mesh, &Loop, &fine).unwrap().remove(0);
+        let own = (0..fine.mesh.triangles().as_flattened().len()).find(|&corner| {
+            fine.mesh.triangles().as_flattened()[corner] == 0
+                && fine.parents[corner / 3] == ring[half].face().0
+        });
+        let smooth = (6.0 * 3.0 + a + b) / 8.0;
+        let step = corner * 3.0 + (1.0 - corner) * smooth;
+        let expected = match corner {
+            1.0 => 3.0,
+            _ => ((a + 3.0) / 2.0 + 4.0 * step + (b + 3.0) / 2.0) / 6.0,
+        };
+        let value = found.value(own.unwrap())[0];
+        assert!(
+            (value - expected).abs() < 1e-12,
+            "{sharpness}: {value} {expected}"
+        );
+    }
+}
+
 /// A channel whose values are positions is where the vertices are.
 #[test]
 fn positions_as_a_channel_are_positions() {

@@ -314,6 +314,21 @@ fn creased_cube(sharpness: f64) -> PolygonSoup {
     soup
 }
 
+/// A cube without one side and with another in two triangles.
+fn opened(mut cube: PolygonSoup) -> PolygonSoup {
+    cube.faces = Default::default();
+    let faces: [&[u32]; 6] = [
+        &[0, 2, 3, 1],
+        &[4, 5, 7],
+        &[4, 7, 6],
+        &[0, 1, 5, 4],
+        &[2, 6, 7, 3],
+        &[0, 4, 6, 2],
+    ];
+    faces.iter().for_each(|face| cube.faces.push(face));
+    cube
+}
+
 #[test]
 fn certified_meshes_are_where_plain_subdivision_leads() {
     check("cube", &cube(), 5, 1e-2);
@@ -437,17 +452,7 @@ fn quads_are_near_however_they_are_cut() {
 /// A smooth channel whose values are positions is where the vertices are, also where a step divides polygons first.
 #[test]
 fn positions_as_a_channel_take_the_step() {
-    let mut soup = creased_cube(1.6);
-    soup.faces = Default::default();
-    let faces: [&[u32]; 6] = [
-        &[0, 2, 3, 1],
-        &[4, 5, 7],
-        &[4, 7, 6],
-        &[0, 1, 5, 4],
-        &[2, 6, 7, 3],
-        &[0, 4, 6, 2],
-    ];
-    faces.iter().for_each(|face| soup.faces.push(face));
+    let soup = opened(creased_cube(1.6));
     for smooth_triangles in [false, true] {
         let rules = QuadOptions::default().smooth_triangles(smooth_triangles);
         let build = BuildOptions::default();
@@ -558,17 +563,7 @@ fn production_cages_are_met_with_few_triangles() {
 /// Each vertex of a uniform mesh is one of plain subdivision's, and its triangles are halves of the quads there.
 #[test]
 fn uniform_refinement_is_plain_subdivision() {
-    let mut mixed = cube();
-    mixed.faces = Default::default();
-    let faces: [&[u32]; 6] = [
-        &[0, 2, 3, 1],
-        &[4, 5, 7],
-        &[4, 7, 6],
-        &[0, 1, 5, 4],
-        &[2, 6, 7, 3],
-        &[0, 4, 6, 2],
-    ];
-    faces.iter().for_each(|face| mixed.faces.push(face));
+    let mixed = opened(cube());
     let mut tagged = mixed.clone();
     tagged.faces.push(&[1, 3, 7, 5]);
     for (vertices, sharpness) in [([4, 7], 0.4), ([7, 5], 1.7), ([0, 2], 10.0)] {

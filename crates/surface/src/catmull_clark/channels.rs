@@ -6,12 +6,10 @@ use std::collections::HashMap;
 use super::control::{Divided, Polygons, QuadControl};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{
-    Channel, ChannelError, Domain, Fans, Interpolation, MeshError, PolygonSoup, SeamRule,
+    Channel, ChannelError, Domain, Fans, Interpolation, MeshError, NONE, PolygonFaces, PolygonSoup,
+    SeamRule,
 };
 use crate::value_mesh::{ValueMesh, value_mesh};
-
-/// Numbers that take the step together.
-const TOGETHER: usize = 3;
 
 impl QuadControl {
     /// A channel of the soup that the quads were made of on their mesh. Where a step divided polygons, new values are means, and those of
@@ -46,34 +44,28 @@ type Table = (Vec<f64>, Vec<u32>);
 impl Divided {
     /// A channel on the fans; in the middle of a polygon it has the mean of its corners.
     fn on_fans(&self, soup: &PolygonSoup, channel: &Channel) -> Result<Channel, ChannelError> {
-        let fans = &self.fans;
-        let topology = fans.mesh.topology();
-        let is_middle = |h: HalfEdgeId| fans.centres.contains(&topology.origin(h).0);
-        let mut trace = fans.trace.clone();
-        for h in topology.half_edges().filter(|&h| is_middle(h)) {
-            trace.corners[h.index()] = trace.corners[h.next().index()];
-        }
-        let mut own = channel.on_mesh(soup, &fans.mesh, &trace)?;
-        let mut middles: HashMap<u32, u32> = HashMap::with_capacity(fans.centres.len());
-        for h in topology.half_edges().filter(|&h| is_middle(h)) {
-            let centre = topology.origin(h).0;
-            let number = *middles.entry(centre).or_insert_with(|| {
-                let corners = topology
-                    .outgoing_ring(topology.origin(h))
-                    .map(HalfEdgeId::next);
-                let corners: Vec<u32> = corners.map(|corner| own.indices[corner.index()]).collect();
-                for at in 0..own.arity {
-                    let values = corners
-                        .iter()
-                        .map(|&i| own.values[i as usize * own.arity + at]);
-                    let sum: f64 = values.sum();
-                    own.values.push(sum / corners.len() as f64);
+        let (fans, topology) = (&self.fans, self.fans.mesh.topology());
+        let (mut trace, mut rows) = (fans.trace.clone(), PolygonFaces::default());
+        let mut of_middles = vec![NONE; fans.centres.len()];
+        for h in topology.half_edges() {
+            let corner = |h: HalfEdgeId| fans.trace.corners[h.index()];
+            let row = rows.len() as u32;
+            let middle = topology.origin(h).0.checked_sub(fans.centres.start);
+            match middle.and_then(|middle| of_middles.get_mut(middle as usize)) {
+                None => rows.push(&[corner(h)]),
+                Some(known) if *known != NONE => {
+                    trace.between.push(*known);
+                    continue;
                 }
-                (own.values.len() / own.arity) as u32 - 1
-            });
-            own.indices[h.index()] = number;
+                Some(known) => {
+                    *known = row;
+                    rows.push(&fans.sides(h.next()).map(corner).collect::<Vec<_>>());
+                }
+            }
+            trace.between.push(row);
         }
-        Ok(own)
+        trace.rows = rows;
+        channel.on_mesh(soup, &fans.mesh, &trace)
     }
 
     /// The step of a channel on the fans, by corner of the triangles that positions have after it.
@@ -85,59 +77,26 @@ impl Divided {
     ) -> Result<Table, MeshError> {
         let fans = &self.fans;
         let is_side = |h: HalfEdgeId| fans.side(h.face()) == Some(h);
-        let ValueMesh { mesh, values } = value_mesh(&fans.mesh, own, rule, is_side)?;
-        let centres = self.middles(mesh.triangles());
+        let values = value_mesh(&fans.mesh, own, rule, is_side)?;
+        let before = [fans.mesh.vertex_count(), values.values.len()].map(|count| count as u32);
         let (mut table, mut indices) = (Vec::new(), Vec::new());
-        for first in (0..own.arity).step_by(TOGETHER) {
-            let last = own.arity.min(first + TOGETHER);
-            let position = |&value: &u32| {
-                let mut position = [0.0; TOGETHER];
-                let start = value as usize * own.arity;
-                let part = &own.values[start + first..start + last];
-                position
-                    .iter_mut()
-                    .zip(part)
-                    .for_each(|(to, &from)| *to = from);
-                position
-            };
-            let mesh = mesh
-                .clone()
-                .with_positions(values.iter().map(position).collect())?;
+        for first in (0..own.arity).step_by(ValueMesh::TOGETHER) {
             let part = Fans {
-                mesh,
-                centres: centres.clone(),
+                mesh: values.with_numbers(own, first)?,
+                centres: self.middles(values.mesh.triangles()),
                 trace: fans.trace.clone(),
             };
-            let quads = Polygons::of(&part)
-                .refined(&part, self.smooth_triangles)?
-                .mesh;
+            let polygons = Polygons::of(&part);
+            let quads = polygons.refined(&part, self.smooth_triangles)?.mesh;
             table.resize(own.arity * quads.vertex_count(), 0.0);
             for (row, position) in table.chunks_exact_mut(own.arity).zip(quads.positions()) {
-                row[first..last].copy_from_slice(&position[..last - first]);
+                let left = &mut row[first..];
+                let count = left.len().min(ValueMesh::TOGETHER);
+                left[..count].copy_from_slice(&position[..count]);
             }
-            let before = [fans.mesh.vertex_count(), values.len()];
-            indices = as_cut(
-                triangles,
-                quads.triangles(),
-                before.map(|count| count as u32),
-            );
+            indices = as_cut(triangles, quads.triangles(), before);
         }
-        // Fans of one value stay where they are, and share it.
-        let mut first_of: HashMap<u32, u32> = HashMap::new();
-        let shared = (0..)
-            .zip(&values)
-            .map(|(fan, &value)| *first_of.entry(value).or_insert(fan));
-        let shared: Vec<u32> = shared.collect();
-        let width = own.arity;
-        for index in &mut indices {
-            let Some(&first) = shared.get(*index as usize) else {
-                continue;
-            };
-            let row = |fan: u32| &table[fan as usize * width..][..width];
-            if row(first) == row(*index) {
-                *index = first;
-            }
-        }
+        share(&mut indices, &values.values, &table, own.arity);
         Ok((table, indices))
     }
 
@@ -150,6 +109,23 @@ impl Divided {
         let all = || (0..triangles.len() as u32).filter_map(middle);
         let (first, last) = (all().min(), all().max());
         first.unwrap_or(0)..last.map_or(0, |last| last + 1)
+    }
+}
+
+/// Gives fans of one value one number again where they have stayed where they were.
+fn share(indices: &mut [u32], values: &[u32], table: &[f64], arity: usize) {
+    let mut first_of: HashMap<u32, u32> = HashMap::new();
+    let firsts = (0..)
+        .zip(values)
+        .map(|(fan, &value)| *first_of.entry(value).or_insert(fan));
+    let firsts: Vec<u32> = firsts.collect();
+    let row = |fan: u32| &table[fan as usize * arity..][..arity];
+    for index in indices {
+        if let Some(&first) = firsts.get(*index as usize)
+            && row(first) == row(*index)
+        {
+            *index = first;
+        }
     }
 }
 

@@ -60,7 +60,8 @@ fn at_quads(patch: &QuadPatch, rules: &Rules<'_>) -> Option<Cone> {
     around(points, limits.map(|row| sum(row, own)), bounds)
 }
 
-/// The ρ that points differ by for each by which they differ from the map, and the map's J and ∂χ.
+/// What is known of a characteristic map: how many times as long as the difference of control points from its image ρ can get, the least
+/// Jacobian J, and the greatest derivatives ∂χ.
 struct Bounds {
     growth: f64,
     least_jacobian: f64,

@@ -30,12 +30,8 @@ pub(super) fn options(arguments: &RefineArguments) -> anyhow::Result<Option<Form
         return usage(option.refusal(way, arguments.method));
     }
     if let (true, Some(option)) = (arguments.has_quads(), arguments.needs_triangles()) {
-        let method = match option {
-            "--method" => format!("--method {}", arguments.method.name()),
-            option => option.to_owned(),
-        };
         return usage(format!(
-            "{method} is for triangles, and does not go with --scheme catmull-clark"
+            "{option} is for triangles, and does not go with --scheme catmull-clark"
         ));
     }
     if arguments.smooth_triangles && !arguments.has_quads() {

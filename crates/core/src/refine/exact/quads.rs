@@ -115,23 +115,21 @@ impl Pairing<'_> {
             .iter()
             .flat_map(|&[_, face]| [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face), corner)));
         let mut pairs: Vec<Pair> = corners.filter_map(|h| self.pair(h)).collect();
-        let rank = |pair: &Pair| (!pair.is_cell, pair.flatness, pair.between[0]);
-        pairs.sort_by(|a, b| {
-            let ([first, second], [a, b]) = ([rank(a), rank(b)], [a, b].map(|pair| pair.between));
-            let by_angle = first.1.total_cmp(&second.1);
-            first.0.cmp(&second.0).then(by_angle).then(a.cmp(&b))
-        });
+        // Bits of numbers that are not below 0 have their order.
+        pairs.sort_by_key(|pair| (!pair.is_cell, pair.flatness.to_bits(), pair.between[0]));
         let Some(&[quad, _]) = faces.first() else {
             return Vec::new();
         };
         let halves = [0, 1].map(|half| self.surface.patch(FaceId(2 * quad + half)));
         let pieces = QuadPieces { halves };
+        let off = self.off(quad, faces);
         let mut is_free = vec![true; faces.len()];
         let mut found = Vec::new();
         for pair in pairs {
             let place = |h: HalfEdgeId| faces.partition_point(|&[_, face]| face < h.face().0);
             let [first, second] = pair.between.map(place);
-            if is_free[first] && is_free[second] && self.is_near(&pair, &pieces, quad) {
+            let is_on = !exceeds(off[first].max(off[second]), self.limit);
+            if is_on && is_free[first] && is_free[second] && self.is_near(&pair, &pieces) {
                 (is_free[first], is_free[second]) = (false, false);
                 found.push(pair.between);
             }
@@ -191,28 +189,39 @@ impl Pairing<'_> {
         })
     }
 
+    /// By triangle over a control quad, the greatest distance of its corners from their places on the surface.
+    fn off(&self, quad: u32, faces: &[[u32; 2]]) -> Vec<f64> {
+        let mut off = vec![0.0f64; faces.len()];
+        for half in [2 * quad, 2 * quad + 1] {
+            let (mut corners, mut places) = (Vec::new(), Vec::new());
+            let own = faces.iter().enumerate();
+            for (at, &[_, face]) in
+                own.filter(|(_, own)| self.exact.parents[own[1] as usize] == half)
+            {
+                for h in [0, 1, 2].map(|corner| HalfEdgeId::of(FaceId(face), corner)) {
+                    if let Some(origin) = self.exact.corner_origin(self.triangles, h) {
+                        corners.push((at, self.exact.mesh.topology().origin(h)));
+                        places.push(origin.barycentric);
+                    }
+                }
+            }
+            let points = self.surface.over(FaceId(half), &places);
+            for ((at, vertex), point) in corners.into_iter().zip(points) {
+                let own = vector(self.exact.mesh.positions()[vertex.index()]);
+                off[at] = off[at].max(own.distance(vector(point.position)));
+            }
+        }
+        off
+    }
+
     /// Whether the surface is near to a pair that is cut by the other diagonal.
-    fn is_near(&self, pair: &Pair, pieces: &QuadPieces, quad: u32) -> bool {
-        let off = (0..4).map(|i| {
-            let [u, v] = pair.places[i];
-            let (half, [u, v]) = match u + v > 1.0 {
-                false => (0, [u, v]),
-                true => (1, [1.0 - u, 1.0 - v]),
-            };
-            let point = self
-                .surface
-                .at(FaceId(2 * quad + half), [1.0 - u - v, u, v]);
-            pair.points[i].distance(vector(point.position))
-        });
-        let off = off.fold(0.0, f64::max);
-        let halves = [[0, 1, 3], [1, 2, 3]].map(|half| {
+    fn is_near(&self, pair: &Pair, pieces: &QuadPieces) -> bool {
+        [[0, 1, 3], [1, 2, 3]].into_iter().all(|half: [usize; 3]| {
             let triangle = half.map(|i| pair.points[i]);
             let places = half.map(|i| pair.places[i]);
-            pieces.bound(triangle, places, self.limit, self.surface.rules())
-        });
-        halves
-            .into_iter()
-            .all(|bound| !exceeds(bound.max(off), self.limit))
+            let bound = pieces.bound(triangle, places, self.limit, self.surface.rules());
+            !exceeds(bound, self.limit)
+        })
     }
 }
 
