@@ -1,5 +1,6 @@
-// Uniform tessellation of Loop's limit surface with OpenSubdiv's Bfr, one thread, in double precision: limit position and
-// unit normal of every vertex, each evaluated once, and the triangles.
+// Uniform tessellation of a limit surface with OpenSubdiv's Bfr, one thread, in double precision: limit position and unit
+// normal of every vertex, each evaluated once, and the triangles. The surface is Catmull-Clark's where the first face is a
+// quad, with approximation level 4, at which Bfr's vertices are on the surface; Loop's where it is a triangle.
 // Usage: opensubdiv_bfr FILE.obj LEVEL REPEATS; prints "triangles seconds" for each repeat (CPU time). The control mesh's
 // topology is built before the clock starts.
 #include <opensubdiv/bfr/refinerSurfaceFactory.h>
@@ -48,24 +49,29 @@ int main(int argc, char **argv) {
     descriptor.numFaces = static_cast<int>(sizes.size());
     descriptor.numVertsPerFace = sizes.data();
     descriptor.vertIndicesPerFace = indices.data();
+    int const sides = sizes[0];
+    bool const quads = sides == 4;
     Sdc::Options options;
     options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
     typedef Far::TopologyRefinerFactory<Far::TopologyDescriptor> Factory;
     Far::TopologyRefiner *refiner =
-        Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_LOOP, options));
+        Factory::Create(descriptor, Factory::Options(quads ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP, options));
     Far::TopologyLevel const &base = refiner->GetLevel(0);
 
     for (int repeat = 0; repeat < repeats; ++repeat) {
         double const start = cpu_seconds();
         int const faces = base.GetNumFaces(), edges = base.GetNumEdges(), corners = base.GetNumVertices();
-        int const on_edge = rate - 1, inside = (rate - 1) * (rate - 2) / 2;
+        int const on_edge = rate - 1, inside = quads ? on_edge * on_edge : on_edge * (rate - 2) / 2;
+        int const triangles_of_face = rate * rate * (quads ? 2 : 1);
         size_t const vertices = corners + size_t(edges) * on_edge + size_t(faces) * inside;
         std::vector<double> positions(3 * vertices), normals(3 * vertices);
-        std::vector<int> triangles(3 * size_t(faces) * rate * rate);
+        std::vector<int> triangles(3 * size_t(faces) * triangles_of_face);
         std::vector<char> known(corners, 0), known_edge(edges, 0);
 
         typedef Bfr::RefinerSurfaceFactory<> SurfaceFactory;
-        SurfaceFactory factory(*refiner, SurfaceFactory::Options());
+        SurfaceFactory::Options precise;
+        if (quads) precise.SetApproxLevelSmooth(4).SetApproxLevelSharp(4);
+        SurfaceFactory factory(*refiner, precise);
         Bfr::Surface<double> surface;
         std::vector<double> points, coords;
         std::vector<int> names, facets;
@@ -81,7 +87,7 @@ int main(int argc, char **argv) {
             names.clear();
             std::vector<char> fresh(count, 1);
             Far::ConstIndexArray of_face = base.GetFaceVertices(face), around = base.GetFaceEdges(face);
-            for (int side = 0; side < 3; ++side) {
+            for (int side = 0; side < sides; ++side) {
                 int const corner = of_face[side], edge = around[side];
                 fresh[names.size()] = !known[corner];
                 known[corner] = 1;
@@ -108,7 +114,7 @@ int main(int argc, char **argv) {
             int const facet_count = tessellation.GetNumFacets();
             facets.resize(tessellation.GetFacetSize() * facet_count);
             tessellation.GetFacets(facets.data());
-            int *out = &triangles[3 * size_t(face) * rate * rate];
+            int *out = &triangles[3 * size_t(face) * triangles_of_face];
             int const size = tessellation.GetFacetSize();
             for (int f = 0; f < facet_count; ++f)
                 for (int c = 0; c < 3; ++c) *out++ = names[facets[f * size + c]];

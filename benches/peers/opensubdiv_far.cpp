@@ -1,5 +1,6 @@
-// Uniform Loop refinement with OpenSubdiv's Far::PrimvarRefiner, one thread, positions of the refined mesh.
-// Usage: opensubdiv_far FILE.obj LEVEL REPEATS; prints "triangles seconds" for each repeat (CPU time).
+// Uniform refinement with OpenSubdiv's Far::PrimvarRefiner, one thread, positions of the refined mesh: Catmull-Clark where
+// the first face is a quad, Loop where it is a triangle.
+// Usage: opensubdiv_far FILE.obj LEVEL REPEATS; prints "triangles seconds" for each repeat (CPU time), a quad being two.
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 
@@ -48,6 +49,8 @@ int main(int argc, char **argv) {
             sizes.push_back(size);
         }
     }
+    bool const quads = sizes[0] == 4;
+    Sdc::SchemeType const scheme = quads ? Sdc::SCHEME_CATMARK : Sdc::SCHEME_LOOP;
     for (int repeat = 0; repeat < repeats; ++repeat) {
         double const start = cpu_seconds();
         Far::TopologyDescriptor descriptor;
@@ -59,7 +62,7 @@ int main(int argc, char **argv) {
         options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_ONLY);
         typedef Far::TopologyRefinerFactory<Far::TopologyDescriptor> Factory;
         Far::TopologyRefiner *refiner =
-            Factory::Create(descriptor, Factory::Options(Sdc::SCHEME_LOOP, options));
+            Factory::Create(descriptor, Factory::Options(scheme, options));
         refiner->RefineUniform(Far::TopologyRefiner::UniformOptions(level));
         Far::PrimvarRefinerReal<double> primvars(*refiner);
         std::vector<Position> coarse = positions, fine;
@@ -68,7 +71,7 @@ int main(int argc, char **argv) {
             primvars.Interpolate(l, coarse, fine);
             coarse.swap(fine);
         }
-        int const triangles = refiner->GetLevel(level).GetNumFaces();
+        int const triangles = refiner->GetLevel(level).GetNumFaces() * (quads ? 2 : 1);
         delete refiner;
         std::printf("%d %.6f\n", triangles, cpu_seconds() - start);
     }

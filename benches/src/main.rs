@@ -3,7 +3,7 @@
 //! `cargo run --release -p limitmesh-benches -- WORK [MODELS]` with MODELS the folder of the shared models (default: the
 //! environment variable `LIMITMESH_MODELS`) and WORK one of
 //!
-//! * `uniform`, `stepwise`, `distance`, `certified`, `load`: speed beside peers; `speed` runs all of these;
+//! * `uniform`, `uniform-quads`, `stepwise`, `distance`, `certified`, `load`: speed beside peers; `speed` runs all of these;
 //! * `against-paper`, `against-uniform`, `against-optimum`, `against-simplified`, `certificate`: how good exact refinement
 //!   is, over many models; `quality` runs all of these;
 //! * `throughput`: its triangles per second and bytes per triangle;
@@ -46,7 +46,14 @@ use anyhow::{Context, Result, bail};
 use limitmesh::Mesh;
 
 /// All measurements of speed beside peers, in the order in which `speed` makes them.
-const SPEED: [&str; 5] = ["uniform", "stepwise", "distance", "certified", "load"];
+const SPEED: [&str; 6] = [
+    "uniform",
+    "uniform-quads",
+    "stepwise",
+    "distance",
+    "certified",
+    "load",
+];
 
 /// All measurements of quality, in the order in which `quality` makes them.
 const QUALITY: [&str; 5] = [
@@ -99,6 +106,7 @@ fn measure(work: &str, folder: &Path) -> Result<()> {
     let bunny = folder.join("bunny_3674.obj");
     match work {
         "uniform" => refinement::uniform(&bunny),
+        "uniform-quads" => refinement::uniform_quads(&folder.join("bob_cage.obj")),
         "stepwise" => refinement::stepwise(&bunny),
         "distance" => distance::distance(&bunny),
         "certified" => distance::certified(&bunny),

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use anyhow::Result;
-use limitmesh::Mesh;
+use anyhow::{Result, ensure};
 use limitmesh::criterion::LimitNormal;
 use limitmesh::refine::{StepwiseOptions, UniformOptions};
-use limitmesh::scheme::Loop;
+use limitmesh::scheme::{CatmullClark, Loop, Scheme};
+use limitmesh::{Mesh, QuadControl};
 
 use crate::clock::one_thread;
 use crate::peers::{OpenSubdiv, opensubdiv};
@@ -14,11 +14,24 @@ use crate::{best_of, mesh};
 
 const REPEATS: usize = 5;
 
-/// Uniform Loop refinement, levels 3 to 6.
+/// Uniform refinement by Loop's scheme, levels 3 to 6.
 pub(crate) fn uniform(model: &Path) -> Result<()> {
-    let control = mesh(model)?;
+    by_scheme(model, &mesh(model)?, &Loop)
+}
+
+/// The same by Catmull and Clark's; the cage must be of quads alone.
+pub(crate) fn uniform_quads(model: &Path) -> Result<()> {
+    let cage = limitmesh_io::read(model)?;
+    let quads = cage.faces.iter().all(|face| face.len() == 4);
+    ensure!(quads, "{} is not of quads alone", name(model));
+    let (control, _) = QuadControl::from_soup(&cage, &Default::default())?;
+    by_scheme(model, &control.mesh, &CatmullClark)
+}
+
+fn by_scheme(model: &Path, control: &Mesh, scheme: &dyn Scheme) -> Result<()> {
     println!(
-        "uniform Loop of {}: million output triangles per second, best of {REPEATS}",
+        "uniform {} of {}: million output triangles per second, best of {REPEATS}",
+        scheme.name(),
         name(model)
     );
     println!("level  triangles  1 thread  2 threads  gain  OpenSubdiv Far, 1 thread");
@@ -26,7 +39,7 @@ pub(crate) fn uniform(model: &Path) -> Result<()> {
         let run = |threads| {
             best_of(REPEATS, threads, || {
                 let options = UniformOptions::default().levels(level);
-                limitmesh::refine::uniform(&control, &Loop, &options).map(|r| r.mesh.face_count())
+                limitmesh::refine::uniform(control, scheme, &options).map(|r| r.mesh.face_count())
             })
         };
         let (one, triangles) = run(1)?;
@@ -48,12 +61,12 @@ pub(crate) fn uniform(model: &Path) -> Result<()> {
             one / two
         );
     }
-    limits(model, &control)
+    limits(model, control, scheme)
 }
 
 /// The same with all vertices on the limit surface and with their normals, by processor time on one thread, as triangles alone and as
 /// a mesh with its connections; the gain of two threads by the clock.
-fn limits(model: &Path, control: &Mesh) -> Result<()> {
+fn limits(model: &Path, control: &Mesh, scheme: &dyn Scheme) -> Result<()> {
     println!(
         "\nthe same with limit positions: million triangles per processor second, best of {REPEATS}; triangles alone, as of the peer, \
          but for the mesh with connections"
@@ -64,11 +77,11 @@ fn limits(model: &Path, control: &Mesh) -> Result<()> {
     for level in [4, 5] {
         let options = UniformOptions::default().levels(level).limit(true);
         let alone = |normals| {
-            limitmesh::refine::uniform_triangles(control, &Loop, &options.normals(normals))
+            limitmesh::refine::uniform_triangles(control, scheme, &options.normals(normals))
                 .map(|found| found.triangles.len())
         };
         let connected = || {
-            limitmesh::refine::uniform(control, &Loop, &options.normals(true))
+            limitmesh::refine::uniform(control, scheme, &options.normals(true))
                 .map(|r| r.mesh.face_count())
         };
         let (mut least, mut triangles, mut peer) = ([f64::MAX; 3], 0, None::<f64>);

@@ -143,10 +143,15 @@ impl<'a, P: HullPoint> Search<'a, P> {
     /// A part of a bicubic piece.
     fn bicubic(&mut self, piece: &Bicubic, part: SubTriangle, borders: Borders) {
         let frame = self.bound.frame;
-        let corners = piece.part.corners();
-        let middles = [0, 1, 2].map(|edge| piece.part.along(edge, 0.5));
-        let places = part.corners(corners, middles);
-        let net = piece.net(places, |point| P::of(frame, point));
+        let seen = |point| P::of(frame, point);
+        let net = match part {
+            SubTriangle::Whole => piece.part_net_of(seen),
+            _ => {
+                let corners = piece.part.corners();
+                let middles = [0, 1, 2].map(|edge| piece.part.along(edge, 0.5));
+                piece.net(part.corners(corners, middles), seen)
+            }
+        };
         self.net(&net, borders, self.effort.halvings);
     }
 

@@ -14,6 +14,7 @@ use limitmesh::refine::{ExactOptions, Finish, Traced, UniformOptions, exact, qua
 use limitmesh::scheme::CatmullClark;
 use limitmesh::{FaceId, LimitSurface, Mesh, QuadControl, QuadOptions};
 
+use crate::opensubdiv;
 use crate::support::{Point, Random, shared_models};
 
 fn soup(positions: &[Point], faces: &[&[u32]]) -> PolygonSoup {
@@ -623,6 +624,38 @@ fn uniform_refinement_is_plain_subdivision() {
             assert!(sorted(&own) == sorted(&expected), "{name} {levels}");
             plain = plain.refined();
         }
+    }
+}
+
+fn uniform_points(soup: &PolygonSoup, smooths: bool, levels: usize) -> (Vec<Point>, f64) {
+    let rules = QuadOptions::default().smooth_triangles(smooths);
+    let (control, _) = QuadControl::from_soup_with(soup, &BuildOptions::default(), &rules).unwrap();
+    let quads = soup.faces.iter().all(|face| face.len() == 4);
+    let levels = levels - usize::from(!quads);
+    let options = UniformOptions::default().levels(levels);
+    let found = uniform(&control.mesh, &CatmullClark, &options).unwrap();
+    (found.mesh.positions().to_vec(), control.mesh.diagonal())
+}
+
+#[test]
+fn uniform_refinement_is_the_other_implementation_s() {
+    let is_other = |name: &str, cage: &PolygonSoup, smooths, levels| {
+        let theirs = opensubdiv::of_cage(cage, opensubdiv::catmull_clark(smooths), levels);
+        let (ours, size) = uniform_points(cage, smooths, levels);
+        opensubdiv::assert_same_points(name, &ours, &theirs, size);
+    };
+    for seed in 0..40 {
+        let cage = random_cage(&mut Random::new(seed));
+        for smooths in [false, true] {
+            is_other(&format!("cage {seed}"), &cage, smooths, 3);
+        }
+    }
+    let Some(folder) = shared_models() else {
+        return;
+    };
+    for name in ["bob_cage", "fish_cage", "monsterfrog", "rook_creased"] {
+        let text = std::fs::read_to_string(folder.join(name).with_extension("obj")).unwrap();
+        is_other(name, &obj(&text), false, 2);
     }
 }
 

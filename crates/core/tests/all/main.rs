@@ -3,6 +3,7 @@
 #[macro_use]
 extern crate limitmesh_testing;
 
+mod opensubdiv;
 mod support;
 
 mod angles;

@@ -4,6 +4,7 @@
 
 use std::ops::ControlFlow;
 
+use crate::opensubdiv;
 use crate::support::*;
 use limitmesh::criterion::{
     Criterion, CriterionError, LimitNormal, NeighbourNormal, View, Viewpoint,
@@ -74,46 +75,10 @@ fn uniform_loop_is_brute_force_loop() {
 
 #[test]
 fn uniform_loop_is_the_other_implementation_s() {
-    use opensubdiv_rs::{far, sdc};
     for (name, mesh) in samples() {
-        let corners = vec![3usize; mesh.face_count()];
-        let descriptor = far::TopologyDescriptor::new(
-            mesh.vertex_count(),
-            &corners,
-            mesh.triangles().as_flattened(),
-        );
-        let options = sdc::Options::default()
-            .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
-        let mut refiner =
-            far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options)
-                .unwrap();
-        refiner.refine_uniform(far::UniformOptions::new(2));
-        let primvars = far::PrimvarRefiner::new(&refiner);
-        let mut theirs = mesh.positions().to_vec();
-        for level in 1..=2 {
-            let mut next = vec![[0.0f64; 3]; refiner.level(level).num_vertices()];
-            primvars.interpolate(level, &theirs, &mut next);
-            theirs = next;
-        }
+        let theirs = opensubdiv::of_mesh(&mesh, 2);
         let ours = refined(&mesh, 2);
-        assert_eq!(ours.vertex_count(), theirs.len(), "{name}");
-        // Its weights are f32: 1e-6 of the mesh's size is its precision.
-        let tolerance = 1e-6 * mesh.diagonal();
-        for &p in ours.positions() {
-            let nearest = theirs
-                .iter()
-                .map(|&q| distance(p, q))
-                .fold(f64::MAX, f64::min);
-            assert!(nearest < tolerance, "{name}: {p:?} is {nearest} away");
-        }
-        for &q in &theirs {
-            let nearest = ours
-                .positions()
-                .iter()
-                .map(|&p| distance(p, q))
-                .fold(f64::MAX, f64::min);
-            assert!(nearest < tolerance, "{name}: {q:?} is {nearest} away");
-        }
+        opensubdiv::assert_same_points(name, ours.positions(), &theirs, mesh.diagonal());
     }
 }
 

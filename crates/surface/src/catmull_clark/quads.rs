@@ -11,6 +11,9 @@ use crate::ring::{SharpRing, decremented};
 /// The half-edges of the triangles that are halves of a quad, by the quad's half-edge.
 const IN_HALVES: [u32; 4] = [0, 5, 3, 2];
 
+/// The quad's half-edges by those of its halves; [`NONE`] on the diagonal.
+const OF_HALVES: [u32; 6] = [0, NONE, 3, 2, NONE, 1];
+
 /// Connected quads.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Quads {
@@ -35,9 +38,10 @@ pub(crate) fn previous(h: u32) -> u32 {
 }
 
 /// The half-edge of a quad that runs along one of its halves, not on the diagonal.
+#[inline]
 pub(crate) fn of_half(h: HalfEdgeId) -> Option<u32> {
-    let place = IN_HALVES.iter().position(|&at| at == h.0 % 6)?;
-    Some(4 * (h.0 / 6) + place as u32)
+    let place = OF_HALVES[h.0 as usize % 6];
+    (place != NONE).then(|| 4 * (h.0 / 6) + place)
 }
 
 /// The half-edge of the quad that begins at the vertex that a half-edge of one of its halves leaves.
@@ -46,6 +50,7 @@ pub(crate) fn spoke(h: HalfEdgeId) -> u32 {
 }
 
 /// The half-edge of a quad's half that runs along an edge of the quad.
+#[inline]
 pub(crate) fn in_half(h: u32) -> HalfEdgeId {
     HalfEdgeId(6 * (h / 4) + IN_HALVES[h as usize % 4])
 }

@@ -1,16 +1,20 @@
 //! Limit positions and normals of the vertices of a mesh of quads.
 
 use core::f64::consts::PI;
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+use smallvec::SmallVec;
 
 use super::sides::{SidedNormals, area_weighted_normal};
-use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, of_half, previous, spoke};
+use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, next, of_half, previous, spoke};
 use crate::catmull_clark::ring::{RingLimits, RingSide};
 use crate::catmull_clark::step::slot;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
-use crate::ring::VertexRule;
+use crate::ring::{SharpRing, VertexRule};
 use crate::row::{Row, summed};
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -20,39 +24,80 @@ const POLLED: usize = 1 << 10;
 /// Two tangents whose lengths and sine are above this part of what they are sums of span a plane whatever rounding does.
 const CLEAR: f64 = 1e-12;
 
+/// Limits of smooth vertices with fewer edges are kept.
+const KEPT: usize = 16;
+
 /// The limits of a mesh of quads.
 pub(crate) struct QuadLimits<'m> {
     quads: MeshQuads<'m>,
+    /// By the number of edges.
+    smooth: [OnceLock<RingLimits>; KEPT],
 }
 
 /// The ring of a vertex, with its limits and its points.
-struct Ring {
-    limits: RingLimits,
+struct Ring<'a> {
+    limits: Cow<'a, RingLimits>,
     /// Half-edges that leave the vertex, one a quad.
     spokes: Vec<u32>,
     edges: usize,
     /// Whether nothing at it is sharp.
     is_smooth: bool,
-    points: Vec<DVec3>,
+    points: Points,
 }
+
+type Points = SmallVec<[DVec3; 17]>;
 
 impl<'m> QuadLimits<'m> {
     pub(crate) fn of(mesh: &'m Mesh, sharpness: &'m Sharpness<'m>) -> Self {
         Self {
             quads: MeshQuads { mesh, sharpness },
+            smooth: [const { OnceLock::new() }; KEPT],
         }
     }
 
-    fn ring(&self, vertex: VertexId) -> Ring {
-        self.ring_at(self.quads.outgoing(vertex))
+    fn ring(&self, vertex: VertexId) -> Ring<'_> {
+        let first = self.quads.outgoing(vertex);
+        self.smooth_ring(vertex, first)
+            .unwrap_or_else(|| self.ring_at(first))
+    }
+
+    /// The ring of a vertex where nothing is sharp, as almost everywhere, without its spokes.
+    fn smooth_ring(&self, vertex: VertexId, first: u32) -> Option<Ring<'_>> {
+        let MeshQuads { mesh, sharpness } = self.quads;
+        if sharpness.is_tagged(vertex) || mesh.topology().is_boundary(vertex) {
+            return None;
+        }
+        let at = |h: u32| vector(mesh.positions()[self.quads.origin(h) as usize]);
+        let mut points = Points::from_elem(at(first), 1);
+        let mut opposite = Points::new();
+        for h in self.quads.around(first) {
+            points.push(at(next(h)));
+            opposite.push(at(next(next(h))));
+        }
+        let edges = opposite.len();
+        points.append(&mut opposite);
+        let of_edges = || {
+            RingLimits::of(&SharpRing {
+                open: false,
+                vertex: 0.0,
+                spokes: vec![0.0; edges],
+            })
+        };
+        Some(Ring {
+            limits: Cow::Borrowed(self.smooth.get(edges)?.get_or_init(of_edges)),
+            spokes: Vec::new(),
+            edges,
+            is_smooth: true,
+            points,
+        })
     }
 
     /// The ring of the vertex that a half-edge leaves. A closed one begins with it.
-    fn ring_at(&self, first: u32) -> Ring {
+    fn ring_at(&self, first: u32) -> Ring<'_> {
         let (ring, points) = self.quads.ring(first);
         let at = |v: u32| vector(self.quads.mesh.positions()[v as usize]);
         Ring {
-            limits: RingLimits::of(&ring),
+            limits: Cow::Owned(RingLimits::of(&ring)),
             spokes: self.quads.around(self.quads.first(first)).collect(),
             edges: ring.spokes.len(),
             is_smooth: ring.rule() == VertexRule::Smooth,
@@ -178,7 +223,7 @@ impl<'m> QuadLimits<'m> {
     }
 }
 
-impl Ring {
+impl Ring<'_> {
     fn sum(&self, weights: &[f64]) -> DVec3 {
         weights.iter().zip(&self.points).map(|(&w, &p)| w * p).sum()
     }

@@ -5,32 +5,37 @@
 //! of degree six. Its points are means of blossoms: of the six arguments that a point has, three at a time are taken for u and the
 //! others for v. All weights are at least 0 and sum to 1, as the arguments lie in the quad.
 
+use std::sync::Arc;
+
+use super::polynomial::RegularPiece;
 use super::sextic::SexticTriangle;
 use super::{LimitPoint, ParamTriangle};
 use crate::vector::{Blend, DVec3, unit_or_zero};
 
 /// The control points of a bicubic piece, by row (v) and column (u); the quad's corners are in the middle. `part` is the triangle of
-/// the quad's domain that the piece covers.
+/// the quad's domain that the piece covers; its parts share the points.
 #[derive(Clone, Debug)]
 pub struct Bicubic {
-    pub(crate) points: [[DVec3; 4]; 4],
+    pub(crate) points: Arc<[[DVec3; 4]; 4]>,
     pub part: ParamTriangle,
 }
 
 /// Weights of four points in a row.
 type Weights = [f64; 4];
 
+const THIRD: f64 = 1.0 / 3.0;
+
 /// The weights of the blossom of a uniform cubic spline on its middle segment, for three arguments in any order.
 fn blossom([a, b, c]: [f64; 3]) -> Weights {
     // Between the knots −1, 0, 1 and 2: first by a, then by b, then by c.
     let first = [
-        [(1.0 - a) / 3.0, (a + 2.0) / 3.0],
-        [(2.0 - a) / 3.0, (a + 1.0) / 3.0],
-        [(3.0 - a) / 3.0, a / 3.0],
+        [THIRD * (1.0 - a), THIRD * (a + 2.0)],
+        [THIRD * (2.0 - a), THIRD * (a + 1.0)],
+        [THIRD * (3.0 - a), THIRD * a],
     ];
     let second = [
-        [(1.0 - b) / 2.0, (b + 1.0) / 2.0],
-        [(2.0 - b) / 2.0, b / 2.0],
+        [0.5 * (1.0 - b), 0.5 * (b + 1.0)],
+        [0.5 * (2.0 - b), 0.5 * b],
     ];
     let third = [1.0 - c, c];
     let mut weights = [0.0; 4];
@@ -86,12 +91,16 @@ const CHOICES: [[f64; 4]; 7] = [
     [1.0, 6.0, 15.0, 20.0],
 ];
 
-/// The net of the first half of a square by the square's Bézier points: the place of a point in the net, that of one in the square by
-/// row and column, and its weight.
-static SHARES: [(u8, u8, f64); 100] = shares();
+/// The points of the net of the first half of a square, each by the square's Bézier points: those by row and column, and their weights.
+static SHARES: [(u8, f64); 100] = SHARES_AND_STARTS.0;
 
-const fn shares() -> [(u8, u8, f64); 100] {
-    let (mut shares, mut count) = ([(0, 0, 0.0); 100], 0);
+/// Where those of each point start, and the end.
+static STARTS: [u8; 29] = SHARES_AND_STARTS.1;
+
+const SHARES_AND_STARTS: ([(u8, f64); 100], [u8; 29]) = shares();
+
+const fn shares() -> ([(u8, f64); 100], [u8; 29]) {
+    let (mut shares, mut starts, mut count) = ([(0, 0.0); 100], [0; 29], 0);
     let (mut at, mut k, mut j) = (0, 0, 0);
     while k <= 6 {
         let counts = [6 - j - k, j, k];
@@ -109,22 +118,22 @@ const fn shares() -> [(u8, u8, f64); 100] {
         let mut point = 0;
         while point < 16 {
             if weights[point] > 0.0 {
-                shares[count] = (at, point as u8, weights[point]);
+                shares[count] = (point as u8, weights[point]);
                 count += 1;
             }
             point += 1;
         }
         at += 1;
+        starts[at] = count as u8;
         (k, j) = if j + k == 6 { (k + 1, 0) } else { (k, j + 1) };
     }
-    shares
+    (shares, starts)
 }
 
 impl Bicubic {
-    /// The weights of a sum over all points.
+    /// The sum of all points by weights.
     fn sum(&self, u: Weights, v: Weights) -> DVec3 {
-        let row = |row: &[DVec3; 4]| (0..4).map(|i| u[i] * row[i]).sum::<DVec3>();
-        (0..4).map(|j| v[j] * row(&self.points[j])).sum()
+        combined(self.points.map(|row| combined(row, u)), v)
     }
 
     /// The point at a place of the quad.
@@ -151,10 +160,11 @@ impl Bicubic {
 
     /// The point at a place of the quad, and the unit normal there.
     pub fn limit(&self, at: [f64; 2]) -> LimitPoint {
-        let [along, across] = self.derivatives(at);
+        let [[u, by_u], [v, by_v]] = at.map(|t| [blossom([t; 3]), derivative(t)]);
+        let [rows, slopes] = [u, by_u].map(|u| self.points.map(|row| combined(row, u)));
         LimitPoint {
-            position: self.point(at),
-            normal: unit_or_zero(along.cross(across)),
+            position: combined(rows, v),
+            normal: unit_or_zero(combined(slopes, v).cross(combined(rows, by_v))),
         }
     }
 
@@ -166,8 +176,7 @@ impl Bicubic {
     /// Moves the piece so that one of its points is at the origin, and gives where that was.
     pub(crate) fn moved_to_origin(&mut self) -> DVec3 {
         let from = self.points[1][1];
-        let all = self.points.as_flattened_mut().iter_mut();
-        all.for_each(|point| *point -= from);
+        *self = self.moved(|point| point - from);
         from
     }
 
@@ -178,32 +187,43 @@ impl Bicubic {
 
     /// A part of its part.
     pub fn child(&self, child: usize) -> Self {
+        self.over(self.part.child(child))
+    }
+
+    /// The piece over another part of the quad.
+    pub fn over(&self, part: ParamTriangle) -> Self {
         Self {
-            points: self.points,
-            part: self.part.child(child),
+            points: self.points.clone(),
+            part,
         }
     }
 
     /// The net of its part.
     pub fn part_net(&self) -> SexticTriangle {
+        self.part_net_of(|point| point)
+    }
+
+    /// The net of its part, of points as somebody sees them.
+    pub fn part_net_of<V: Blend>(&self, seen: impl Fn(DVec3) -> V) -> SexticTriangle<V> {
         let ParamTriangle { u, v, size } = self.part;
         let weights = |from: f64| {
             let to = from + size;
             [[from; 3], [from, from, to], [from, to, to], [to; 3]].map(blossom)
         };
-        let combined = |points: [DVec3; 4], weights: &[Weights; 4]| {
-            let [a, b, c, d] = points;
-            weights.map(|w| a * w[0] + b * w[1] + (c * w[2] + d * w[3]))
-        };
         let (by_u, by_v) = (weights(u), weights(v));
-        let [a, b, c, d] = self.points.map(|row| combined(row, &by_u));
-        let columns = [0, 1, 2, 3].map(|i| combined([a[i], b[i], c[i], d[i]], &by_v));
-        let mut net = [DVec3::ZERO; 28];
-        for &(to, point, weight) in &SHARES {
-            net[usize::from(to)] +=
-                weight * columns[usize::from(point % 4)][usize::from(point / 4)];
-        }
-        SexticTriangle(net)
+        let [a, b, c, d] = self
+            .points
+            .map(|row| by_u.map(|u| combined(row.map(&seen), u)));
+        let rows = by_v.map(|v| [0, 1, 2, 3].map(|i| combined([a[i], b[i], c[i], d[i]], v)));
+        let bezier = rows.as_flattened();
+        SexticTriangle(core::array::from_fn(|at| {
+            let own = usize::from(STARTS[at])..usize::from(STARTS[at + 1]);
+            let of = |&(point, weight): &(u8, f64)| bezier[usize::from(point & 15)] * weight;
+            SHARES[own]
+                .iter()
+                .map(of)
+                .fold(V::default(), |sum, own| sum + own)
+        }))
     }
 
     /// The net of a triangle in the quad's domain.
@@ -225,13 +245,8 @@ impl Bicubic {
             })
         };
         let (by_u, by_v) = (weights(0), weights(1));
-        let along =
-            |u: &Weights| points.map(|[a, b, c, d]| a * u[0] + b * u[1] + (c * u[2] + d * u[3]));
-        let rows = by_u.each_ref().map(along);
-        let blossom = |u: usize, v: usize| {
-            let ([a, b, c, d], v) = (rows[u], by_v[v]);
-            a * v[0] + b * v[1] + (c * v[2] + d * v[3])
-        };
+        let rows = by_u.map(|u| points.map(|row| combined(row, u)));
+        let blossom = |u: usize, v: usize| combined(rows[u], by_v[v]);
         SexticTriangle::by(|counts| {
             let mut sum = V::default();
             for (number, taken) in TRIPLES.iter().enumerate() {
@@ -244,6 +259,11 @@ impl Bicubic {
             sum
         })
     }
+}
+
+#[inline(always)]
+fn combined<V: Blend>([a, b, c, d]: [V; 4], weights: Weights) -> V {
+    a * weights[0] + b * weights[1] + (c * weights[2] + d * weights[3])
 }
 
 fn less(all: [usize; 3], taken: [usize; 3]) -> Option<[usize; 3]> {
@@ -261,7 +281,7 @@ mod tests {
             DVec3::new((t * 1.7).sin(), (t * t * 0.31).cos(), (t * 2.9 + 0.4).sin())
         };
         Bicubic {
-            points: [0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| at(4 * j + i))),
+            points: Arc::new([0, 1, 2, 3].map(|j| [0, 1, 2, 3].map(|i| at(4 * j + i)))),
             part,
         }
     }
@@ -326,9 +346,12 @@ mod tests {
                 }
             }
             for i in 0..16 {
-                let mut own = piece.clone();
-                own.points = [[DVec3::ZERO; 4]; 4];
-                own.points[i / 4][i % 4] = DVec3::X;
+                let mut points = [[DVec3::ZERO; 4]; 4];
+                points[i / 4][i % 4] = DVec3::X;
+                let own = Bicubic {
+                    points: Arc::new(points),
+                    ..piece
+                };
                 let net = own.net(places, |point| point);
                 assert!(net.0.iter().all(|point| point.x >= 0.0), "{i}");
             }

@@ -68,7 +68,7 @@ pub enum Patch {
     /// One with semi-sharp tags, of the Loop family.
     SemiSharp(Box<SemiSharpPatch>),
     /// Over half a quad, where the surface is a bicubic polynomial.
-    Bicubic(Box<Bicubic>),
+    Bicubic(Bicubic),
     /// Over half of any other quad.
     Quad(Box<QuadPatch>),
     /// Of a scheme of no known family.
@@ -284,7 +284,7 @@ impl RefinedPatch<'_> {
             Self::Pole(refined) => refined.part(part),
             Self::Sectors(refined) => refined.piece(part),
             Self::SemiSharp(refined) => refined.part(part),
-            Self::Bicubic(piece) => Patch::Bicubic(Box::new(piece.child(part))),
+            Self::Bicubic(piece) => Patch::Bicubic(piece.child(part)),
             Self::Quad(refined) => refined.part(part),
             Self::Mesh(refined) => refined.part(part),
         }

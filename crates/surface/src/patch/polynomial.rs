@@ -2,6 +2,8 @@
 //! family, and halves of bicubic pieces.
 
 use super::bezier_triangle::BezierTriangle;
+use std::sync::Arc;
+
 use super::bicubic::Bicubic;
 use super::normal_net::{
     CUBIC, QUINTIC, SEXTIC, cross_products, differences, quintic_products, tangents,
@@ -155,7 +157,7 @@ impl RegularPiece for Bicubic {
 
     fn moved(&self, to: impl Fn(DVec3) -> DVec3) -> Self {
         Self {
-            points: self.points.map(|row| row.map(&to)),
+            points: Arc::new(self.points.map(|row| row.map(&to))),
             part: self.part,
         }
     }
@@ -175,7 +177,7 @@ impl Polynomial {
     pub(crate) fn of(patch: &Patch) -> Option<Self> {
         match patch {
             Patch::Regular(points) => Some(points.polynomial(&points.net())),
-            Patch::Bicubic(piece) => Some(Self::Bicubic(Bicubic::clone(piece))),
+            Patch::Bicubic(piece) => Some(Self::Bicubic(piece.clone())),
             _ => None,
         }
     }

@@ -46,12 +46,15 @@ impl QuadPatch {
     /// The piece of some surroundings, in its simplest form.
     pub(super) fn piece(form: Arc<QuadForm>, points: Vec<DVec3>) -> Patch {
         match &form.grid {
-            Some(grid) => Patch::Bicubic(Box::new(Bicubic {
-                points: grid
+            Some(grid) => {
+                let points = grid
                     .each_ref()
-                    .map(|row| row.each_ref().map(|own| sum(own, &points))),
-                part: ParamTriangle::WHOLE,
-            })),
+                    .map(|row| row.each_ref().map(|own| sum(own, &points)));
+                Patch::Bicubic(Bicubic {
+                    points: Arc::new(points),
+                    part: ParamTriangle::WHOLE,
+                })
+            }
             None => Patch::Quad(Box::new(Self { form, points })),
         }
     }

@@ -234,7 +234,7 @@ mod tests {
             DVec3::new(x + 0.1 * y * y, y + 0.2 * x, z)
         };
         Bicubic {
-            points: from_fn(|j| from_fn(|i| at(i, j))),
+            points: std::sync::Arc::new(from_fn(|j| from_fn(|i| at(i, j)))),
             part: ParamTriangle::WHOLE.child(3),
         }
     }

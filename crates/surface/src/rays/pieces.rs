@@ -35,7 +35,7 @@ pub(super) enum Form {
     /// The points of a quartic, scaled.
     Quartic(Box<Points>),
     /// Half of a bicubic piece, scaled.
-    Bicubic(Box<Bicubic>),
+    Bicubic(Bicubic),
     /// A piece that is still to be refined, as in the control mesh.
     Irregular(Box<Patch>),
 }
@@ -83,7 +83,7 @@ fn append(
         }
         Patch::Bicubic(own) => {
             let own = own.moved(inside);
-            found.push((around(&own), piece(Form::Bicubic(Box::new(own)))));
+            found.push((around(&own), piece(Form::Bicubic(own))));
         }
         patch if levels == 0 => {
             let mut bounds = NO_BOUNDS;

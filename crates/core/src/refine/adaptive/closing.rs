@@ -111,9 +111,13 @@ impl Engine<'_> {
         let ([a, b, c], [d, e, f]) = (surface.corners(), surface.middles());
         let points = [a, b, c, d, e, f];
         let bits = split.iter().fold(0, |bits, edge| bits | 1 << edge);
+        let patch = surface.patch();
         let leaf = match surface {
             Surface::Regular(piece, domain) => Leaf::Regular(piece.quartic(), domain),
-            Surface::General(piece, rules) => Leaf::General(&piece.patch, rules),
+            Surface::Bicubic(..) | Surface::General(..) => match &patch {
+                Some(patch) => Leaf::General(patch, control.rules),
+                None => return false,
+            },
             Surface::Unknown => return false,
         };
         let behind = Behind {

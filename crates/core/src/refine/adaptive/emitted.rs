@@ -1,5 +1,6 @@
 //! The emitted triangles, each with its vertices and the part of the surface that it approximates.
 
+use core::cell::OnceCell;
 use core::ops::Range;
 
 use super::chains::Chains;
@@ -9,7 +10,7 @@ use super::emit::Emission;
 use super::leaf::LeafTriangle;
 use super::quadtree::{NodeAddress, Trees, is_proven, is_split};
 use super::rim::{Rim, bits};
-use super::surface::{GeneralPiece, QuarticPiece, Surface};
+use super::surface::{QuarticPiece, Surface};
 use super::walk::{EdgeVertex, Node, Visitor, Walk};
 use crate::certificate::{Cell, Pieces, SubTriangle};
 use crate::closure::{Diagonal, closure};
@@ -39,8 +40,8 @@ pub(super) struct Emitted {
 pub(super) enum Over<'e, 'p> {
     /// A part of a regular piece, and the place of the leaf.
     Regular(&'e QuarticPiece, Cell, ParamTriangle),
-    /// Any other, with the limits at the triangle's corners, and the piece over the leaf.
-    General(&'e mut Pieces<'p>, [LimitPoint; 3], &'e GeneralPiece),
+    /// Any other, with the limits at the triangle's corners, and the surface over the leaf.
+    General(&'e mut Pieces<'p>, [LimitPoint; 3], Surface<'e>),
 }
 
 impl Over<'_, '_> {
@@ -258,17 +259,22 @@ impl<B: TriangleVisitor> Leaves<'_, B> {
                     );
                 }
             }
-            Surface::General(piece, rules) => {
-                let mut pieces = Pieces::of(&piece.patch);
-                let [a, b, c] = piece.corners;
+            surface @ (Surface::Bicubic(..) | Surface::General(..)) => {
+                let Some(patch) = surface.patch() else {
+                    return;
+                };
+                let mut pieces = Pieces::of(&patch);
+                let points = OnceCell::new();
                 for (emitted, corners) in triangles {
                     if !self.visitor.wants_triangle(&emitted) {
                         continue;
                     }
-                    let [d, e, f] = *piece.middles(rules);
-                    let points = [a, b, c, d, e, f];
+                    let points = points.get_or_init(|| {
+                        let ([a, b, c], [d, e, f]) = (surface.corners(), surface.middles());
+                        [a, b, c, d, e, f]
+                    });
                     let limits = corners.map(|label| points[label]);
-                    let over = Over::General(&mut pieces, limits, piece);
+                    let over = Over::General(&mut pieces, limits, surface);
                     self.visitor.triangle(&emitted, over, self.rules);
                 }
             }
@@ -298,9 +304,12 @@ impl<B: TriangleVisitor> Leaves<'_, B> {
                 let over = Over::Regular(piece.quartic(), Cell(domain.corners()), domain);
                 self.visitor.triangle(&emitted, over, self.rules);
             }
-            Surface::General(piece, _) => {
-                let over = Over::General(&mut Pieces::of(&piece.patch), piece.corners, piece);
-                self.visitor.triangle(&emitted, over, self.rules);
+            surface @ (Surface::Bicubic(..) | Surface::General(..)) => {
+                if let Some(patch) = surface.patch() {
+                    let mut pieces = Pieces::of(&patch);
+                    let over = Over::General(&mut pieces, surface.corners(), surface);
+                    self.visitor.triangle(&emitted, over, self.rules);
+                }
             }
         }
     }

@@ -23,7 +23,7 @@ use super::measured::{FoundLast, Measured, Value, fail};
 use super::neighbours::{Neighbours, angles, neighbours, sharp_edges};
 use super::quadtree::NodeAddress;
 use super::seen::{DIVISIONS, Seen};
-use super::surface::GeneralPiece;
+use super::surface::Surface;
 use crate::certificate::{
     Deviation, EdgeBounds, Effort, Heights, Pieces, SubTriangle, TriangleFrame, exceeds,
 };
@@ -160,8 +160,8 @@ impl TriangleVisitor for Measuring<'_> {
                 let heights = quartic.jet().heights(cell, among.frame.normal());
                 Height::Regular(heights.lifted_range(among.lifts), heights)
             }
-            Over::General(_, _, piece) => {
-                Height::General(self.attained(&among, emitted, piece, rules))
+            Over::General(_, _, surface) => {
+                Height::General(self.attained(&among, emitted, *surface))
             }
         };
         if self.fails_for_sure(height.least()) {
@@ -343,19 +343,13 @@ impl<'a> Measuring<'a> {
     }
 
     /// The greatest height of a few points of a piece that is not regular.
-    fn attained(
-        &self,
-        among: &Among,
-        emitted: &Emitted,
-        piece: &GeneralPiece,
-        rules: &Rules<'_>,
-    ) -> f64 {
+    fn attained(&self, among: &Among, emitted: &Emitted, surface: Surface<'_>) -> f64 {
         if self.length.is_finite() || self.criteria.is_some() || emitted.part != SubTriangle::Whole
         {
             return 0.0;
         }
-        piece
-            .middles(rules)
+        surface
+            .middles()
             .iter()
             .map(|point| among.frame.height(point.position).abs())
             .fold(0.0, f64::max)

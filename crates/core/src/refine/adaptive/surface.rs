@@ -3,10 +3,12 @@
 
 use core::array::from_fn;
 use core::cell::OnceCell;
+use std::borrow::Cow;
 
 use super::quadtree::NodeAddress;
 use crate::certificate::{NetPart, QuarticJet, SubTriangle};
 use crate::patch::bezier_triangle::BezierTriangle;
+use crate::patch::bicubic::Bicubic;
 use crate::patch::extraordinary::RefinedExtraordinary;
 use crate::patch::{
     Limit, LimitPoint, ParamTriangle, Patch, Points, Quartic, Rules, child_corners,
@@ -83,6 +85,7 @@ impl QuarticPiece {
 /// never.
 pub(super) enum SurfacePiece {
     Regular(Points, OnceCell<Box<QuarticPiece>>),
+    Bicubic(Bicubic),
     General(GeneralPiece),
 }
 
@@ -130,6 +133,7 @@ impl SurfacePiece {
     pub(super) fn of(patch: Patch, corners: [LimitPoint; 3]) -> Self {
         match patch {
             Patch::Regular(points) => Self::Regular(points, OnceCell::new()),
+            Patch::Bicubic(piece) => Self::Bicubic(piece),
             patch => Self::General(GeneralPiece::of(patch, corners)),
         }
     }
@@ -151,6 +155,7 @@ impl SurfacePiece {
                 },
                 ParamTriangle::WHOLE,
             ),
+            Self::Bicubic(piece) => Surface::Bicubic(piece, piece.part),
             Self::General(piece) => Surface::General(piece, rules),
         }
     }
@@ -250,6 +255,8 @@ pub(super) enum Surface<'a> {
     Unknown,
     /// Part of a regular piece.
     Regular(RegularPiece<'a>, ParamTriangle),
+    /// Part of a bicubic piece.
+    Bicubic(&'a Bicubic, ParamTriangle),
     /// Any other piece.
     General(&'a GeneralPiece, &'a Rules<'a>),
 }
@@ -260,6 +267,7 @@ impl<'a> Surface<'a> {
         match self {
             Surface::Unknown => Surface::Unknown,
             Surface::Regular(piece, domain) => Surface::Regular(piece, domain.child(child)),
+            Surface::Bicubic(piece, domain) => Surface::Bicubic(piece, domain.child(child)),
             Surface::General(piece, rules) => piece.child(child, rules),
         }
     }
@@ -274,6 +282,7 @@ impl<'a> Surface<'a> {
                 }; 3]
             }
             Surface::Regular(piece, domain) => piece.quartic().at(domain.corners()),
+            Surface::Bicubic(piece, domain) => domain.corners().map(|at| piece.limit(at)),
             Surface::General(piece, _) => piece.corners,
         }
     }
@@ -290,7 +299,19 @@ impl<'a> Surface<'a> {
             Surface::Regular(piece, domain) => piece
                 .quartic()
                 .at([0, 1, 2].map(|edge| domain.along(edge, 0.5))),
+            Surface::Bicubic(piece, domain) => {
+                [0, 1, 2].map(|edge| piece.limit(domain.along(edge, 0.5)))
+            }
             Surface::General(piece, rules) => *piece.middles(rules),
+        }
+    }
+
+    /// The piece over a node that is not part of a regular piece.
+    pub(super) fn patch(self) -> Option<Cow<'a, Patch>> {
+        match self {
+            Surface::Unknown | Surface::Regular(..) => None,
+            Surface::Bicubic(piece, domain) => Some(Cow::Owned(Patch::Bicubic(piece.over(domain)))),
+            Surface::General(piece, _) => Some(Cow::Borrowed(&piece.patch)),
         }
     }
 
@@ -337,6 +358,12 @@ impl<'a> Surface<'a> {
                             .for_each(|(at, point)| found(at, point));
                     }
                     at += count;
+                }
+            }
+            Surface::Bicubic(piece, domain) => {
+                for at in own {
+                    let place = domain.along(edge, (places[at] - from) / length);
+                    found(at, piece.limit(place));
                 }
             }
             Surface::General(piece, rules) => {

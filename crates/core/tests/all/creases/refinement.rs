@@ -5,6 +5,7 @@ use limitmesh::mesh::Tags;
 use limitmesh::scheme::{Loop, ModifiedButterfly, Scheme};
 
 use crate::creases::plain::{Plain, randomly_tagged};
+use crate::opensubdiv;
 use crate::support::*;
 
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, levels: usize) -> Mesh {
@@ -57,60 +58,10 @@ fn tagged_refinement_follows_the_plain_rules() {
     }
 }
 
-/// The positions after so many levels by the port of OpenSubdiv.
-fn other_implementation(mesh: &Mesh, levels: usize) -> Vec<Point> {
-    use opensubdiv_rs::{far, sdc};
-    let corners = vec![3usize; mesh.face_count()];
-    let tags = mesh.tags();
-    let pairs: Vec<[u32; 2]> = tags.creases.iter().map(|tag| tag.vertices).collect();
-    let weights: Vec<f32> = tags
-        .creases
-        .iter()
-        .map(|tag| tag.sharpness.min(10.0) as f32)
-        .collect();
-    let vertices: Vec<u32> = tags.corners.iter().map(|tag| tag.vertex).collect();
-    let heights: Vec<f32> = tags
-        .corners
-        .iter()
-        .map(|tag| tag.sharpness.min(10.0) as f32)
-        .collect();
-    let descriptor = far::TopologyDescriptor::new(
-        mesh.vertex_count(),
-        &corners,
-        mesh.triangles().as_flattened(),
-    )
-    .with_creases(&pairs, &weights)
-    .with_corners(&vertices, &heights);
-    let options = sdc::Options::default()
-        .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
-    let mut refiner =
-        far::TopologyRefinerFactory::create(descriptor, sdc::SchemeType::Loop, options).unwrap();
-    refiner.refine_uniform(far::UniformOptions::new(levels));
-    let primvars = far::PrimvarRefiner::new(&refiner);
-    let mut positions = mesh.positions().to_vec();
-    for level in 1..=levels {
-        let mut next = vec![[0.0f64; 3]; refiner.level(level).num_vertices()];
-        primvars.interpolate(level, &positions, &mut next);
-        positions = next;
-    }
-    positions
-}
-
 fn check_against_other(name: &str, mesh: &Mesh, levels: usize) {
-    let (ours, theirs) = (
-        refined(mesh, &Loop, levels),
-        other_implementation(mesh, levels),
-    );
-    assert_eq!(ours.vertex_count(), theirs.len(), "{name}");
-    // Its weights are f32.
-    let tolerance = 2e-6 * mesh.diagonal();
-    for &p in ours.positions() {
-        let nearest = theirs
-            .iter()
-            .map(|&q| distance(p, q))
-            .fold(f64::MAX, f64::min);
-        assert!(nearest < tolerance, "{name}: {p:?} is {nearest} away");
-    }
+    let ours = refined(mesh, &Loop, levels);
+    let theirs = opensubdiv::of_mesh(mesh, levels);
+    opensubdiv::assert_same_points(name, ours.positions(), &theirs, mesh.diagonal());
 }
 
 #[test]
