@@ -62,9 +62,8 @@ impl Recipe {
     /// # Errors
     /// No mesh can be made of it.
     fn built(&self, soup: &PolygonSoup) -> Result<Built, Failure> {
-        let build = self.options.build();
-        if !matches!(self.scheme.family(), Some(Family::CatmullClark)) {
-            let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, &build)?;
+        let Some((quads, diagnosis)) = self.quads(soup)? else {
+            let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, &self.options.build())?;
             let channels = soup.channels.iter();
             let channels = channels.map(|channel| channel.on_mesh(soup, &mesh, &trace));
             let channels = channels.collect::<Result<_, _>>()?;
@@ -74,12 +73,7 @@ impl Recipe {
                 trace,
                 channels,
             });
-        }
-        let rules = QuadOptions::default().boundary(self.boundary);
-        let rules = rules
-            .smooth_triangles(self.options.smooth_triangles)
-            .crease_angle(self.options.crease_angle.map(f64::to_radians));
-        let (quads, diagnosis) = QuadControl::from_soup_with(soup, &build, &rules)?;
+        };
         let channels = soup.channels.iter();
         let channels = channels.map(|channel| quads.channel(soup, channel));
         let channels = channels.collect::<Result<_, _>>()?;
@@ -89,6 +83,29 @@ impl Recipe {
             trace: quads.trace,
             channels,
         })
+    }
+
+    /// The polygons of a soup as quads, where the scheme is for these.
+    ///
+    /// # Errors
+    /// No mesh can be made of them.
+    pub(crate) fn quads(
+        &self,
+        soup: &PolygonSoup,
+    ) -> Result<Option<(QuadControl, Diagnosis)>, Failure> {
+        if !matches!(self.scheme.family(), Some(Family::CatmullClark)) {
+            return Ok(None);
+        }
+        let options = &self.options;
+        let rules = QuadOptions::default()
+            .boundary(self.boundary)
+            .smooth_triangles(options.smooth_triangles)
+            .crease_angle(options.crease_angle.map(f64::to_radians));
+        Ok(Some(QuadControl::from_soup_with(
+            soup,
+            &options.build(),
+            &rules,
+        )?))
     }
 
     /// The control mesh of a soup.

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use limitmesh::carry::carried;
 use limitmesh::refine::{ExactStop, Frame, Frames, exact_frames_observed, exact_observed};
+use limitmesh::{PolygonSoup, QuadControl};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,6 +23,16 @@ use crate::tell;
 pub(crate) struct Replay {
     own: Arc<limitmesh::refine::Replay>,
     sources: Arc<Sources>,
+}
+
+/// Positions that follow from others differ by no more than this share of the diagonal.
+const ROUNDING: f64 = 1e-12;
+
+fn elsewhere(what: &str, at: [f64; 3]) -> Failure {
+    Failure::Mesh(format!(
+        "{what} became one at {at:?}: sheets were cut apart within edges, or vertices welded within a distance, of which other positions \
+         tell nothing"
+    ))
 }
 
 /// Rows of positions and of normals.
@@ -51,19 +62,36 @@ impl Replay {
 }
 
 /// Where the vertices of a control mesh are among the input's.
-struct Sources {
-    /// By control vertex, the first that it was.
-    rows: Vec<u32>,
-    /// That and another one that it was.
-    alike: Vec<[u32; 2]>,
+enum Sources {
+    Vertices {
+        /// By control vertex, the first that it was.
+        rows: Vec<u32>,
+        /// That and another one that it was.
+        alike: Vec<[u32; 2]>,
+    },
+    /// They follow from the polygons.
+    Quads(Box<(QuadControl, PolygonSoup)>),
 }
 
 impl Sources {
-    /// Those of the control mesh that came of these positions.
+    /// Those of the control mesh that came of a soup.
     ///
     /// # Errors
     /// It has vertices elsewhere, of which other positions tell nothing.
-    fn of(control: &Control, input: &[[f64; 3]]) -> Result<Self, Failure> {
+    fn of(recipe: &Recipe, control: &Control, soup: PolygonSoup) -> Result<Self, Failure> {
+        if let Some((quads, _)) = recipe.quads(&soup)? {
+            let found = quads.positions(&soup, &soup.positions)?;
+            let near = |(a, b): (&[f64; 3], &[f64; 3])| {
+                let apart = (0..3).map(|axis| (a[axis] - b[axis]).abs());
+                apart.fold(0.0, f64::max) <= ROUNDING * control.diagonal
+            };
+            let mut both = found.iter().zip(control.mesh.positions());
+            return match both.find(|&both| !near(both)) {
+                None => Ok(Self::Quads(Box::new((quads, soup)))),
+                Some((_, at)) => Err(elsewhere("a vertex", *at)),
+            };
+        }
+        let input = &soup.positions;
         let mut rows = vec![u32::MAX; control.mesh.vertex_count()];
         let mut alike = Vec::new();
         for (&own, &input) in control
@@ -92,12 +120,9 @@ impl Sources {
             .zip(&rows)
             .find(is_elsewhere)
         {
-            return Err(Failure::Mesh(format!(
-                "vertices[{row}] became one at {at:?}: sheets were cut apart within edges, or vertices welded within a distance, of \
-                 which other positions tell nothing"
-            )));
+            return Err(elsewhere(&format!("vertices[{row}]"), *at));
         }
-        Ok(Self { rows, alike })
+        Ok(Self::Vertices { rows, alike })
     }
 
     /// Those of the control mesh's vertices.
@@ -105,8 +130,11 @@ impl Sources {
     /// # Errors
     /// What is one vertex has several; `name` is what the rows are called.
     fn positions(&self, input: &[[f64; 3]], name: &str) -> Result<Vec<[f64; 3]>, Failure> {
-        if let Some([a, b]) = self
-            .alike
+        let (rows, alike) = match self {
+            Self::Vertices { rows, alike } => (rows, alike),
+            Self::Quads(known) => return Ok(known.0.positions(&known.1, input)?),
+        };
+        if let Some([a, b]) = alike
             .iter()
             .find(|pair| input[pair[0] as usize] != input[pair[1] as usize])
         {
@@ -115,7 +143,7 @@ impl Sources {
             )));
         }
         let place = |&row: &u32| input.get(row as usize).copied().unwrap_or_default();
-        Ok(self.rows.iter().map(place).collect())
+        Ok(rows.iter().map(place).collect())
     }
 }
 
@@ -133,9 +161,8 @@ pub(crate) fn replay<'py>(
     let (soup, recipe) = (mesh.soup()?, Recipe::new(control)?);
     let (refined, replay) = run(py, threads, progress, move |observer| {
         let start = Instant::now();
-        let positions = soup.positions.clone();
-        let control = recipe.control(soup, observer)?;
-        let sources = Sources::of(&control, &positions)?;
+        let control = recipe.control(soup.clone(), observer)?;
+        let sources = Sources::of(&recipe, &control, soup)?;
         let options = control
             .options(&goals, &recipe)
             .flat_regions(false)
@@ -182,11 +209,11 @@ pub(crate) fn refine_frames<'py>(
     let frames = positions(&frames)?;
     let (refined, errors, replay) = run(py, threads, progress, move |observer| {
         let start = Instant::now();
-        let rest = soup.positions.clone();
-        let control = recipe.control(soup, observer)?;
-        let sources = Sources::of(&control, &rest)?;
+        let vertices = soup.positions.len();
+        let control = recipe.control(soup.clone(), observer)?;
+        let sources = Sources::of(&recipe, &control, soup)?;
         let frames = frames
-            .chunks_exact(rest.len().max(1))
+            .chunks_exact(vertices.max(1))
             .enumerate()
             .map(|(frame, own)| sources.positions(own, &format!("frames[{frame}]")))
             .collect::<Result<Vec<_>, _>>()?;

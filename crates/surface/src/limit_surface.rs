@@ -182,11 +182,22 @@ impl<'a> LimitSurface<'a> {
         let corners = self
             .corner_points(face)
             .map(|point| A::Limit::of(point.position, || point.normal));
+        self.find_on(|| self.patch(face), corners, places, spare, found);
+    }
+
+    /// Answers for places over a piece, given its corners.
+    fn find_on<A: Answers>(
+        &self,
+        patch: impl FnOnce() -> Patch,
+        corners: [A::Limit; 3],
+        places: &mut Vec<Place>,
+        spare: &mut Vec<Place>,
+        found: &mut A,
+    ) {
         take_corners(corners, places, found);
         if !places.is_empty() {
-            let patch = root_patch(self.mesh, &self.sharpness, &self.large, face, &self.rules);
             spare.resize(places.len(), Place::default());
-            self.descend(&patch, corners, [places, spare], DEEPEST, found);
+            self.descend(&patch(), corners, [places, spare], DEEPEST, found);
         }
     }
 

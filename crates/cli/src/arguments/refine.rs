@@ -376,7 +376,6 @@ impl RefineArguments {
             ("--within", exact.within.is_some()),
             ("--optimize", exact.optimize),
             ("--proof", self.proof.is_some()),
-            ("--shared-topology", self.shared_topology),
         ];
         if !matches!(self.method, Method::Exact | Method::Uniform) {
             return Some(format!("--method {}", self.method.name()));

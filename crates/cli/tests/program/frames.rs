@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use limitmesh::Mesh;
 use limitmesh::refine::{LimitDistanceOptions, limit_distance};
-use limitmesh::scheme::Loop;
+use limitmesh::scheme::{CatmullClark, Loop, Scheme};
+use limitmesh::{Mesh, QuadControl};
 use tempfile::TempDir;
 
 use crate::common::{
@@ -33,12 +33,12 @@ const FACES: &str = "f 4/4 3/3 2/2 1/1\nf 5/1 6/2 7/3 8/4\nf 1/1 2/2 6/3 5/4\nf 
 const TAGS: &str =
     "t crease 2/1/0 0 1 10\nt crease 2/1/0 1 2 10\nt crease 2/1/0 2 3 10\nt crease 2/1/0 3 0 2.5\n";
 
-fn frames(folder: &TempDir) -> Vec<PathBuf> {
+fn frames(folder: &TempDir, faces: &str) -> Vec<PathBuf> {
     let frame = |i: usize| {
         file(
             folder,
             &format!("box_{i}.obj"),
-            &frame(0.4 * i as f64, FACES, TAGS),
+            &frame(0.4 * i as f64, faces, TAGS),
         )
     };
     (0..3).map(frame).collect()
@@ -76,16 +76,40 @@ fn mesh(path: &Path) -> Mesh {
     .0
 }
 
+/// The control mesh of a frame's file, as quads if it has more of these than of others.
+fn quads(path: &Path) -> Mesh {
+    let soup = limitmesh_io::read(path).expect("a mesh");
+    let (control, _) = QuadControl::from_soup(&soup, &Default::default()).expect("quads");
+    control.mesh
+}
+
 #[test]
 fn frames_have_the_same_triangles_and_proofs_of_their_own() {
-    let (folder, out) = (folder(), crate::common::folder());
-    let inputs = frames(&folder);
-    let report = folder.path().join("report.json");
-    let command = "refine {} {} {} -o {} --shared-topology --tolerance 0.02 --report {}";
-    let [a, b, c] = &inputs[..] else {
-        panic!("three")
+    let folder = folder();
+    let inputs = frames(&folder, FACES);
+    // Its quads are cut into triangles as those of the first frame are.
+    let control = |input: &Path| {
+        let positions = mesh(input).positions().to_vec();
+        mesh(&inputs[0])
+            .with_positions(positions)
+            .expect("the same vertices")
     };
-    let done = done(command, &[a, b, c, out.path(), &report]);
+    check(&inputs, "--scheme loop", &Loop, control);
+    check(&inputs, "", &CatmullClark, quads);
+    // With two triangles, so that a step divides all faces first.
+    let mixed = FACES.replace("f 5/1 6/2 7/3 8/4", "f 5/1 6/2 7/3\nf 5/1 7/3 8/4");
+    check(&frames(&folder, &mixed), "", &CatmullClark, quads);
+}
+
+fn check(inputs: &[PathBuf], options: &str, scheme: &dyn Scheme, control: impl Fn(&Path) -> Mesh) {
+    let (folder, out) = (folder(), crate::common::folder());
+    let report = folder.path().join("report.json");
+    let command = format!(
+        "refine {{}} {{}} {{}} -o {{}} --shared-topology --tolerance 0.02 --report {{}} {options}"
+    );
+    let mut paths: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+    paths.extend([out.path(), report.as_path()]);
+    let done = done(command.trim(), &paths);
     says!(done.stderr, "3 frames");
     says!(done.stderr, "every frame");
     let report = json_file(&report);
@@ -108,12 +132,8 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
         // Another search finds no more than is proven, between the file that was written and the limit surface of its input.
         let options = LimitDistanceOptions::default().gap(Some(2e-3));
         let written = mesh(output);
-        // Its quads are cut into triangles as those of the first frame are.
-        let control = mesh(&inputs[0])
-            .with_positions(mesh(input).positions().to_vec())
-            .expect("the same vertices");
-        let found =
-            limit_distance(written.as_triangles(), &control, &Loop, &options).expect("a distance");
+        let found = limit_distance(written.as_triangles(), &control(input), scheme, &options)
+            .expect("a distance");
         assert!(found.distance.lower() <= upper && found.distance.upper() <= 0.02 + 2e-3);
         assert!(found.distance.lower() > 1e-3, "refined far too much");
     }
@@ -124,7 +144,7 @@ fn frames_have_the_same_triangles_and_proofs_of_their_own() {
 #[test]
 fn frames_of_other_meshes_are_refused_by_what_differs() {
     let (folder, out) = (folder(), crate::common::folder());
-    let inputs = frames(&folder);
+    let inputs = frames(&folder, FACES);
     let first = &inputs[0];
     let other_faces = FACES.replace("f 4/4 3/3 2/2 1/1", "f 3/3 2/2 1/1 4/4");
     let fewer = FACES

@@ -30,7 +30,9 @@ use wanted::Wants;
 #[non_exhaustive]
 pub enum ReplayError {
     /// The surface is not made of polynomials.
-    #[error("the scheme {scheme:?} is not of the Loop family, whose surfaces a replay needs")]
+    #[error(
+        "the scheme {scheme:?} is none of those whose surfaces are made of polynomials, which a replay needs"
+    )]
     Scheme {
         /// Its name.
         scheme: String,
@@ -146,7 +148,7 @@ impl Replay {
     /// [balance](super::Finish::Balanced) its distance, are on it in every frame.
     ///
     /// # Errors
-    /// A scheme outside the Loop family, a refinement whose vertices have no origins in the control
+    /// A scheme whose surfaces are not made of polynomials, a refinement whose vertices have no origins in the control
     /// mesh, or a vertex without a limit.
     pub fn new(control: &Mesh, scheme: &dyn Scheme, refined: &Exact) -> Result<Self, ReplayError> {
         Self::new_observed(control, scheme, refined, &mut unobserved)
@@ -163,7 +165,7 @@ impl Replay {
         observer: &mut Observer<'_>,
     ) -> Result<Self, ReplayError> {
         let rules = Rules::of(scheme);
-        if !rules.are_of_loop_family() {
+        if !rules.is_certified() {
             return Err(ReplayError::Scheme {
                 scheme: scheme.name().to_owned(),
             });

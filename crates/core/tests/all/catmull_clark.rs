@@ -476,6 +476,20 @@ fn positions_as_a_channel_take_the_step() {
             let position = fine.mesh.positions()[vertex as usize];
             assert!(near(position, value, 1e-13), "{position:?} {value:?}");
         }
+        let moved: Vec<Point> = soup
+            .positions
+            .iter()
+            .map(|[x, y, z]| [x + 0.3 * y, y + 0.2 * x * z, 2.0 * z])
+            .collect();
+        let found = control.positions(&soup, &moved).unwrap();
+        let other = PolygonSoup {
+            positions: moved,
+            ..soup.clone()
+        };
+        let (other, _) = QuadControl::from_soup_with(&other, &build, &rules).unwrap();
+        for (&own, &expected) in found.iter().zip(other.mesh.positions()) {
+            assert!(near(own, expected, 1e-13), "{own:?} {expected:?}");
+        }
     }
 }
 
@@ -680,7 +694,7 @@ fn smooth_triangles_have_their_weights() {
 }
 
 /// A torus of quads, some of them cut or missing, two perhaps joined to a hexagon, with tags.
-fn random_cage(random: &mut Random) -> PolygonSoup {
+pub(crate) fn random_cage(random: &mut Random) -> PolygonSoup {
     let (m, n) = (3 + random.below(4) as u32, 4 + random.below(2) as u32);
     let mut cage = PolygonSoup::default();
     for i in 0..m {

@@ -1,5 +1,7 @@
 //! Uniform refinement by the port of OpenSubdiv: another implementation of the schemes.
 
+#![allow(clippy::unwrap_used)]
+
 use limitmesh::Mesh;
 use limitmesh::mesh::{CornerTag, CreaseTag, PolygonSoup};
 use opensubdiv_rs::{far, sdc};
@@ -7,13 +9,13 @@ use opensubdiv_rs::{far, sdc};
 use crate::support::{Point, distance};
 
 /// How it is told which scheme it is.
-pub fn loops() -> (sdc::SchemeType, sdc::Options) {
+pub(crate) fn loops() -> (sdc::SchemeType, sdc::Options) {
     let options = sdc::Options::default()
         .with_vtx_boundary_interpolation(sdc::VtxBoundaryInterpolation::EdgeOnly);
     (sdc::SchemeType::Loop, options)
 }
 
-pub fn catmull_clark(smooth_triangles: bool) -> (sdc::SchemeType, sdc::Options) {
+pub(crate) fn catmull_clark(smooth_triangles: bool) -> (sdc::SchemeType, sdc::Options) {
     let triangles = match smooth_triangles {
         true => sdc::TriangleSubdivision::Smooth,
         false => sdc::TriangleSubdivision::Catmark,
@@ -23,7 +25,7 @@ pub fn catmull_clark(smooth_triangles: bool) -> (sdc::SchemeType, sdc::Options) 
 }
 
 /// The positions after so many levels.
-pub fn of_mesh(mesh: &Mesh, levels: usize) -> Vec<Point> {
+pub(crate) fn of_mesh(mesh: &Mesh, levels: usize) -> Vec<Point> {
     let cage = PolygonSoup {
         positions: mesh.positions().to_vec(),
         faces: mesh.triangles().iter().map(|t| t.as_slice()).collect(),
@@ -35,7 +37,7 @@ pub fn of_mesh(mesh: &Mesh, levels: usize) -> Vec<Point> {
 }
 
 /// The positions after so many levels.
-pub fn of_cage(
+pub(crate) fn of_cage(
     cage: &PolygonSoup,
     (scheme, options): (sdc::SchemeType, sdc::Options),
     levels: usize,
@@ -68,7 +70,7 @@ pub fn of_cage(
 
 /// Checks that each of `ours` is one of `theirs` and each of theirs one of ours; where sheets were cut apart, ours has some twice. Its
 /// weights are `f32`: `size` is the mesh's.
-pub fn assert_same_points(name: &str, ours: &[Point], theirs: &[Point], size: f64) {
+pub(crate) fn assert_same_points(name: &str, ours: &[Point], theirs: &[Point], size: f64) {
     let tolerance = 2e-6 * size;
     for (from, to) in [(ours, theirs), (theirs, ours)] {
         let mut to = to.to_vec();

@@ -3,14 +3,15 @@
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
+use crate::catmull_clark::random_cage;
 use crate::support::*;
 use limitmesh::mesh::{PolygonSoup, Tags};
 use limitmesh::refine::{
     Exact, ExactOptions, Finish, Frame, Frames, LimitDistanceOptions, RefineError, Replay,
     ReplayError, Traced, exact, exact_frames, limit_distance,
 };
-use limitmesh::scheme::{Loop, LoopWarren, ModifiedButterfly, Scheme};
-use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh};
+use limitmesh::scheme::{CatmullClark, Loop, LoopWarren, ModifiedButterfly, Scheme};
+use limitmesh::{FaceId, HalfEdgeId, LimitSurface, Mesh, QuadControl};
 
 /// Triangles within a hundredth of the size, fewer where `share` is greater.
 fn refined(mesh: &Mesh, scheme: &dyn Scheme, share: f64) -> Exact {
@@ -159,10 +160,24 @@ fn off(control: &Mesh, scheme: &dyn Scheme, refined: &Exact, frame: &Frame) -> [
     off
 }
 
+/// Cages of quads and other polygons, with holes and tags.
+fn cages() -> Vec<(String, Mesh)> {
+    let cage = |seed| {
+        let soup = random_cage(&mut Random::new(seed));
+        let (control, _) = QuadControl::from_soup(&soup, &Default::default()).unwrap();
+        (format!("cage {seed}"), control.mesh)
+    };
+    (0..20).map(cage).collect()
+}
+
 #[test]
 fn vertices_are_on_the_limit_surface_of_each_frame() {
-    for (name, mesh) in meshes() {
-        let schemes = [(&Loop as &dyn Scheme, 6e-3), (&LoopWarren, 5e-2)];
+    let quads = cages().into_iter();
+    let quads = quads.map(|(name, mesh)| (name, mesh, vec![(&CatmullClark as &dyn Scheme, 6e-3)]));
+    let loops: Vec<(&dyn Scheme, f64)> = vec![(&Loop, 6e-3), (&LoopWarren, 5e-2)];
+    let meshes = meshes().into_iter();
+    let meshes = meshes.map(|(name, mesh)| (name, mesh, loops.clone()));
+    for (name, mesh, schemes) in meshes.chain(quads) {
         for (scheme, share) in schemes {
             let refined = refined(&mesh, scheme, share);
             let replay = Replay::new(&mesh, scheme, &refined).unwrap();

@@ -84,7 +84,7 @@ def replay(
     creases: Any = None,
     corners: Any = None,
     boundary: Boundary = "smooth",
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
     weld: float | None = 0.0,
     repair: bool = True,
@@ -105,7 +105,7 @@ def replay(
     tolerance, triangles, angle, pixels, cameras
         Goals, as for `refine`. Flat regions are divided like others, since they may bend.
     crease_angle, creases, corners, boundary, scheme, channels, weld, repair, index_dtype
-        As for `refine`; the scheme is ``"loop"`` or ``"loop-warren"``. Corners of 180° and more are taken as tagged.
+        As for `refine`; the scheme is not ``"butterfly"``. Corners of 180° and more are taken as tagged.
     max_triangles, max_levels, max_memory, strict, threads, progress
         As for `refine`.
 
@@ -204,7 +204,7 @@ def refine_frames(
     creases: Any = None,
     corners: Any = None,
     boundary: Boundary = "smooth",
-    scheme: Scheme = "loop",
+    scheme: Scheme | None = None,
     channels: Mapping[str, Channel | npt.ArrayLike] | None = None,
     weld: float | None = 0.0,
     repair: bool = True,
@@ -227,7 +227,7 @@ def refine_frames(
     tolerance, angle, pixels, cameras
         Goals, as for `refine`; parts of the diagonal are of the first frame's. Flat regions are divided like others.
     crease_angle, creases, corners, boundary, scheme, channels, weld, repair, index_dtype
-        As for `refine`, all by the first frame; the scheme is ``"loop"`` or ``"loop-warren"``. What is welded there must stay
+        As for `refine`, all by the first frame; the scheme is not ``"butterfly"``. What is welded there must stay
         together. Corners of 180° and more are taken as tagged.
     max_triangles, max_memory
         Caps; a frame that takes more is an `OptionError`.

@@ -7,7 +7,7 @@ use super::control::{Divided, Polygons, QuadControl};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::mesh::{
     Channel, ChannelError, Domain, Fans, Interpolation, MeshError, NONE, PolygonFaces, PolygonSoup,
-    SeamRule,
+    SeamRule, Semantic,
 };
 use crate::value_mesh::{ValueMesh, value_mesh};
 
@@ -28,6 +28,29 @@ impl QuadControl {
             }
             _ => Ok(by_means),
         }
+    }
+
+    /// Where the vertices of the mesh are for other positions of the vertices of `soup`, the one that the quads were made of: for the
+    /// frames of an animation.
+    ///
+    /// # Errors
+    /// Another number of positions than the soup has.
+    pub fn positions(
+        &self,
+        soup: &PolygonSoup,
+        positions: &[[f64; 3]],
+    ) -> Result<Vec<[f64; 3]>, ChannelError> {
+        let values = positions.as_flattened().to_vec();
+        let all = Channel::new("positions", Semantic::Displacement, Domain::Vertex, 3)
+            .with(values, (0..positions.len() as u32).collect());
+        let all = self.channel(soup, &all)?;
+        let mut found = vec![[0.0; 3]; self.mesh.vertex_count()];
+        for (corner, &vertex) in self.mesh.triangles().as_flattened().iter().enumerate() {
+            if let [x, y, z] = *all.value(corner) {
+                found[vertex as usize] = [x, y, z];
+            }
+        }
+        Ok(found)
     }
 }
 

@@ -4,7 +4,7 @@
 //! them begins follows from the diagonals: the halves of quads that the second and the fourth corner are joined by are cut by the
 //! middles of their edges into halves of such quads again ([`crate::mesh::Topology::has_quads`]).
 
-use crate::index::{HalfEdgeId, VertexId};
+use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, NONE, Sharpness};
 use crate::ring::{SharpRing, decremented};
 
@@ -42,6 +42,11 @@ pub(crate) fn previous(h: u32) -> u32 {
 pub(crate) fn of_half(h: HalfEdgeId) -> Option<u32> {
     let place = OF_HALVES[h.0 as usize % 6];
     (place != NONE).then(|| 4 * (h.0 / 6) + place)
+}
+
+/// The half-edge of the quad that begins at the right angle of a half.
+pub(crate) fn of_face(face: FaceId) -> u32 {
+    4 * (face.0 / 2) + 2 * (face.0 % 2)
 }
 
 /// The half-edge of the quad that begins at the vertex that a half-edge of one of its halves leaves.
@@ -238,6 +243,19 @@ impl Connected for Quads {
 }
 
 impl Quads {
+    /// All of it in words, which no other quads have.
+    pub(crate) fn words(&self) -> Vec<u32> {
+        let own = self.corners.as_flattened().iter().chain(&self.twins);
+        let sharp = self.sharp_edges.iter().chain(&self.sharp_vertices);
+        let sharp = sharp.flat_map(|&bits| [bits as u32, (bits >> 32) as u32]);
+        let lengths = [self.corners.len(), self.sharp_edges.len()].map(|length| length as u32);
+        lengths
+            .into_iter()
+            .chain(own.copied())
+            .chain(sharp)
+            .collect()
+    }
+
     pub(crate) fn vertex_count(&self) -> usize {
         let greatest = self.corners.as_flattened().iter().max();
         greatest.map_or(0, |&vertex| vertex as usize + 1)

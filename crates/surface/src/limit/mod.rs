@@ -105,7 +105,7 @@ mod error;
 mod evaluate;
 mod neighbourhood;
 mod open;
-mod quads;
+pub(crate) mod quads;
 mod refined;
 mod rows;
 mod sharp;

@@ -5,10 +5,15 @@
 //! others zero: coordinates are weights then.
 
 use super::LimitSurface;
+use super::places::{Coordinates, Place};
+use crate::catmull_clark::quads::{Connected, MeshQuads, of_face};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::limit::LimitError;
+use crate::limit::quads::QuadLimits;
 use crate::parallel;
+use crate::patch::quad::QuadPatch;
 use crate::patch::submesh::submesh_of;
+use crate::vector::DVec3;
 
 /// Places whose weights are found together.
 const BLOCK: usize = 64;
@@ -79,6 +84,9 @@ impl LimitSurface<'_> {
         if face.index() >= self.mesh.face_count() {
             return Ok(found);
         }
+        if self.mesh.topology().has_quads() {
+            return Ok(self.weights_on_quad(face, places));
+        }
         let rings = RINGS[usize::from(!self.rules.are_of_loop_family())];
         let (small, sources) = submesh_of(
             self.mesh,
@@ -111,6 +119,40 @@ impl LimitSurface<'_> {
         }
         found.iter_mut().for_each(joined);
         Ok(found)
+    }
+
+    /// The weights over half of a quad, by pieces of the unit vectors.
+    fn weights_on_quad(&self, face: FaceId, places: &[[f64; 3]]) -> Vec<Vec<(VertexId, f64)>> {
+        let (mesh, sharpness) = (self.mesh, &self.sharpness);
+        let (own, sources) = MeshQuads { mesh, sharpness }.surroundings(of_face(face));
+        let form = self.rules.quad_forms().of(own);
+        let limits = QuadLimits::of(mesh, sharpness);
+        let corners = mesh.triangles()[face.index()].map(|v| limits.row(VertexId(v)));
+        let mut found = vec![Vec::new(); places.len()];
+        for (three, own) in sources.chunks(3).enumerate() {
+            let mut units = vec![DVec3::ZERO; sources.len()];
+            (0..own.len()).for_each(|axis| units[3 * three + axis][axis] = 1.0);
+            let corners = corners.each_ref().map(|row| {
+                let mut limit = DVec3::ZERO;
+                for &(vertex, weight) in row {
+                    let axis = own.iter().position(|&source| source == vertex);
+                    axis.into_iter().for_each(|axis| limit[axis] = weight);
+                }
+                limit
+            });
+            let of = |(at, &weights): (usize, &[f64; 3])| Place::of(at, weights);
+            let mut places = places.iter().enumerate().map(of).collect();
+            let mut points = vec![[0.0; 3]; found.len()];
+            let patch = || QuadPatch::piece(form.clone(), units);
+            let answers = &mut Coordinates(&mut points);
+            self.find_on(patch, corners, &mut places, &mut Vec::new(), answers);
+            for (found, point) in found.iter_mut().zip(points) {
+                let own = own.iter().map(|&vertex| VertexId(vertex)).zip(point);
+                found.extend(own.filter(|&(_, weight)| weight != 0.0));
+            }
+        }
+        found.iter_mut().for_each(joined);
+        found
     }
 }
 

@@ -17,7 +17,7 @@ pub mod mesh_form;
 pub mod mesh_patch;
 pub mod normal_net;
 mod pole;
-pub(crate) mod polynomial;
+pub mod polynomial;
 pub mod quad;
 mod quad_settling;
 pub mod quartic;

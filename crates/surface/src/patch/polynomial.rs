@@ -167,14 +167,14 @@ impl RegularPiece for Bicubic {
 #[derive(Clone, Debug)]
 // Most are quartics: boxing the others would cost an allocation for each.
 #[allow(clippy::large_enum_variant)]
-pub(crate) enum Polynomial {
+pub enum Polynomial {
     Quartic(Quartic),
     Bicubic(Bicubic),
 }
 
 impl Polynomial {
     /// That of a piece which is one.
-    pub(crate) fn of(patch: &Patch) -> Option<Self> {
+    pub fn of(patch: &Patch) -> Option<Self> {
         match patch {
             Patch::Regular(points) => Some(points.polynomial(&points.net())),
             Patch::Bicubic(piece) => Some(Self::Bicubic(piece.clone())),
@@ -183,7 +183,7 @@ impl Polynomial {
     }
 
     /// The point at (u, v).
-    pub(crate) fn point(&self, u: f64, v: f64) -> DVec3 {
+    pub fn point(&self, u: f64, v: f64) -> DVec3 {
         match self {
             Self::Quartic(quartic) => quartic.point(u, v),
             Self::Bicubic(piece) => piece.point(piece.part.at([u, v])),
@@ -191,12 +191,20 @@ impl Polynomial {
     }
 
     /// The derivatives by u and by v.
-    pub(crate) fn tangents(&self, u: f64, v: f64) -> [DVec3; 2] {
+    pub fn tangents(&self, u: f64, v: f64) -> [DVec3; 2] {
         match self {
             Self::Quartic(quartic) => quartic.tangents(u, v),
             Self::Bicubic(piece) => piece
                 .derivatives(piece.part.at([u, v]))
                 .map(|by| piece.part.size * by),
+        }
+    }
+
+    /// The coefficients of a quartic.
+    pub fn coefficients(&self) -> Option<[DVec3; 15]> {
+        match self {
+            Self::Quartic(quartic) => Some(quartic.coefficients()),
+            Self::Bicubic(_) => None,
         }
     }
 

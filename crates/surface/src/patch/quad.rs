@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bicubic::Bicubic;
 use super::{Limit, ParamTriangle, Patch, Rules};
 use crate::catmull_clark::form::{Middle, QuadForm, QuadForms};
-use crate::catmull_clark::quads::{Connected, MeshQuads};
+use crate::catmull_clark::quads::{Connected, MeshQuads, of_face};
 use crate::index::FaceId;
 use crate::mesh::{Mesh, Sharpness};
 use crate::row::sum;
@@ -33,9 +33,7 @@ pub(crate) fn root_piece(
     rules: &Rules<'_>,
 ) -> Patch {
     let quads = MeshQuads { mesh, sharpness };
-    // A half's first edge begins at its right angle.
-    let first = 4 * (face.0 / 2) + 2 * (face.0 % 2);
-    let (own, sources) = quads.surroundings(first);
+    let (own, sources) = quads.surroundings(of_face(face));
     let points = sources
         .iter()
         .map(|&v| vector(mesh.positions()[v as usize]));
@@ -44,7 +42,7 @@ pub(crate) fn root_piece(
 
 impl QuadPatch {
     /// The piece of some surroundings, in its simplest form.
-    pub(super) fn piece(form: Arc<QuadForm>, points: Vec<DVec3>) -> Patch {
+    pub(crate) fn piece(form: Arc<QuadForm>, points: Vec<DVec3>) -> Patch {
         match &form.grid {
             Some(grid) => {
                 let points = grid

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use super::from_mesh::{is_semi_sharp, sector_of};
 use super::large_rings::LargeRings;
 use super::sector::{Centre, Far};
+use crate::catmull_clark::quads::{Connected, MeshQuads, of_face};
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
 
@@ -33,7 +34,16 @@ struct Corner {
 
 impl Support {
     /// That of a face of `mesh`, whose large rings are `large`. Of the three turns the one with the least key is taken.
+    /// A half of a quad has no other.
     pub fn of(mesh: &Mesh, sharpness: &Sharpness<'_>, large: &LargeRings, face: FaceId) -> Self {
+        if mesh.topology().has_quads() {
+            let (quads, points) = MeshQuads { mesh, sharpness }.surroundings(of_face(face));
+            return Self {
+                turn: 0,
+                key: quads.words(),
+                points,
+            };
+        }
         let half_edges = [0, 1, 2].map(|corner| HalfEdgeId::of(face, corner));
         let corners = match is_semi_sharp(mesh, sharpness, large, half_edges) {
             true => half_edges.map(|h| Corner::semi_sharp(mesh, sharpness, h)),

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use limitmesh::refine::{ErrorBounds, ExactStop, Frame, Frames, exact_frames_observed};
-use limitmesh::{Mesh, PolygonSoup, Triangles};
+use limitmesh::{Mesh, PolygonSoup, QuadControl, Triangles};
 use limitmesh_io::Format;
 
 use super::super::channels::Channels;
@@ -18,7 +18,7 @@ use super::goals::Goals;
 use super::jobs::{self, Job};
 use super::refined::Refined;
 use super::rounding::rounded;
-use super::source::item_of;
+use super::source::{by_faces, item_of};
 use super::task::Task;
 use super::written;
 use crate::arguments::{RefineArguments, Way};
@@ -31,6 +31,9 @@ use crate::report::refinement::exact_stop_name;
 use crate::report::{
     ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION, percent,
 };
+
+/// Positions that follow from others differ by no more than this share of the diagonal.
+const ROUNDING: f64 = 1e-12;
 
 /// Refines all inputs as frames of one mesh.
 pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::Result<Outcome> {
@@ -49,10 +52,14 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
     }
     jobs::make_ready(&each, &jobs)?;
     check_report(arguments, &jobs)?;
-    let (job, format) = &jobs[0];
-    let (first, frames) = read(&jobs, progress)?;
+    let (_, format) = &jobs[0];
+    let Read {
+        first,
+        frames,
+        arguments: job,
+    } = read(&jobs, progress)?;
     let (name, count) = (first.name.clone(), first.mesh.vertex_count());
-    let (read, item) = item_of(first, job, *format, progress)?;
+    let (read, item) = item_of(first, &job, *format, progress)?;
     let control = Control::new(read, None, &item.arguments, progress)?;
     if control.mesh.vertex_count() != count {
         return usage(format!(
@@ -202,14 +209,29 @@ fn refuse(arguments: &RefineArguments) -> anyhow::Result<()> {
     }
 }
 
-/// The first frame, and the positions of all.
+/// What was read.
+struct Read {
+    first: Input,
+    /// The positions of all frames.
+    frames: Vec<Vec<[f64; 3]>>,
+    /// The arguments, with the scheme that the faces decide.
+    arguments: RefineArguments,
+}
+
+/// Reads all frames.
 ///
 /// # Errors
 /// A file cannot be read, or has other faces or tags than the first.
-fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<(Input, Vec<Vec<[f64; 3]>>)> {
+fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<Read> {
     let (job, format) = &jobs[0];
-    let read = input::read_for(job.input(), &job.build, &job.channels, progress)?;
+    let mut read = input::read_for(job.input(), &job.build, &job.channels, progress)?;
+    let job = by_faces(job, &read, progress);
+    read.quads = job.quads();
     let soup = read.soup.clone();
+    let options = job.build.in_unit(read.unit).options()?;
+    let quads = read.quads.as_ref();
+    let quads = quads.map(|rules| QuadControl::from_soup_with(&soup, &options, rules));
+    let quads = quads.transpose().with_context(|| read.name.clone())?;
     // Polygons are cut into triangles by where their corners are: as in the first frame, in all.
     let first = input::connect(read, &job.build, Normals::kept(*format), progress)?;
     let own = FirstFrame {
@@ -217,8 +239,9 @@ fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<(Input, Vec<Vec<[f6
         mesh: &first.mesh,
         vertices: first.trace.vertices(&soup),
         soup: &soup,
+        quads: quads.map(|(quads, _)| quads),
     };
-    if own.positions(&soup)? != first.mesh.positions() {
+    if !own.is_moved_by_vertices(first.mesh.as_triangles().diagonal())? {
         anyhow::bail!(
             "{}: sheets are cut apart within edges there, which frames do not share",
             first.name
@@ -230,10 +253,14 @@ fn read(jobs: &[Job], progress: &Progress) -> anyhow::Result<(Input, Vec<Vec<[f6
         if let Some(what) = own.difference(&frame.soup) {
             anyhow::bail!("{}: {what}; frames must share faces and tags", frame.name);
         }
-        let positions = own.positions(&frame.soup);
+        let positions = own.positions(&frame.soup.positions);
         frames.push(positions.with_context(|| frame.name.clone())?);
     }
-    Ok((first, frames))
+    Ok(Read {
+        first,
+        frames,
+        arguments: job,
+    })
 }
 
 /// The properties that all frames must share with the first.
@@ -243,12 +270,26 @@ struct FirstFrame<'a> {
     mesh: &'a Mesh,
     /// By corner of the mesh, the vertex in the file.
     vertices: Vec<u32>,
+    /// The mesh as quads, where its scheme is for these.
+    quads: Option<QuadControl>,
 }
 
 impl FirstFrame<'_> {
-    /// The positions of the mesh's vertices in a frame.
-    fn positions(&self, frame: &PolygonSoup) -> anyhow::Result<Vec<[f64; 3]>> {
-        let at = |vertex: u32| frame.positions[vertex as usize];
+    /// Whether the mesh's own positions follow from those of the file's vertices; `diagonal` is its size.
+    fn is_moved_by_vertices(&self, diagonal: f64) -> anyhow::Result<bool> {
+        let own = self.positions(&self.soup.positions)?;
+        let near = |(a, b): (&[f64; 3], &[f64; 3])| {
+            (0..3).all(|axis| (a[axis] - b[axis]).abs() <= ROUNDING * diagonal)
+        };
+        Ok(own.iter().zip(self.mesh.positions()).all(near))
+    }
+
+    /// The positions of the mesh's vertices in a frame, given those of the file's.
+    fn positions(&self, frame: &[[f64; 3]]) -> anyhow::Result<Vec<[f64; 3]>> {
+        if let Some(quads) = &self.quads {
+            return Ok(quads.positions(self.soup, frame)?);
+        }
+        let at = |vertex: u32| frame[vertex as usize];
         let mut found: Vec<Option<u32>> = vec![None; self.mesh.vertex_count()];
         let corners = self.mesh.triangles().as_flattened();
         for (&corner, &vertex) in corners.iter().zip(&self.vertices) {

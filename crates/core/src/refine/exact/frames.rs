@@ -57,7 +57,7 @@ pub struct Frames {
 ///
 /// # Errors
 /// Goals out of range, goals and options that frames do not support, a frame that is none of the
-/// mesh's, a scheme outside the Loop family, a cap that any frame exceeds, or an error of
+/// mesh's, a scheme whose surfaces are not made of polynomials, a cap that any frame exceeds, or an error of
 /// [`exact`](super::exact).
 pub fn exact_frames(
     control: &Mesh,

@@ -34,7 +34,7 @@ pub(super) struct Control<'a> {
     pub(super) sharpness: &'a Sharpness<'a>,
     pub(super) large: &'a LargeRings,
     pub(super) rules: &'a Rules<'a>,
-    pub(super) stencils: &'a VertexStencils,
+    pub(super) stencils: &'a VertexStencils<'a>,
 }
 
 /// A face with places, or a corner with sides.
@@ -237,7 +237,7 @@ fn weigh(probe: &mut Probe<'_>, shape: &Shape, faces: &[Group]) -> Option<Weighe
             let coded = on_piece
                 .iter()
                 .map(|(standing, _, point)| Some((coded(standing.at)?, *point)));
-            let coded = if on_piece.len() < MANY {
+            let coded = if on_piece.len() < MANY || !probe.has_quartics() {
                 None
             } else {
                 coded.collect::<Option<Vec<_>>>()
@@ -354,12 +354,7 @@ impl Building {
                 Some(known) => known,
                 unknown => unknown.insert(self.stencil(&control.stencils.list[number])?),
             };
-            let ring = control
-                .mesh
-                .topology()
-                .ring(VertexId(corner.of))
-                .map(|v| v.0);
-            let points: Vec<u32> = [corner.of].into_iter().chain(ring).collect();
+            let points = control.stencils.points(VertexId(corner.of));
             let points = self.points(&points)?;
             // Points of one side share its slot.
             let mut slots: Vec<(u32, u32)> = Vec::new();
@@ -405,9 +400,10 @@ impl Building {
                 }
             }
             let start = self.weights(&weights)?;
-            self.table
-                .sides
-                .push((start, [side.first as u32, side.faces as u32]));
+            self.table.sides.push((
+                start,
+                [side.first, side.faces, stencil.edges].map(|n| n as u32),
+            ));
             starts.push(start);
         }
         Ok(starts)

@@ -94,8 +94,8 @@ pub(super) struct Table {
     pub(super) places: Vec<[u16; 2]>,
     /// Of all points of a job but the first, filled up with zeros to whole groups.
     pub(super) weights: Vec<[f64; LANES]>,
-    /// By start of a control vertex's weights, ascending, the first edge and the number of faces of its side.
-    pub(super) sides: Vec<(u32, [u32; 2])>,
+    /// By start of a control vertex's weights, ascending, the first edge and the number of faces of its side, and the vertex's edges.
+    pub(super) sides: Vec<(u32, [u32; 3])>,
     /// Each vertex's slot.
     pub(super) slots: Vec<u32>,
     runs: Vec<At>,
@@ -443,12 +443,12 @@ impl Table {
         let Ok(at) = self.sides.binary_search_by_key(&row, |&(row, _)| row) else {
             return DVec3::ZERO;
         };
-        let [first, faces] = self.sides[at].1;
+        let [first, faces, edges] = self.sides[at].1;
         let Some((&vertex, ring)) = points.split_first() else {
             return DVec3::ZERO;
         };
         let centre = input(inputs, vertex);
-        let edge = |slot: u32| input(inputs, ring[slot as usize % ring.len()]) - centre;
+        let edge = |slot: u32| input(inputs, ring[(slot % edges) as usize]) - centre;
         let faces: Vec<[DVec3; 2]> = (first..first + faces)
             .map(|slot| [edge(slot), edge(slot + 1)])
             .collect();

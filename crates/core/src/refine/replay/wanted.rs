@@ -38,13 +38,13 @@ impl EvalPoint {
     }
 
     /// The place of a point of the control mesh.
-    fn of(control: &Mesh, stencils: &VertexStencils, origin: &Origin) -> Option<Self> {
+    fn of(control: &Mesh, stencils: &VertexStencils<'_>, origin: &Origin) -> Option<Self> {
         let corners = control.triangles().get(origin.face as usize)?;
         let [_, u, v] = origin.barycentric;
         match origin.barycentric.iter().position(|&weight| weight == 1.0) {
             Some(corner) => {
                 let h = HalfEdgeId::of(FaceId(origin.face), corner);
-                Some(Self::Corner(corners[corner], side_of(control, stencils, h)))
+                Some(Self::Corner(corners[corner], stencils.side_of(h)))
             }
             None if u >= 0.0 && v >= 0.0 && u + v <= 1.0 => {
                 Some(Self::Over(origin.face, [u, v].map(f64::to_bits)))
@@ -54,27 +54,11 @@ impl EvalPoint {
     }
 }
 
-/// The number of the side of a control vertex that the face of a half-edge is on, which leaves it.
-fn side_of(control: &Mesh, stencils: &VertexStencils, h: HalfEdgeId) -> u32 {
-    let topology = control.topology();
-    let vertex = topology.origin(h);
-    let sides = &stencils.list[stencils.by_vertex[vertex.index()] as usize].sides;
-    if sides.len() < 2 {
-        return 0;
-    }
-    let faces = topology.outgoing_ring(vertex).count();
-    let slot = topology.slot(h);
-    let own = sides
-        .iter()
-        .take_while(|side| (slot + faces - side.first) % faces >= side.faces);
-    own.count() as u32
-}
-
 impl Wants {
     /// The values needed by the vertices and sides of `refined`, a refinement of `control`.
     pub(super) fn of(
         control: &Mesh,
-        stencils: &VertexStencils,
+        stencils: &VertexStencils<'_>,
         refined: &Exact,
     ) -> Result<Self, ReplayError> {
         let count = refined.mesh.vertex_count();
@@ -102,7 +86,7 @@ impl Wants {
     fn add_sides(
         &mut self,
         control: &Mesh,
-        stencils: &VertexStencils,
+        stencils: &VertexStencils<'_>,
         refined: &Exact,
     ) -> Result<(), ReplayError> {
         let topology = refined.mesh.topology();

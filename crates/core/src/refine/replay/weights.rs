@@ -6,9 +6,9 @@
 use super::table::{COEFFICIENTS, LANES, SUMS, groups};
 use crate::index::{FaceId, VertexId};
 use crate::mesh::{Mesh, Sharpness};
-use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::large_rings::LargeRings;
-use crate::patch::{Patch, Quartic, Rules, Support, root_patch};
+use crate::patch::polynomial::Polynomial;
+use crate::patch::{Patch, Rules, Support, root_patch};
 use crate::vector::DVec3;
 
 /// Levels at which all places must be on a regular piece: more than the resolution of places and
@@ -66,6 +66,11 @@ impl<'a> Probe<'a> {
             large,
             rules,
         }
+    }
+
+    /// Whether pieces are quartics over triangles, rather than bicubics.
+    pub(super) fn has_quartics(&self) -> bool {
+        !self.mesh.topology().has_quads()
     }
 
     fn set(&mut self, point: u32, to: DVec3) {
@@ -136,7 +141,8 @@ impl<'a> Probe<'a> {
                 &mut |piece, own| {
                     if let Some(block) = pieces[number] {
                         let start = block_start + block as usize * COEFFICIENTS * groups;
-                        for (i, value) in piece.coefficients().into_iter().enumerate() {
+                        let coefficients = piece.coefficients().into_iter().flatten();
+                        for (i, value) in coefficients.enumerate() {
                             write(start + i * groups, value);
                         }
                     }
@@ -170,13 +176,13 @@ impl<'a> Probe<'a> {
         patch: &Patch,
         places: &mut [Standpoint],
         levels: u32,
-        visit: &mut dyn FnMut(&Quartic, &[Standpoint]),
+        visit: &mut dyn FnMut(&Polynomial, &[Standpoint]),
     ) {
         if places.is_empty() {
             return;
         }
-        if let Patch::Regular(points) = patch {
-            visit(&Quartic::of(&BezierTriangle::of(points), 0), places);
+        if let Some(piece) = Polynomial::of(patch) {
+            visit(&piece, places);
         } else if levels > 0 {
             let refined = patch.refined(self.rules);
             places.iter_mut().for_each(Standpoint::enter_part);

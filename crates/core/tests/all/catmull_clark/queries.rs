@@ -10,7 +10,7 @@ use limitmesh::{
     RayCaster, RayOptions,
 };
 
-use super::{Plain, creased_cube, cube, distance, mean, near, random_cage};
+use super::{Plain, creased_cube, cube, distance, mean, near, random_cage, times};
 use crate::rays::{Fine, agrees_with, checked};
 use crate::support::{Point, Random, cross, dot, minus};
 
@@ -428,4 +428,45 @@ fn sides_are_those_of_all_points() {
         all_faces > 100 && 10 * known > 8 * all_faces,
         "{known} of {all_faces}"
     );
+}
+
+/// The point is the weighted sum of control points, by another cage's points as well.
+#[test]
+fn weights_give_the_points() {
+    for seed in 0..12 {
+        let soup = random_cage(&mut Random::new(seed));
+        let mesh = control(&soup);
+        let bent = |[x, y, z]: &Point| [x + 0.2 * y * y, y - 0.3 * z * x, 0.7 * z];
+        let positions = mesh.positions().iter().map(bent).collect();
+        let moved = mesh.clone().with_positions(positions).unwrap();
+        let [surface, elsewhere] =
+            [&mesh, &moved].map(|mesh| LimitSurface::new(mesh, &CatmullClark).unwrap());
+        let weights = [
+            [1.0, 0.0, 0.0],
+            [0.0, 0.5, 0.5],
+            [0.3, 0.6, 0.1],
+            [0.01, 0.0, 0.99],
+        ];
+        let faces = mesh.topology().faces().step_by(5);
+        let places: Vec<_> = faces
+            .flat_map(|face| weights.map(|place| (face, place)))
+            .collect();
+        let found = surface.weights_at(&places).unwrap();
+        for (&(face, place), weights) in places.iter().zip(&found) {
+            let sum: f64 = weights.iter().map(|&(_, weight)| weight).sum();
+            assert!((sum - 1.0).abs() < 1e-12, "cage {seed}: {sum}");
+            assert!(weights.iter().all(|&(_, weight)| weight > -1e-15));
+            for (mesh, surface) in [(&mesh, &surface), (&moved, &elsewhere)] {
+                let points = weights
+                    .iter()
+                    .map(|&(v, weight)| times(weight, mesh.positions()[v.index()]));
+                let expected = surface.at(face, place).position;
+                let found = super::sum(points);
+                assert!(
+                    near(found, expected, 1e-12),
+                    "cage {seed}, {face:?}, {place:?}"
+                );
+            }
+        }
+    }
 }

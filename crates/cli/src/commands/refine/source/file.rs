@@ -66,7 +66,11 @@ impl Source for FileSource {
 }
 
 /// The arguments with the scheme that a file's faces decide, where none was asked for.
-fn by_faces(arguments: &RefineArguments, read: &Soup, progress: &Progress) -> RefineArguments {
+pub(crate) fn by_faces(
+    arguments: &RefineArguments,
+    read: &Soup,
+    progress: &Progress,
+) -> RefineArguments {
     if arguments.asked_scheme().is_some() || !read.is_of_quads() {
         return arguments.clone();
     }

@@ -12,6 +12,6 @@ mod vertices;
 mod weights;
 
 pub(super) use asset::AssetSource;
-pub(super) use file::{FileSource, item_of};
+pub(super) use file::{FileSource, by_faces, item_of};
 pub(super) use item::{Item, Source};
 pub(super) use package::PackageSource;
