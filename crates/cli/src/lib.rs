@@ -112,6 +112,7 @@ fn run(arguments: &Arguments, again: &[OsString], progress: &Progress) -> anyhow
         Command::Refine(arguments) => commands::refine::run(arguments, progress),
         Command::Measure(arguments) => commands::measure::run(arguments, progress),
         Command::Compare(arguments) => commands::compare::run(arguments, progress),
+        Command::View(arguments) => commands::view::run(arguments, progress),
         Command::Render(arguments) => commands::render::run(arguments, progress),
         Command::Reproduce(arguments) => commands::reproduce::run(arguments, progress),
         Command::Info(arguments) => commands::info::run(arguments, progress),

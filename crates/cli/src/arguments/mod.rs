@@ -21,6 +21,7 @@ mod reproduce;
 mod shared;
 mod tolerances;
 mod values;
+mod view;
 mod viewer;
 
 pub(crate) use asset::AssetArguments;
@@ -48,6 +49,7 @@ pub(crate) use shared::{
 };
 pub(crate) use tolerances::MorphTolerance;
 pub(crate) use values::{Extent, MAX_STEPS, Size};
+pub(crate) use view::ViewArguments;
 pub(crate) use viewer::Viewer;
 
 use clap::{Args, Parser, Subcommand};
@@ -58,6 +60,8 @@ const EXAMPLES: &str = "\
 Examples:
   limitmesh refine builtin:head -o head.ply --picture head.png
         a mesh within 0.1 % of the smooth surface of a built-in model, and a picture of it
+  limitmesh view duck.glb
+        a page in the browser, whose slider refines the mesh
   limitmesh info scan.stl
         says what is in a file and what would be repaired
   limitmesh measure head.ply --limit-of builtin:head
@@ -112,6 +116,7 @@ pub(crate) enum Command {
     Refine(Box<RefineArguments>),
     Measure(MeasureArguments),
     Compare(CompareArguments),
+    View(Box<ViewArguments>),
     Render(RenderArguments),
     Reproduce(ReproduceArguments),
     Info(InfoArguments),

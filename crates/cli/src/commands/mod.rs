@@ -22,3 +22,4 @@ pub(crate) mod refine;
 pub(crate) mod render;
 pub(crate) mod reproduce;
 mod shading;
+pub(crate) mod view;

@@ -48,5 +48,6 @@ mod sqrt3;
 mod streams;
 mod units;
 mod usage;
+mod view;
 mod within;
 mod writing;
