@@ -14,6 +14,7 @@ mod limit;
 mod measure;
 mod options;
 mod origins;
+mod page;
 mod picture;
 mod pool;
 mod program;
@@ -48,6 +49,8 @@ mod _limitmesh {
     use super::measure::{examine, measure, measure_limit};
     #[pymodule_export]
     use super::origins::Origins;
+    #[pymodule_export]
+    use super::page::page;
     #[pymodule_export]
     use super::picture::picture;
     #[pymodule_export]

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
+import html
+import json
+import pathlib
 import pickle
+import re
+import urllib.parse
+import urllib.request
 import warnings
 
 import numpy as np
@@ -374,9 +382,24 @@ def test_options_and_errors_pickle(octahedron):
         assert type(told) is kind and str(told) == "faces[3]"
 
 
-def test_notebooks_see_a_picture(octahedron):
-    html = limitmesh.refine(*octahedron)._repr_html_()
-    assert html.startswith("<div><img") and "certainly within" in html
+def test_notebooks_see_the_page(octahedron, tmp_path, monkeypatch):
+    found = limitmesh.refine(*octahedron)
+    shown = found._repr_html_()
+    assert shown.startswith("<div><iframe") and "certainly within" in shown
+    assert html.escape(found.page()) in shown
+    data = json.loads(re.search(r'id="limitmesh">(.*?)</script>', found.page("a <b>"))[1])
+    (stop,) = data["stops"]
+    assert data["name"] == "a <b>" and data["live"] is None
+    assert stop["report"]["triangles"] == len(found.faces) and stop["report"]["upper"] == found.error.upper
+    packed = re.search(rf'id="{stop["parts"]["glb"]["blob"]}">(.*?)</script>', found.page())[1]
+    found.save(tmp_path / "mesh.glb")
+    assert gzip.decompress(base64.b64decode(packed)) == (tmp_path / "mesh.glb").read_bytes()
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    found.view()
+    path = pathlib.Path(urllib.request.url2pathname(urllib.parse.urlparse(opened[0]).path))
+    assert path.read_text(encoding="utf-8") == found.page()
+    path.unlink()
 
 
 def test_estimates_are_near(octahedron):

@@ -26,6 +26,7 @@ __all__ = [
     "measure",
     "measure_limit",
     "models",
+    "page",
     "picture",
     "program",
     "project",
@@ -107,6 +108,9 @@ def simplify(
     progress: _Callback,
 ) -> _Record: ...
 def repair(mesh: Any, control: _Record, threads: int) -> _Record: ...
+def page(
+    name: str, glb: bytes, picture: bytes, diagonal: float, report: tuple[int, int, float | None, float | None, bool, float]
+) -> str: ...
 def picture(
     vertices: _Floats, faces: _Indices, normals: _Floats | None, width: int, height: int, wireframe: bool, threads: int
 ) -> bytes: ...

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import base64
 import functools
+import html
 import os
+import pathlib
+import tempfile
+import webbrowser
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,6 +25,9 @@ from ._outgoing import Outgoing, restored
 from ._plot import plot
 from ._shown import Shown
 from ._write import write
+
+_MOST_SHOWN = 100_000
+"""Triangles that a notebook holds: some megabytes."""
 
 AnyIntegers = npt.NDArray[np.integer[Any]]
 
@@ -383,19 +390,54 @@ class Refined:
             threads_of(None),
         )
 
+    def page(self, name: str = "mesh") -> str:
+        """A page that shows the mesh in a browser: HTML that needs nothing else, neither this library nor a network.
+
+        Parameters
+        ----------
+        name
+            What the page calls the mesh.
+
+        Examples
+        --------
+        >>> import limitmesh
+        >>> limitmesh.refine("builtin:cup").page("cup").startswith("<!doctype html>")
+        True
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "mesh.glb")
+            self.save(path)
+            with open(path, "rb") as file:
+                glb = file.read()
+        bounds = (None, None, False) if self.error is None else (self.error.lower, self.error.upper, self.error.certified)
+        lower, upper, certified = (None if own is not None and not np.isfinite(own) else own for own in bounds)
+        diagonal = float(np.linalg.norm(np.ptp(self.vertices, axis=0))) if len(self.vertices) else 1.0
+        report = (len(self.faces), len(self.vertices), lower, upper, bool(certified), self.seconds)
+        return _limitmesh.page(name, glb, self._picture(800, 600), diagonal, report)
+
+    def view(self, name: str = "mesh") -> None:
+        """Opens `page` in the browser."""
+        file, path = tempfile.mkstemp(prefix="limitmesh-", suffix=".html")
+        with open(file, "w", encoding="utf-8") as page:
+            page.write(self.page(name))
+        webbrowser.open(pathlib.Path(path).as_uri())
+
     def _repr_html_(self) -> str:
-        picture = ""
-        if 0 < len(self.faces) <= 2_000_000:
+        shown = ""
+        if 0 < len(self.faces) <= _MOST_SHOWN:
+            page = html.escape(self.page())
+            shown = f'<iframe title="the mesh" width="100%" height="480" style="border:0" srcdoc="{page}"></iframe>'
+        elif 0 < len(self.faces) <= 2_000_000:
             png = base64.b64encode(self._picture(320, 240)).decode("ascii")
-            picture = f'<img alt="the mesh" width="320" height="240" src="data:image/png;base64,{png}">'
+            shown = f'<img alt="the mesh" width="320" height="240" src="data:image/png;base64,{png}"><p>view() opens it in the browser</p>'
         rows = [("triangles", f"{len(self.faces):,}"), ("vertices", f"{len(self.vertices):,}"), ("ended", self.stop)]
         if self.error is not None:
             certain = "certainly within" if self.error.certified else "within, estimated,"
             rows.append(("distance", f"{certain} {self.error.upper:.4g}, at least {self.error.lower:.4g}"))
         if self.channels:
-            rows.append(("carries", ", ".join(map(_escaped, self.channels))))
+            rows.append(("carries", ", ".join(map(html.escape, self.channels))))
         body = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
-        return f"<div>{picture}<table>{body}</table></div>"
+        return f"<div>{shown}<table>{body}</table></div>"
 
     def plot(self, *, backend: str | None = None, show: bool = True, **options: Any) -> Any:
         """Draws the mesh with PyVista, or with Matplotlib where that is not installed.
@@ -441,10 +483,6 @@ def by_corner(normals: Floats, faces: AnyIntegers, sides: tuple[AnyIntegers, Flo
 
 
 _SHORT = ("triangle-cap", "level-cap", "memory-cap", "rounding", "input-distance")
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
