@@ -53,8 +53,12 @@
 //! At the root stand [`Mesh`], and the limit surface as an object: [`LimitSurface`], [`Proximity`]
 //! and [`RayCaster`].
 
+// Results are the same on every platform.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 pub mod carry;
 mod certificate;
+mod clock;
 pub mod closure;
 pub mod criterion;
 pub mod front;
@@ -64,6 +68,8 @@ pub mod part;
 pub mod refine;
 pub mod sqrt3;
 
+#[doc(hidden)]
+pub use limitmesh_mesh::math;
 use limitmesh_mesh::{geometry, options, parallel, vector};
 pub use limitmesh_mesh::{index, measure, mesh, progress, ring, simplify};
 use limitmesh_surface::{facing, limit_surface, masks, patch, value_mesh};

@@ -1,5 +1,7 @@
 //! Affine maps of space, and how much they stretch.
 
+use limitmesh::math;
+
 /// Three rows: x' = row · (x, y, z, 1).
 pub(crate) type Affine = [[f64; 4]; 3];
 
@@ -134,7 +136,7 @@ pub(crate) fn greatest_stretch(m: &Affine) -> f64 {
         let b: [[f64; 3]; 3] = std::array::from_fn(|i| {
             std::array::from_fn(|j| (a[i][j] - if i == j { mean } else { 0.0 }) / p)
         });
-        mean + 2.0 * p * ((0.5 * determinant(&b)).clamp(-1.0, 1.0).acos() / 3.0).cos()
+        mean + 2.0 * p * math::cos(math::acos((0.5 * determinant(&b)).clamp(-1.0, 1.0)) / 3.0)
     };
     size * greatest.max(0.0).sqrt()
 }

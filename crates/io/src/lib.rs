@@ -29,6 +29,9 @@
 //!
 //! [`PolygonSoup`]: limitmesh::mesh::PolygonSoup
 
+// Results are the same on every platform.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod affine;
 mod capacity;
 pub mod channels;

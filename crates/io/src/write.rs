@@ -8,6 +8,7 @@ use crate::format::Format;
 use crate::formats::codec;
 use crate::output::{Output, WriteOptions};
 use crate::whole::{write_together, write_whole_with};
+use limitmesh::math;
 use limitmesh::mesh::{Channel, Domain, Semantic};
 use std::io::Write;
 use std::path::Path;
@@ -47,7 +48,7 @@ pub fn rounding(format: Format, options: &WriteOptions, positions: &[[f64; 3]]) 
         let [x, y, z] = position.map(off);
         // Hardly any is greater than all before.
         if x + y + z > greatest {
-            greatest.max(x.hypot(y).hypot(z))
+            greatest.max(math::hypot(math::hypot(x, y), z))
         } else {
             greatest
         }

@@ -22,9 +22,14 @@
 //!
 //! Hidden modules and items are shared by the crates of this workspace; they promise no stability.
 
+// Results are the same on every platform.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 #[doc(hidden)]
 pub mod geometry;
 pub mod index;
+#[doc(hidden)]
+pub mod math;
 pub mod measure;
 pub mod mesh;
 #[doc(hidden)]

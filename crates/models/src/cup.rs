@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use super::sculpt::Surface;
 use glam::DVec3;
+use limitmesh_mesh::math;
 
 /// Cells around the axis.
 const SECTORS: u32 = 18;
@@ -41,7 +42,7 @@ pub(super) fn cup() -> Surface {
     let mut cup = Surface::default();
     for [radius, height] in PROFILE {
         for sector in 0..SECTORS {
-            let (sin, cos) = (TAU * f64::from(sector) / f64::from(SECTORS)).sin_cos();
+            let (sin, cos) = math::sin_cos(TAU * f64::from(sector) / f64::from(SECTORS));
             cup.positions
                 .push(DVec3::new(radius * cos, height, -radius * sin));
         }
@@ -121,7 +122,7 @@ fn add_handle(cup: &mut Surface) {
 
 /// The hexagon of the handle at `part` of its way from the upper to the lower hole.
 fn handle_section(part: f64) -> [DVec3; 6] {
-    let (sin, cos) = (TAU / 2.0 * part).sin_cos();
+    let (sin, cos) = math::sin_cos(TAU / 2.0 * part);
     let centre = DVec3::new(0.56 + 0.42 * sin, 0.33 * cos, 0.0);
     let outwards = DVec3::new(sin, 0.9 * cos, 0.0).normalize();
     // Wide where it meets the wall, slender half-way.

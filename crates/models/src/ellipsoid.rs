@@ -7,6 +7,7 @@ use core::f64::consts::PI;
 
 use super::sculpt::Surface;
 use glam::DVec3;
+use limitmesh_mesh::math;
 
 /// A closed surface of so many points has 2·73 − 4 = 142 triangles.
 const POINTS: u32 = 73;
@@ -23,7 +24,7 @@ pub(super) fn ellipsoid() -> Surface {
         .map(|i| {
             let part = f64::from(i) + 0.5;
             let height = 1.0 - 2.0 * part / f64::from(POINTS);
-            let (sine, cosine) = (PI * (1.0 + 5.0_f64.sqrt()) * part).sin_cos();
+            let (sine, cosine) = math::sin_cos(PI * (1.0 + 5.0_f64.sqrt()) * part);
             let radius = (1.0 - height * height).sqrt();
             DVec3::new(radius * cosine, height, radius * sine)
         })

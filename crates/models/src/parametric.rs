@@ -4,6 +4,7 @@ use core::f64::consts::TAU;
 
 use super::sculpt::Surface;
 use glam::DVec3;
+use limitmesh_mesh::math;
 
 /// The vertices (u, v) of a grid that closes on itself in the directions asked for, two triangles a cell.
 ///
@@ -38,9 +39,9 @@ pub(super) fn sphere() -> Surface {
     let mut surface = Surface::default();
     surface.positions.push(-DVec3::Y);
     for stack in 1..STACKS {
-        let (radius, depth) = (TAU / 2.0 * f64::from(stack) / f64::from(STACKS)).sin_cos();
+        let (radius, depth) = math::sin_cos(TAU / 2.0 * f64::from(stack) / f64::from(STACKS));
         for slice in 0..SLICES {
-            let (x, z) = (TAU * f64::from(slice) / f64::from(SLICES)).sin_cos();
+            let (x, z) = math::sin_cos(TAU * f64::from(slice) / f64::from(SLICES));
             surface
                 .positions
                 .push(DVec3::new(radius * x, -depth, radius * z));
@@ -67,8 +68,8 @@ pub(super) fn sphere() -> Surface {
 /// A torus about the y axis with radii 0.7 and 0.3: 16 × 8 cells, 256 triangles, every valence 6.
 pub(super) fn torus() -> Surface {
     grid([16, 8], [true, true], |u, v| {
-        let (x, z) = (TAU * u).sin_cos();
-        let (height, out) = (TAU * v).sin_cos();
+        let (x, z) = math::sin_cos(TAU * u);
+        let (height, out) = math::sin_cos(TAU * v);
         let radius = 0.7 + 0.3 * out;
         DVec3::new(radius * x, 0.3 * height, radius * z)
     })
@@ -79,8 +80,8 @@ pub(super) fn sheet() -> Surface {
     grid([12, 12], [false, false], |u, v| {
         let (x, z) = (2.0 * u - 1.0, 1.0 - 2.0 * v);
         // Two waves that cross, one of them growing to the right.
-        let height =
-            0.16 * (TAU * (0.9 * x + 0.2 * z)).sin() + 0.12 * (1.0 + x) * (TAU * 0.7 * z).cos();
+        let height = 0.16 * math::sin(TAU * (0.9 * x + 0.2 * z))
+            + 0.12 * (1.0 + x) * math::cos(TAU * 0.7 * z);
         DVec3::new(x, height - 0.1, z)
     })
 }
@@ -91,7 +92,7 @@ pub(super) fn spike() -> Surface {
     /// Radius and height of each ring, from the rim to the one below the tip.
     const RINGS: [[f64; 2]; 3] = [[1.0, -0.5], [0.55, -0.4], [0.22, 0.0]];
     let mut surface = grid([SLICES, RINGS.len() as u32 - 1], [true, false], |u, v| {
-        let (x, z) = (TAU * u).sin_cos();
+        let (x, z) = math::sin_cos(TAU * u);
         let [radius, height] = RINGS[(v * (RINGS.len() - 1) as f64).round() as usize];
         DVec3::new(radius * x, height, radius * z)
     });

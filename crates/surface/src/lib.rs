@@ -29,6 +29,9 @@
 //!
 //! Hidden modules and items are shared by the crates of this workspace; they promise no stability.
 
+// Results are the same on every platform.
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 #[doc(hidden)]
 pub mod catmull_clark;
 #[doc(hidden)]
@@ -58,6 +61,6 @@ pub use limit_surface::{
     BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,
 };
 pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};
-pub use limitmesh_mesh::{geometry, index, mesh, options, parallel, progress, ring, vector};
+pub use limitmesh_mesh::{geometry, index, math, mesh, options, parallel, progress, ring, vector};
 pub use proximity::{Closest, Membership, Proximity, ProximityError};
 pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};

@@ -2,6 +2,7 @@
 
 use super::exceeds;
 use crate::geometry::closest_to_origin;
+use crate::math;
 use crate::vector::Extremes;
 use crate::vector::{DVec3, unit_or_zero};
 
@@ -224,7 +225,7 @@ impl TriangleFrame {
     pub(super) fn stretched_squared(&self, vector: DVec3) -> f64 {
         let changes = [0, 1, 2].map(|edge| self.outward[edge].dot(vector) * self.lengths[edge]);
         0.5 * changes.iter().map(|change| change * change).sum::<f64>()
-            / self.parallelogram().powi(2)
+            / math::powi(self.parallelogram(), 2)
     }
 
     /// The greatest stretch by that metric of lengths within the plane. It follows from the
@@ -232,7 +233,7 @@ impl TriangleFrame {
     /// areas of both triangles, whose ratio is the root of its determinant.
     #[inline]
     pub(super) fn stretch(&self) -> f64 {
-        let square = self.parallelogram().powi(2);
+        let square = math::powi(self.parallelogram(), 2);
         let half_trace = 0.25
             * self
                 .lengths

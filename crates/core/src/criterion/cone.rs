@@ -4,6 +4,7 @@ use super::view::AngleLimit;
 use super::{Criterion, CriterionError, Region, View, angle_ratio, check_angle};
 use crate::index::{FaceId, HalfEdgeId};
 use crate::limit::LimitTable;
+use crate::math;
 use crate::mesh::Mesh;
 use crate::parallel;
 use crate::vector::{DVec3, vector};
@@ -93,7 +94,7 @@ impl LimitNormal {
     /// Levels below the control faces at which the cone is given up: triangles at which it stays open there lie at cusps,
     /// at creases of the parametrisation, or at vertices around which normals settle too slowly.
     pub(crate) fn deepest(&self) -> usize {
-        let levels = (Self::LEAST_PART * self.angle).log2().abs().ceil();
+        let levels = math::log2(Self::LEAST_PART * self.angle).abs().ceil();
         if levels < 64.0 { levels as usize } else { 64 }
     }
 

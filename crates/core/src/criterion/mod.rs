@@ -26,6 +26,7 @@ pub(crate) use region::Region;
 pub use view::{AngleLimit, View};
 
 use crate::limit::{LimitError, LimitTable};
+use crate::math;
 use crate::mesh::Mesh;
 
 /// An error of a criterion.
@@ -66,8 +67,8 @@ const JUST_TOO_BAD: f64 = 1.0 + f64::EPSILON;
 ///
 /// Whether it passes is decided by the cosines, so that the arc's rounding does not count.
 fn angle_ratio(cosine: f64, limit: f64) -> f64 {
-    let ratio = cosine.clamp(-1.0, 1.0).acos() / limit;
-    if cosine < limit.cos() {
+    let ratio = math::acos(cosine.clamp(-1.0, 1.0)) / limit;
+    if cosine < math::cos(limit) {
         ratio.max(JUST_TOO_BAD)
     } else {
         ratio.min(1.0)

@@ -29,6 +29,7 @@ use smallvec::SmallVec;
 
 use super::region::{cosine_of, sum_of_angles};
 use super::{CriterionError, Region, Viewpoint};
+use crate::math;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// A perspective camera.
@@ -329,7 +330,7 @@ impl Lens {
         let right = right / sine;
         let up = right.cross(forward);
         let (width, height) = (f64::from(camera.width), f64::from(camera.height));
-        let along = (0.5 * camera.fov_degrees).to_radians().tan();
+        let along = math::tan((0.5 * camera.fov_degrees).to_radians());
         let across = along * width / height;
         let side = |axis: DVec3, tangent: f64| (axis - tangent * forward).normalize();
         Ok(Self {
@@ -342,7 +343,7 @@ impl Lens {
                 side(-up, along),
             ],
             pixels: 0.5 * height / along,
-            greatest_stretch: across.hypot(along).hypot(1.0),
+            greatest_stretch: math::hypot(math::hypot(across, along), 1.0),
         })
     }
 

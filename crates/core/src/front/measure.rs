@@ -14,6 +14,7 @@
 //!   point on the node's level is too far from its limit. Inside a smooth surface of the Loop family that distance is multiplied by
 //!   5/8 − nβ with each level, n being the valence, along creases by 1/4.
 
+use crate::math;
 use crate::patch::{LimitPoint, Patch, Rules, child_corners};
 use crate::vector::{DVec3, unit_or_zero};
 
@@ -91,11 +92,8 @@ impl Sampled {
     fn angle(&self) -> f64 {
         let own = self.normal();
         let all = self.corners.iter().chain(&self.middles);
-        let angles = all.map(|point| {
-            own.cross(point.normal)
-                .length()
-                .atan2(own.dot(point.normal))
-        });
+        let angles =
+            all.map(|point| math::atan2(own.cross(point.normal).length(), own.dot(point.normal)));
         greatest(angles)
     }
 

@@ -1,6 +1,7 @@
 //! How the faces of a mesh meet at the edges between them.
 
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::mesh::Mesh;
 use crate::parallel;
 use crate::vector::{DVec3, vector};
@@ -30,7 +31,7 @@ pub(super) fn bends(mesh: &Mesh) -> Vec<Bend> {
             .ends(edge)
             .map(|v| vector(mesh.positions()[v.index()]));
         let (degrees, length) = (
-            m.cross(n).length().atan2(m.dot(n)).to_degrees(),
+            math::atan2(m.cross(n).length(), m.dot(n)).to_degrees(),
             (b - a).length(),
         );
         let is_one = m != DVec3::ZERO && n != DVec3::ZERO && length <= longest;

@@ -1,6 +1,7 @@
 //! The sharp edges and vertices of a part: edges beyond an angle, and the tips of cones.
 
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::mesh::{CreasesAbove, Mesh, MeshError};
 use crate::parallel;
 use crate::vector::DVec3;
@@ -55,7 +56,7 @@ fn tips(mesh: &Mesh, sharp: &[HalfEdgeId], angle: f64) -> Vec<VertexId> {
             .into_iter()
             .for_each(|twin| is_sharp[twin.index()] = true);
     }
-    let between = |m: DVec3, n: DVec3| m.cross(n).length().atan2(m.dot(n));
+    let between = |m: DVec3, n: DVec3| math::atan2(m.cross(n).length(), m.dot(n));
     let normal = |h: HalfEdgeId| normals[h.face().index()];
     let is_tip = |&v: &VertexId| {
         let spokes = || topology.outgoing_ring(v);

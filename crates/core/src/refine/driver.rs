@@ -1,12 +1,11 @@
 //! The loop that both refinements share: flags, cap, one step, report, until something ends it.
 
-use std::time::Instant;
-
 use super::junctions::join_copies;
 use super::lineage::Lineage;
 use super::split::SplitEdges;
 use super::step::advance;
 use super::{RefineError, Refinement, StepReport, Stop};
+use crate::clock::Clock;
 use crate::limit::{LimitTable, suits};
 use crate::mesh::{Mesh, check_finite};
 use crate::progress::{Observer, Stage, Watch};
@@ -40,7 +39,7 @@ impl Driver<'_> {
         watch.triangles(control.face_count());
         watch.stage(Stage::Refining, Some(self.levels))?;
         for step in 1..=self.levels {
-            let start = Instant::now();
+            let start = Clock::start();
             let mesh = refined.as_ref().unwrap_or(control);
             let divisible = flags(mesh)?;
             watch.poll()?;

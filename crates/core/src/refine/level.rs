@@ -2,6 +2,7 @@
 //! coarser one.
 
 use super::exact_result::Exact;
+use crate::math;
 use crate::mesh::SplitSurface;
 use crate::vector::vector;
 
@@ -86,7 +87,7 @@ impl Level {
 /// pixels, in the middle of a picture `height` pixels high with the vertical `field_of_view` in
 /// radians: `deviation · height / (2 tan(field of view / 2) · pixels)`.
 pub fn switching_distance(deviation: f64, pixels: f64, height: f64, field_of_view: f64) -> f64 {
-    deviation * height / (2.0 * (0.5 * field_of_view).tan() * pixels)
+    deviation * height / (2.0 * math::tan(0.5 * field_of_view) * pixels)
 }
 
 /// The sum of vectors times weights, of which those of zero do not count.

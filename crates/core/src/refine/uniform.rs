@@ -11,11 +11,10 @@ mod pieces;
 #[cfg(test)]
 mod tests;
 
-use std::time::Instant;
-
 use self::limits::{AtLimit, Wanted};
 use super::driver::Driver;
 use super::{RefineError, Refinement, StepReport, Stop};
+use crate::clock::Clock;
 use crate::limit::SidedNormals;
 use crate::mesh::{
     Junctions, MAX_FACES, Mesh, MeshError, Sharpness, Topology, Triangles, check_finite,
@@ -396,7 +395,7 @@ impl<'a> LastLevels<'a> {
         let Refinement {
             mesh, mut steps, ..
         } = by_steps(mesh, rules.scheme(), &first, observer)?;
-        let start = Instant::now();
+        let start = Clock::start();
         let mut watch = Watch::new(observer, Stage::Refining);
         watch.triangles(mesh.face_count());
         watch.stage(Stage::Refining, Some(end.levels))?;

@@ -10,6 +10,7 @@
 
 use core::f64::consts::TAU;
 
+use crate::math;
 use crate::ring::{EdgeShape, RingShape, VertexKind};
 use crate::scheme::{EdgeMask, Scheme, Support, VertexMask};
 use crate::vector::DVec3;
@@ -17,7 +18,7 @@ use crate::vector::DVec3;
 /// How far an interior vertex with `valence` edges moves towards the mean of its neighbours in one step:
 /// α = (4 − 2 cos(2π/n)) / 9.
 pub(super) fn alpha(valence: u32) -> f64 {
-    (4.0 - 2.0 * (TAU / f64::from(valence)).cos()) / 9.0
+    (4.0 - 2.0 * math::cos(TAU / f64::from(valence))) / 9.0
 }
 
 /// The factor of an interior vertex's distance from its limit in one step: 2/3 − α, the square of

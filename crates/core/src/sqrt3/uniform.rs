@@ -1,11 +1,10 @@
 //! Uniform √3-subdivision: step after step, and the limits of the result.
 
-use std::time::Instant;
-
 use super::masks::DoubleStep;
 use super::origins::Origins;
 use super::sharp_edges::SharpEdges;
 use super::step::Level;
+use crate::clock::Clock;
 use crate::index::{HalfEdgeId, VertexId};
 use crate::limit::{LimitTable, SidedNormals, TangentPlane};
 use crate::mesh::{Mesh, Sharpness, check_finite};
@@ -40,7 +39,7 @@ pub fn uniform_observed(
     let mut origins = options.origins.then(|| Origins::of(mesh));
     let (mut steps, mut stop) = (Vec::new(), Stop::Levels);
     for step in 1..=options.levels {
-        let start = Instant::now();
+        let start = Clock::start();
         let faces_before = level.mesh.face_count();
         let needed = faces_before.saturating_mul(3);
         if options.max_triangles.is_some_and(|cap| needed > cap) {

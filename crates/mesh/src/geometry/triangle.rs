@@ -6,6 +6,7 @@
 //! products lose too many digits on slivers and far away from small triangles; there the three
 //! sides are measured one by one and the inside through the triangle's normal.
 
+use crate::math;
 use crate::vector::DVec3;
 
 /// The closest point as a convex combination of the corners, and its squared distance from the origin.
@@ -140,5 +141,5 @@ pub fn solid_angle(corners: [DVec3; 3], from: DVec3) -> f64 {
     let [la, lb, lc] = [a, b, c].map(DVec3::length);
     let across = a.dot(b.cross(c));
     let along = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    2.0 * across.atan2(along)
+    2.0 * math::atan2(across, along)
 }

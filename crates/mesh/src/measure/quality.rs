@@ -3,6 +3,7 @@
 //! Takes a surface; gives the least angle and its triangle, the mean and a histogram. A triangle
 //! without area, or whose corners do not exist or are not finite, counts as one of 0°.
 
+use crate::math;
 use crate::mesh::Triangles;
 use crate::parallel;
 use crate::vector::{DVec3, vector};
@@ -125,7 +126,7 @@ fn least_angle_degrees(corners: Option<[DVec3; 3]>) -> f64 {
     } else {
         (-ab, bc)
     };
-    u.cross(v).length().atan2(u.dot(v)).to_degrees()
+    math::atan2(u.cross(v).length(), u.dot(v)).to_degrees()
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use super::{
     CreaseTag, FaceParts, Finding, Mesh, MeshError, Sector, SharpRing, Sharpness, VertexRule,
 };
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::ring::INFINITELY_SHARP;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
@@ -213,7 +214,7 @@ impl Fan {
         let spokes: Vec<DVec3> = sector.neighbours(topology).map(|v| place(v) - at).collect();
         let angle = |pair: &[DVec3]| {
             let [a, b] = [unit_or_zero(pair[0]), unit_or_zero(pair[1])];
-            a.cross(b).length().atan2(a.dot(b))
+            math::atan2(a.cross(b).length(), a.dot(b))
         };
         let angles = spokes.windows(2).map(angle).collect();
         Self {

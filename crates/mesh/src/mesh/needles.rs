@@ -9,6 +9,7 @@
 
 use super::Topology;
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::vector::{DVec3, vector};
 
 /// The cosine of the angle of a needle's tip, 45° and less: a curve does not turn back so far within two edges.
@@ -27,7 +28,7 @@ pub(super) struct SharpEdges<'a> {
 
 /// The angle between two unit normals; 0 where one is zero.
 pub(super) fn turn(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b))
+    math::atan2(a.cross(b).length(), a.dot(b))
 }
 
 impl<'a> SharpEdges<'a> {

@@ -15,6 +15,7 @@ use super::proof::Prover;
 use super::reference::Reference;
 use super::vertex_star::{VertexStar, Way};
 use crate::geometry::NONE;
+use crate::math;
 use crate::progress::{Cancelled, Watch};
 
 /// Growth of the threshold far from the goal. In a round of that growth the order hardly matters
@@ -205,8 +206,8 @@ impl<'t, 's, 'a> Collapser<'t, 's, 'a> {
     fn rung_above(&self, cost: f64, growth: f64) -> f64 {
         // A little less than a whole number by rounding is that number.
         const SLACK: f64 = 1e-9;
-        let rung = ((cost / self.flat).ln() / growth.ln() - SLACK).ceil();
-        let threshold = self.flat * growth.powf(rung.max(0.0));
+        let rung = (math::ln(cost / self.flat) / math::ln(growth) - SLACK).ceil();
+        let threshold = self.flat * math::powf(growth, rung.max(0.0));
         if threshold.is_finite() {
             threshold
         } else {

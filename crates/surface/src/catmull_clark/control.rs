@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::quads::{halves, in_half};
 use super::ring::vertex_weights;
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::mesh::{
     BoundaryRule, BuildOptions, Diagnosis, Fans, Groups, Junctions, Mesh, MeshError, NONE,
     PolygonFaces, PolygonSoup, Sharpness, Tags, Topology, Trace, outgoing_half_edges,
@@ -168,7 +169,7 @@ impl Polygons {
                 .filter(|&twin| h < twin)
                 .is_some_and(|twin| {
                     let [own, other] = [h, twin].map(normal);
-                    own.cross(other).length().atan2(own.dot(other)) > angle
+                    math::atan2(own.cross(other).length(), own.dot(other)) > angle
                 })
         };
         self.loops

@@ -10,6 +10,7 @@
 
 use core::f64::consts::{PI, TAU};
 
+use crate::math;
 use crate::ring::{SharpRing, VertexRule};
 
 /// Steps of the iteration for darts. It converges like the ratio of two eigenvalues, 0.9 and less up to nine edges.
@@ -224,8 +225,8 @@ impl RingLimits {
 
 /// A(θ), of which the eigenvalue of that frequency is (A + 4)/16.
 fn amplitude(angle: f64) -> f64 {
-    let cosine = angle.cos();
-    1.0 + cosine + (0.5 * angle).cos() * (2.0 * (9.0 + cosine)).sqrt()
+    let cosine = math::cos(angle);
+    1.0 + cosine + math::cos(0.5 * angle) * (2.0 * (9.0 + cosine)).sqrt()
 }
 
 /// The subdominant eigenvalue of a smooth vertex with so many edges.
@@ -250,7 +251,7 @@ fn closed(points: Points) -> Option<[Vec<f64>; 2]> {
         }
         weights
     };
-    Some([weights(f64::cos), weights(f64::sin)])
+    Some([weights(math::cos), weights(math::sin)])
 }
 
 /// The tangents of a corner's side: its two sharp edges.
@@ -277,9 +278,9 @@ fn side(points: Points, first: usize, edges: usize) -> [Vec<f64>; 2] {
         return [along, across];
     }
     let angle = PI / (edges - 1) as f64;
-    let (amplitude, cotangent) = (amplitude(angle), 1.0 / (0.5 * angle).tan());
+    let (amplitude, cotangent) = (amplitude(angle), 1.0 / math::tan(0.5 * angle));
     let eigenvalue = (amplitude + 4.0) / 16.0;
-    let sine = |slot: usize| (angle * slot as f64).sin();
+    let sine = |slot: usize| math::sin(angle * slot as f64);
     for slot in 1..edges - 1 {
         across[points.neighbour(first + slot)] = amplitude * sine(slot);
     }
@@ -331,7 +332,7 @@ fn dart_tangents(ring: &SharpRing, points: Points) -> Option<[Vec<f64>; 2]> {
         let (weights, has_converged) = iterated(kept(&weights), step);
         has_converged.then_some(weights)
     };
-    Some([found(f64::cos, 1.0)?, found(f64::sin, -1.0)?])
+    Some([found(math::cos, 1.0)?, found(math::sin, -1.0)?])
 }
 
 /// The result of a step repeated until nothing changes, and whether that was reached.

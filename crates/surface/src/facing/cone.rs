@@ -10,6 +10,7 @@
 
 use super::viewpoint::Viewpoint;
 use super::{Facing, Look, NormalNet, Side};
+use crate::math;
 use crate::vector::{DVec3, unit_or_zero, vector};
 
 /// Steps of an axis towards the normal that is farthest from it: each does less.
@@ -78,9 +79,9 @@ impl Cone {
 
     /// A cone that holds two; `None` where it would not be below 90°.
     pub(super) fn with(self, other: Self) -> Option<Self> {
-        let [a, b] = [self.sine, other.sine].map(f64::asin);
+        let [a, b] = [self.sine, other.sine].map(math::asin);
         let between = self.axis.distance(other.axis);
-        let between = 2.0 * (0.5 * between).min(1.0).asin();
+        let between = 2.0 * math::asin((0.5 * between).min(1.0));
         if between + b <= a {
             return Some(self);
         }
@@ -91,10 +92,11 @@ impl Cone {
         // The axis of the other stands `between` from here, and that of both `half − a`.
         let part = (half - a) / between;
         let axis = unit_or_zero(
-            (((1.0 - part) * between).sin() * self.axis + (part * between).sin() * other.axis)
-                / between.sin(),
+            (math::sin((1.0 - part) * between) * self.axis
+                + math::sin(part * between) * other.axis)
+                / math::sin(between),
         );
-        let sine = half.sin() + 4.0 * SINE_ROUNDING;
+        let sine = math::sin(half) + 4.0 * SINE_ROUNDING;
         let is_one = axis != DVec3::ZERO && half < core::f64::consts::FRAC_PI_2 && sine < 1.0;
         is_one.then_some(Self { axis, sine })
     }
@@ -170,7 +172,7 @@ pub struct NormalCone {
 impl NormalCone {
     pub(crate) fn of(cone: &Cone, points: impl Iterator<Item = DVec3> + Clone) -> Self {
         let [front, back] = cone.apexes(points);
-        let half_angle = cone.sine.asin() + SINE_ROUNDING;
+        let half_angle = math::asin(cone.sine) + SINE_ROUNDING;
         Self {
             axis: cone.axis.to_array(),
             half_angle,
@@ -184,7 +186,7 @@ impl NormalCone {
     pub fn facing(&self, viewpoint: &Viewpoint) -> Facing {
         let cone = Cone {
             axis: vector(self.axis),
-            sine: self.half_angle.sin() + SINE_ROUNDING,
+            sine: math::sin(self.half_angle) + SINE_ROUNDING,
         };
         let apexes = [self.front_apex, self.back_apex].map(vector);
         let [front, back] = apexes.map(|apex| cone.look(core::iter::once(apex), viewpoint));

@@ -15,6 +15,7 @@ use super::sparse::{Sparse, greatest};
 use super::system::{Solution, Solver, System};
 use crate::index::VertexId;
 use crate::limit::LimitRows;
+use crate::math;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, Watch};
@@ -400,7 +401,10 @@ fn unit(mesh: &Mesh) -> f64 {
         return 1.0;
     }
     // One step short of the ends of the range, where the factor itself would not be a number.
-    2f64.powi((-greatest.log2().floor() as i32).clamp(-1020, 1020))
+    math::powi(
+        2.0,
+        (-math::log2(greatest).floor() as i32).clamp(-1020, 1020),
+    )
 }
 
 /// The rows of the first copies, on first copies; those of others are empty.

@@ -8,12 +8,13 @@
 
 use core::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 use super::LimitError;
 use super::eigen::{complex_eigenvalues, left_eigenvector};
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
+use crate::math;
 use crate::scheme::Support;
 
 /// Multiply-adds that the transform may take (a second or so). A dense mask reaches it at 16,000 edges, Loop's
@@ -57,7 +58,7 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         return Ok(bare);
     }
     let modes = sector.modes()?;
-    let greatest = modes.first().map_or(0.0, |mode| mode.value.norm());
+    let greatest = modes.first().map_or(0.0, |mode| mode.value.modulus());
     if greatest >= 1.0 - 1e-12 {
         let what = format!(
             "differences must shrink, but the difference matrix has an eigenvalue of modulus {greatest}"
@@ -133,7 +134,7 @@ impl<'n, 's> Sector<'n, 's> {
             rows.push(weights.map(|(i, &weight)| (i / k, i % k, weight)).collect());
         }
         let root = |j: usize| {
-            let (sine, cosine) = (TAU * j as f64 / k as f64).sin_cos();
+            let (sine, cosine) = math::sin_cos(TAU * j as f64 / k as f64);
             Complex::new(cosine, sine)
         };
         let roots = (0..k).map(root).collect();
@@ -222,7 +223,7 @@ impl<'n, 's> Sector<'n, 's> {
             };
             modes.extend(values.into_iter().map(|value| Mode { value, frequency }));
         }
-        modes.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
+        modes.sort_by(|a, b| b.value.modulus().total_cmp(&a.value.modulus()));
         Ok(modes)
     }
 
@@ -234,7 +235,7 @@ impl<'n, 's> Sector<'n, 's> {
     /// The two dominant eigenvectors if they dominate strictly.
     fn dominant(&self, modes: &[Mode]) -> Option<Dominant> {
         let first = *modes.first()?;
-        let modulus = |i: usize| modes.get(i).map_or(0.0, |mode| mode.value.norm());
+        let modulus = |i: usize| modes.get(i).map_or(0.0, |mode| mode.value.modulus());
         let (second, taken) = if self.is_double(&first) {
             (None, 1)
         } else if !is_real(first.value) {
@@ -269,11 +270,11 @@ impl<'n, 's> Sector<'n, 's> {
         };
         let vector = left_eigenvector(&self.difference_block(mode.frequency), mode.value)
             .ok_or_else(failed)?;
-        let scale = if vector[0].norm() > 1e-9 {
+        let scale = if vector[0].modulus() > 1e-9 {
             vector[0]
         } else {
             vector.iter().copied().fold(Complex::new(0.0, 0.0), |a, b| {
-                if b.norm() > a.norm() { b } else { a }
+                if b.modulus() > a.modulus() { b } else { a }
             })
         };
         let k = self.valence();

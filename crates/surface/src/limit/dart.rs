@@ -8,7 +8,7 @@
 //! With Loop's scheme the odd patterns do not notice the crease, so that the tangent across it is the smooth one;
 //! that along it, and the position, are not those of the smooth vertex (from which they differ by tenths).
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 use super::LimitError;
 use super::eigen::{block, components, eigenvalues, left_vector};
@@ -198,7 +198,7 @@ impl<'d> Parity<'d> {
             let values = eigenvalues(&block(&matrix, rows, rows))?;
             modes.extend(values.into_iter().map(|value| (value, component)));
         }
-        modes.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
+        modes.sort_by(|a, b| b.0.modulus().total_cmp(&a.0.modulus()));
         Some(Self {
             mirror,
             sign,
@@ -210,7 +210,7 @@ impl<'d> Parity<'d> {
     }
 
     fn modulus(&self, place: usize) -> f64 {
-        self.modes.get(place).map_or(0.0, |mode| mode.0.norm())
+        self.modes.get(place).map_or(0.0, |mode| mode.0.modulus())
     }
 
     /// The dominant functional over all points, its greatest weight on the first `ring` of them 1.

@@ -6,6 +6,8 @@
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, Schur};
 
+use crate::math;
+
 /// QR steps allowed for a matrix of n rows, as a multiple of n: two or three a row are usual.
 const STEPS_PER_ROW: usize = 60;
 
@@ -85,7 +87,7 @@ where
     let system = (matrix - DMatrix::identity(n, n) * shift).lu();
     // Starting with unequal entries: a vector with the matrix's symmetry could miss the eigenvector.
     let mut vector = DVector::from_fn(n, |i, _| {
-        T::from_real(1.0 + 0.37 * ((i * i + i) as f64 * 0.61).sin())
+        T::from_real(1.0 + 0.37 * math::sin((i * i + i) as f64 * 0.61))
     });
     for _ in 0..4 {
         vector = system.solve(&vector)?;
@@ -130,7 +132,7 @@ pub(super) fn join_jordan_blocks(
     while let Some(value) = values.pop() {
         let (near, far): (Vec<_>, Vec<_>) = values
             .iter()
-            .partition(|other| (*other - value).norm() <= CLOSE * size);
+            .partition(|other| (*other - value).modulus() <= CLOSE * size);
         let mean = (near.iter().sum::<Complex<f64>>() + value) / (near.len() + 1) as f64;
         let is_real = mean.im.abs() <= 1e-12 * size;
         let defective =

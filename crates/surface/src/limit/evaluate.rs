@@ -15,6 +15,7 @@ use super::stencil::LimitStencil;
 use super::{LimitError, LimitTable, suits};
 use crate::index::{HalfEdgeId, VertexId};
 use crate::masks::Masks;
+use crate::math;
 use crate::mesh::{Mesh, RingShapes, Sharpness, Topology};
 use crate::parallel::{self, Poll};
 use crate::progress::{Cancelled, uncancelled};
@@ -488,7 +489,7 @@ impl Tangents {
 
     /// The tangents of a closed ring counted from another edge, at this angle on the regular ring.
     fn turned(&self, angle: f64) -> Self {
-        let (sine, cosine) = angle.sin_cos();
+        let (sine, cosine) = math::sin_cos(angle);
         let first = cosine * self.first + sine * self.second;
         Self {
             first,

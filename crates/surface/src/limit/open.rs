@@ -15,7 +15,7 @@
 //! * **Corner**: the two dominant left eigenvectors of B, that is both boundary edges, where they dominate A or draw
 //!   it along.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector};
 
 use super::LimitError;
 use super::eigen::{
@@ -52,7 +52,7 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
     let differences = difference_matrix(neighbourhood)?;
     let components = components(&differences);
     let modes = modes(neighbourhood, &differences, &components)?;
-    let greatest = modes.first().map_or(0.0, |mode| mode.value.norm());
+    let greatest = modes.first().map_or(0.0, |mode| mode.value.modulus());
     if greatest >= 1.0 - 1e-12 {
         let what = format!(
             "differences must shrink, but the difference matrix has an eigenvalue of modulus {greatest}"
@@ -67,7 +67,7 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
         return Ok(bare);
     };
     let tangents = scaled(neighbourhood, along, across);
-    let eigenvalues = pair.map(|mode| mode.value.norm());
+    let eigenvalues = pair.map(|mode| mode.value.modulus());
     Ok(LimitStencil {
         tangents,
         plane,
@@ -158,7 +158,7 @@ fn modes(
             defective,
         }));
     }
-    modes.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
+    modes.sort_by(|a, b| b.value.modulus().total_cmp(&a.value.modulus()));
     Ok(modes)
 }
 
@@ -171,7 +171,7 @@ fn choose(
     let place = |from: usize, on_boundary: bool| {
         (from..modes.len()).find(|&i| modes[i].on_boundary == on_boundary)
     };
-    let modulus = |i: Option<usize>| i.map_or(0.0, |i| modes[i].value.norm());
+    let modulus = |i: Option<usize>| i.map_or(0.0, |i| modes[i].value.modulus());
     let along = place(0, true)?;
     let second_on_boundary = place(along + 1, true);
     let from_boundary = neighbourhood.shape.corner || neighbourhood.valence() == 2;
@@ -182,7 +182,7 @@ fn choose(
     };
     let other_across = place(across + 1, from_boundary);
     let others = (0..modes.len()).filter(|i| ![along, across].contains(i));
-    let greatest_other = others.map(|i| modes[i].value.norm()).fold(0.0, f64::max);
+    let greatest_other = others.map(|i| modes[i].value.modulus()).fold(0.0, f64::max);
     let (slow, fast) = (modulus(Some(along)), modulus(Some(across)));
     let strict = |a: f64, b: f64| a > b && !same_modulus(a, b);
     if !is_real(modes[along].value) || !is_real(modes[across].value) || slow == 0.0 || fast == 0.0 {
@@ -192,13 +192,13 @@ fn choose(
     let in_block = pair
         .iter()
         .filter(|mode| mode.defective)
-        .map(|mode| mode.value.norm());
+        .map(|mode| mode.value.modulus());
     let next = in_block.fold(greatest_other, f64::max);
     // A Jordan block outlasts simple eigenvalues of its own modulus.
     let outlasts = pair[1].defective
         && same_modulus(fast, greatest_other)
         && !(0..modes.len()).any(|i| {
-            i != across && modes[i].defective && same_modulus(modes[i].value.norm(), fast)
+            i != across && modes[i].defective && same_modulus(modes[i].value.modulus(), fast)
         });
     if from_boundary && draws_others_along(differences, modes, pair) {
         return Some((pair, TangentPlane::Surface, fast));
@@ -224,9 +224,10 @@ fn choose(
 /// So it is at corners of three faces with Loop's scheme.
 fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2]) -> bool {
     let value = pair[0].value;
-    let is_same = |mode: &Mode| (mode.value - value).norm() <= 1e-12;
+    let is_same = |mode: &Mode| (mode.value - value).modulus() <= 1e-12;
     let no_slower = |mode: &&Mode| {
-        mode.value.norm() > value.norm() || same_modulus(mode.value.norm(), value.norm())
+        mode.value.modulus() > value.modulus()
+            || same_modulus(mode.value.modulus(), value.modulus())
     };
     let count = modes.iter().filter(no_slower).count();
     is_same(&pair[1])

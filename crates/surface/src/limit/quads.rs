@@ -11,6 +11,7 @@ use crate::catmull_clark::quads::{Connected, MeshQuads, in_half, next, of_half, 
 use crate::catmull_clark::ring::{RingLimits, RingSide};
 use crate::catmull_clark::step::slot;
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::mesh::{Mesh, Sharpness};
 use crate::parallel::{self, Poll};
 use crate::progress::Cancelled;
@@ -148,7 +149,7 @@ impl<'m> QuadLimits<'m> {
         // Those of a smooth ring are along its first edge and across it. A diagonal leaves in the middle between two edges.
         let turned = match ring.is_smooth && of_half(corner).is_none() {
             true => {
-                let (sine, cosine) = (PI / ring.edges as f64).sin_cos();
+                let (sine, cosine) = math::sin_cos(PI / ring.edges as f64);
                 [
                     cosine * first + sine * second,
                     cosine * second - sine * first,

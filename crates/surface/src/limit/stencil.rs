@@ -5,8 +5,9 @@
 
 use core::f64::consts::{FRAC_PI_3, PI, TAU};
 
-use nalgebra::Complex;
+use nalgebra::{Complex, ComplexField};
 
+use crate::math;
 use crate::ring::RingShape;
 use crate::scheme::Support;
 use crate::vector::DVec3;
@@ -153,7 +154,7 @@ fn convex_fan(shape: RingShape, support: Support) -> Vec<DVec3> {
         (true, true) => (FRAC_PI_3 * faces as f64).min(2.0 * FRAC_PI_3),
     };
     let spoke = |j: usize| {
-        let (sine, cosine) = (whole * (j % k) as f64 / faces as f64).sin_cos();
+        let (sine, cosine) = math::sin_cos(whole * (j % k) as f64 / faces as f64);
         DVec3::new(cosine, sine, 0.0)
     };
     let mut points: Vec<DVec3> = (0..k).map(spoke).collect();
@@ -172,5 +173,5 @@ pub(super) fn same_modulus(a: f64, b: f64) -> bool {
 
 /// Whether an eigenvalue is real up to rounding.
 pub(super) fn is_real(value: Complex<f64>) -> bool {
-    value.im.abs() <= 1e-12 * value.norm()
+    value.im.abs() <= 1e-12 * value.modulus()
 }

@@ -10,6 +10,7 @@
 
 use super::LimitSurface;
 use crate::index::{FaceId, HalfEdgeId};
+use crate::math;
 use crate::parallel;
 use crate::patch::polynomial::Polynomial;
 use crate::patch::{Patch, root_patch};
@@ -81,13 +82,13 @@ impl Derivatives {
         let b = (uv - shear * uu) / (length * height);
         let d = (vv - 2.0 * shear * uv + shear * shear * uu) / (height * height);
         let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
-        let radius = half.hypot(b);
+        let radius = math::hypot(half, b);
         let gaussian = a * d - b * b;
         if !(mean.is_finite() && gaussian.is_finite() && radius.is_finite()) {
             return None;
         }
-        let angle = 0.5 * b.atan2(half);
-        let first = angle.cos() * along + angle.sin() * across;
+        let angle = 0.5 * math::atan2(b, half);
+        let first = math::cos(angle) * along + math::sin(angle) * across;
         let directions = [first, normal.cross(first)].map(|direction| direction.to_array());
         Some(Curvature {
             gaussian,

@@ -11,6 +11,7 @@
 use super::bezier_triangle::{BezierTriangle, EDGES};
 use super::extraordinary::ExtraordinaryPatch;
 use super::normal_net::{cross_products, tangents};
+use crate::math;
 use crate::vector::DVec3;
 
 /// The map over one face of a vertex, with points in the plane z = 0.
@@ -45,8 +46,8 @@ impl Characteristic {
     /// The map for a valence of at least 3.
     pub fn of(valence: usize) -> Self {
         let turn = core::f64::consts::TAU / valence as f64;
-        let power = |j: f64| DVec3::new((turn * j).cos(), (turn * j).sin(), 0.0);
-        let eigenvalue = 0.375 + 0.25 * turn.cos();
+        let power = |j: f64| DVec3::new(math::cos(turn * j), math::sin(turn * j), 0.0);
+        let eigenvalue = 0.375 + 0.25 * math::cos(turn);
         let between = 0.375 * (power(0.0) + power(1.0)) / (eigenvalue - 0.125);
         let rotated = |p: DVec3, j: f64| {
             let by = power(j);

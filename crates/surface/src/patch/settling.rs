@@ -14,6 +14,7 @@ use super::bezier_triangle::BezierTriangle;
 use super::characteristic::Characteristic;
 use super::extraordinary::ExtraordinaryPatch;
 use super::normal_net::tangents;
+use crate::math;
 use crate::vector::DVec3;
 
 /// Levels after which it is given up.
@@ -27,7 +28,7 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 /// `beta` is the weight of each neighbour of the vertex.
 pub(super) fn growth(map: &Characteristic, beta: f64) -> Option<f64> {
     let valence = map.control.ring.len();
-    let eigenvalue = 0.375 + 0.25 * (core::f64::consts::TAU / valence as f64).cos();
+    let eigenvalue = 0.375 + 0.25 * math::cos(core::f64::consts::TAU / valence as f64);
     let left = |patch: ExtraordinaryPatch| {
         let [limit, t1, t2] = settled(&patch, beta);
         let left = |(point, at): (DVec3, DVec3)| point - (limit + at.x * t1 + at.y * t2);
@@ -92,7 +93,7 @@ pub(crate) fn settled(patch: &ExtraordinaryPatch, beta: f64) -> [DVec3; 3] {
     let share = 1.0 / (valence + 0.375 / beta);
     let (mut sum, mut along, mut across) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
     for (slot, &point) in patch.ring.iter().enumerate() {
-        let (sine, cosine) = (core::f64::consts::TAU * slot as f64 / valence).sin_cos();
+        let (sine, cosine) = math::sin_cos(core::f64::consts::TAU * slot as f64 / valence);
         let from = point - patch.at;
         sum += from;
         along += cosine * from;

@@ -9,6 +9,7 @@
 use core::array::from_fn;
 
 use crate::geometry::box_tree::{Bounds, NO_BOUNDS, grown};
+use crate::math;
 use crate::patch::bezier_triangle::BezierTriangle;
 use crate::patch::normal_net::{differences, multinomials, place, size};
 use crate::patch::sextic::SexticTriangle;
@@ -97,7 +98,7 @@ impl Convexity {
         });
         let across = uv[0].abs().max(uv[1].abs());
         let (mean, half) = (0.5 * (uu[0] + vv[0]), 0.5 * (uu[0] - vv[0]));
-        mean - half.hypot(across)
+        mean - math::hypot(half, across)
     }
 
     /// A bound from below on half the squared distance all over the piece, given that at a place, its derivatives there, and

@@ -4,6 +4,7 @@
 //! decided in the plane.
 
 use crate::geometry::box_tree::{NO_BOUNDS, grown};
+use crate::math;
 use crate::patch::polynomial::{Net, Polynomial};
 use crate::vector::DVec3;
 
@@ -162,7 +163,7 @@ pub(super) fn nearest_on_edges(corners: [DVec3; 3], rounding: f64) -> ([f64; 2],
         };
         let part = part.clamp(0.0, 1.0);
         let point = from + part * way;
-        let distance = point.x.hypot(point.y);
+        let distance = math::hypot(point.x, point.y);
         let is_better =
             distance < best.2 - rounding || distance < best.2 + rounding && point.z < best.1;
         if is_better {

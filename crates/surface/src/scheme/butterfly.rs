@@ -23,6 +23,7 @@
 use core::f64::consts::{PI, TAU};
 
 use super::{EdgeMask, Scheme, Support, VertexMask, stay};
+use crate::math;
 use crate::ring::{EdgeShape, RingShape};
 
 /// The modified butterfly scheme: interpolating, with rules for extraordinary vertices and boundaries.
@@ -183,7 +184,7 @@ fn interior_vertex_rule(end: &mut End<'_>, scale: f64) {
             (3, _) => -1.0 / 12.0,
             _ => {
                 let angle = TAU * j as f64 / k as f64;
-                (0.25 + angle.cos() + 0.5 * (2.0 * angle).cos()) / k as f64
+                (0.25 + math::cos(angle) + 0.5 * math::cos(2.0 * angle)) / k as f64
             }
         };
         end.add(j as isize, weight * scale);
@@ -201,15 +202,15 @@ fn boundary_vertex_rule(end: &mut End<'_>, scale: f64) {
     let last = end.ring.len() - 1;
     let faces = last as f64;
     let theta = PI / faces;
-    let (sine, cosine) = (end.slot as f64 * theta).sin_cos();
+    let (sine, cosine) = math::sin_cos(end.slot as f64 * theta);
     let double_sine = 2.0 * sine * cosine;
-    *end.centre += scale * (1.0 - sine * theta.sin() / (1.0 - theta.cos()) / faces);
-    let skew = (2.0 * theta).sin() * double_sine / (theta.cos() - (2.0 * theta).cos());
+    *end.centre += scale * (1.0 - sine * math::sin(theta) / (1.0 - math::cos(theta)) / faces);
+    let skew = math::sin(2.0 * theta) * double_sine / (math::cos(theta) - math::cos(2.0 * theta));
     let first = 0.25 * (cosine - skew / faces);
     end.ring[0] += scale * first;
     end.ring[last] -= scale * first;
     for j in 1..last {
-        let (sine_j, cosine_j) = (j as f64 * theta).sin_cos();
+        let (sine_j, cosine_j) = math::sin_cos(j as f64 * theta);
         end.ring[j] += scale * (sine * sine_j + double_sine * sine_j * cosine_j) / faces;
     }
 }
@@ -222,7 +223,7 @@ fn boundary_vertex_rule(end: &mut End<'_>, scale: f64) {
 /// faster than the two boundary edges, whose plane is therefore the tangent plane.
 fn corner_rule(end: &mut End<'_>, scale: f64) {
     let angle = 2.0 * PI / (3.0 * end.shape.faces() as f64);
-    let own = 0.5 - 0.25 * angle.cos();
+    let own = 0.5 - 0.25 * math::cos(angle);
     *end.centre += scale * (0.75 - own);
     end.add(0, scale * own);
     end.add(1, scale * 0.125);

@@ -8,6 +8,7 @@
 use core::f64::consts::TAU;
 
 use super::{EdgeMask, Family, Scheme, Support, VertexMask, stay};
+use crate::math;
 use crate::ring::{EdgeShape, RingShape, VertexKind};
 
 /// A member of the Loop family: [`Loop`] or [`LoopWarren`]. There are no others, as only their
@@ -51,7 +52,7 @@ impl LoopFamily {
         let k = f64::from(valence);
         match self.weights {
             Weights::Loop => {
-                let inner = 0.375 + 0.25 * (TAU / k).cos();
+                let inner = 0.375 + 0.25 * math::cos(TAU / k);
                 (0.625 - inner * inner) / k
             }
             Weights::Warren if valence == 3 => 3.0 / 16.0,

@@ -13,6 +13,7 @@ use super::quadtree::NodeAddress;
 use crate::certificate::{Effort, ParamPatch, Pieces, SubTriangle, TriangleFrame, exceeds};
 use crate::index::FaceId;
 use crate::limit_surface::LimitSurface;
+use crate::math;
 use crate::mesh::Mesh;
 use crate::parallel::IsStopped;
 use crate::patch::Rules;
@@ -363,7 +364,7 @@ fn bound(goal: &Goal<'_>, sheets: &[(ParamPatch, &Rules<'_>)], part: SubTriangle
             let target = goal.tolerance / (sheets.len() as f64).sqrt();
             let squares = sheets
                 .iter()
-                .map(|(sheet, rules)| sheet.off_linear(part, target, rules).powi(2));
+                .map(|(sheet, rules)| math::powi(sheet.off_linear(part, target, rules), 2));
             squares.sum::<f64>().sqrt()
         }
         GoalKind::Surface => {

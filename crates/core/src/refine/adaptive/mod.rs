@@ -65,6 +65,7 @@ use super::junctions::join_copies;
 use super::kept_faces::KeptFaces;
 use crate::criterion::{Criteria, Distance, LimitNormal, Pixels};
 use crate::limit::{LimitTable, Stencils};
+use crate::math;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::Rules;
 use crate::patch::large_rings::LargeRings;
@@ -151,7 +152,7 @@ fn fitting(
 ) -> Result<Demands, RefineError> {
     // Goals that are 2⁶⁴ times as coarse fit any mesh.
     for halvings in 1..=64 {
-        let coarser = functions.coarser(f64::from(halvings).exp2());
+        let coarser = functions.coarser(math::exp2(f64::from(halvings)));
         let found = coarser.demands(room, &SharedWatch::new(observer, Stage::Refining))?;
         if let Some(demands) = found {
             return Ok(demands);

@@ -20,6 +20,7 @@ use super::state::State;
 use super::touched::{Fresh, Touched};
 use super::{Engine, sides};
 use crate::index::VertexId;
+use crate::math;
 use crate::parallel;
 use crate::progress::{Cancelled, Stage};
 use crate::refine::RefineError;
@@ -363,7 +364,7 @@ impl Engine<'_> {
                 0.0
             };
             let levels = if times > 1.0 {
-                ((times.log2() / 2.0).ceil() as u32).min(MOST_AT_ONCE)
+                ((math::log2(times) / 2.0).ceil() as u32).min(MOST_AT_ONCE)
             } else {
                 0
             };

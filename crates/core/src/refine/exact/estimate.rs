@@ -2,6 +2,7 @@
 
 use super::scale;
 use crate::index::{FaceId, HalfEdgeId};
+use crate::math;
 use crate::mesh::{Mesh, Sharpness};
 use crate::patch::submesh::submesh;
 use crate::progress::{Observer, unobserved};
@@ -140,7 +141,7 @@ fn coarsest(control: &Mesh, options: &ExactOptions) -> f64 {
         .into_iter()
         .filter_map(|(goal, coarse)| Some(coarse / goal?))
         .fold(COARSEST, f64::max);
-    times.log2().ceil().min(MOST_HALVINGS).exp2()
+    math::exp2(math::log2(times).ceil().min(MOST_HALVINGS))
 }
 
 /// The estimate where edges are collapsed.
@@ -210,19 +211,16 @@ fn approached(
             return Ok(of(triangles, true));
         }
         if triangles > counted && triangles > before {
-            let growth = (triangles as f64 / before as f64)
-                .powf(1.0 / halvings)
-                .min(MOST_GROWTH);
+            let growth =
+                math::powf(triangles as f64 / before as f64, 1.0 / halvings).min(MOST_GROWTH);
             return Ok(of(
-                (triangles as f64 * growth.powf(times.log2())) as usize,
+                (triangles as f64 * math::powf(growth, math::log2(times))) as usize,
                 false,
             ));
         }
         // As many as surely leave few enough, so that hardly anything is counted twice.
-        let most = (counted as f64 / triangles.max(1) as f64)
-            .log(MOST_GROWTH)
-            .floor();
-        halvings = most.clamp(1.0, times.log2());
-        (times, before) = (times / halvings.exp2(), triangles);
+        let most = math::log(counted as f64 / triangles.max(1) as f64, MOST_GROWTH).floor();
+        halvings = most.clamp(1.0, math::log2(times));
+        (times, before) = (times / math::exp2(halvings), triangles);
     }
 }

@@ -3,6 +3,7 @@
 //! Distances are found by squares and products of squares; beyond coordinates of 1e±40 or so these overflow or vanish.
 
 use crate::criterion::{Camera, View, Viewpoint};
+use crate::math;
 use crate::mesh::Mesh;
 use crate::refine::RefineError;
 use crate::refine::exact_options::{AngleGoal, ExactOptions, Goals, PixelGoal};
@@ -41,9 +42,9 @@ pub(in crate::refine) fn factor(mesh: &Mesh) -> Option<f64> {
     if greatest == 0.0 || !greatest.is_finite() {
         return None;
     }
-    let exponent = greatest.log2().floor() as i32;
+    let exponent = math::log2(greatest).floor() as i32;
     // One step short of the ends of the range, where the factor itself would not be a number.
-    (exponent.abs() > MIDDLING).then(|| 2f64.powi((-exponent).clamp(-1020, 1020)))
+    (exponent.abs() > MIDDLING).then(|| math::powi(2.0, (-exponent).clamp(-1020, 1020)))
 }
 
 /// A mesh with its coordinates multiplied.

@@ -7,6 +7,7 @@
 //! of the surface: a distance to that mesh and one to the surface differ by e at most (the triangle
 //! inequality, in either direction).
 
+use crate::math;
 use crate::measure::{Bvh, certified_known};
 use crate::mesh::{Mesh, Triangles};
 use crate::progress::Observer;
@@ -147,7 +148,7 @@ pub(super) fn tighter(
 
 /// The triangles that a mesh has at least to be so near, by those of one that is farther away.
 fn triangles_at(near: f64, count: usize, far: f64) -> f64 {
-    count as f64 * GROWTH.powf((far / near).log(FINER))
+    count as f64 * math::powf(GROWTH, math::log(far / near, FINER))
 }
 
 /// The known interval of a distance.

@@ -49,6 +49,7 @@ use super::input_distance::{InputDistance, place};
 use super::{Exact, ExactOptions, RefineError, exact_observed, is_certified};
 use crate::geometry::closest_to_origin;
 use crate::interpolate::NearVertices;
+use crate::math;
 use crate::mesh::{FaceParts, Mesh, MeshError};
 use crate::options;
 use crate::parallel::{self, Poll};
@@ -306,7 +307,7 @@ impl Smoothed {
             self.farthest(|fault| fault.distance)
         };
         match farthest > bound.within {
-            true => (farthest / bound.room()).log2().ceil() as usize,
+            true => math::log2(farthest / bound.room()).ceil() as usize,
             false => usize::from(levels < MOST_UNFOLDING),
         }
     }
@@ -407,7 +408,7 @@ fn nearness(mesh: &Mesh, within: f64) -> f64 {
         .sum();
     let edge = sum / (3.0 * mesh.face_count() as f64);
     let longest = (DISTANCES * within).max(EDGES * edge);
-    (PI * edge / longest).powi(4).max(LEAST_NEARNESS)
+    math::powi(PI * edge / longest, 4).max(LEAST_NEARNESS)
 }
 
 fn perimeter(mesh: &Mesh, face: usize) -> f64 {

@@ -9,8 +9,10 @@
 
 use crate::geometry::DisjointSets;
 use crate::index::{HalfEdgeId, VertexId};
+use crate::math;
 use crate::mesh::{CornerTag, CreaseTag, Mesh, MeshError, Sharpness};
 use crate::ring::INFINITELY_SHARP;
+use crate::vector::DVec3;
 use std::collections::HashMap;
 
 /// How often edges are made sharp by their angles.
@@ -24,6 +26,12 @@ const OF_GREATEST: f64 = 0.25;
 
 /// Angles (radians) that are rounding.
 const FLAT: f64 = 1e-6;
+
+/// The angle between two normals; not a number where one is zero.
+fn angle_between(one: DVec3, other: DVec3) -> f64 {
+    let lengths = (one.length_squared() * other.length_squared()).sqrt();
+    math::acos((one.dot(other) / lengths).clamp(-1.0, 1.0))
+}
 
 /// The mesh that was given, sharper from one time to the next.
 pub(super) struct Sharper {
@@ -77,7 +85,7 @@ impl Sharper {
                 .twin(h)
                 .filter(|_| sharpness.edge(h) < INFINITELY_SHARP)?;
             let [one, other] = [h, twin].map(|h| self.mesh.unit_face_normal(h.face().index()));
-            Some(one.angle_between(other)).filter(|&angle| angle > FLAT)
+            Some(angle_between(one, other)).filter(|&angle| angle > FLAT)
         };
         let mut bent = Vec::new();
         for triangle in corners_of(&self.mesh, is_faulty) {

@@ -8,6 +8,7 @@
 use core::f64::consts::FRAC_PI_3;
 
 use super::{Forest, Kind, Side, Vertex, edge_of, node_of, side};
+use crate::math;
 use crate::refine::Origin;
 use crate::ring::{EdgeShape, RingShape};
 use crate::scheme::Scheme;
@@ -96,7 +97,7 @@ impl Forest<'_> {
             return from;
         }
         let limit = self.limit(vertex);
-        limit + ratio.powi(steps.into()) * (from - limit)
+        limit + math::powi(ratio, steps.into()) * (from - limit)
     }
 
     /// A curve's vertex at an even level: of a dart, whose odd levels are smoothed ones, that before.
@@ -285,7 +286,7 @@ impl Forest<'_> {
         let normal = match kind {
             Kind::Curve => self.rim_normal(vertex, maker),
             _ => {
-                let turn = |j: usize| (FRAC_PI_3 * j as f64).sin_cos();
+                let turn = |j: usize| math::sin_cos(FRAC_PI_3 * j as f64);
                 let ring = self.regular_ring(maker, kind).into_iter().enumerate();
                 let [along, across] = ring.fold([DVec3::ZERO; 2], |[along, across], (j, p)| {
                     [along + turn(j).1 * p, across + turn(j).0 * p]

@@ -6,6 +6,7 @@
 
 use super::edit::geometry::{Geometry, VertexAttribute};
 use bevy_mikktspace::{Geometry as Corners, TangentSpace, generate_tangents};
+use limitmesh::math;
 
 /// A primitive's geometry with tangents.
 #[derive(Clone, Debug, PartialEq)]
@@ -185,7 +186,7 @@ impl Surface<'_> {
         let most = all.fold(0.0f32, |most, x| most.max(x.abs()));
         let has_size = most > 0.0 && most.is_finite();
         if has_size {
-            (-f64::from(most).log2().ceil()).exp2() as f32
+            math::exp2(-math::log2(f64::from(most)).ceil()) as f32
         } else {
             1.0
         }

@@ -11,6 +11,7 @@ use super::primitive::{Local, Primitive};
 use crate::affine::bounding_box;
 use crate::flaw::{Flaw, Result};
 use foldhash::fast::RandomState;
+use limitmesh::math;
 use limitmesh::mesh::weld_within;
 use std::collections::HashMap;
 use std::hash::Hash;
@@ -177,7 +178,7 @@ fn joints_alike(kinds: &ByVertex, primitives: &[Primitive], distance: f64) -> Re
     }
     let all = primitives.iter().flat_map(|primitive| &primitive.positions);
     let [low, high] = bounding_box(all.copied()).unwrap_or_default();
-    let diagonal = (0..3).map(|i| (high[i] - low[i]).powi(2)).sum::<f64>();
+    let diagonal = (0..3).map(|i| math::powi(high[i] - low[i], 2)).sum::<f64>();
     let diagonal = diagonal.sqrt();
     let share = if diagonal > 0.0 {
         distance / diagonal

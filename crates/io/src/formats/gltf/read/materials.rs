@@ -4,6 +4,7 @@ use crate::flaw::Result;
 use crate::formats::gltf::document::extensions::TRANSFORM;
 use crate::formats::gltf::document::json::At;
 use crate::formats::gltf::document::source::Source;
+use limitmesh::math;
 
 /// The base colour of a material.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +66,7 @@ impl Source {
         let mut transform = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
         if let Some(own) = info.path(&["extensions", TRANSFORM]) {
             let [x, y] = own.numbers_or("scale", [1.0; 2])?;
-            let (sine, cosine) = own.number_or("rotation", 0.0)?.sin_cos();
+            let (sine, cosine) = math::sin_cos(own.number_or("rotation", 0.0)?);
             let offset = own.numbers_or("offset", [0.0; 2])?;
             transform = [[cosine * x, -sine * x], [sine * y, cosine * y], offset];
         }
