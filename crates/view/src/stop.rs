@@ -17,16 +17,19 @@ pub struct Stop {
     pub distances: Option<Vec<f32>>,
     /// The mesh after uniform subdivision, as a GLB file.
     pub uniform: Option<Vec<u8>>,
+    /// The same distances for it.
+    pub uniform_distances: Option<Vec<f32>>,
 }
 
 impl Stop {
     /// Its parts by name: those that there are, and `None` for others.
-    pub(crate) fn parts(&self) -> [(&'static str, Option<Vec<u8>>); 3] {
-        let distances = self.distances.as_ref().map(|all| bytes(all));
+    pub(crate) fn parts(&self) -> [(&'static str, Option<Vec<u8>>); 4] {
+        let numbers = |all: &Option<Vec<f32>>| all.as_ref().map(|all| bytes(all));
         [
             ("glb", Some(self.glb.clone())),
-            ("distances", distances),
+            ("distances", numbers(&self.distances)),
             ("uniform", self.uniform.clone()),
+            ("uniform_distances", numbers(&self.uniform_distances)),
         ]
     }
 

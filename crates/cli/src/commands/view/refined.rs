@@ -91,17 +91,17 @@ pub(super) fn stop(
     let mut report = report(&folder)?;
     report.words = listener.notes(&folder);
     let distances = distances(subject, &folder.path().join("refined.glb"), &glb, progress)?;
-    let uniform = match wanted.uniform {
-        true => Some(uniform(subject, &folder, &mut report, progress)?),
-        false => None,
-    };
-    Ok(Stop {
+    let stop = Stop {
         tolerance: wanted.tolerance,
         report,
         glb,
         distances,
-        uniform,
-    })
+        ..Stop::default()
+    };
+    match wanted.uniform {
+        true => with_uniform(stop, subject, &folder, progress),
+        false => Ok(stop),
+    }
 }
 
 /// The refined mesh as a file of some kind.
@@ -127,27 +127,34 @@ pub(super) fn file(
     )
 }
 
-/// Uniform subdivision with about as many triangles, all on the limit surface.
-fn uniform(
+/// Adds uniform subdivision with about as many triangles, all on the limit surface.
+fn with_uniform(
+    mut stop: Stop,
     subject: &Subject<'_>,
     folder: &TempDir,
-    report: &mut Report,
     progress: &Progress,
-) -> anyhow::Result<Vec<u8>> {
+) -> anyhow::Result<Stop> {
     let apart = |levels: &u32| {
         let triangles = subject.faces as f64 * 4f64.powi(*levels as i32);
-        (triangles / report.triangles.max(1) as f64).ln().abs()
+        (triangles / stop.report.triangles.max(1) as f64).ln().abs()
     };
     let levels = (0..=MOST_LEVELS).min_by(|a, b| apart(a).total_cmp(&apart(b)));
     let levels = levels.unwrap_or_default().to_string();
     let options = ["--method", "uniform", "--limit", "--levels", &levels];
     let glb = refined(subject, folder, "uniform.glb", &options, progress)?;
-    let own = self::report(folder)?;
-    report.uniform = Some(UniformReport {
+    let own = report(folder)?;
+    let path = folder.path().join("uniform.glb");
+    stop.uniform_distances = distances(subject, &path, &glb, progress)?;
+    let greatest = stop
+        .uniform_distances
+        .as_ref()
+        .map(|all| all.iter().copied().fold(0.0, f32::max));
+    stop.report.uniform = Some(UniformReport {
         triangles: own.triangles,
-        upper: None,
+        upper: greatest.map(f64::from),
     });
-    Ok(glb)
+    stop.uniform = Some(glb);
+    Ok(stop)
 }
 
 /// Refines the file with these options; gives the file that comes out.

@@ -1,0 +1,209 @@
+// The picture: one camera, one or two models side by side, and the control cage.
+
+import {
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  NeutralToneMapping,
+  PerspectiveCamera,
+  PMREMGenerator,
+  Scene,
+  Sphere,
+  Spherical,
+  Vector3,
+  WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
+
+// From the front, a little from the right and above, as the program's pictures are.
+const FROM = new Vector3(0.45, 0.4, 1).normalize();
+const FIELD_OF_VIEW = 30;
+const TURN = Math.PI / 24;
+const STEP_NEARER = 1.15;
+
+export class Stage {
+  /** Throws where the browser cannot draw. */
+  constructor(canvas, cage) {
+    this.canvas = canvas;
+    this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.toneMapping = NeutralToneMapping;
+    this.renderer.setScissorTest(true);
+    this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
+    // It shines past the viewer's right ear.
+    const light = new DirectionalLight(0xffffff, 1.6);
+    light.position.set(0.4, 0.6, 1);
+    this.camera.add(light, light.target);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => this.redraw());
+    this.models = [];
+    this.scene = this.emptyScene();
+    this.cage = cageLines(cage);
+    this.cage.visible = false;
+    this.bounds = new Sphere(new Vector3(), 1);
+    this.lastTime = null;
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  emptyScene() {
+    const scene = new Scene();
+    const environment = new PMREMGenerator(this.renderer).fromScene(new RoomEnvironment(), 0.04);
+    scene.environment = environment.texture;
+    scene.environmentIntensity = 0.7;
+    scene.add(this.camera);
+    return scene;
+  }
+
+  /** Shows models from the left to the right. The camera stays, but for the first ones. */
+  setModels(models) {
+    const isFirst = this.models.length === 0;
+    this.scene.remove(...this.models.map((own) => own.scene));
+    this.models = models;
+    if (isFirst) {
+      this.fit();
+    }
+    this.redraw();
+  }
+
+  setCage(isShown) {
+    this.cage.visible = isShown;
+    this.redraw();
+  }
+
+  setGround(colour, cageColour) {
+    this.scene.background = new Color(colour);
+    this.cage.children.forEach((lines) => lines.material.color.set(cageColour));
+    this.redraw();
+  }
+
+  /** Turns the camera so that all is seen from the front. */
+  fit() {
+    const box = new Box3();
+    this.models.forEach((model) => box.expandByObject(model.scene));
+    if (box.isEmpty()) {
+      return;
+    }
+    box.getBoundingSphere(this.bounds);
+    this.look(FROM, FIELD_OF_VIEW);
+  }
+
+  /** Looks at the middle from a direction, so far away that all is seen. */
+  look(from, fieldOfView) {
+    const { center, radius } = this.bounds;
+    const half = ((fieldOfView / 2) * Math.PI) / 180;
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = (1.05 * radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
+    this.camera.fov = fieldOfView;
+    this.camera.near = Math.max(distance - 10 * radius, distance / 1000);
+    this.camera.far = distance + 100 * radius;
+    this.camera.position.copy(center).addScaledVector(from.clone().normalize(), distance);
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(center);
+    this.controls.update();
+    this.redraw();
+  }
+
+  /** Turns to the right and upwards, in steps. */
+  turn(right, up) {
+    this.moveCamera((spherical) => {
+      spherical.theta -= right * TURN;
+      spherical.phi -= up * TURN;
+      spherical.makeSafe();
+    });
+  }
+
+  /** Goes nearer, in steps. */
+  nearer(steps) {
+    this.moveCamera((spherical) => {
+      spherical.radius *= STEP_NEARER ** -steps;
+    });
+  }
+
+  moveCamera(change) {
+    const { position } = this.camera;
+    const { target } = this.controls;
+    const spherical = new Spherical().setFromVector3(position.clone().sub(target));
+    change(spherical);
+    position.setFromSpherical(spherical).add(target);
+    this.controls.update();
+    this.redraw();
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    if (clientWidth === 0 || clientHeight === 0) {
+      return;
+    }
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.draw();
+  }
+
+  /** Draws before the next picture of the screen. */
+  redraw() {
+    this.frame ??= requestAnimationFrame((time) => {
+      this.frame = null;
+      this.draw();
+      this.move(time);
+    });
+  }
+
+  /** Plays or holds the models' animations. */
+  setPlaying(isPlaying) {
+    this.isPlaying = isPlaying;
+    this.lastTime = null;
+    this.redraw();
+  }
+
+  move(time) {
+    if (!this.isPlaying) {
+      return;
+    }
+    const passed = this.lastTime === null ? 0 : (time - this.lastTime) / 1000;
+    this.lastTime = time;
+    this.models.forEach((model) => model.mixer.update(passed));
+    this.redraw();
+  }
+
+  draw() {
+    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    const width = clientWidth / Math.max(1, this.models.length);
+    this.camera.aspect = width / clientHeight;
+    this.camera.updateProjectionMatrix();
+    const others = [...this.models.map((model) => model.scene), this.cage];
+    this.models.forEach((model, number) => {
+      this.scene.remove(...others);
+      this.scene.add(model.scene, this.cage);
+      this.renderer.setViewport(number * width, 0, width, clientHeight);
+      this.renderer.setScissor(number * width, 0, width, clientHeight);
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+
+  /** The picture as a PNG file. */
+  picture() {
+    // What was drawn is there until the browser shows it.
+    this.draw();
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+}
+
+/** The cage's edges: strong where they are before the surface, faint behind it. */
+function cageLines(points) {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(points, 3));
+  const before = new LineBasicMaterial();
+  const behind = new LineBasicMaterial({ depthTest: false, transparent: true, opacity: 0.3 });
+  const lines = new LineSegments(geometry, before);
+  const cage = new Group();
+  const faint = new LineSegments(geometry, behind);
+  faint.renderOrder = 1;
+  cage.add(lines, faint);
+  return cage;
+}
