@@ -78,9 +78,9 @@ impl Page {
         }
         let cage: Vec<f32> = self.cage.iter().flatten().flatten().copied().collect();
         let cage =
-            (!cage.is_empty()).then(|| blobs.add_plain("cage", &bytes(&cage), "the control cage"));
+            (!cage.is_empty()).then(|| blobs.add_plain("data-cage", &bytes(&cage), "the control cage"));
         let picture = self.picture.as_ref();
-        let picture = picture.map(|picture| blobs.add_plain("picture", picture, "the picture"));
+        let picture = picture.map(|picture| blobs.add_plain("data-picture", picture, "the picture"));
         let live = self.live.as_ref();
         let data = json!({
             "version": 1,
@@ -121,7 +121,7 @@ impl Blobs {
                 parts.insert(name.to_owned(), Value::Null);
                 continue;
             };
-            let (id, packed) = (format!("{name}-{number}"), gzipped(&part)?);
+            let (id, packed) = (format!("data-{name}-{number}"), gzipped(&part)?);
             let is_mesh = name == "glb";
             if is_mesh && number == 0 || self.fits(&packed) {
                 self.put(&id, &packed);

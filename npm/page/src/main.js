@@ -36,7 +36,7 @@ class Viewer {
     const { places } = this.source;
     this.panel.setPlaces(places.last, places.nearest(data.start));
     if (data.left_out.length) {
-      this.panel.setMessage(`Left out, as the page would be too large: ${data.left_out.join(', ')}.`);
+      this.panel.setMessage('page', `Left out, as the page would be too large: ${data.left_out.join(', ')}.`);
     }
   }
 
@@ -63,7 +63,7 @@ class Viewer {
     } catch (error) {
       this.stage = null;
       panel.showPicture(data.picture && plainPart(data.picture));
-      panel.setMessage(`This browser draws no meshes (WebGL 2: ${error.message}), so this is a picture.`);
+      panel.setMessage('browser', `This browser draws no meshes (WebGL 2: ${error.message}), so this is a picture.`);
       const why = 'this browser draws no meshes';
       const names = ['material', 'plain', 'distance', 'checker', 'wireframe', 'cage', 'side-by-side', 'fit', 'save-png', 'help'];
       panel.setUsable(Object.fromEntries(names.map((name) => [name, why])));
@@ -83,6 +83,7 @@ class Viewer {
 
   toleranceChanged() {
     this.showToleranceWords();
+    this.panel.setBusy(true);
     clearTimeout(this.calm);
     this.calm = setTimeout(() => this.refine(), this.source.isLive ? CALM : 0);
   }
@@ -104,13 +105,13 @@ class Viewer {
       const models = this.stage ? await this.read(mesh) : [];
       if (this.request === request) {
         this.show(mesh, models);
-        this.panel.setMessage('');
+        this.panel.setMessage('mesh', '');
       } else {
         models.forEach((model) => model?.dispose());
       }
     } catch (error) {
       if (this.request === request && error.name !== 'AbortError') {
-        this.panel.setMessage(error.message);
+        this.panel.setMessage('mesh', error.message);
       }
     } finally {
       if (this.request === request) {
@@ -132,6 +133,7 @@ class Viewer {
     const { panel, stage } = this;
     const isFirst = !this.mesh;
     this.mesh = mesh;
+    panel.setNotes(mesh.report.words);
     if (!stage) {
       return;
     }
@@ -214,6 +216,7 @@ class Viewer {
     }
     const name = `${this.data.name.replace(/^builtin:/, '').replace(/\.[^.]*$/, '')}-refined.${format}`;
     try {
+      panel.setMessage('file', '');
       switch (format) {
         case 'glb':
           return saveFile(name, mesh.glb, 'model/gltf-binary');
@@ -223,7 +226,7 @@ class Viewer {
           return saveFile(name, await this.ply(source), 'application/octet-stream');
       }
     } catch (error) {
-      panel.setMessage(error.message);
+      panel.setMessage('file', error.message);
     }
   }
 
@@ -238,7 +241,7 @@ class Viewer {
   end() {
     this.isEnded = true;
     this.panel.setPlaces(0, 0);
-    this.panel.setMessage('The program has ended: this mesh stays, but no other will come.');
+    this.panel.setMessage('program', 'The program has ended: this mesh stays, but no other will come.');
   }
 }
 

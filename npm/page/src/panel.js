@@ -10,6 +10,7 @@ export class Panel {
   /** `on` is called by the names of what changed: tolerance, look, shown, animation, weight, fit, save. */
   constructor(name, on) {
     this.on = on;
+    this.messages = new Map();
     by('name').textContent = name;
     document.title = `${name} – limitmesh`;
     by('legend-bar').style.background = GRADIENT;
@@ -88,10 +89,19 @@ export class Panel {
     by('canvas').setAttribute('aria-label', `the refined mesh: ${words}`);
   }
 
-  /** Something that went wrong; an empty text takes it back. */
-  setMessage(words) {
-    by('message').textContent = words;
-    by('message').hidden = !words;
+  /** What else there is to say of the mesh, behind a line that is opened. */
+  setNotes(lines) {
+    by('notes').hidden = lines.length === 0;
+    by('notes-count').textContent = lines.length === 1 ? '1 note' : `${lines.length} notes`;
+    by('notes-words').textContent = lines.join('\n');
+  }
+
+  /** What is wrong with something; an empty text takes it back. */
+  setMessage(about, words) {
+    this.messages.set(about, words);
+    const all = [...this.messages.values()].filter(Boolean);
+    by('message').textContent = all.join('\n');
+    by('message').hidden = all.length === 0;
   }
 
   setLook(look) {

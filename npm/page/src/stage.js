@@ -96,6 +96,7 @@ export class Stage {
   /** Looks at the middle from a direction, so far away that all is seen. */
   look(from, fieldOfView) {
     const { center, radius } = this.bounds;
+    this.shapeCamera();
     const half = ((fieldOfView / 2) * Math.PI) / 180;
     const narrow = Math.min(1, this.camera.aspect);
     const distance = (1.05 * radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
@@ -171,17 +172,23 @@ export class Stage {
     this.redraw();
   }
 
-  draw() {
+  /** Gives the camera the shape of a model's part of the picture. */
+  shapeCamera() {
     const { clientWidth, clientHeight } = this.canvas.parentElement;
     const width = clientWidth / Math.max(1, this.models.length);
     this.camera.aspect = width / clientHeight;
     this.camera.updateProjectionMatrix();
+    return [width, clientHeight];
+  }
+
+  draw() {
+    const [width, height] = this.shapeCamera();
     const others = [...this.models.map((model) => model.scene), this.cage];
     this.models.forEach((model, number) => {
       this.scene.remove(...others);
       this.scene.add(model.scene, this.cage);
-      this.renderer.setViewport(number * width, 0, width, clientHeight);
-      this.renderer.setScissor(number * width, 0, width, clientHeight);
+      this.renderer.setViewport(number * width, 0, width, height);
+      this.renderer.setScissor(number * width, 0, width, height);
       this.renderer.render(this.scene, this.camera);
     });
   }

@@ -13,7 +13,7 @@ export function figures({ report, tolerance }, data) {
     parts.push(`${words} ${length(report.upper, data.unit)} (${share} of the diagonal) of the limit surface`);
   }
   parts.push(seconds(report.seconds));
-  return [parts.join(' · '), ...report.words].join('\n');
+  return parts.join(' · ');
 }
 
 /** A tolerance at the slider. */

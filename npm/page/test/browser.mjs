@@ -21,12 +21,13 @@ export const MODELS = process.env.LIMITMESH_MODELS;
 
 export const folder = await mkdtemp(join(tmpdir(), 'limitmesh-page-'));
 
-/** Runs the program to its end. */
+/** Runs the program to its end; gives what it prints. */
 export function run(...words) {
-  const { status, stderr } = spawnSync(PROGRAM, words, { encoding: 'utf8' });
+  const { status, stdout, stderr } = spawnSync(PROGRAM, words, { encoding: 'utf8' });
   if (status !== 0) {
     throw new Error(`${words.join(' ')}: ${stderr}`);
   }
+  return stdout;
 }
 
 /** The program as a server of its page. */
