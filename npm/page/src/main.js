@@ -16,7 +16,7 @@ import { figures, labels, legend, toleranceWords } from './words.js';
 
 // A slider that moves asks for no more meshes than this apart [ms].
 const CALM = 120;
-const GROUNDS = { light: ['#f6f7f8', '#b3541e'], dark: ['#16191d', '#ffb27a'] };
+const GROUNDS = { light: ['#e9ecef', '#b3541e'], dark: ['#16191d', '#ffb27a'] };
 
 class Viewer {
   constructor(data) {

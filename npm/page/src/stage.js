@@ -13,7 +13,6 @@ import {
   PerspectiveCamera,
   PMREMGenerator,
   Scene,
-  Sphere,
   Spherical,
   Vector3,
   WebGLRenderer,
@@ -24,6 +23,8 @@ import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 // From the front, a little from the right and above, as the program's pictures are.
 const FROM = new Vector3(0.45, 0.4, 1).normalize();
 const FIELD_OF_VIEW = 30;
+// How much farther away than where all just fits.
+const ROOM = 1.08;
 const TURN = Math.PI / 24;
 const STEP_NEARER = 1.15;
 
@@ -36,7 +37,7 @@ export class Stage {
     this.renderer.setScissorTest(true);
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
     // It shines past the viewer's right ear.
-    const light = new DirectionalLight(0xffffff, 1.6);
+    const light = new DirectionalLight(0xffffff, 1.3);
     light.position.set(0.4, 0.6, 1);
     this.camera.add(light, light.target);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -45,7 +46,6 @@ export class Stage {
     this.scene = this.emptyScene();
     this.cage = cageLines(cage);
     this.cage.visible = false;
-    this.bounds = new Sphere(new Vector3(), 1);
     this.lastTime = null;
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
@@ -55,7 +55,7 @@ export class Stage {
     const scene = new Scene();
     const environment = new PMREMGenerator(this.renderer).fromScene(new RoomEnvironment(), 0.04);
     scene.environment = environment.texture;
-    scene.environmentIntensity = 0.7;
+    scene.environmentIntensity = 0.55;
     scene.add(this.camera);
     return scene;
   }
@@ -84,30 +84,43 @@ export class Stage {
 
   /** Turns the camera so that all is seen from the front. */
   fit() {
+    this.look(FROM, FIELD_OF_VIEW);
+  }
+
+  /** Looks at the middle of what is shown from a direction, so far away that all is seen. */
+  look(from, fieldOfView) {
     const box = new Box3();
     this.models.forEach((model) => box.expandByObject(model.scene));
     if (box.isEmpty()) {
       return;
     }
-    box.getBoundingSphere(this.bounds);
-    this.look(FROM, FIELD_OF_VIEW);
+    const { camera, controls } = this;
+    box.getCenter(controls.target);
+    camera.fov = fieldOfView;
+    this.shapeCamera();
+    camera.position.copy(controls.target).add(from);
+    camera.lookAt(controls.target);
+    const distance = ROOM * this.distanceFor(box);
+    const radius = box.getSize(new Vector3()).length() / 2;
+    camera.position.copy(controls.target).addScaledVector(from.clone().normalize(), distance);
+    camera.near = Math.max(distance - 10 * radius, distance / 1000);
+    camera.far = distance + 100 * radius;
+    camera.updateProjectionMatrix();
+    controls.update();
+    this.redraw();
   }
 
-  /** Looks at the middle from a direction, so far away that all is seen. */
-  look(from, fieldOfView) {
-    const { center, radius } = this.bounds;
-    this.shapeCamera();
-    const half = ((fieldOfView / 2) * Math.PI) / 180;
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (1.05 * radius) / Math.sin(Math.atan(Math.tan(half) * narrow));
-    this.camera.fov = fieldOfView;
-    this.camera.near = Math.max(distance - 10 * radius, distance / 1000);
-    this.camera.far = distance + 100 * radius;
-    this.camera.position.copy(center).addScaledVector(from.clone().normalize(), distance);
-    this.camera.updateProjectionMatrix();
-    this.controls.target.copy(center);
-    this.controls.update();
-    this.redraw();
+  /** From how far away a camera that looks as it does now sees all corners of a box around its target. */
+  distanceFor(box) {
+    const { camera, controls } = this;
+    const up = Math.tan((camera.fov * Math.PI) / 360);
+    const toCamera = camera.quaternion.clone().invert();
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => {
+      const corner = new Vector3(...['x', 'y', 'z'].map((axis, k) => ((i >> k) & 1 ? box.max : box.min)[axis]));
+      const { x, y, z } = corner.sub(controls.target).applyQuaternion(toCamera);
+      return z + Math.max(Math.abs(x) / (up * camera.aspect), Math.abs(y) / up);
+    });
+    return Math.max(...corners);
   }
 
   /** Turns to the right and upwards, in steps. */
