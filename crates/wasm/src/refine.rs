@@ -177,7 +177,12 @@ impl Refined {
         told::set(&object, "stop", self.stop);
         told::set(&object, "levels", self.levels as f64);
         told::set(&object, "inverted", self.inverted as f64);
-        told::set(&object, "creaseAngle", self.control.crease_angle);
+        let crease_angle = self.control.crease_angle.map(JsValue::from);
+        told::set(
+            &object,
+            "creaseAngle",
+            crease_angle.unwrap_or(JsValue::NULL),
+        );
         let diagnosis = told::diagnosis(&self.control.diagnosis);
         told::set(&object, "diagnosis", diagnosis);
         object
