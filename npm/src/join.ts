@@ -1,0 +1,197 @@
+/**
+ * The parts of a mesh as one: vertices that are one become one, and those that move apart stay apart.
+ *
+ * Within a part vertices are one if position, displacements of all morph targets, and joints with their weights are the same. Two parts are
+ * joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they merely touch they are not.
+ */
+
+import type { Part } from './parts.js';
+
+/** All parts as one mesh. */
+export interface Joined {
+  positions: Float64Array;
+  /** The triangles of one part after those of another. */
+  index: Uint32Array;
+  /** By part and its vertex, the vertex of this mesh; `NONE` for those in no triangle. */
+  vertexOf: Uint32Array[];
+  /** By vertex, a part's vertex that it is. */
+  origins: Place[];
+  /** By part, its first triangle; and at last how many there are. */
+  firstFace: number[];
+}
+
+/** A vertex of a part. */
+export interface Place {
+  part: number;
+  vertex: number;
+}
+
+export const NONE = 0xffff_ffff;
+
+/** Joins parts; if `welds` is false, indices alone connect triangles. */
+export function join(parts: readonly Part[], welds: boolean): Joined {
+  const kinds = welds ? kindsOf(parts) : eachItsOwn(parts);
+  const names = parts.map((part, i) => namesOf(part, kinds[i]!));
+  const sets = new Sets();
+  const first = names.map(own => sets.add(own.vertices.length));
+  if (welds && parts.length > 1) {
+    for (const [a, b] of sharedEnds(parts, names, kinds)) sets.unite(first[a.part]! + a.vertex, first[b.part]! + b.vertex);
+  }
+  const numbers = new Map<number, number>();
+  const origins: Place[] = [];
+  const numberOf = (part: number, name: number): number => {
+    const root = sets.root(first[part]! + name);
+    if (!numbers.has(root)) {
+      numbers.set(root, origins.length);
+      origins.push({ part, vertex: names[part]!.vertices[name]! });
+    }
+    return numbers.get(root)!;
+  };
+  // In the order in which triangles come to them.
+  names.forEach((own, part) => own.vertices.forEach((_, name) => void numberOf(part, name)));
+  const vertexOf = names.map(({ ofVertex }, part) => ofVertex.map(name => (name === NONE ? NONE : numberOf(part, name))));
+  return { vertexOf, origins, positions: positionsAt(parts, origins), ...trianglesOf(parts, vertexOf) };
+}
+
+function positionsAt(parts: readonly Part[], origins: Place[]): Float64Array {
+  const positions = new Float64Array(3 * origins.length);
+  origins.forEach(({ part, vertex }, v) => positions.set(parts[part]!.positions.subarray(3 * vertex, 3 * vertex + 3), 3 * v));
+  return positions;
+}
+
+function trianglesOf(parts: readonly Part[], vertexOf: Uint32Array[]): { index: Uint32Array; firstFace: number[] } {
+  const firstFace = [0];
+  for (const { corners } of parts) firstFace.push(firstFace.at(-1)! + corners.length / 3);
+  const index = new Uint32Array(3 * firstFace.at(-1)!);
+  parts.forEach(({ corners }, part) => index.set(corners.map(v => vertexOf[part]![v]!), 3 * firstFace[part]!));
+  return { index, firstFace };
+}
+
+/** Numbers by vertex: equal ones, in whatever parts, stand and move together. */
+type Kinds = Uint32Array[];
+
+function eachItsOwn(parts: readonly Part[]): Kinds {
+  let next = 0;
+  return parts.map(part => new Uint32Array(part.positions.length / 3).map(() => next++));
+}
+
+function kindsOf(parts: readonly Part[]): Kinds {
+  const none: Kinds = parts.map(part => new Uint32Array(part.positions.length / 3));
+  let kinds = divided(none, (part, v) => row(parts[part]!.positions, v));
+  const targets = Math.max(0, ...parts.map(part => part.displacements.length));
+  for (let target = 0; target < targets; target++) {
+    kinds = divided(kinds, (part, v) => row(parts[part]!.displacements[target] ?? null, v));
+  }
+  if (parts.every(part => part.influences === null)) return kinds;
+  return divided(kinds, (part, v) => (parts[part]!.influences?.[v] ?? []).map(own => `${own.joint} ${own.weight}`).join());
+}
+
+/** Three numbers as a text, which is the same for 0 and −0; a vertex that is not moved is moved by 0. */
+function row(numbers: Float64Array | null, v: number): string {
+  return numbers === null ? '0 0 0' : `${numbers[3 * v]} ${numbers[3 * v + 1]} ${numbers[3 * v + 2]}`;
+}
+
+/** Kinds of vertices that are of one kind and have something more in common. */
+function divided(kinds: Kinds, key: (part: number, vertex: number) => string): Kinds {
+  const known = new Map<string, number>();
+  return kinds.map((own, part) => own.map((kind, vertex) => {
+    const text = `${kind}:${key(part, vertex)}`;
+    const found = known.get(text) ?? known.size;
+    known.set(text, found);
+    return found;
+  }));
+}
+
+/** The vertices of a part that differ, each with a number as its name. */
+interface Names {
+  /** A vertex of the part for each. */
+  vertices: number[];
+  /** The name of each vertex; `NONE` for those in no triangle. */
+  ofVertex: Uint32Array;
+}
+
+function namesOf(part: Part, kinds: Uint32Array): Names {
+  const ofVertex = new Uint32Array(kinds.length).fill(NONE);
+  const vertices: number[] = [];
+  const known = new Map<number, number>();
+  for (const v of part.corners) {
+    if (ofVertex[v] !== NONE) continue;
+    const kind = kinds[v]!;
+    if (!known.has(kind)) {
+      known.set(kind, vertices.length);
+      vertices.push(v);
+    }
+    ofVertex[v] = known.get(kind)!;
+  }
+  return { vertices, ofVertex };
+}
+
+/** An edge that is open in a part: its ends by name, from the lower kind to the higher, and whether its triangle runs so. */
+interface OpenEdge {
+  key: string;
+  isUp: boolean;
+  ends: [Place, Place];
+}
+
+/** Pairs of names at both ends of edges that are open in two parts, run oppositely, and in no third. */
+function sharedEnds(parts: readonly Part[], names: Names[], kinds: Kinds): [Place, Place][] {
+  const edges = new Map<string, OpenEdge[]>();
+  parts.forEach((own, part) => {
+    for (const edge of openEdges(own, part, names[part]!, kinds[part]!)) {
+      const met = edges.get(edge.key);
+      if (met === undefined) edges.set(edge.key, [edge]);
+      else met.push(edge);
+    }
+  });
+  const pairs: [Place, Place][] = [];
+  for (const [a, b, ...others] of edges.values()) {
+    if (b === undefined || others.length > 0 || a!.isUp === b.isUp) continue;
+    pairs.push([a!.ends[0], b.ends[0]], [a!.ends[1], b.ends[1]]);
+  }
+  return pairs;
+}
+
+function openEdges({ corners }: Part, part: number, { vertices, ofVertex }: Names, kinds: Uint32Array): OpenEdge[] {
+  const uses = new Map<string, number>();
+  const all: [number, number][] = [];
+  for (let corner = 0; corner < corners.length; corner++) {
+    const next = corner % 3 === 2 ? corner - 2 : corner + 1;
+    const [a, b] = [ofVertex[corners[corner]!]!, ofVertex[corners[next]!]!];
+    if (a === b) continue;
+    all.push([a, b]);
+    uses.set(named(a, b), (uses.get(named(a, b)) ?? 0) + 1);
+  }
+  const open = all.filter(([a, b]) => uses.get(named(a, b)) === 1);
+  return open.map(([a, b]) => {
+    const [from, to] = [kinds[vertices[a]!]!, kinds[vertices[b]!]!];
+    const [low, high] = from < to ? [a, b] : [b, a];
+    return { key: named(from, to), isUp: from < to, ends: [{ part, vertex: low }, { part, vertex: high }] };
+  });
+}
+
+function named(a: number, b: number): string {
+  return a < b ? `${a} ${b}` : `${b} ${a}`;
+}
+
+/** Numbers in sets that grow together. */
+class Sets {
+  readonly #above: number[] = [];
+
+  /** Adds so many numbers, each a set; gives the first. */
+  add(count: number): number {
+    const first = this.#above.length;
+    for (let i = 0; i < count; i++) this.#above.push(first + i);
+    return first;
+  }
+
+  root(number: number): number {
+    let own = number;
+    while (this.#above[own] !== own) own = this.#above[own] = this.#above[this.#above[own]!]!;
+    return own;
+  }
+
+  unite(a: number, b: number): void {
+    const [low, high] = [this.root(a), this.root(b)].sort((x, y) => x - y) as [number, number];
+    this.#above[high] = low;
+  }
+}
