@@ -1,6 +1,6 @@
 /** What adapters have in common: the options that they take, and how they ask for a refinement of parts. */
 
-import { bad, isGiven, whole } from './check.js';
+import { bad, isGiven, number, whole } from './check.js';
 import { carriedOf, type Carried } from './carry.js';
 import { LimitmeshError } from './error.js';
 import { join, NONE, type Joined } from './join.js';
@@ -31,21 +31,19 @@ export interface Request {
 
 /** The refinement of parts; `groups` has by triangle what belongs together. */
 export function requestOf(parts: readonly Part[], groups: Uint32Array, o: AdapterOptions): Request {
-  const isMoved = parts.some(part => part.influences !== null || part.displacements.some(isGiven));
-  const joined = join(parts, o.weld !== null);
+  const joined = join(parts, weldOf(o.weld));
   const carried = carriedOf(parts, joined, groups);
-  const options: Options = { ...o, channels: carried.channels, weld: weldOf(o.weld, isMoved) };
+  const options: Options = { ...o, channels: carried.channels, weld: null };
   // A flat region has triangles across the faces that values belong to.
   if (carried.channels.length > 0 && o.flatRegions === true) options.flatRegions = false;
   if (carried.channels.length > 0 && o.flatRegions === undefined) options.flatRegions = false;
   return { joined, carried, options };
 }
 
-/** Vertices at one place are welded here already, as far as they move together. */
-function weldOf(weld: AdapterOptions['weld'], isMoved: boolean): number | null {
-  if (!isGiven(weld) || weld === 0) return null;
-  if (isMoved) throw bad('weld', weld, '0 or null with morph targets or skins, which may move near vertices apart');
-  return weld;
+/** Vertices are welded here, not by the engine, as they may be moved apart. */
+function weldOf(weld: AdapterOptions['weld']): number | null {
+  if (!isGiven(weld)) return weld === null ? null : 0;
+  return number(weld, 'weld', 'a distance of at least 0, or null', x => x >= 0 && x < Infinity);
 }
 
 /** Sharp edges and vertices, given by the vertices of the one part that there is. */

@@ -1,10 +1,11 @@
 /**
  * The parts of a mesh as one: vertices that are one become one, and those that move apart stay apart.
  *
- * Within a part vertices are one if position, displacements of all morph targets, and joints with their weights are the same. Two parts are
- * joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they merely touch they are not.
+ * Within a part vertices are one if position, displacements of all morph targets, and joints with their weights are the same, perhaps within
+ * a distance. Two parts are joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they merely touch they are not.
  */
 
+import { clusters, equals, type Point } from './near.js';
 import type { Part } from './parts.js';
 
 /** All parts as one mesh. */
@@ -28,13 +29,13 @@ export interface Place {
 
 export const NONE = 0xffff_ffff;
 
-/** Joins parts; if `welds` is false, indices alone connect triangles. */
-export function join(parts: readonly Part[], welds: boolean): Joined {
-  const kinds = welds ? kindsOf(parts) : eachItsOwn(parts);
+/** Joins parts, where numbers within a distance are the same; without one indices alone connect triangles. */
+export function join(parts: readonly Part[], distance: number | null): Joined {
+  const kinds = distance === null ? eachItsOwn(parts) : kindsOf(parts, distance);
   const names = parts.map((part, i) => namesOf(part, kinds[i]!));
   const sets = new Sets();
   const first = names.map(own => sets.add(own.vertices.length));
-  if (welds && parts.length > 1) {
+  if (distance !== null && parts.length > 1) {
     for (const [a, b] of sharedEnds(parts, names, kinds)) sets.unite(first[a.part]! + a.vertex, first[b.part]! + b.vertex);
   }
   const numbers = new Map<number, number>();
@@ -75,31 +76,44 @@ function eachItsOwn(parts: readonly Part[]): Kinds {
   return parts.map(part => new Uint32Array(part.positions.length / 3).map(() => next++));
 }
 
-function kindsOf(parts: readonly Part[]): Kinds {
-  const none: Kinds = parts.map(part => new Uint32Array(part.positions.length / 3));
-  let kinds = divided(none, (part, v) => row(parts[part]!.positions, v));
+function kindsOf(parts: readonly Part[], distance: number): Kinds {
+  const all = parts.flatMap((part, at) => Array.from({ length: part.positions.length / 3 }, (_, vertex) => ({ part: at, vertex })));
+  const steps = [clusters(all.length, at => pointOf(parts[all[at]!.part]!.positions, all[at]!.vertex), distance)];
   const targets = Math.max(0, ...parts.map(part => part.displacements.length));
   for (let target = 0; target < targets; target++) {
-    kinds = divided(kinds, (part, v) => row(parts[part]!.displacements[target] ?? null, v));
+    steps.push(clusters(all.length, at => pointOf(parts[all[at]!.part]!.displacements[target], all[at]!.vertex), distance));
   }
-  if (parts.every(part => part.influences === null)) return kinds;
-  return divided(kinds, (part, v) => (parts[part]!.influences?.[v] ?? []).map(own => `${own.joint} ${own.weight}`).join());
+  if (parts.some(part => part.influences !== null)) {
+    const own = (at: number) => parts[all[at]!.part]!.influences?.[all[at]!.vertex] ?? [];
+    steps.push(equals(all.length, at => own(at).map(({ joint }) => joint).join()));
+    const most = all.reduce((most, _, at) => Math.max(most, own(at).length), 0);
+    // What a difference of weights makes of a place is about its share of the diagonal. Three weights at a time are a point.
+    const share = distance / diagonalOf(parts) || 0;
+    for (let first = 0; first < most; first += 3) {
+      const weight = (at: number, i: number) => own(at)[first + i]?.weight ?? 0;
+      steps.push(clusters(all.length, at => [weight(at, 0), weight(at, 1), weight(at, 2)], share));
+    }
+  }
+  const kinds = steps.reduce((kinds, own) => equals(all.length, at => `${kinds[at]} ${own[at]}`));
+  let first = 0;
+  return parts.map(part => kinds.subarray(first, (first += part.positions.length / 3)));
 }
 
-/** Three numbers as a text, which is the same for 0 and −0; a vertex that is not moved is moved by 0. */
-function row(numbers: Float64Array | null, v: number): string {
-  return numbers === null ? '0 0 0' : `${numbers[3 * v]} ${numbers[3 * v + 1]} ${numbers[3 * v + 2]}`;
+/** A vertex that is not moved is moved by 0. */
+function pointOf(numbers: Float64Array | null | undefined, v: number): Point {
+  return numbers ? [numbers[3 * v]!, numbers[3 * v + 1]!, numbers[3 * v + 2]!] : [0, 0, 0];
 }
 
-/** Kinds of vertices that are of one kind and have something more in common. */
-function divided(kinds: Kinds, key: (part: number, vertex: number) => string): Kinds {
-  const known = new Map<string, number>();
-  return kinds.map((own, part) => own.map((kind, vertex) => {
-    const text = `${kind}:${key(part, vertex)}`;
-    const found = known.get(text) ?? known.size;
-    known.set(text, found);
-    return found;
-  }));
+/** Of the box around all vertices. */
+export function diagonalOf(parts: readonly Part[]): number {
+  const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  for (const { positions } of parts) {
+    positions.forEach((x, i) => {
+      low[i % 3] = Math.min(low[i % 3]!, x);
+      high[i % 3] = Math.max(high[i % 3]!, x);
+    });
+  }
+  return Math.hypot(high[0]! - low[0]!, high[1]! - low[1]!, high[2]! - low[2]!);
 }
 
 /** The vertices of a part that differ, each with a number as its name. */

@@ -7,12 +7,13 @@
 import type { BufferGeometry } from 'three';
 import { ADAPTER_OPTIONS, onJoined, reportOf, requestOf, type AdapterOptions, type Report, type Request } from './adapter.js';
 import { refine, refineAsync } from './index.js';
+import { diagonalOf } from './join.js';
 import { named } from './options.js';
 import { readGeometry, type Read } from './three-read.js';
 import { writeGeometry } from './three-write.js';
 import type { Options, Refined, WorkerOptions } from './types.js';
 
-/** Options of `refine` but for those that the geometry answers. */
+/** Options of `refine` but for those that the geometry answers. By default `weld` is a millionth of the diagonal here. */
 export type GeometryOptions = AdapterOptions;
 
 /** What `userData.limitmesh` of a refined geometry tells. */
@@ -30,6 +31,9 @@ export async function refineGeometryAsync(geometry: BufferGeometry, options?: (G
   return written(geometry, prepared, await refineAsync(...prepared.mesh, prepared.options));
 }
 
+/** The part of the diagonal within which vertices become one unless `weld` says something else. */
+const ROUNDING = 1e-6;
+
 interface Prepared {
   read: Read;
   request: Request;
@@ -39,7 +43,9 @@ interface Prepared {
 
 function prepare(geometry: BufferGeometry, o: GeometryOptions): Prepared {
   const read = readGeometry(geometry);
-  const request = requestOf([read.part], read.stretches, o);
+  // Spheres, tubes and knots of three.js itself do not close exactly.
+  const weld = o.weld === undefined ? ROUNDING * diagonalOf([read.part]) : o.weld;
+  const request = requestOf([read.part], read.stretches, { ...o, weld });
   const { positions, index } = request.joined;
   const options: Options = { ...request.options, ...onJoined(o, request.joined), precision: 'f32' };
   return { read, request, mesh: [positions, index], options };
