@@ -383,7 +383,8 @@ test('errors have a code and a place', () => {
   const cage = new THREE.SphereGeometry(1, 8, 6);
   const wrong = (change, expected, options) => {
     const own = cage.clone();
-    const given = change(own) ?? own;
+    const changed = change(own);
+    const given = changed === undefined ? own : changed;
     assert.throws(() => refineGeometry(given, options), error => {
       assert.ok(error instanceof LimitmeshError, String(error.stack));
       for (const [name, value] of Object.entries(expected)) assert.match(error[name], value);
