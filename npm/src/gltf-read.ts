@@ -2,7 +2,7 @@
 
 import type { Accessor, Mesh, Primitive, PrimitiveTarget } from '@gltf-transform/core';
 import { LimitmeshError } from './error.js';
-import { influencesOf, type Influence, type Part, type PartValues } from './parts.js';
+import { checkFinite, influencesOf, type Influence, type Part, type PartValues } from './parts.js';
 import type { Semantic } from './types.js';
 
 /** A primitive that is refined, and its part. */
@@ -52,6 +52,7 @@ function readPrimitive(primitive: Primitive, place: string): ReadPrimitive | nul
     return accessor === null ? null : checked(accessor, `targets[${target}].POSITION`);
   });
   const part = { positions: checked(position, 'POSITION'), corners, displacements, influences: skinOf(primitive, count, checked), values };
+  checkFinite(part.positions, `${place}.POSITION`);
   return { primitive, part, carried };
 }
 

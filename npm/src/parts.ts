@@ -1,5 +1,6 @@
 /** What adapters refine: parts of a mesh, each with triangles of one material and all that its vertices carry. */
 
+import { LimitmeshError } from './error.js';
 import type { Semantic } from './types.js';
 
 /** Triangles with vertices of their own. */
@@ -42,4 +43,12 @@ export function influencesOf(count: number, pairs: (vertex: number) => Iterable<
     }
     return [...sums].map(([joint, weight]) => ({ joint, weight })).sort((a, b) => a.joint - b.joint);
   });
+}
+
+/** Refuses positions that are nowhere. */
+export function checkFinite(positions: Float64Array, name: string): void {
+  const at = positions.findIndex(x => !Number.isFinite(x));
+  if (at < 0) return;
+  const place = `${name}[${Math.floor(at / 3)}]`;
+  throw new LimitmeshError('mesh', place, `${place} is at ${positions[at]}, expected finite coordinates`);
 }

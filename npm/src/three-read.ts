@@ -3,7 +3,7 @@
 import type { BufferAttribute, BufferGeometry, GLBufferAttribute, InterleavedBufferAttribute } from 'three';
 import { shown } from './check.js';
 import { LimitmeshError } from './error.js';
-import { influencesOf, type Influence, type Part, type PartValues } from './parts.js';
+import { checkFinite, influencesOf, type Influence, type Part, type PartValues } from './parts.js';
 import type { Semantic } from './types.js';
 
 export type Attribute = BufferAttribute | InterleavedBufferAttribute;
@@ -54,7 +54,7 @@ export function readGeometry(geometry: BufferGeometry): Read {
     influences: skinOf(geometry),
     values: carried.map(own => valuesOf(own, geometry)),
   };
-  checkFinite(part.positions);
+  checkFinite(part.positions, 'attributes.position');
   return { part, carried, ...stretchesOf(geometry, range), hands: handsOf(geometry, corners) };
 }
 
@@ -114,13 +114,6 @@ function cornersOf({ index }: BufferGeometry, { start, end }: Range, vertices: n
     corners[i - start] = v;
   }
   return corners;
-}
-
-function checkFinite(positions: Float64Array): void {
-  const at = positions.findIndex(x => !Number.isFinite(x));
-  if (at < 0) return;
-  const place = `attributes.position[${Math.floor(at / 3)}]`;
-  throw fault(place, `${place} is at ${positions[at]}, expected finite coordinates`);
 }
 
 const GETTERS = ['getX', 'getY', 'getZ', 'getW'] as const;
