@@ -32,7 +32,7 @@ export interface Request {
 /** The refinement of parts; `groups` has by triangle what belongs together. */
 export function requestOf(parts: readonly Part[], groups: Uint32Array, o: AdapterOptions): Request {
   const joined = join(parts, weldOf(o.weld));
-  const carried = carriedOf(parts, joined, groups);
+  const carried = carriedOf(joined, groups);
   const options: Options = { ...o, channels: carried.channels, weld: null };
   // A flat region has triangles across the faces that values belong to.
   if (carried.channels.length > 0 && o.flatRegions === true) options.flatRegions = false;
@@ -46,11 +46,11 @@ function weldOf(weld: AdapterOptions['weld']): number | null {
   return number(weld, 'weld', 'a distance of at least 0, or null', x => x >= 0 && x < Infinity);
 }
 
-/** Sharp edges and vertices, given by the vertices of the one part that there is. */
-export function onJoined(o: AdapterOptions, { vertexOf }: Joined): Pick<AdapterOptions, 'creases' | 'corners'> {
+/** Sharp edges and vertices, given by the vertices of the one part that there is, `count` of them. */
+export function onJoined(o: AdapterOptions, { vertexOf }: Joined, count: number): Pick<AdapterOptions, 'creases' | 'corners'> {
   const [own] = vertexOf;
   const vertex = (value: unknown, place: string) => {
-    const v = own![whole(value, place, 0, own!.length - 1)]!;
+    const v = own![whole(value, place, 0, count - 1)]!;
     if (v === NONE) throw new LimitmeshError('option', place, `${place} names vertex ${String(value)}, which is in no triangle`);
     return v;
   };

@@ -5,6 +5,7 @@
 
 import { NONE, type Joined } from './join.js';
 import { densest, weightsChannel } from './skin.js';
+import { turnedFaces } from './turned.js';
 import type { Part, PartValues } from './parts.js';
 import type { Channel, Refined, RefinedChannel } from './types.js';
 
@@ -27,6 +28,8 @@ export interface Grown {
   vertices: Uint32Array;
   corners: Uint32Array;
   normals: Float32Array;
+  /** By vertex, -1 where it is of triangles that are turned back, and 1 elsewhere. */
+  signs: Int8Array;
   /** Three vertices a triangle. */
   index: Uint32Array;
   /** By triangle, the part's own that it came from. */
@@ -34,7 +37,8 @@ export interface Grown {
 }
 
 /** Channels for all that is carried. Triangles of different `groups` stay apart. */
-export function carriedOf(parts: readonly Part[], joined: Joined, groups: Uint32Array): Carried {
+export function carriedOf(joined: Joined, groups: Uint32Array): Carried {
+  const { parts } = joined;
   const carried: Carried = { channels: [], names: [], displacements: [], weights: null, groups };
   const add = (channel: Channel, name?: string) => {
     carried.names.push(name);
@@ -97,13 +101,16 @@ function displacementChannel(target: number, parts: readonly Part[], joined: Joi
 
 /** The vertices of a refined surface: those on sharp edges stand once for each side. */
 export interface Surface {
+  /** By face, whether its triangles are to be turned back. */
+  turned: Uint8Array;
   /** By corner. */
   vertices: Uint32Array;
   /** By vertex of the surface. */
   normals: Float32Array;
 }
 
-export function surfaceOf({ index, normals, sides }: Refined): Surface {
+export function surfaceOf(joined: Joined, refined: Refined): Surface {
+  const { index, normals, sides } = refined;
   const vertices = index.slice();
   const count = normals.length / 3;
   const added: number[] = [];
@@ -117,7 +124,7 @@ export function surfaceOf({ index, normals, sides }: Refined): Surface {
   const all = new Float32Array(normals.length + added.length);
   all.set(normals);
   all.set(added, normals.length);
-  return { vertices, normals: all };
+  return { turned: turnedFaces(joined, refined), vertices, normals: all };
 }
 
 /**
@@ -133,16 +140,19 @@ export function grown(
   refined.parents.forEach((face, triangle) => {
     if (face < faces.first || face >= faces.end) return;
     parents.push(face - faces.first);
-    for (let corner = 3 * triangle; corner < 3 * triangle + 3; corner++) index.push(numbering.number(corner, sideOf(face)));
+    const isTurned = surface.turned[face] === 1;
+    const side = 2 * sideOf(face) + (isTurned ? 1 : 0);
+    for (const i of isTurned ? [0, 2, 1] : [0, 1, 2]) index.push(numbering.number(3 * triangle + i, side));
   });
   const corners = Uint32Array.from(numbering.corners);
   const normals = new Float32Array(3 * corners.length);
-  corners.forEach((corner, v) => normals.set(directionAt(surface, corner), 3 * v));
-  return { vertices: corners.map(corner => refined.index[corner]!), corners, normals, index: Uint32Array.from(index), parents: Uint32Array.from(parents) };
+  const signs = Int8Array.from(corners, corner => (surface.turned[refined.parents[Math.floor(corner / 3)]!] === 1 ? -1 : 1));
+  corners.forEach((corner, v) => normals.set(directionAt(surface, corner).map(x => signs[v]! * x), 3 * v));
+  return { vertices: corners.map(corner => refined.index[corner]!), corners, normals, signs, index: Uint32Array.from(index), parents: Uint32Array.from(parents) };
 }
 
 /** A unit normal; upwards where there is no direction. */
-function directionAt({ vertices, normals }: Surface, corner: number): ArrayLike<number> {
+function directionAt({ vertices, normals }: Surface, corner: number): number[] {
   const at = 3 * vertices[corner]!;
   const [x, y, z] = [normals[at]!, normals[at + 1]!, normals[at + 2]!];
   const length = Math.hypot(x, y, z);
@@ -196,6 +206,15 @@ export function valuesAt(corners: Uint32Array, { index, data, components }: Refi
     for (let i = 0; i < components; i++) values[v * components + i] = data[index[corner]! * components + i]!;
   });
   return values;
+}
+
+/** What is known by vertex of the surface, such as changes of normals, by vertex of a part. */
+export function turnedBack({ corners, signs }: Grown, surface: Surface, numbers: ArrayLike<number>): Float32Array {
+  const found = new Float32Array(3 * corners.length);
+  corners.forEach((corner, v) => {
+    for (let i = 0; i < 3; i++) found[3 * v + i] = signs[v]! * numbers[3 * surface.vertices[corner]! + i]!;
+  });
+  return found;
 }
 
 /** Four joints a vertex, with weights that add up to 1. */

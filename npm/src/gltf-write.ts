@@ -1,7 +1,7 @@
 /** Refined triangles back into the primitives of a document, which keep their materials, extras and names. */
 
 import type { Accessor, Buffer, Document, Primitive, PrimitiveTarget, TypedArray } from '@gltf-transform/core';
-import { grown, skinAt, surfaceOf, valuesAt, type Carried, type Grown, type Surface } from './carry.js';
+import { grown, skinAt, surfaceOf, turnedBack, valuesAt, type Carried, type Grown, type Surface } from './carry.js';
 import { addedNormals } from './moved-normals.js';
 import type { ReadPrimitive } from './gltf-read.js';
 import type { Joined } from './join.js';
@@ -19,7 +19,7 @@ export interface RefinedMesh {
 /** Puts a refined mesh back. A primitive of which nothing is left, as it had no area, stays as it is. */
 export function writeMesh(document: Document, own: RefinedMesh): void {
   const { primitives, joined, carried, refined, scale } = own;
-  const surface = surfaceOf(refined);
+  const surface = surfaceOf(joined, refined);
   const positions = Float64Array.from(refined.positions, x => x / scale);
   const moved = carried.displacements.map(channel => {
     return channel < 0 ? null : addedNormals(refined.index, surface, positions, refined.channels[channel]!);
@@ -122,9 +122,7 @@ class Writer {
     const added = moved[target] ?? null;
     if (hadPositions) this.#set(own, 'POSITION', channel === undefined ? none() : Float32Array.from(valuesAt(part.corners, channel)), 3);
     if (hadNormals || (hadPositions && added !== null)) {
-      const normals = none();
-      if (added !== null) normals.set(rows(part.corners.map(corner => surface.vertices[corner]!), added));
-      this.#set(own, 'NORMAL', normals, 3);
+      this.#set(own, 'NORMAL', added === null ? none() : turnedBack(part, surface, added), 3);
     }
     // Targets are counted, and each has to add something.
     if (own.listSemantics().length === 0) this.#set(own, 'POSITION', none(), 3);

@@ -5,11 +5,14 @@
  * a distance. Two parts are joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they merely touch they are not.
  */
 
+import { withBacks, type Kinds } from './backs.js';
 import { clusters, equals, type Point } from './near.js';
 import type { Part } from './parts.js';
 
 /** All parts as one mesh. */
 export interface Joined {
+  /** As they were given, but that backs have vertices of their own. */
+  parts: readonly Part[];
   positions: Float64Array;
   /** The triangles of one part after those of another. */
   index: Uint32Array;
@@ -30,8 +33,8 @@ export interface Place {
 export const NONE = 0xffff_ffff;
 
 /** Joins parts, where numbers within a distance are the same; without one indices alone connect triangles. */
-export function join(parts: readonly Part[], distance: number | null): Joined {
-  const kinds = distance === null ? eachItsOwn(parts) : kindsOf(parts, distance);
+export function join(given: readonly Part[], distance: number | null): Joined {
+  const { parts, kinds } = withBacks(given, distance === null ? eachItsOwn(given) : kindsOf(given, distance));
   const names = parts.map((part, i) => namesOf(part, kinds[i]!));
   const sets = new Sets();
   const first = names.map(own => sets.add(own.vertices.length));
@@ -51,7 +54,7 @@ export function join(parts: readonly Part[], distance: number | null): Joined {
   // In the order in which triangles come to them.
   names.forEach((own, part) => own.vertices.forEach((_, name) => void numberOf(part, name)));
   const vertexOf = names.map(({ ofVertex }, part) => ofVertex.map(name => (name === NONE ? NONE : numberOf(part, name))));
-  return { vertexOf, origins, positions: positionsAt(parts, origins), ...trianglesOf(parts, vertexOf) };
+  return { parts, vertexOf, origins, positions: positionsAt(parts, origins), ...trianglesOf(parts, vertexOf) };
 }
 
 function positionsAt(parts: readonly Part[], origins: Place[]): Float64Array {
@@ -67,9 +70,6 @@ function trianglesOf(parts: readonly Part[], vertexOf: Uint32Array[]): { index: 
   parts.forEach(({ corners }, part) => index.set(corners.map(v => vertexOf[part]![v]!), 3 * firstFace[part]!));
   return { index, firstFace };
 }
-
-/** Numbers by vertex: equal ones, in whatever parts, stand and move together. */
-type Kinds = Uint32Array[];
 
 function eachItsOwn(parts: readonly Part[]): Kinds {
   let next = 0;

@@ -1,14 +1,16 @@
 /** A refined geometry of three.js: the attributes of the one that was given, in their types, over the refined triangles. */
 
 import { BufferAttribute, BufferGeometry, Float16BufferAttribute, InstancedBufferGeometry } from 'three';
-import { grown, skinAt, surfaceOf, valuesAt, type Carried, type Grown, type Surface } from './carry.js';
+import { grown, skinAt, surfaceOf, turnedBack, valuesAt, type Carried, type Grown, type Surface } from './carry.js';
+import type { Request } from './adapter.js';
 import { addedNormals } from './moved-normals.js';
 import { isInstanced, type Attribute, type Group, type Read } from './three-read.js';
 import type { Refined } from './types.js';
 
-export function writeGeometry(from: BufferGeometry, read: Read, carried: Carried, refined: Refined): BufferGeometry {
+export function writeGeometry(from: BufferGeometry, read: Read, request: Request, refined: Refined): BufferGeometry {
+  const { carried } = request;
   const geometry = emptyLike(from);
-  const surface = surfaceOf(refined);
+  const surface = surfaceOf(request.joined, refined);
   const decisive = refined.channels.filter((_, i) => carried.names[i] !== undefined);
   const all = { first: 0, end: read.stretches.length };
   const own = grown(refined, surface, decisive, all, face => read.hands?.[face] ?? 0);
@@ -135,7 +137,7 @@ function writeMorphs(
 ): void {
   const isRelative = geometry.morphTargetsRelative;
   const base = geometry.attributes as Record<string, Attribute>;
-  const onBase = (numbers: Float64Array, name: string) => (isRelative ? numbers : numbers.map((x, i) => x + component(base[name]!, i)));
+  const onBase = (numbers: Float32Array | Float64Array, name: string) => (isRelative ? numbers : numbers.map((x, i) => x + component(base[name]!, i)));
   const names = (from.morphAttributes.position ?? []).map(own => own.name);
   displacements.forEach((channel, target) => {
     const none = new Float64Array(3 * own.vertices.length);
@@ -144,11 +146,7 @@ function writeMorphs(
     position.name = names[target]!;
     targets(geometry, 'position')[target] = position;
     if (displacements.every(own => own < 0)) return;
-    const change = moved === undefined ? none : addedAt(own.corners, surface, addedNormals(refined.index, surface, refined.positions, moved));
+    const change = moved === undefined ? none : turnedBack(own, surface, addedNormals(refined.index, surface, refined.positions, moved));
     targets(geometry, 'normal')[target] = plain(onBase(change, 'normal'), 3);
   });
-}
-
-function addedAt(corners: Uint32Array, surface: Surface, added: Float32Array): Float64Array {
-  return Float64Array.from({ length: 3 * corners.length }, (_, i) => added[3 * surface.vertices[corners[Math.floor(i / 3)]!]! + (i % 3)]!);
 }

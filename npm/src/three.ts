@@ -47,12 +47,12 @@ function prepare(geometry: BufferGeometry, o: GeometryOptions): Prepared {
   const weld = o.weld === undefined ? ROUNDING * diagonalOf([read.part]) : o.weld;
   const request = requestOf([read.part], read.stretches, { ...o, weld });
   const { positions, index } = request.joined;
-  const options: Options = { ...request.options, ...onJoined(o, request.joined), precision: 'f32' };
+  const options: Options = { ...request.options, ...onJoined(o, request.joined, read.part.positions.length / 3), precision: 'f32' };
   return { read, request, mesh: [positions, index], options };
 }
 
 function written(from: BufferGeometry, { read, request }: Prepared, refined: Refined): BufferGeometry {
-  const geometry = writeGeometry(from, read, request.carried, refined);
+  const geometry = writeGeometry(from, read, request, refined);
   geometry.userData = { ...from.userData, limitmesh: reportOf(refined) satisfies GeometryReport };
   return geometry;
 }

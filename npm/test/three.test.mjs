@@ -360,6 +360,54 @@ test('vertices that move apart stay apart', () => {
   assert.equal(apart.attributes.position.count, 8);
 });
 
+test('windings stay: skies are seen from within, and single faces as they were', () => {
+  const sky = new THREE.SphereGeometry(1, 16, 12).scale(-1, 1, 1);
+  sky.morphAttributes.position = [new THREE.BufferAttribute(sky.attributes.position.array.map(x => 0.5 * x), 3)];
+  sky.morphTargetsRelative = true;
+  const fine = refineGeometry(sky);
+  assert.ok(volumeOf(sky) < -3 && volumeOf(fine) < -3);
+  assertWatertight(fine, 'sky');
+  assertNormalsAgree(fine);
+  const change = fine.morphAttributes.normal[0];
+  // What grows as a whole keeps its normals.
+  assert.ok(change.array.every(x => Math.abs(x) < 1e-3));
+  const mixed = new THREE.SphereGeometry(1, 16, 12);
+  const turned = mixed.index.array.subarray(300, 303);
+  turned.set([turned[0], turned[2], turned[1]]);
+  const own = refineGeometry(mixed);
+  assertNormalsAgree(own);
+  const inwards = trianglesOf(own).filter(([a, b, c]) => b.clone().sub(a).cross(c.clone().sub(a)).dot(a) < 0);
+  assert.ok(inwards.length > 1 && inwards.length < 30, `${inwards.length} triangles of the one that was turned`);
+});
+
+function trianglesOf({ index, attributes }) {
+  return Array.from({ length: index.count / 3 }, (_, t) => [0, 1, 2].map(i => point(attributes.position, index.getX(3 * t + i))));
+}
+
+/** Normals look to the side that triangles are drawn on. */
+function assertNormalsAgree(geometry) {
+  trianglesOf(geometry).forEach(([a, b, c], t) => {
+    const own = b.clone().sub(a).cross(c.clone().sub(a));
+    for (let i = 0; i < 3; i++) assert.ok(own.dot(point(geometry.attributes.normal, geometry.index.getX(3 * t + i))) > 0);
+  });
+}
+
+test('front and back of a leaf stay two', () => {
+  const front = new THREE.PlaneGeometry(1, 1, 3, 3);
+  const { position } = front.attributes;
+  for (let v = 0; v < position.count; v++) position.setZ(v, 0.2 * Math.sin(4 * position.getX(v)) * position.getY(v));
+  const single = refineGeometry(front);
+  const back = front.clone();
+  for (let corner = 0; corner < back.index.count; corner += 3) back.index.array.set([1, 0].map(i => front.index.array[corner + i]), corner);
+  const both = refineGeometry(mergeGeometries([front, back]));
+  assert.equal(both.index.count, 2 * single.index.count);
+  const seen = sign => trianglesOf(both).filter(([a, b, c]) => sign * b.clone().sub(a).cross(c.clone().sub(a)).z > 0).length;
+  assert.deepEqual([seen(1), seen(-1)], [single.index.count / 3, single.index.count / 3]);
+  // Also where both name the same vertices.
+  const shared = front.clone().setIndex([...front.index.array, ...back.index.array]);
+  assert.equal(refineGeometry(shared).index.count, both.index.count);
+});
+
 test('the range that is drawn is refined', () => {
   const cage = mergeGeometries([new THREE.BoxGeometry(1, 1, 1, 2, 2, 2), new THREE.BoxGeometry(1, 1, 1, 2, 2, 2).translate(5, 0, 0)]);
   cage.setDrawRange(0, cage.index.count / 2);
