@@ -154,6 +154,49 @@ function usesOfEdges(primitives) {
   return uses;
 }
 
+/** Makes triangles run the other way. */
+function turn(primitive) {
+  const indices = primitive.getIndices().getArray();
+  for (let i = 0; i < indices.length; i += 3) [indices[i], indices[i + 1]] = [indices[i + 1], indices[i]];
+}
+
+const MADE = {
+  'two primitives': () => {},
+  'a sky': ({ mesh }) => mesh.listPrimitives().forEach(turn),
+  'fronts and backs': ({ mesh, document }) => {
+    const [upper, lower] = mesh.listPrimitives();
+    lower.dispose();
+    const back = document.createPrimitive().setMaterial(lower.getMaterial()).setIndices(upper.getIndices().clone());
+    for (const name of upper.listSemantics()) back.setAttribute(name, upper.getAttribute(name).clone());
+    turn(back);
+    mesh.addPrimitive(back);
+  },
+  'a large node': ({ node }) => node.setScale([4, 8, 2]),
+};
+
+for (const [name, change] of Object.entries(MADE)) {
+  test(`${name}: as the native program has it`, { skip: !program && 'LIMITMESH names no program' }, async () => {
+    const made = halves();
+    change(made);
+    const file = join(folder, 'in.glb');
+    await io.write(file, made.document);
+    await made.document.transform(limitmesh({ tolerance: '0.3%' }));
+    const [own, others] = [made.document, await native(file, ['--tolerance', '0.3%'])].map(primitivesOf);
+    // A sky is turned, and turned back: its triangles stand in another order.
+    if (name === 'a sky') own.forEach((primitive, i) => assert.deepEqual(placesOf(primitive), placesOf(others[i])));
+    else own.forEach((primitive, i) => assertSame(primitive, others[i]));
+  });
+}
+
+/** Triangles by the places of their corners and the normals there, the way they run, in the order of the texts. */
+function placesOf(primitive) {
+  const [position, normal] = ['POSITION', 'NORMAL'].map(name => primitive.getAttribute(name));
+  const text = v => [...position.getElement(v, []), ...normal.getElement(v, [])].map(x => (Math.round(x * 1e5) + 0) / 1e5).join(' ');
+  const corners = Array.from(primitive.getIndices().getArray(), text);
+  const triangles = Array.from({ length: corners.length / 3 }, (_, t) => corners.slice(3 * t, 3 * t + 3));
+  return triangles.map(([a, b, c]) => [[a, b, c], [b, c, a], [c, a, b]].map(own => own.join(' | ')).sort()[0]).sort();
+}
+
 test('primitives that share edges stay without cracks', async () => {
   const { document, mesh } = halves();
   await document.transform(limitmesh({ tolerance: '0.2%' }));
