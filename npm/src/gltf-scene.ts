@@ -42,7 +42,7 @@ export class Placements {
   /** How many times longer the scene shows a vector of a mesh at most; 1 where nothing shows it. */
   stretch(mesh: Mesh): number {
     const all = this.#all.get(mesh) ?? [];
-    const stretch = Math.max(0, ...all.flatMap(own => own.matrices.map(greatestStretch)));
+    const stretch = all.reduce((most, own) => own.matrices.reduce((most, matrix) => Math.max(most, greatestStretch(matrix)), most), 0);
     return stretch > 0 && stretch < Infinity ? stretch : 1;
   }
 
@@ -107,7 +107,8 @@ function matrixOf(moved: number[], turned: number[], scaled: number[]): Matrix {
 
 function product(a: Matrix, b: Matrix): Matrix {
   return Array.from({ length: 16 }, (_, at) => {
-    const [row, column] = [at % 4, at - (at % 4)];
+    const row = at % 4;
+    const column = at - row;
     return [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + row]! * b[column + k]!, 0);
   });
 }
@@ -117,7 +118,7 @@ function applied(m: Matrix, p: ArrayLike<number>): number[] {
 }
 
 /** Where a vertex goes. */
-function placed({ matrices, isSkin }: Placement, { positions, influences }: ReadPrimitive['part'], v: number): ArrayLike<number> & { forEach: number[]['forEach'] } {
+function placed({ matrices, isSkin }: Placement, { positions, influences }: ReadPrimitive['part'], v: number): number[] {
   const point = Array.from(positions.subarray(3 * v, 3 * v + 3));
   if (!isSkin) return applied(matrices[0]!, point);
   const own = (influences?.[v] ?? []).filter(({ joint }) => joint < matrices.length);
