@@ -148,7 +148,8 @@ export function grown(
   const normals = new Float32Array(3 * corners.length);
   const signs = Int8Array.from(corners, corner => (surface.turned[refined.parents[Math.floor(corner / 3)]!] === 1 ? -1 : 1));
   corners.forEach((corner, v) => normals.set(directionAt(surface, corner).map(x => signs[v]! * x), 3 * v));
-  return { vertices: corners.map(corner => refined.index[corner]!), corners, normals, signs, index: Uint32Array.from(index), parents: Uint32Array.from(parents) };
+  const vertices = corners.map(corner => refined.index[corner]!);
+  return { vertices, corners, normals, signs, index: Uint32Array.from(index), parents: Uint32Array.from(parents) };
 }
 
 /** A unit normal; upwards where there is no direction. */

@@ -57,7 +57,9 @@ function readPrimitive(primitive: Primitive, place: string): ReadPrimitive | nul
 }
 
 function numbersOf(accessor: Accessor, count: number, place: string): Float64Array {
-  if (accessor.getCount() !== count) throw new LimitmeshError('mesh', place, `${place} has ${accessor.getCount()} values, expected ${count}: one a vertex`);
+  if (accessor.getCount() !== count) {
+    throw new LimitmeshError('mesh', place, `${place} has ${accessor.getCount()} values, expected ${count}: one a vertex`);
+  }
   const size = accessor.getElementSize();
   const numbers = new Float64Array(count * size);
   const element: number[] = [];

@@ -2,7 +2,8 @@
  * The parts of a mesh as one: vertices that are one become one, and those that move apart stay apart.
  *
  * Within a part vertices are one if position, displacements of all morph targets, and joints with their weights are the same, perhaps within
- * a distance. Two parts are joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they merely touch they are not.
+ * a distance. Two parts are joined along edges that are open in both and run oppositely, as a solid of several materials has them; where they
+ * merely touch they are not.
  */
 
 import { withBacks, type Kinds } from './backs.js';

@@ -65,8 +65,9 @@ function fault(place: string, message: string): LimitmeshError {
 function checkKind(geometry: BufferGeometry): void {
   const given = geometry as unknown as Record<string, unknown> | null | undefined;
   if (given?.['isBufferGeometry'] !== true) {
-    const kind = given?.['isObject3D'] === true ? `${String(given['type'])}: it is its geometry that is refined` : `${shown(given)}, expected a BufferGeometry`;
-    throw fault('geometry', `geometry is ${kind}`);
+    const isObject = given?.['isObject3D'] === true;
+    const what = isObject ? `${String(given['type'])}: it is its geometry that is refined` : `${shown(given)}, expected a BufferGeometry`;
+    throw fault('geometry', `geometry is ${what}`);
   }
   if (LINES.includes(geometry.type)) throw fault('geometry', `geometry is of lines (${geometry.type}), which have no surface`);
 }

@@ -96,7 +96,9 @@ function typed(values: ArrayLike<number>, like: Attribute): BufferAttribute {
   const { itemSize, normalized, array } = like;
   const room = new (array.constructor as Float32ArrayConstructor)(values.length);
   const isHalf = 'isFloat16BufferAttribute' in like;
-  const attribute = isHalf ? new Float16BufferAttribute(room as unknown as Uint16Array, itemSize, normalized) : new BufferAttribute(room, itemSize, normalized);
+  const attribute = isHalf
+    ? new Float16BufferAttribute(room as unknown as Uint16Array, itemSize, normalized)
+    : new BufferAttribute(room, itemSize, normalized);
   if (isHalf) fillHalf(attribute, values);
   else attribute.array.set(Array.from(values, x => stored(x, like)));
   attribute.name = like.name;
@@ -137,7 +139,9 @@ function writeMorphs(
 ): void {
   const isRelative = geometry.morphTargetsRelative;
   const base = geometry.attributes as Record<string, Attribute>;
-  const onBase = (numbers: Float32Array | Float64Array, name: string) => (isRelative ? numbers : numbers.map((x, i) => x + component(base[name]!, i)));
+  const onBase = (numbers: Float32Array | Float64Array, name: string) => {
+    return isRelative ? numbers : numbers.map((x, i) => x + component(base[name]!, i));
+  };
   const names = (from.morphAttributes.position ?? []).map(own => own.name);
   displacements.forEach((channel, target) => {
     const none = new Float64Array(3 * own.vertices.length);
