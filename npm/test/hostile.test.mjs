@@ -53,12 +53,12 @@ const sane = {
 
 function options() {
   // So that no call takes long.
-  const all = { maxTriangles: 600 };
+  const all = { tolerance: '3%', maxTriangles: 300 };
   for (let i = below(5); i > 0; i--) {
     const name = one(NAMES);
     all[name] = sane[name] && random() < 0.7 ? sane[name]() : odd();
   }
-  if (!(typeof all.maxTriangles === 'number' && all.maxTriangles <= 2000)) delete all.tolerance;
+  if (!(typeof all.maxTriangles === 'number' && all.maxTriangles <= 2000)) Object.assign(all, { tolerance: '3%', angle: 30 });
   return all;
 }
 
