@@ -115,9 +115,9 @@ export class Engine<G extends Glue = Glue> {
   }
 }
 
-/** An allocation that fails ends the module without a word; too large ones panic, and those of JavaScript itself are range errors. */
+/** An allocation that fails ends the module without a word; too large ones panic; those for arguments and of JavaScript itself say so. */
 function isOfMemory(thrown: unknown, said: string | undefined): boolean {
   if (said !== undefined) return /capacity overflow|memory allocation/.test(said);
   if (thrown instanceof WebAssembly.RuntimeError) return /unreachable/i.test(thrown.message);
-  return thrown instanceof RangeError && /allocat|array length|array buffer|grow|out of memory/i.test(thrown.message);
+  return thrown instanceof Error && /malloc|allocat|array length|array buffer|grow|out of memory/i.test(thrown.message);
 }
