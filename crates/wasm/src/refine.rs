@@ -1,0 +1,190 @@
+//! Exact refinement: within a proven distance, an angle, or with a number of triangles.
+
+use js_sys::Object;
+use limitmesh::carry::{borders, carried};
+use limitmesh::mesh::Channel;
+use limitmesh::refine::{Exact, ExactStop, exact_observed};
+use wasm_bindgen::prelude::*;
+
+use crate::channels::ChannelOut;
+use crate::control::Control;
+use crate::failure::Failure;
+use crate::inputs::{ControlIn, GoalsIn, Listener, MeshIn};
+use crate::soup::soup;
+use crate::told;
+use crate::{options, told::observer};
+
+/// A refined mesh; its arrays are handed over once each.
+#[wasm_bindgen]
+pub struct Refined {
+    control: Control,
+    positions: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    normals: Vec<[f64; 3]>,
+    sides: Vec<(u32, [f64; 3])>,
+    parents: Vec<u32>,
+    channels: Vec<Channel>,
+    lower: f64,
+    upper: f64,
+    certified: bool,
+    stop: &'static str,
+    levels: usize,
+    inverted: usize,
+}
+
+/// Refines a mesh to goals.
+///
+/// # Errors
+/// The mesh is none, an option has no meaning, or the listener said stop.
+#[wasm_bindgen]
+pub fn refine(
+    mesh: &MeshIn,
+    control: &ControlIn,
+    goals: &GoalsIn,
+    listener: Option<Listener>,
+) -> Result<Refined, JsValue> {
+    Ok(refined(mesh, control, goals, listener.as_ref())?)
+}
+
+fn refined(
+    mesh: &MeshIn,
+    told: &ControlIn,
+    goals: &GoalsIn,
+    listener: Option<&Listener>,
+) -> Result<Refined, Failure> {
+    let mut observer = observer(listener);
+    let control = Control::new(soup(mesh)?, told, &mut observer)?;
+    let varies = control.channels.iter().any(Channel::varies_within_faces);
+    let unfolds = told.divides_concave_corners();
+    let options = options::exact(goals, control.diagonal, varies, unfolds)
+        .kept_edges(borders(&control.channels, &control.mesh));
+    let found = exact_observed(&control.mesh, control.scheme, &options, &mut observer)?;
+    let channels = match control.channels.is_empty() {
+        true => Vec::new(),
+        false => carried(&control.channels, &control.mesh, control.scheme, &found)?,
+    };
+    let refined = Refined::new(found, control, channels);
+    Ok(match goals.is_single() {
+        true => refined.rounded(),
+        false => refined,
+    })
+}
+
+impl Refined {
+    fn new(found: Exact, mut control: Control, channels: Vec<Channel>) -> Self {
+        let (error, stop, inverted) = (found.error, found.stop, found.inverted_triangles());
+        let (positions, triangles) = found.mesh.into_positions_and_triangles();
+        // What the result needs no longer.
+        (control.channels, control.vertices) = Default::default();
+        Self {
+            parents: control.input_faces(found.parents),
+            control,
+            positions,
+            triangles,
+            normals: found.normals,
+            sides: found.sides,
+            channels,
+            lower: error.lower,
+            upper: error.upper,
+            certified: error.certified,
+            stop: stop_name(stop),
+            levels: found.statistics.levels,
+            inverted,
+        }
+    }
+
+    /// With positions of 32 bits, and bounds that hold for these.
+    fn rounded(mut self) -> Self {
+        let mut greatest = 0.0f64;
+        for position in &mut self.positions {
+            let rounded = position.map(|x| f64::from(x as f32));
+            let square = |i: usize| (position[i] - rounded[i]) * (position[i] - rounded[i]);
+            greatest = greatest.max(square(0) + square(1) + square(2));
+            *position = rounded;
+        }
+        let moved = greatest.sqrt();
+        self.lower = (self.lower - moved).max(0.0);
+        self.upper = (self.upper + moved).next_up();
+        self
+    }
+}
+
+/// Why a refinement ended, as Python and the program have it.
+fn stop_name(stop: ExactStop) -> &'static str {
+    match stop {
+        ExactStop::Met => "met",
+        ExactStop::Triangles => "triangles",
+        ExactStop::TriangleCap => "triangle-cap",
+        ExactStop::LevelCap => "level-cap",
+        ExactStop::MemoryCap => "memory-cap",
+        ExactStop::Rounding => "rounding",
+        ExactStop::Cones => "cones",
+        _ => "other",
+    }
+}
+
+#[wasm_bindgen]
+impl Refined {
+    /// Three numbers a vertex.
+    pub fn positions(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.positions).into_flattened()
+    }
+
+    /// The same in single precision.
+    pub fn positions_single(&mut self) -> Vec<f32> {
+        told::singles(&std::mem::take(&mut self.positions))
+    }
+
+    /// Three vertices a triangle.
+    pub fn index(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.triangles).into_flattened()
+    }
+
+    /// The limit normals of vertices.
+    pub fn normals(&mut self) -> Vec<f32> {
+        told::singles(&std::mem::take(&mut self.normals))
+    }
+
+    /// Corners, numbered as in the index, whose normal is not that of their vertex.
+    pub fn side_corners(&self) -> Vec<u32> {
+        self.sides.iter().map(|&(corner, _)| corner).collect()
+    }
+
+    /// The normals of these.
+    pub fn side_normals(&self) -> Vec<f32> {
+        let rows: Vec<[f64; 3]> = self.sides.iter().map(|&(_, normal)| normal).collect();
+        told::singles(&rows)
+    }
+
+    /// By triangle, the input's face.
+    pub fn parents(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.parents)
+    }
+
+    /// What was carried along, handed over once, in the input's order.
+    pub fn channels(&mut self) -> Vec<ChannelOut> {
+        let channels = std::mem::take(&mut self.channels).into_iter();
+        channels.map(ChannelOut::new).collect()
+    }
+
+    /// All else that is told of it, by the names of TypeScript's result.
+    pub fn told(&self) -> Object {
+        let (object, error) = (Object::new(), Object::new());
+        told::set(&error, "lower", self.lower);
+        told::set(&error, "upper", self.upper);
+        told::set(&error, "certified", self.certified);
+        told::set(&object, "error", error);
+        told::set(&object, "stop", self.stop);
+        told::set(&object, "levels", self.levels as f64);
+        told::set(&object, "inverted", self.inverted as f64);
+        let crease_angle = self.control.crease_angle.map(JsValue::from);
+        told::set(
+            &object,
+            "creaseAngle",
+            crease_angle.unwrap_or(JsValue::NULL),
+        );
+        let diagnosis = told::diagnosis(&self.control.diagnosis);
+        told::set(&object, "diagnosis", diagnosis);
+        object
+    }
+}
