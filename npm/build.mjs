@@ -24,7 +24,7 @@ const { values: options } = parseArgs({
 });
 
 /** Modules by name, with the features of the crate that they have. */
-const MODULES = { core: [] };
+const MODULES = { core: [], files: ['io'] };
 
 function run(program, words, folder = root, more = {}) {
   execFileSync(program, words, { cwd: folder, stdio: 'inherit', env: { ...process.env, ...more } });
@@ -61,17 +61,23 @@ function buildModules() {
   }
 }
 
-/** A worker as one text, which names no other file. */
-async function buildWorker() {
-  const options = { bundle: true, format: 'iife', minify: true, write: false, target: 'es2022', logLevel: 'warning' };
-  const { outputFiles } = await build({ ...options, entryPoints: [join(here, 'src', 'worker.ts')] });
-  writeText('worker-text', outputFiles[0].text);
+/** A worker as one text, which names no other file: around the JavaScript of a module. */
+async function buildWorker(module, name) {
+  const instead = {
+    name: 'instead',
+    setup: build => build.onResolve({ filter: /generated\/core\.js$/ }, () => ({ path: join(generated, `${module}.js`) })),
+  };
+  const { outputFiles } = await build({
+    entryPoints: [join(here, 'src', 'worker.ts')],
+    plugins: [instead], bundle: true, format: 'iife', minify: true, write: false, target: 'es2022', logLevel: 'warning',
+  });
+  writeText(name, outputFiles[0].text);
 }
 
 function buildTypes() {
   run(process.execPath, [join(here, 'node_modules', 'typescript', 'bin', 'tsc'), '--project', here]);
   mkdirSync(join(dist, 'generated'), { recursive: true });
-  for (const name of ['core', 'core-text', 'worker-text']) {
+  for (const name of ['core', 'core-text', 'worker-text', 'files-text', 'files-worker-text']) {
     copyFileSync(join(generated, `${name}.js`), join(dist, 'generated', `${name}.js`));
   }
   copyFileSync(join(generated, 'core_bg.wasm'), join(dist, 'limitmesh.wasm'));
@@ -80,7 +86,8 @@ function buildTypes() {
 rmSync(dist, { recursive: true, force: true });
 mkdirSync(generated, { recursive: true });
 buildModules();
-await buildWorker();
+await buildWorker('core', 'worker-text');
+await buildWorker('files', 'files-worker-text');
 buildTypes();
 for (const licence of ['LICENSE-MIT', 'LICENSE-APACHE']) {
   if (!existsSync(join(here, licence))) copyFileSync(join(root, licence), join(here, licence));
