@@ -65,7 +65,7 @@ export async function refineFile(
   if (!(bytes instanceof Uint8Array)) throw new LimitmeshError('read', 'bytes', `bytes is ${shown(bytes)}, expected a Uint8Array`);
   const control = controlOfFile(o);
   const job: Job & { kind: 'file' } = {
-    kind: 'file', bytes: bytes.slice(), from: String(from) as Format, to: String(to) as Format, control, goals: goalsOf(o, false, control),
+    kind: 'file', bytes: new Uint8Array(bytes), from: String(from) as Format, to: String(to) as Format, control, goals: goalsOf(o, false, control),
   };
   const wishes = wishesOf(o);
   wishes.signal?.throwIfAborted();
