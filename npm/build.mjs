@@ -1,9 +1,9 @@
 /**
  * Builds the package: cargo, the JavaScript beside the modules, modules as texts, types, and with --pack the tarball.
  *
- *   node build.mjs [--profile wasm|dev] [--pack]
+ *   node build.mjs [--profile wasm|wasm-quick] [--pack]
  *
- * The profile `dev` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
+ * The profile `wasm-quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
  */
 
 import { execFileSync } from 'node:child_process';
@@ -41,8 +41,7 @@ function compiled(features) {
   const words = ['build', '--locked', '--profile', options.profile, '--target', 'wasm32-unknown-unknown', '--package', 'limitmesh-wasm'];
   const flags = options.profile === 'wasm' ? { CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: FLAGS } : {};
   run('cargo', [...words, ...features.flatMap(name => ['--features', name])], root, flags);
-  const folder = options.profile === 'dev' ? 'debug' : options.profile;
-  return join(target, 'wasm32-unknown-unknown', folder, 'limitmesh_wasm.wasm');
+  return join(target, 'wasm32-unknown-unknown', options.profile, 'limitmesh_wasm.wasm');
 }
 
 /** A module of TypeScript's that exports a text. */

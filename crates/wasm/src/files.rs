@@ -105,13 +105,13 @@ impl Kept {
         found: &Exact,
         channels: &[Channel],
     ) -> Result<Vec<u8>, Failure> {
-        let corners = corner_normals(found);
+        let own = CornerNormals::of(found);
         let output = Output::new(found.mesh.as_triangles())
             .channels(channels)
             .material_libraries(&self.material_libraries)
             .texture_files(&self.texture_files);
-        let output = match &corners {
-            Some((normals, corners)) => output.normals_of_corners(normals, corners),
+        let output = match &own {
+            Some(own) => output.normals_of_corners(&own.normals, &own.corners),
             None => output.normals(&found.normals),
         };
         let mut bytes = Vec::new();
@@ -120,18 +120,26 @@ impl Kept {
     }
 }
 
-/// Normals, and by corner which of them it has, where there are several at a vertex.
-fn corner_normals(found: &Exact) -> Option<(Vec<[f64; 3]>, Vec<[u32; 3]>)> {
-    if found.sides.is_empty() {
-        return None;
+/// Normals, and by corner which of them it has.
+struct CornerNormals {
+    normals: Vec<[f64; 3]>,
+    corners: Vec<[u32; 3]>,
+}
+
+impl CornerNormals {
+    /// Those of a mesh where there are several at a vertex.
+    fn of(found: &Exact) -> Option<Self> {
+        if found.sides.is_empty() {
+            return None;
+        }
+        let mut normals = found.normals.clone();
+        let mut corners = found.mesh.triangles().to_vec();
+        for &(corner, normal) in &found.sides {
+            corners.as_flattened_mut()[corner as usize] = normals.len() as u32;
+            normals.push(normal);
+        }
+        Some(Self { normals, corners })
     }
-    let mut normals = found.normals.clone();
-    let mut corners = found.mesh.triangles().to_vec();
-    for &(corner, normal) in &found.sides {
-        corners.as_flattened_mut()[corner as usize] = normals.len() as u32;
-        normals.push(normal);
-    }
-    Some((normals, corners))
 }
 
 /// What is told of a refined mesh whose positions the file rounds by so much.
