@@ -1,9 +1,9 @@
 /**
  * Builds the package: cargo, the JavaScript beside the modules, modules as texts, types, and with --pack the tarball.
  *
- *   node build.mjs [--profile wasm|dev] [--pack]
+ *   node build.mjs [--profile wasm|wasm-quick] [--pack]
  *
- * The profile `dev` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
+ * The profile `wasm-quick` builds in a third of the time; the module is larger and slower, and its results are the same bytes.
  */
 
 import { execFileSync } from 'node:child_process';
@@ -24,7 +24,7 @@ const { values: options } = parseArgs({
 });
 
 /** Modules by name, with the features of the crate that they have. */
-const MODULES = { core: [] };
+const MODULES = { core: [], files: ['io'] };
 
 function run(program, words, folder = root, more = {}) {
   execFileSync(program, words, { cwd: folder, stdio: 'inherit', env: { ...process.env, ...more } });
@@ -41,8 +41,7 @@ function compiled(features) {
   const words = ['build', '--locked', '--profile', options.profile, '--target', 'wasm32-unknown-unknown', '--package', 'limitmesh-wasm'];
   const flags = options.profile === 'wasm' ? { CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: FLAGS } : {};
   run('cargo', [...words, ...features.flatMap(name => ['--features', name])], root, flags);
-  const folder = options.profile === 'dev' ? 'debug' : options.profile;
-  return join(target, 'wasm32-unknown-unknown', folder, 'limitmesh_wasm.wasm');
+  return join(target, 'wasm32-unknown-unknown', options.profile, 'limitmesh_wasm.wasm');
 }
 
 /** A module of TypeScript's that exports a text. */
@@ -61,17 +60,23 @@ function buildModules() {
   }
 }
 
-/** A worker as one text, which names no other file. */
-async function buildWorker() {
-  const options = { bundle: true, format: 'iife', minify: true, write: false, target: 'es2022', logLevel: 'warning' };
-  const { outputFiles } = await build({ ...options, entryPoints: [join(here, 'src', 'worker.ts')] });
-  writeText('worker-text', outputFiles[0].text);
+/** A worker as one text, which names no other file: around the JavaScript of a module. */
+async function buildWorker(module, name) {
+  const instead = {
+    name: 'instead',
+    setup: build => build.onResolve({ filter: /generated\/core\.js$/ }, () => ({ path: join(generated, `${module}.js`) })),
+  };
+  const { outputFiles } = await build({
+    entryPoints: [join(here, 'src', 'worker.ts')],
+    plugins: [instead], bundle: true, format: 'iife', minify: true, write: false, target: 'es2022', logLevel: 'warning',
+  });
+  writeText(name, outputFiles[0].text);
 }
 
 function buildTypes() {
   run(process.execPath, [join(here, 'node_modules', 'typescript', 'bin', 'tsc'), '--project', here]);
   mkdirSync(join(dist, 'generated'), { recursive: true });
-  for (const name of ['core', 'core-text', 'worker-text']) {
+  for (const name of ['core', 'core-text', 'worker-text', 'files-text', 'files-worker-text']) {
     copyFileSync(join(generated, `${name}.js`), join(dist, 'generated', `${name}.js`));
   }
   copyFileSync(join(generated, 'core_bg.wasm'), join(dist, 'limitmesh.wasm'));
@@ -80,7 +85,8 @@ function buildTypes() {
 rmSync(dist, { recursive: true, force: true });
 mkdirSync(generated, { recursive: true });
 buildModules();
-await buildWorker();
+await buildWorker('core', 'worker-text');
+await buildWorker('files', 'files-worker-text');
 buildTypes();
 for (const licence of ['LICENSE-MIT', 'LICENSE-APACHE']) {
   if (!existsSync(join(here, licence))) copyFileSync(join(root, licence), join(here, licence));

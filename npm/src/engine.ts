@@ -11,6 +11,8 @@ export interface Glue {
   limit(mesh: object, control: object, listener?: Listener): LimitsOut;
   measure(surface: object, reference: object, how: object, listener?: Listener): object;
   measure_limit(surface: object, reference: object, control: object, how: object, listener?: Listener): object;
+  /** Of the module for files alone. */
+  refine_file?(bytes: Uint8Array, from: string, to: string, control: object, goals: object, listener?: Listener): FileOut;
 }
 
 interface Handle {
@@ -26,6 +28,11 @@ export interface ChannelOut extends Handle {
 interface LimitsOut extends Handle {
   positions(): Float64Array;
   normals(): Float64Array;
+}
+
+interface FileOut extends Handle {
+  bytes(): Uint8Array;
+  told(): object;
 }
 
 interface RefinedOut extends Handle {

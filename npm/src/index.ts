@@ -11,10 +11,12 @@ import { LimitmeshError } from './error.js';
 import { perform, type Done, type Job } from './jobs.js';
 import { Caught } from './listen.js';
 import { meshOf, tag, trianglesOf } from './mesh.js';
-import { controlOf, faceSizeOf, goalsOf, howOf, MEASURE_OPTIONS, named, REFINE_OPTIONS, SURFACE_OPTIONS } from './options.js';
+import { controlOf, controlOfFile, faceSizeOf, FILE_OPTIONS, goalsOf, howOf, MEASURE_OPTIONS, named, REFINE_OPTIONS, SURFACE_OPTIONS } from './options.js';
 import { Pool, type Wishes } from './pool.js';
 import { text as workerText } from './generated/worker-text.js';
-import type { Distance, Limits, MeasureOptions, MeshLike, Numbers, Options, Refined, SurfaceOptions, WorkerOptions } from './types.js';
+import type {
+  Distance, FileOptions, Format, Limits, MeasureOptions, MeshLike, Numbers, Options, Refined, RefinedFile, SurfaceOptions, WorkerOptions,
+} from './types.js';
 
 export { LimitmeshError, type ErrorCode } from './error.js';
 export { supported } from './module.js';
@@ -55,6 +57,22 @@ export async function measureAsync(a: MeshLike, b: MeshLike | null, options?: (M
   return later(measureJob(a, b, o), o);
 }
 
+/** Refines a file with what it carries, in a worker. The module that reads and writes files is loaded by the first call. */
+export async function refineFile(
+  bytes: Uint8Array, from: Format, to: Format, options?: (FileOptions & WorkerOptions) | null,
+): Promise<RefinedFile> {
+  const o = named(options, FILE_OPTIONS, true);
+  if (!(bytes instanceof Uint8Array)) throw new LimitmeshError('read', 'bytes', `bytes is ${shown(bytes)}, expected a Uint8Array`);
+  const control = controlOfFile(o);
+  const job: Job & { kind: 'file' } = {
+    kind: 'file', bytes: new Uint8Array(bytes), from: String(from) as Format, to: String(to) as Format, control, goals: goalsOf(o, false, control),
+  };
+  const wishes = wishesOf(o);
+  wishes.signal?.throwIfAborted();
+  const { run } = await import('./files.js');
+  return (await run(job, buffersOf(job), wishes)) as RefinedFile;
+}
+
 function refineJob(positions: Numbers, index: Numbers | null, o: Options): Job & { kind: 'refine' } {
   const control = controlOf(o);
   const goals = goalsOf(o, isSingle(positions, o), control);
@@ -87,8 +105,11 @@ function isSingle(positions: Numbers, o: SurfaceOptions): boolean {
   return positions instanceof Float32Array;
 }
 
+/** Whoever hears of progress. */
+type Heard = Pick<SurfaceOptions, 'onProgress'>;
+
 /** Does a job here. */
-function now<J extends Job>(job: J, o: SurfaceOptions): Done[J['kind']] {
+function now<J extends Job>(job: J, o: Heard): Done[J['kind']] {
   const caught = new Caught();
   const listener = caught.listener(checkedProgress(o));
   try {
@@ -102,14 +123,14 @@ function now<J extends Job>(job: J, o: SurfaceOptions): Done[J['kind']] {
 const pool = new Pool(() => workerText);
 
 /** Has a job done in a worker. */
-async function later<J extends Job>(job: J, o: SurfaceOptions & WorkerOptions): Promise<Done[J['kind']]> {
+async function later<J extends Job>(job: J, o: Heard & WorkerOptions): Promise<Done[J['kind']]> {
   const wishes = wishesOf(o);
   wishes.signal?.throwIfAborted();
   const module = await compiling;
   return (await pool.run(module, job, buffersOf(job), wishes)) as Done[J['kind']];
 }
 
-function wishesOf(o: SurfaceOptions & WorkerOptions): Wishes {
+function wishesOf(o: Heard & WorkerOptions): Wishes {
   const { signal, worker } = o;
   if (isGiven(signal) && !(signal instanceof AbortSignal)) {
     throw new LimitmeshError('option', 'signal', `signal is ${shown(signal)}, expected an AbortSignal`);
@@ -120,7 +141,7 @@ function wishesOf(o: SurfaceOptions & WorkerOptions): Wishes {
   return { signal: signal ?? undefined, onProgress: checkedProgress(o) ?? undefined, worker: worker ?? undefined };
 }
 
-function checkedProgress(o: SurfaceOptions): SurfaceOptions['onProgress'] {
+function checkedProgress(o: Heard): Heard['onProgress'] {
   const told = o.onProgress;
   if (!isGiven(told) || typeof told === 'function') return told;
   throw new LimitmeshError('option', 'onProgress', `onProgress is ${shown(told)}, expected a function`);

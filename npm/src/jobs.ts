@@ -3,16 +3,17 @@
 import type { ControlIn, GoalsIn, HowIn } from './options.js';
 import type { MeshIn } from './mesh.js';
 import type { ChannelOut, Glue, Listener } from './engine.js';
-import type { Distance, Domain, FloatArray, Limits, Refined, RefinedChannel } from './types.js';
+import type { Distance, Domain, FileReport, FloatArray, Limits, Refined, RefinedChannel, RefinedFile } from './types.js';
 
 /** One job. */
 export type Job =
   | { kind: 'refine'; mesh: MeshIn; control: ControlIn; goals: GoalsIn }
   | { kind: 'limit'; mesh: MeshIn; control: ControlIn; isSingle: boolean }
+  | { kind: 'file'; bytes: Uint8Array; from: string; to: string; control: ControlIn; goals: GoalsIn }
   | { kind: 'measure'; surface: MeshIn; reference: MeshIn; control: ControlIn | undefined; how: HowIn };
 
 /** What comes of it. */
-export type Done = { refine: Refined; limit: Limits; measure: Distance };
+export type Done = { refine: Refined; limit: Limits; measure: Distance; file: RefinedFile };
 
 /** Does a job on an instance; whoever listens says whether it goes on. */
 export function perform<J extends Job>(glue: Glue, job: J, listener: Listener | undefined): Done[J['kind']];
@@ -20,6 +21,7 @@ export function perform(glue: Glue, job: Job, listener: Listener | undefined): D
   switch (job.kind) {
     case 'refine': return refine(glue, job, listener);
     case 'limit': return limit(glue, job, listener);
+    case 'file': return file(glue, job, listener);
     case 'measure': return measure(glue, job, listener);
   }
 }
@@ -64,6 +66,15 @@ function measure(glue: Glue, job: Job & { kind: 'measure' }, listener: Listener 
   return (job.control === undefined
     ? glue.measure(job.surface, job.reference, job.how, listener)
     : glue.measure_limit(job.surface, job.reference, job.control, job.how, listener)) as Distance;
+}
+
+function file(glue: Glue, job: Job & { kind: 'file' }, listener: Listener | undefined): RefinedFile {
+  const found = glue.refine_file!(job.bytes, job.from, job.to, job.control, job.goals, listener);
+  try {
+    return { bytes: found.bytes(), report: found.told() as FileReport };
+  } finally {
+    found.free();
+  }
 }
 
 function asAsked(values: Float64Array, isSingle: boolean): FloatArray {

@@ -2,7 +2,7 @@
 
 import { bad, boolean, degrees, extent, isGiven, known, memory, number, oneOf, whole, type Extent } from './check.js';
 import { LimitmeshError } from './error.js';
-import type { MeasureOptions, Options, SurfaceOptions } from './types.js';
+import type { FileOptions, MeasureOptions, Options, SurfaceOptions } from './types.js';
 
 /** How a control mesh comes of a mesh, complete. */
 export interface ControlIn {
@@ -14,7 +14,8 @@ export interface ControlIn {
   leadsParts: boolean;
   dividesConcaveCorners: boolean;
   interpolate: Extent | undefined;
-  scheme: string;
+  /** None for that of the faces. */
+  scheme: string | undefined;
   smoothTriangles: boolean;
 }
 
@@ -54,6 +55,8 @@ export const REFINE_OPTIONS = [
 export const MEASURE_OPTIONS = [
   'limitOf', 'certified', 'samples', 'gap', 'maxWork', 'levels', ...SURFACE_OPTIONS.filter(name => name !== 'precision'),
 ] as const;
+
+export const FILE_OPTIONS = REFINE_OPTIONS.filter(name => !['faceSize', 'channels', 'precision', 'corners'].includes(name));
 
 const WORKER_OPTIONS = ['signal', 'worker'] as const;
 
@@ -115,7 +118,7 @@ function interpolateOf(value: SurfaceOptions['interpolate']): Extent | undefined
 }
 
 /** Goals and caps; the tolerance is 0.1 % of the diagonal where there is no goal. */
-export function goalsOf(o: Options, isSingle: boolean, control: ControlIn): GoalsIn {
+export function goalsOf(o: Omit<Options, 'creases'>, isSingle: boolean, control: ControlIn): GoalsIn {
   const hasGoal = isGiven(o.tolerance) || isGiven(o.triangles) || isGiven(o.angle);
   const optimize = boolean(o.optimize, 'optimize', false);
   const balance = boolean(o.balance, 'balance', false);
@@ -134,6 +137,15 @@ export function goalsOf(o: Options, isSingle: boolean, control: ControlIn): Goal
     maxMemory: memory(o.maxMemory === null ? '3.5GB' : o.maxMemory ?? '1GB', 'maxMemory'),
     isSingle,
   };
+}
+
+/** How the control mesh of a file comes about: its faces decide the scheme, and sharp edges are found where it tags none. */
+export function controlOfFile(o: FileOptions): ControlIn {
+  const { creases, ...rest } = o;
+  const usual = isGiven(o.creaseAngle) ? 'none' : 'auto';
+  const isFound = oneOf(creases ?? usual, 'creases', ['auto', 'none']) === 'auto';
+  const control = controlOf({ ...rest, ...(isFound ? { creases: 'auto' } : {}) });
+  return { ...control, scheme: isGiven(o.scheme) ? control.scheme : undefined };
 }
 
 /** How a distance is found. */

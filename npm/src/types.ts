@@ -230,3 +230,25 @@ export interface Distance {
   /** Of the second surface's bounding box. */
   diagonal: number;
 }
+
+/** Formats of files, by their extensions. */
+export type Format = 'obj' | 'ply' | 'stl' | 'off' | 'gltf' | 'glb' | '3mf';
+
+/** What is asked of the refinement of a file. Sharp edges are found by default, as in the program: `creases: 'auto'`. */
+export interface FileOptions extends Omit<Options, 'faceSize' | 'channels' | 'precision' | 'corners' | 'creases'> {
+  /** `'auto'` finds the sharp edges of parts where the file tags none; `'none'` keeps none but those that it tags. Default: `'auto'`. */
+  creases?: 'auto' | 'none' | null;
+}
+
+/** A file that was refined. */
+export interface RefinedFile {
+  bytes: Uint8Array;
+  report: FileReport;
+}
+
+export interface FileReport {
+  /** One for each mesh of an asset, else one. */
+  meshes: (Pick<Refined, 'error' | 'stop' | 'creaseAngle' | 'diagnosis'> & { name: string; triangles: number; vertices: number })[];
+  /** Names of what could not be kept. */
+  leftOut: string[];
+}

@@ -1,7 +1,7 @@
 //! From a soup to the control mesh that is refined, and the way back: which row of the input each face is from.
 
 use limitmesh::interpolate::{InterpolateOptions, interpolate_observed};
-use limitmesh::mesh::{BoundaryRule, Channel, Diagnosis, FaceParts, Trace};
+use limitmesh::mesh::{BoundaryRule, BuildOptions, Channel, Diagnosis, FaceParts, Trace};
 use limitmesh::part::{Look, interpolate_unfolded_observed};
 use limitmesh::progress::Observer;
 use limitmesh::scheme::{Family, Scheme};
@@ -52,11 +52,15 @@ impl Control {
     /// No mesh can be made of it, or none that interpolates.
     pub(crate) fn new(
         soup: PolygonSoup,
+        build: &BuildOptions,
         told: &ControlIn,
         observer: &mut Observer<'_>,
     ) -> Result<Self, Failure> {
-        let (scheme, boundary) = (options::scheme(told)?, options::boundary(told)?);
-        let built = Built::of(&soup, told, scheme, boundary)?;
+        let (scheme, boundary) = (options::scheme(told, &soup)?, options::boundary(told)?);
+        let built = match scheme.family() {
+            Some(Family::CatmullClark) => Built::of_quads(&soup, build, told, boundary)?,
+            _ => Built::of_triangles(&soup, build)?,
+        };
         let (mesh, trace) = (built.mesh, built.trace);
         let vertices = trace.of_soup(&soup, &mesh);
         drop(soup);
@@ -107,16 +111,8 @@ impl Control {
 }
 
 impl Built {
-    fn of(
-        soup: &PolygonSoup,
-        told: &ControlIn,
-        scheme: &dyn Scheme,
-        boundary: BoundaryRule,
-    ) -> Result<Self, Failure> {
-        if matches!(scheme.family(), Some(Family::CatmullClark)) {
-            return Self::of_quads(soup, told, boundary);
-        }
-        let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, &options::build(told))?;
+    fn of_triangles(soup: &PolygonSoup, build: &BuildOptions) -> Result<Self, Failure> {
+        let (mesh, diagnosis, trace) = Mesh::from_soup_traced(soup, build)?;
         let on_mesh = |channel: &Channel| channel.on_mesh(soup, &mesh, &trace);
         let channels = soup.channels.iter().map(on_mesh);
         Ok(Self {
@@ -129,6 +125,7 @@ impl Built {
 
     fn of_quads(
         soup: &PolygonSoup,
+        build: &BuildOptions,
         told: &ControlIn,
         boundary: BoundaryRule,
     ) -> Result<Self, Failure> {
@@ -136,7 +133,7 @@ impl Built {
             .boundary(boundary)
             .smooth_triangles(told.smooth_triangles())
             .crease_angle(told.crease_angle().map(f64::to_radians));
-        let (quads, diagnosis) = QuadControl::from_soup_with(soup, &options::build(told), &rules)?;
+        let (quads, diagnosis) = QuadControl::from_soup_with(soup, build, &rules)?;
         let on_quads = |channel: &Channel| quads.channel(soup, channel);
         let channels = soup.channels.iter().map(on_quads);
         Ok(Self {

@@ -144,3 +144,28 @@ impl From<UnfoldedError> for Failure {
         }
     }
 }
+
+#[cfg(feature = "io")]
+impl From<limitmesh_io::ReadError> for Failure {
+    fn from(error: limitmesh_io::ReadError) -> Self {
+        let place = match &error {
+            limitmesh_io::ReadError::Flaw { flaw, .. } => flaw.place.to_string(),
+            _ => "bytes".to_owned(),
+        };
+        Self::read(place, error)
+    }
+}
+
+#[cfg(feature = "io")]
+impl From<limitmesh_io::WriteError> for Failure {
+    fn from(error: limitmesh_io::WriteError) -> Self {
+        Self::read("to", error)
+    }
+}
+
+#[cfg(feature = "io")]
+impl From<limitmesh_io::Flaw> for Failure {
+    fn from(flaw: limitmesh_io::Flaw) -> Self {
+        Self::read(flaw.place.to_string(), flaw)
+    }
+}

@@ -67,8 +67,9 @@ extern "C" {
     /// How near the limit surface is to pass to the vertices.
     #[wasm_bindgen(method, getter)]
     pub(crate) fn interpolate(this: &ControlIn) -> Option<Extent>;
+    /// None for that of the mesh's faces.
     #[wasm_bindgen(method, getter)]
-    pub(crate) fn scheme(this: &ControlIn) -> String;
+    pub(crate) fn scheme(this: &ControlIn) -> Option<String>;
     #[wasm_bindgen(method, getter, js_name = smoothTriangles)]
     pub(crate) fn smooth_triangles(this: &ControlIn) -> bool;
 

@@ -10,9 +10,13 @@
 // What JavaScript calls is public in private modules.
 #![allow(unreachable_pub)]
 
+#[cfg(feature = "io")]
+mod asset;
 mod channels;
 mod control;
 mod failure;
+#[cfg(feature = "io")]
+mod files;
 mod inputs;
 mod limit;
 mod measure;

@@ -6,6 +6,7 @@ use wasm_bindgen::prelude::*;
 use crate::control::Control;
 use crate::failure::Failure;
 use crate::inputs::{ControlIn, Listener, MeshIn};
+use crate::options;
 use crate::soup::soup;
 use crate::told::observer;
 
@@ -30,7 +31,12 @@ pub fn limit(
 }
 
 fn limits(mesh: &MeshIn, told: &ControlIn, listener: Option<&Listener>) -> Result<Limits, Failure> {
-    let control = Control::new(soup(mesh)?, told, &mut observer(listener))?;
+    let control = Control::new(
+        soup(mesh)?,
+        &options::build(told),
+        told,
+        &mut observer(listener),
+    )?;
     let table = LimitTable::new(control.scheme);
     let of_input = |all: Vec<[f64; 3]>| -> Vec<f64> {
         let own = |v: &Option<u32>| v.map_or([f64::NAN; 3], |v| all[v as usize]);

@@ -14,6 +14,7 @@ use wasm_bindgen::prelude::*;
 use crate::control::Control;
 use crate::failure::Failure;
 use crate::inputs::{ControlIn, HowIn, Listener, MeshIn};
+use crate::options;
 use crate::soup::{as_triangles, soup};
 use crate::told::{self, observer, set};
 
@@ -71,7 +72,12 @@ pub fn measure_limit(
             triangles: &triangles,
         };
         let unfolds = control.divides_concave_corners();
-        let control = Control::new(soup(reference)?, control, observer)?;
+        let control = Control::new(
+            soup(reference)?,
+            &options::build(control),
+            control,
+            observer,
+        )?;
         match how.certified() {
             true => certified(a, &control, unfolds, how, observer),
             false => sampled(a, control, how, observer),

@@ -1,5 +1,6 @@
 //! What names and numbers of options are for the library.
 
+use limitmesh::PolygonSoup;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
 use limitmesh::refine::{ExactOptions, Finish};
 use limitmesh::scheme::{CatmullClark, Loop, LoopWarren, ModifiedButterfly, Scheme};
@@ -41,12 +42,19 @@ pub(crate) fn boundary(told: &ControlIn) -> Result<BoundaryRule, Failure> {
     named(&BOUNDARIES, &told.boundary(), "boundary".to_owned())
 }
 
-/// The scheme.
+/// The scheme; that of the soup's faces where none was asked for: a soup most of whose faces are quads is a cage for Catmull and Clark.
 ///
 /// # Errors
 /// There is none of that name.
-pub(crate) fn scheme(told: &ControlIn) -> Result<&'static dyn Scheme, Failure> {
-    named(&SCHEMES, &told.scheme(), "scheme".to_owned())
+pub(crate) fn scheme(told: &ControlIn, soup: &PolygonSoup) -> Result<&'static dyn Scheme, Failure> {
+    if let Some(name) = told.scheme() {
+        return named(&SCHEMES, &name, "scheme".to_owned());
+    }
+    let quads = soup.faces.iter().filter(|face| face.len() == 4).count();
+    match told.smooth_triangles() || 2 * quads > soup.faces.len() {
+        true => Ok(&CatmullClark),
+        false => Ok(&Loop),
+    }
 }
 
 /// How a mesh is made of a soup.

@@ -3,6 +3,7 @@
 use js_sys::Object;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::Channel;
+use limitmesh::progress::Observer;
 use limitmesh::refine::{Exact, ExactStop, exact_observed};
 use wasm_bindgen::prelude::*;
 
@@ -53,21 +54,35 @@ fn refined(
     listener: Option<&Listener>,
 ) -> Result<Refined, Failure> {
     let mut observer = observer(listener);
-    let control = Control::new(soup(mesh)?, told, &mut observer)?;
-    let varies = control.channels.iter().any(Channel::varies_within_faces);
-    let unfolds = told.divides_concave_corners();
-    let options = options::exact(goals, control.diagonal, varies, unfolds)
-        .kept_edges(borders(&control.channels, &control.mesh));
-    let found = exact_observed(&control.mesh, control.scheme, &options, &mut observer)?;
-    let channels = match control.channels.is_empty() {
-        true => Vec::new(),
-        false => carried(&control.channels, &control.mesh, control.scheme, &found)?,
-    };
+    let control = Control::new(soup(mesh)?, &options::build(told), told, &mut observer)?;
+    let (found, channels) = exact_of(&control, told, goals, control.diagonal, &mut observer)?;
     let refined = Refined::new(found, control, channels);
     Ok(match goals.is_single() {
         true => refined.rounded(),
         false => refined,
     })
+}
+
+/// A control mesh refined to goals, with lengths in parts of a diagonal, and what it carries.
+///
+/// # Errors
+/// The mesh has no limit, or the observer said stop.
+pub(crate) fn exact_of(
+    control: &Control,
+    told: &ControlIn,
+    goals: &GoalsIn,
+    diagonal: f64,
+    observer: &mut Observer<'_>,
+) -> Result<(Exact, Vec<Channel>), Failure> {
+    let varies = control.channels.iter().any(Channel::varies_within_faces);
+    let options = options::exact(goals, diagonal, varies, told.divides_concave_corners());
+    let options = options.kept_edges(borders(&control.channels, &control.mesh));
+    let found = exact_observed(&control.mesh, control.scheme, &options, observer)?;
+    let channels = match control.channels.is_empty() {
+        true => Vec::new(),
+        false => carried(&control.channels, &control.mesh, control.scheme, &found)?,
+    };
+    Ok((found, channels))
 }
 
 impl Refined {
@@ -110,7 +125,7 @@ impl Refined {
 }
 
 /// Why a refinement ended, as Python and the program have it.
-fn stop_name(stop: ExactStop) -> &'static str {
+pub(crate) fn stop_name(stop: ExactStop) -> &'static str {
     match stop {
         ExactStop::Met => "met",
         ExactStop::Triangles => "triangles",
