@@ -28,7 +28,7 @@ const code = bundle.outputFiles[0].contents;
 const packed = gzipSync(code, { level: 9, mem: 9, mtime: 0 });
 const small = async (path, loader) => (await transform(await text(path), { loader, minify: true, charset: 'utf8' })).code.trim();
 
-const licence = (await text('node_modules/three/LICENSE')).trim();
+const licence = (await text('../node_modules/three/LICENSE')).trim();
 const elements = [
   `<!-- three.js, which is in this page:\n${licence}\n-->`,
   `<script type="text/plain" id="code">${Buffer.from(packed).toString('base64')}</script>`,

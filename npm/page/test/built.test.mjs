@@ -16,6 +16,6 @@ test('the page is built from its sources', async () => {
   assert.equal(status, 0, stderr);
   const built = await readFile(path);
   const own = await readFile(here('../../../crates/view/assets/view.html'));
-  assert.ok(built.equals(own), 'crates/view/assets/view.html is not what npm/page gives: run `npm run build` there');
+  assert.ok(built.equals(own), 'crates/view/assets/view.html is not what npm/page gives: run `npm run build:page` in npm');
   assert.ok(built.length <= 300_000, `${built.length} bytes`);
 });
