@@ -9,11 +9,11 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const PROGRAM = process.env.LIMITMESH ?? fileURLToPath(new URL('../../../target/debug/limitmesh', import.meta.url));
-const BROWSER = ['chromium', 'chromium-browser', 'google-chrome'].map((name) => `/usr/bin/${name}`).find(existsSync);
+const BROWSER = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
 /** Why the tests cannot run here; false where they can. */
 export const skip =
-  (!BROWSER && 'skipped: there is no Chromium in /usr/bin') ||
+  (!existsSync(BROWSER) && `skipped: there is no Chromium at ${BROWSER}`) ||
   (!existsSync(PROGRAM) && 'skipped: the program is not built (cargo build)');
 
 /** The folder of real meshes, if there is one. */
