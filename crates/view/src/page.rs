@@ -77,10 +77,11 @@ impl Page {
             );
         }
         let cage: Vec<f32> = self.cage.iter().flatten().flatten().copied().collect();
-        let cage =
-            (!cage.is_empty()).then(|| blobs.add_plain("data-cage", &bytes(&cage), "the control cage"));
+        let cage = (!cage.is_empty())
+            .then(|| blobs.add_plain("data-cage", &bytes(&cage), "the control cage"));
         let picture = self.picture.as_ref();
-        let picture = picture.map(|picture| blobs.add_plain("data-picture", picture, "the picture"));
+        let picture =
+            picture.map(|picture| blobs.add_plain("data-picture", picture, "the picture"));
         let live = self.live.as_ref();
         let data = json!({
             "version": 1,
