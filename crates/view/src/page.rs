@@ -94,6 +94,7 @@ impl Page {
             "cage": cage.flatten(),
             "stops": stops,
             "left_out": blobs.left,
+            "most": self.most,
         });
         // Nothing in a text may end the element that it stands in.
         let data = serde_json::to_string(&data)?.replace('<', "\\u003c");

@@ -26,6 +26,8 @@ pub struct Report {
 /// A uniformly subdivided mesh in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct UniformReport {
+    /// How often its control faces are divided in four.
+    pub levels: u32,
     /// Its triangles.
     pub triangles: usize,
     /// How far it is from the limit surface, as sampled; `None` where that is not known.

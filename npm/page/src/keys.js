@@ -5,7 +5,7 @@ export function keys(panel, stage) {
   return [
     { names: ['['], words: 'a coarser mesh', act: () => panel.stepTolerance(-1) },
     { names: [']'], words: 'a finer mesh', act: () => panel.stepTolerance(1) },
-    { names: ['m'], words: 'the own materials', act: () => panel.press('material') },
+    { names: ['m'], words: 'its own materials', act: () => panel.press('material') },
     { names: ['n'], words: 'a plain surface', act: () => panel.press('plain') },
     { names: ['d'], words: 'distances from the limit surface', act: () => panel.press('distance') },
     { names: ['u'], words: 'a pattern by texture coordinates', act: () => panel.press('checker') },

@@ -12,7 +12,7 @@ import { Panel, saveFile } from './panel.js';
 import { plyFile } from './ply.js';
 import { Program, Stops } from './source.js';
 import { Stage } from './stage.js';
-import { figures, labels, legend, toleranceWords } from './words.js';
+import { NO_DISTANCES, figures, labels, legend, toleranceWords } from './words.js';
 
 // A slider that moves asks for no more meshes than this apart [ms].
 const CALM = 120;
@@ -36,7 +36,8 @@ class Viewer {
     const { places } = this.source;
     this.panel.setPlaces(places.last, places.nearest(data.start));
     if (data.left_out.length) {
-      this.panel.setMessage('page', `Left out, as the page would be too large: ${data.left_out.join(', ')}.`);
+      const most = `${data.most >> 20} MB`;
+      this.panel.setMessage('page', `Left out, as the page would have more than ${most}: ${data.left_out.join(', ')}.`);
     }
   }
 
@@ -110,7 +111,7 @@ class Viewer {
         models.forEach((model) => model?.dispose());
       }
     } catch (error) {
-      if (this.request === request && error.name !== 'AbortError') {
+      if (this.request === request && error.name !== 'AbortError' && !this.isEnded) {
         this.panel.setMessage('mesh', error.message);
       }
     } finally {
@@ -142,9 +143,8 @@ class Viewer {
     const [model] = models;
     panel.setUsable({
       material: model.hasMaterials ? null : 'the file has no materials',
-      distance: model.greatestDistance === null ? 'distances are known for files with one mesh and up to 200,000 triangles' : null,
       checker: model.hasTextureCoordinates ? null : 'the mesh has no texture coordinates',
-      'side-by-side': this.source.hasUniform ? null : 'the page has no uniform mesh',
+      'side-by-side': this.source.hasUniform && !this.isEnded ? null : 'the page has no uniform mesh',
     });
     if (isFirst) {
       panel.setLook(model.hasMaterials ? 'material' : 'plain');
@@ -171,13 +171,14 @@ class Viewer {
     if (!models) {
       return;
     }
-    // One scale for both.
-    const greatest = Math.max(...stage.models.map((model) => model.greatestDistance ?? 0)) || data.diagonal * this.mesh.tolerance;
+    // One scale for both. Samples may miss what the report knows; and what is nearly nothing is to look so.
+    const known = [data.diagonal * 1e-9, this.mesh.report.lower ?? 0];
+    const greatest = Math.max(...known, ...stage.models.map((model) => model.greatestDistance ?? 0));
     materials.uniforms.greatestDistance.value = greatest;
     materials.uniforms.edgesShown.value = panel.isWireframe ? 0.75 : 0;
     models.forEach((model) => model?.setLook(panel.look));
-    const isMap = panel.look === 'distance' && models[0].greatestDistance !== null;
-    panel.setLegend(isMap ? legend(greatest, data) : null);
+    const map = models[0].greatestDistance === null ? { words: NO_DISTANCES } : legend(greatest, data);
+    panel.setLegend(panel.look === 'distance' ? map : null);
     stage.setCage(panel.isCage);
   }
 
@@ -185,7 +186,7 @@ class Viewer {
     if (!this.models) {
       return;
     }
-    if (this.panel.isSideBySide && !this.models[1] && this.source.isLive) {
+    if (this.panel.isSideBySide && !this.models[1] && this.source.isLive && !this.isEnded) {
       this.refine();
     } else {
       this.arrange();
@@ -240,8 +241,14 @@ class Viewer {
 
   end() {
     this.isEnded = true;
-    this.panel.setPlaces(0, 0);
-    this.panel.setMessage('program', 'The program has ended: this mesh stays, but no other will come.');
+    this.request?.abort();
+    const { mesh, models, panel, source } = this;
+    panel.end(source.places.nearest(mesh?.tolerance ?? this.data.start));
+    this.showToleranceWords();
+    if (!models?.[1]) {
+      panel.setUsable({ 'side-by-side': 'the program has ended' });
+    }
+    panel.setMessage('program', 'The program has ended: this mesh stays, but no other will come.');
   }
 }
 

@@ -61,6 +61,13 @@ export class Model {
     return distances.reduce((most, own) => Math.max(most, own), 0);
   }
 
+  /** Widens a box so that it holds what is shown. */
+  expand(box) {
+    this.scene.updateWorldMatrix(false, true);
+    // The bounds of shapes are those of all their weights; where there are some, each vertex is asked where it is.
+    box.expandByObject(this.scene, this.meshes.some((mesh) => mesh.morphTargetInfluences));
+  }
+
   /** Draws the surface in a way: 'material', 'plain', 'distance' or 'checker'. What the file lacks is drawn plain. */
   setLook(look) {
     for (const mesh of this.meshes) {

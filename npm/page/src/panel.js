@@ -61,13 +61,19 @@ export class Panel {
   setPlaces(last, place) {
     by('tolerance').max = last;
     by('tolerance').value = place;
-    by('tolerance').disabled = last === 0;
+    by('tolerance').hidden = last === 0;
+  }
+
+  /** From now on there is the mesh that is shown, at a place, and no other. */
+  end(place) {
+    by('tolerance').value = place;
+    by('tolerance').disabled = true;
   }
 
   stepTolerance(step) {
     const { value } = by('tolerance');
     by('tolerance').value = Number(value) + step;
-    if (by('tolerance').value !== value) {
+    if (by('tolerance').value !== value && !by('tolerance').disabled) {
       this.on.tolerance();
     }
   }
@@ -138,10 +144,11 @@ export class Panel {
 
   setLegend(legend) {
     by('legend').hidden = !legend;
-    if (legend) {
+    by('legend-scale').hidden = !legend?.marks;
+    by('legend-words').textContent = legend?.words ?? '';
+    if (legend?.marks) {
       const marks = legend.marks.map((mark) => element('li', mark));
       by('legend-ticks').replaceChildren(...marks);
-      by('legend-words').textContent = legend.words;
     }
   }
 
@@ -165,7 +172,8 @@ export class Panel {
     const rows = shapes.map(({ name, weight }) => {
       const slider = Object.assign(element('input', ''), { type: 'range', min: 0, max: 1, step: 0.01, value: weight });
       slider.addEventListener('input', () => this.on.weight(name, Number(slider.value)));
-      const label = element('label', name);
+      // A name that is a number is that of no name.
+      const label = element('label', /^\d+$/.test(name) ? `shape ${Number(name) + 1}` : name);
       label.append(slider);
       return label;
     });

@@ -40,6 +40,8 @@ export class Program {
   constructor(data) {
     this.addresses = data.live;
     this.places = new EvenPlaces(data.start);
+    // Several pages of one program may be open: each is answered.
+    [this.page] = crypto.getRandomValues(new Uint32Array(1));
     // The tolerance that the program was started with stands at its place exactly.
     this.start = data.start;
   }
@@ -83,11 +85,11 @@ export class Program {
   }
 
   async ask(address, body, signal) {
-    const answer = await fetch(address, { method: 'POST', body: JSON.stringify(body), signal });
+    const answer = await fetch(address, { method: 'POST', body: JSON.stringify({ page: this.page, ...body }), signal });
     if (answer.ok) {
       return new Uint8Array(await answer.arrayBuffer());
     }
-    // Another page of the same program asked for a mesh after this one did.
+    // This page asked for another mesh since.
     if (answer.status === 409) {
       throw new DOMException('a newer request came', 'AbortError');
     }

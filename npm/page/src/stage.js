@@ -42,6 +42,7 @@ export class Stage {
     this.camera.add(light, light.target);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.redraw());
+    this.fieldOfView = FIELD_OF_VIEW;
     this.models = [];
     this.scene = this.emptyScene();
     this.cage = cageLines(cage);
@@ -90,13 +91,13 @@ export class Stage {
   /** Looks at the middle of what is shown from a direction, so far away that all is seen. */
   look(from, fieldOfView) {
     const box = new Box3();
-    this.models.forEach((model) => box.expandByObject(model.scene));
+    this.models.forEach((model) => model.expand(box));
     if (box.isEmpty()) {
       return;
     }
     const { camera, controls } = this;
     box.getCenter(controls.target);
-    camera.fov = fieldOfView;
+    this.fieldOfView = fieldOfView;
     this.shapeCamera();
     camera.position.copy(controls.target).add(from);
     camera.lookAt(controls.target);
@@ -190,6 +191,9 @@ export class Stage {
     const { clientWidth, clientHeight } = this.canvas.parentElement;
     const width = clientWidth / Math.max(1, this.models.length);
     this.camera.aspect = width / clientHeight;
+    // The angle is that of the shorter side, so that what was seen in a wide picture is seen in a narrow one.
+    const half = Math.tan((this.fieldOfView * Math.PI) / 360) / Math.min(1, this.camera.aspect);
+    this.camera.fov = (Math.atan(half) * 360) / Math.PI;
     this.camera.updateProjectionMatrix();
     return [width, clientHeight];
   }

@@ -12,7 +12,7 @@ export function figures({ report, tolerance }, data) {
     const share = percent(report.upper / data.diagonal);
     parts.push(`${words} ${length(report.upper, data.unit)} (${share} of the diagonal) of the limit surface`);
   }
-  parts.push(seconds(report.seconds));
+  parts.push(`refined in ${seconds(report.seconds)}`);
   return parts.join(' · ');
 }
 
@@ -28,9 +28,12 @@ export function labels({ report }, data) {
   const sampled = uniform.upper === null ? '' : `, off by ${length(uniform.upper, data.unit)} or more`;
   return [
     `adaptive: ${counted(report.triangles, 'triangle', 'triangles')}${proven}`,
-    `uniform: ${counted(uniform.triangles, 'triangle', 'triangles')}${sampled}`,
+    `uniform, ${counted(uniform.levels, 'level', 'levels')}: ${counted(uniform.triangles, 'triangle', 'triangles')}${sampled}`,
   ];
 }
+
+/** Why no distances are shown. */
+export const NO_DISTANCES = 'No distances: they are measured for files with one mesh of at most 200,000 triangles.';
 
 /** The legend's marks, and what it is about. */
 export function legend(greatest, data) {
@@ -39,6 +42,6 @@ export function legend(greatest, data) {
   const share = percent(greatest / data.diagonal);
   return {
     marks,
-    words: `Distance from the limit surface${unit}, the greatest of samples inside each triangle; ${marks[2]} is ${share} of the diagonal.`,
+    words: `Distance of the mesh from the limit surface${unit}, the greatest of samples inside each triangle; ${marks[2]} is ${share} of the diagonal.`,
   };
 }

@@ -166,9 +166,24 @@ describe('the page', { skip }, () => {
     await ready(page);
     assert.ok((await triangles()) > 4 * coarse);
     assert.match(await page.textContent('#tolerance-words'), /^0\.1 %/);
+    // Another page of the same program takes nothing from this one.
+    const other = (await opened(browser, address)).page;
+    await other.keyboard.press(']');
+    await page.keyboard.press(']');
+    for (const own of [page, other]) {
+      await ready(own);
+      const { words, tolerance } = await own.evaluate(() => ({
+        words: document.getElementById('tolerance-words').textContent,
+        tolerance: window.limitmesh.mesh.tolerance,
+      }));
+      assert.equal(words.split(' %')[0], `${Number((100 * tolerance).toPrecision(3))}`);
+    }
+    await other.close();
+    await page.keyboard.press('[');
+    await ready(page);
     await page.click('#side-by-side');
     await page.waitForSelector('#right-label:not([hidden])');
-    assert.match(await page.textContent('#right-label'), /uniform: .* triangles/);
+    assert.match(await page.textContent('#right-label'), /uniform, \d levels?: .* triangles/);
     assert.deepEqual(faults, []);
     child.kill();
     await page.waitForSelector('#message:not([hidden])');
@@ -190,6 +205,17 @@ describe('the page', { skip }, () => {
       await page.click('#play');
       await page.waitForTimeout(600);
       assert.ok((await compared(browser, difference, still, await picture(page))) > 0.005);
+      assert.deepEqual(faults, []);
+      await page.close();
+    });
+
+    test('pictures in files beside a document are in the page', async () => {
+      const path = asset('TextureTransformTest.gltf');
+      const { page, faults } = await opened(browser, written('textures.html', path, '--tolerance', '1%'));
+      const drawn = await picture(page);
+      const blue = (a) => a.filter((_, i) => i % 4 === 2 && a[i] > 150 && a[i - 1] < 40 && a[i - 2] < 40).length;
+      // One of the discs is blue, by its picture alone.
+      assert.ok((await compared(browser, blue, drawn)) > 1000);
       assert.deepEqual(faults, []);
       await page.close();
     });

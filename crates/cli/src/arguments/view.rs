@@ -42,7 +42,7 @@ pub(crate) struct ViewArguments {
 
     /// Tolerances of the slider in the file that is written [default: --tolerance alone]
     #[arg(long, value_name = "T,…", value_parser = values::tolerance, value_delimiter = ',', allow_hyphen_values = true)]
-    #[arg(requires = "output")]
+    #[arg(requires = "output", conflicts_with_all = ["tolerance", "no_open"])]
     pub(crate) stops: Vec<Extent>,
 
     /// Print the address of the page and open no browser

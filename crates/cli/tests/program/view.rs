@@ -121,6 +121,11 @@ fn what_cannot_be_viewed_is_refused() {
         &[Path::new("page.html")],
         "cannot be used with",
     );
+    usage_error(
+        "view builtin:cup --stops 1% --no-open",
+        &[],
+        "cannot be used with",
+    );
 }
 
 /// A program that serves a page, ended with the test.
@@ -262,6 +267,25 @@ fn the_page_gets_meshes_and_nobody_else_does() {
             "{path} {headers}"
         );
     }
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_it_in_good_order() {
+    let mut served = Served::new("builtin:cup");
+    let mut page = served.connected();
+    write!(
+        page,
+        "GET {}alive HTTP/1.1\r\n{}\r\n",
+        served.path,
+        served.host()
+    )
+    .expect("sent");
+    page.read_exact(&mut [0]).expect("a sign of life");
+    let process = rustix::process::Pid::from_child(&served.child);
+    rustix::process::kill_process(process, rustix::process::Signal::INT).expect("a signal");
+    let status = served.child.wait().expect("its end");
+    assert!(status.success(), "{status}");
 }
 
 #[test]

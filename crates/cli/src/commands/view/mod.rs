@@ -42,8 +42,10 @@ pub(crate) fn run(arguments: &ViewArguments, progress: &Progress) -> anyhow::Res
         output::check_writable(path)?;
         output::check_replaced(&[path], &[&arguments.file], Some(arguments.overwrite))?;
     }
-    let (control, limit) = limit_control::load(&arguments.file, &arguments.limit, progress)?;
-    let prepared = limit_control::prepared(control, &limit, progress)?;
+    // What there is to say of the file is said with each mesh: here nothing of it is left out.
+    let quiet = &Progress::new(true);
+    let (control, limit) = limit_control::load(&arguments.file, &arguments.limit, quiet)?;
+    let prepared = limit_control::prepared(control, &limit, quiet)?;
     let subject = Subject::new(arguments, &prepared, progress)?;
     match &arguments.output {
         Some(path) => write(path, &subject, arguments, progress),
@@ -99,8 +101,9 @@ fn write(
     output::write_file(path, html.as_bytes())?;
     let what = left.0.iter().map(|what| {
         format!(
-            "{}: left out, as the page would be too large: {what}",
-            path.display()
+            "{}: left out, as the page would have more than {} MB: {what}",
+            path.display(),
+            MOST_BYTES >> 20
         )
     });
     progress.notes(what);

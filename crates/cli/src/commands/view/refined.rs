@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 use anyhow::Context;
 use clap::Parser;
+use limitmesh_io::gltf::with_images;
 use limitmesh_view::{Report, Stop, UniformReport};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -88,6 +89,7 @@ pub(super) fn stop(
         &["--tolerance", &percent],
         progress,
     )?;
+    let glb = with_images(&glb, folder.path())?;
     let mut report = report(&folder)?;
     report.words = listener.notes(&folder);
     let distances = distances(subject, &folder.path().join("refined.glb"), &glb, progress)?;
@@ -138,9 +140,11 @@ fn with_uniform(
         let triangles = subject.faces as f64 * 4f64.powi(*levels as i32);
         (triangles / stop.report.triangles.max(1) as f64).ln().abs()
     };
-    let levels = (0..=MOST_LEVELS).min_by(|a, b| apart(a).total_cmp(&apart(b)));
-    let levels = levels.unwrap_or_default().to_string();
-    let options = ["--method", "uniform", "--limit", "--levels", &levels];
+    // Without a level it would be the control mesh.
+    let levels = (1..=MOST_LEVELS).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+    let levels = levels.unwrap_or(1);
+    let words = levels.to_string();
+    let options = ["--method", "uniform", "--limit", "--levels", &words];
     let glb = refined(subject, folder, "uniform.glb", &options, progress)?;
     let own = report(folder)?;
     let path = folder.path().join("uniform.glb");
@@ -150,10 +154,11 @@ fn with_uniform(
         .as_ref()
         .map(|all| all.iter().copied().fold(0.0, f32::max));
     stop.report.uniform = Some(UniformReport {
+        levels,
         triangles: own.triangles,
         upper: greatest.map(f64::from),
     });
-    stop.uniform = Some(glb);
+    stop.uniform = Some(with_images(&glb, folder.path())?);
     Ok(stop)
 }
 

@@ -2,9 +2,10 @@
 //!
 //! A request for a mesh cancels the one before it. An answer that never ends tells whether the page is still open.
 
+use std::collections::HashMap;
 use std::io::{self, Read, Write};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
@@ -16,6 +17,7 @@ use super::refined::{self, Listener, Wanted};
 use super::subject::Subject;
 use crate::arguments::ViewArguments;
 use crate::failure::Outcome;
+use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
 
@@ -23,7 +25,7 @@ use crate::progress::Progress;
 const ALONE: Duration = Duration::from_secs(10);
 
 /// How often open pages get a sign of life, and their absence is noticed.
-const BEAT: Duration = Duration::from_secs(1);
+const BEAT: Duration = Duration::from_millis(300);
 
 /// No request of the page is longer.
 const MOST_ASKED: u64 = 1 << 16;
@@ -31,6 +33,9 @@ const MOST_ASKED: u64 = 1 << 16;
 /// What the page asks for.
 #[derive(Deserialize)]
 struct Asked {
+    /// The number of the page that asks: several may be open.
+    #[serde(default)]
+    page: u64,
     tolerance: f64,
     #[serde(default)]
     uniform: bool,
@@ -43,8 +48,8 @@ struct Pages<'a> {
     subject: &'a Subject<'a>,
     address: Address,
     html: String,
-    /// The number of the newest request for a mesh.
-    newest: AtomicU64,
+    /// By page, the number of its newest request for a mesh.
+    newest: Mutex<HashMap<u64, u64>>,
     /// Meshes are refined one after the other.
     turn: Mutex<()>,
     open: AtomicUsize,
@@ -66,7 +71,7 @@ pub(super) fn serve(
         subject,
         address: Address::new(port)?,
         html: super::live(subject, arguments, progress)?,
-        newest: AtomicU64::new(0),
+        newest: Mutex::default(),
         turn: Mutex::new(()),
         open: AtomicUsize::new(0),
     };
@@ -81,6 +86,8 @@ pub(super) fn serve(
             "no browser was opened ({error}): open the address in one"
         ));
     }
+    // Ctrl-C is how it ends, not a failure.
+    interrupt::leave_to_caller();
     std::thread::scope(|scope| {
         let mut last_open = None;
         loop {
@@ -91,7 +98,8 @@ pub(super) fn serve(
                 last_open = Some(Instant::now());
             }
             // The first page may take its time.
-            if last_open.is_some_and(|last: Instant| last.elapsed() > ALONE) {
+            let is_alone = last_open.is_some_and(|last: Instant| last.elapsed() > ALONE);
+            if is_alone || interrupt::is_asked() {
                 return Ok(Outcome::Done);
             }
         }
@@ -119,7 +127,7 @@ impl Pages<'_> {
         answered.unwrap_or_default();
     }
 
-    /// Writes a sign of life every second while somebody reads it.
+    /// Writes a sign of life now and then while somebody reads it.
     fn stay(&self, request: Request) -> io::Result<()> {
         self.open.fetch_add(1, Ordering::Relaxed);
         let mut writer = request.into_writer();
@@ -127,11 +135,12 @@ impl Pages<'_> {
             writer.write_all(
                 b"HTTP/1.1 200 OK\r\nContent-Type: application/octet-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n",
             )?;
-            loop {
+            while !interrupt::is_asked() {
                 writer.write_all(b".")?;
                 writer.flush()?;
                 std::thread::sleep(BEAT);
             }
+            Ok(())
         };
         let ended = stay();
         self.open.fetch_sub(1, Ordering::Relaxed);
@@ -155,7 +164,7 @@ impl Pages<'_> {
             }
             Err(why) => return (400, error(&why.to_string())),
         };
-        let number = self.newest.fetch_add(1, Ordering::SeqCst) + 1;
+        let number = self.begin(asked.page);
         // The one before ends soon, since this one is newer.
         let Ok(_turn) = self.turn.lock() else {
             return (
@@ -163,7 +172,7 @@ impl Pages<'_> {
                 error("an earlier mesh failed; start the program again"),
             );
         };
-        let is_over = || self.newest.load(Ordering::SeqCst) != number;
+        let is_over = || interrupt::is_asked() || self.newest_of(asked.page) != number;
         if is_over() {
             return (409, error("a newer request came"));
         }
@@ -177,6 +186,19 @@ impl Pages<'_> {
             Err(_) if is_over() => (409, error("a newer request came")),
             Err(why) => (422, error(&format!("{why:#}"))),
         }
+    }
+
+    /// The number of a page's newest request: a new one.
+    fn begin(&self, page: u64) -> u64 {
+        let mut newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = newest.entry(page).or_default();
+        *own += 1;
+        *own
+    }
+
+    fn newest_of(&self, page: u64) -> u64 {
+        let newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+        newest.get(&page).copied().unwrap_or_default()
     }
 
     fn stop(&self, asked: &Asked, listener: &Listener<'_>) -> anyhow::Result<Vec<u8>> {
