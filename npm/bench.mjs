@@ -86,7 +86,7 @@ async function inChromium() {
   const server = createServer((request, response) => {
     const isPage = request.url === '/';
     response.writeHead(200, { 'content-type': isPage ? 'text/html' : 'text/javascript' });
-    response.end(isPage ? '' : readFileSync(new URL(`.${request.url}`, import.meta.url)));
+    response.end(isPage ? '<link rel="icon" href="data:,">' : readFileSync(new URL(`.${request.url}`, import.meta.url)));
   });
   await new Promise(resolve => server.listen(0, '127.0.0.1', resolve));
   const browser = await chromium.launch({ executablePath, args: ['--headless', '--no-sandbox'] });

@@ -135,8 +135,8 @@ function wishesOf(o: Heard & WorkerOptions): Wishes {
   if (isGiven(signal) && !(signal instanceof AbortSignal)) {
     throw new LimitmeshError('option', 'signal', `signal is ${shown(signal)}, expected an AbortSignal`);
   }
-  if (isGiven(worker) && typeof worker.postMessage !== 'function') {
-    throw new LimitmeshError('option', 'worker', `worker is ${shown(worker)}, expected a Worker`);
+  if (isGiven(worker) && !(typeof Worker === 'function' && worker instanceof Worker)) {
+    throw new LimitmeshError('option', 'worker', `worker is ${shown(worker)}, expected a Worker of a browser`);
   }
   return { signal: signal ?? undefined, onProgress: checkedProgress(o) ?? undefined, worker: worker ?? undefined };
 }

@@ -146,6 +146,11 @@ test('a signal ends a call at once, with its reason, and the next one works', as
   assert.equal((await refineAsync(positions, index)).stop, 'met');
 });
 
+test('workers of other kinds are refused', async () => {
+  const worker = { postMessage() {} };
+  await assert.rejects(refineAsync(cube.positions, cube.index, { worker }), { code: 'option', place: 'worker' });
+});
+
 test('errors name who is at fault and where', async () => {
   const { positions, index } = cube;
   const off = Float64Array.from(positions);
