@@ -3,7 +3,7 @@
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use base64::Engine;
@@ -282,8 +282,9 @@ fn ctrl_c_ends_it_in_good_order() {
     )
     .expect("sent");
     page.read_exact(&mut [0]).expect("a sign of life");
-    let process = rustix::process::Pid::from_child(&served.child);
-    rustix::process::kill_process(process, rustix::process::Signal::INT).expect("a signal");
+    let process = served.child.id().to_string();
+    let sent = Command::new("kill").args(["-INT", &process]).status();
+    assert!(sent.expect("kill").success());
     let status = served.child.wait().expect("its end");
     assert!(status.success(), "{status}");
 }

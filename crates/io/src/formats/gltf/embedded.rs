@@ -29,6 +29,7 @@ pub fn with_images(glb: &[u8], folder: &Path) -> Result<Vec<u8>, WriteError> {
     let mut bin = container.bin.take().unwrap_or_default();
     let mut images = taken(&mut document, "images");
     let mut views = taken(&mut document, "bufferViews");
+    let before = views.len();
     for image in images.iter_mut().filter_map(Value::as_object_mut) {
         let uri = image.get("uri").and_then(Value::as_str);
         let Some((bytes, kind)) = uri.and_then(|uri| found(uri, folder)) else {
@@ -41,6 +42,9 @@ pub fn with_images(glb: &[u8], folder: &Path) -> Result<Vec<u8>, WriteError> {
         views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": bytes.len() }));
         bin.extend(bytes);
     }
+    if views.len() == before {
+        return Ok(glb.to_vec());
+    }
     let mut buffers = taken(&mut document, "buffers");
     let length = json!(bin.len());
     match buffers.first_mut().and_then(Value::as_object_mut) {
@@ -48,7 +52,6 @@ pub fn with_images(glb: &[u8], folder: &Path) -> Result<Vec<u8>, WriteError> {
             return Err(flaw("its first buffer is a file".to_owned()).into());
         }
         Some(first) => drop(first.insert("byteLength".to_owned(), length)),
-        None if bin.is_empty() => {}
         None => buffers.push(json!({ "byteLength": length })),
     }
     for (name, list) in [

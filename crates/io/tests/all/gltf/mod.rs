@@ -9,6 +9,7 @@
 mod accessors;
 mod assets;
 mod editing;
+mod embedded;
 mod extensions;
 mod flaws;
 mod fresh_documents;
