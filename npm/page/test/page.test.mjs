@@ -194,16 +194,26 @@ describe('the page', { skip }, () => {
 
   describe('of assets', { skip: !MODELS && 'skipped: LIMITMESH_MODELS names no folder of real meshes' }, () => {
     const asset = (name) => join(MODELS, 'assets', name);
-    test('materials, skins and animations are those of the file', async () => {
-      const { page, faults } = await opened(browser, written('asset.html', asset('quad_skin.glb'), '--tolerance', '1%'));
+    test('materials are those of the file, and a checker shows its texture coordinates', async () => {
+      const { page, faults } = await opened(browser, written('duck.html', join(MODELS, 'duck.glb'), '--tolerance', '1%'));
       assert.equal(await page.isChecked('input[value="material"]'), true);
+      const own = await picture(page);
+      const yellow = (a) => a.filter((_, i) => i % 4 === 0 && a[i] > 180 && a[i + 1] > 140 && a[i + 2] < 90).length;
+      assert.ok((await compared(browser, yellow, own)) > 10_000);
+      for (const look of ['checker', 'plain']) {
+        await page.click(`input[value="${look}"]`);
+        await ready(page);
+        assert.ok((await compared(browser, difference, own, await picture(page))) > 0.01, look);
+      }
+      assert.deepEqual(faults, []);
+      await page.close();
+    });
+
+    test('skins move', async () => {
+      const { page, faults } = await opened(browser, written('skin.html', asset('simple_skin.gltf'), '--tolerance', '1%'));
       const still = await picture(page);
-      await page.click('input[value="checker"]');
-      await ready(page);
-      assert.ok((await compared(browser, difference, still, await picture(page))) > 0.01);
-      await page.click('input[value="material"]');
       await page.click('#play');
-      await page.waitForTimeout(600);
+      await page.waitForTimeout(700);
       assert.ok((await compared(browser, difference, still, await picture(page))) > 0.005);
       assert.deepEqual(faults, []);
       await page.close();
