@@ -264,6 +264,7 @@ test('one line a mesh is logged, by a transform with a name', async () => {
 
 test('errors have a code and a place', async () => {
   assert.throws(() => limitmesh({ corners: [] }), { code: 'option', place: 'corners' });
+  for (const creases of ['none', 'auto', null]) assert.equal(typeof limitmesh({ creases }), 'function');
   assert.throws(() => limitmesh({ creases: [[0, 1]] }), { code: 'option', place: 'creases' });
   const rejects = async (change, options, expected) => {
     const made = halves();
