@@ -87,7 +87,7 @@ test('examples compile strictly', () => {
   const texts = { 'globals.d.ts': GLOBALS, 'results.ts': RESULTS };
   blocks.forEach((block, i) => (texts[`example${i}.ts`] = `${block}\nexport {};\n`));
   for (const [name, text] of Object.entries(texts)) writeFileSync(join(folder, name), text);
-  const words = ['--noEmit', '--strict', '--skipLibCheck', '--module', 'nodenext', '--target', 'es2022', '--types', '', ...Object.keys(texts)];
+  const words = ['--ignoreConfig', '--noEmit', '--strict', '--skipLibCheck', '--module', 'nodenext', '--target', 'es2022', '--types', '', ...Object.keys(texts)];
   const { stdout, status } = spawnSync(process.execPath, [join(npm, 'node_modules/typescript/bin/tsc'), ...words], { cwd: folder, encoding: 'utf8' });
   assert.equal(status, 0, stdout);
 });
