@@ -111,7 +111,13 @@ test('goals and caps end a refinement as they say', () => {
   assert.ok(few.index.length < refine(knot.positions, knot.index).index.length);
 });
 
-test('a tolerance that rounding to 32 bits spoils is not met', () => {
+test('a tolerance that rounding to 32 bits spoils is not met, and others leave room for it', () => {
+  const diagonal = diagonalOf(knot.positions);
+  for (const part of [3e-4, 1e-4, 7e-5]) {
+    const { stop, error } = refine(knot.positions, knot.index, { tolerance: part * diagonal });
+    assert.equal(stop, 'met');
+    assert.ok(error.upper <= part * diagonal, `${error.upper} ${part * diagonal}`);
+  }
   const tolerance = 2e-7;
   const far = Float64Array.from(cube.positions, x => x + 10);
   const options = { tolerance, maxLevels: 12, maxTriangles: 20_000, creaseAngle: 30 };

@@ -14,7 +14,7 @@ use crate::control::Control;
 use crate::failure::Failure;
 use crate::inputs::{ControlIn, GoalsIn, Listener};
 use crate::options;
-use crate::refine::{Reached, exact_of};
+use crate::refine::{Reached, Scale, exact_of};
 use crate::told::{self, observer, set};
 
 /// A file that was written.
@@ -64,7 +64,11 @@ fn refined(
     let soup = read_bytes(bytes, from)?;
     let kept = Kept::of(&soup);
     let control = Control::new(soup, &options::build(told), told, &mut observer)?;
-    let (found, channels) = exact_of(&control, told, goals, control.diagonal, &mut observer)?;
+    let scale = Scale {
+        diagonal: control.diagonal,
+        is_rounded: rounding(to, &WriteOptions::default(), &[[0.1; 3]]) > 0.0,
+    };
+    let (found, channels) = exact_of(&control, told, goals, scale, &mut observer)?;
     let (held, lost): (Vec<Channel>, Vec<Channel>) = channels
         .into_iter()
         .partition(|channel| holds(to, &WriteOptions::default(), channel));

@@ -53,7 +53,11 @@ fn refined(
 ) -> Result<Refined, Failure> {
     let mut observer = observer(listener);
     let control = Control::new(soup(mesh)?, &options::build(told), told, &mut observer)?;
-    let (found, channels) = exact_of(&control, told, goals, control.diagonal, &mut observer)?;
+    let scale = Scale {
+        diagonal: control.diagonal,
+        is_rounded: goals.is_single(),
+    };
+    let (found, channels) = exact_of(&control, told, goals, scale, &mut observer)?;
     let moved = match goals.is_single() {
         true => rounding(found.mesh.positions()),
         false => 0.0,
@@ -62,7 +66,14 @@ fn refined(
     Ok(Refined::new(found, reached, control, channels))
 }
 
-/// A control mesh refined to goals, with lengths in parts of a diagonal, and what it carries.
+/// What lengths are given in parts of, and whether positions are rounded to 32 bits afterwards.
+#[derive(Clone, Copy)]
+pub(crate) struct Scale {
+    pub(crate) diagonal: f64,
+    pub(crate) is_rounded: bool,
+}
+
+/// A control mesh refined to goals, and what it carries.
 ///
 /// # Errors
 /// The mesh has no limit, or the observer said stop.
@@ -70,11 +81,16 @@ pub(crate) fn exact_of(
     control: &Control,
     told: &ControlIn,
     goals: &GoalsIn,
-    diagonal: f64,
+    scale: Scale,
     observer: &mut Observer<'_>,
 ) -> Result<(Exact, Vec<Channel>), Failure> {
     let varies = control.channels.iter().any(Channel::varies_within_faces);
-    let options = options::exact(goals, diagonal, varies, told.divides_concave_corners());
+    let rounding = match scale.is_rounded {
+        true => most_rounding(control.mesh.positions()),
+        false => 0.0,
+    };
+    let unfolds = told.divides_concave_corners();
+    let options = options::exact(goals, scale.diagonal, rounding, varies, unfolds);
     let options = options.kept_edges(borders(&control.channels, &control.mesh));
     let found = exact_observed(&control.mesh, control.scheme, &options, observer)?;
     let channels = match control.channels.is_empty() {
@@ -106,7 +122,16 @@ impl Refined {
     }
 }
 
-/// How far a position moves at most as its numbers become those of 32 bits.
+/// How far a position within the box of these moves at most as its numbers become those of 32 bits.
+fn most_rounding(positions: &[[f64; 3]]) -> f64 {
+    let coordinates = positions.as_flattened().iter();
+    let largest = coordinates.fold(0.0f64, |most, x| most.max(x.abs()));
+    // Half of the last place, and of the least number, along each axis.
+    let half = 0.5 * (largest * f64::from(f32::EPSILON) + f64::from(f32::from_bits(1)));
+    3f64.sqrt() * half
+}
+
+/// How far one of these positions moves as its numbers become those of 32 bits.
 fn rounding(positions: &[[f64; 3]]) -> f64 {
     let square = |x: f64| (x - f64::from(x as f32)) * (x - f64::from(x as f32));
     let squares = positions.iter().map(|own| own.map(square));
