@@ -14,11 +14,15 @@ function elements(value: unknown, place: string, code: ErrorCode): Elements {
   return value as unknown as Elements;
 }
 
-/** As 64-bit numbers; what is no number is NaN, which the engine refuses by its place. */
+/** As 64-bit numbers. */
 export function floats(value: unknown, place: string, code: ErrorCode): Float64Array {
   const given = elements(value, place, code);
   if (!Array.isArray(given) && !isBig(given)) return new Float64Array(given as ArrayLike<number>);
-  return Float64Array.from(given, x => (typeof x === 'number' ? x : NaN));
+  return Float64Array.from(given, (x, i) => {
+    if (typeof x === 'number') return x;
+    const at = `${place}[${i}]`;
+    throw new LimitmeshError(code, at, `${at} is ${shown(x)}, expected a number`);
+  });
 }
 
 /** As whole numbers of 32 bits. */

@@ -17,7 +17,8 @@ export function bad(place: string, value: unknown, expected: string): LimitmeshE
 export function shown(value: unknown): string {
   if (typeof value === 'string') return value.length > 40 ? `'${value.slice(0, 40)}…'` : `'${value}'`;
   if (typeof value === 'function') return 'a function';
-  if (typeof value === 'object' && value !== null) return Array.isArray(value) ? 'an array' : 'an object';
+  if (Array.isArray(value)) return value.length <= 4 && value.every(own => typeof own === 'number') ? `[${value.join(',')}]` : 'an array';
+  if (typeof value === 'object' && value !== null) return 'an object';
   return String(value);
 }
 

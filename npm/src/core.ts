@@ -1,12 +1,12 @@
 /** The module for meshes in memory: compiled when this package is imported, started at the first call. */
 
-import { Engine } from './engine.js';
+import { Engine, type Glue } from './engine.js';
 import { LimitmeshError } from './error.js';
 import { compiled, supported } from './module.js';
 import * as glue from './generated/core.js';
 import { text } from './generated/core-text.js';
 
-export const engine = new Engine(glue);
+export const engine = new Engine(glue as Glue);
 
 let module: WebAssembly.Module | undefined;
 

@@ -2,7 +2,7 @@
 
 import { LimitmeshError, type ErrorCode } from './error.js';
 
-/** What the tool writes beside the module, as far as it is used here. */
+/** What the tool writes beside the module, as far as it is used here. Arrays that it gives are copies. */
 export interface Glue {
   initSync(module: { module: WebAssembly.Module }): { memory: WebAssembly.Memory };
   __wbg_reset_state(): void;
@@ -20,29 +20,29 @@ interface Handle {
 }
 
 export interface ChannelOut extends Handle {
-  data(): Float64Array;
-  index(): Uint32Array;
+  data(): Float64Array<ArrayBuffer>;
+  index(): Uint32Array<ArrayBuffer>;
   domain(): string;
 }
 
 interface LimitsOut extends Handle {
-  positions(): Float64Array;
-  normals(): Float64Array;
+  positions(): Float64Array<ArrayBuffer>;
+  normals(): Float64Array<ArrayBuffer>;
 }
 
 interface FileOut extends Handle {
-  bytes(): Uint8Array;
+  bytes(): Uint8Array<ArrayBuffer>;
   told(): object;
 }
 
 interface RefinedOut extends Handle {
-  positions(): Float64Array;
-  positions_single(): Float32Array;
-  index(): Uint32Array;
-  normals(): Float32Array;
-  side_corners(): Uint32Array;
-  side_normals(): Float32Array;
-  parents(): Uint32Array;
+  positions(): Float64Array<ArrayBuffer>;
+  positions_single(): Float32Array<ArrayBuffer>;
+  index(): Uint32Array<ArrayBuffer>;
+  normals(): Float32Array<ArrayBuffer>;
+  side_corners(): Uint32Array<ArrayBuffer>;
+  side_normals(): Float32Array<ArrayBuffer>;
+  parents(): Uint32Array<ArrayBuffer>;
   channels(): ChannelOut[];
   told(): object;
 }

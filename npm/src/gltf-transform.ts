@@ -7,7 +7,7 @@
 
 import type { Document, Mesh, Transform } from '@gltf-transform/core';
 import { ADAPTER_OPTIONS, requestOf, type AdapterOptions } from './adapter.js';
-import { bad, extent, isGiven, number } from './check.js';
+import { extent, isGiven, number, oneOf } from './check.js';
 import { LimitmeshError } from './error.js';
 import { readMesh, type ReadPrimitive } from './gltf-read.js';
 import { Placements } from './gltf-scene.js';
@@ -17,14 +17,18 @@ import { named } from './options.js';
 import type { Refined, WorkerOptions } from './types.js';
 
 /** Options of `refine` but for those that the document answers, and those that name vertices. */
-export type LimitmeshOptions = Omit<AdapterOptions, 'creases' | 'corners'> & { creases?: 'auto' | null } & WorkerOptions;
+export type LimitmeshOptions = Omit<AdapterOptions, 'creases' | 'corners'> & {
+  /** `'auto'` finds the sharp edges of parts. Default: `'none'`. */
+  creases?: 'auto' | 'none' | null;
+} & WorkerOptions;
 
 const OPTIONS = ADAPTER_OPTIONS.filter(name => name !== 'corners');
 
 /** A transform that brings each mesh of a document within a tolerance of its smooth surface. `triangles` is for each mesh. */
 export function limitmesh(options?: LimitmeshOptions | null): Transform {
-  const o = named(options, OPTIONS, true);
-  if (isGiven(o.creases) && o.creases !== 'auto') throw bad('creases', o.creases, "'auto': vertices of a document have no numbers in common");
+  const { creases, ...rest } = named(options, OPTIONS, true);
+  const isFound = oneOf(creases ?? 'none', 'creases', ['auto', 'none']) === 'auto';
+  const o: AdapterOptions & WorkerOptions = { ...rest, ...(isFound ? { creases: 'auto' } : {}) };
   return async function limitmesh(document: Document): Promise<void> {
     const meshes = new Map(document.getRoot().listMeshes().map((mesh, i) => [mesh, readMesh(mesh, nameOf(mesh, i))]));
     const placements = new Placements(document);
@@ -42,7 +46,7 @@ function nameOf(mesh: Mesh, i: number): string {
 }
 
 /** Options whose per cent are lengths in the scene. */
-function inScene(o: LimitmeshOptions, diagonal: number): LimitmeshOptions {
+function inScene(o: AdapterOptions & WorkerOptions, diagonal: number): AdapterOptions & WorkerOptions {
   const length = (value: unknown, place: string, least?: 'of at least') => {
     const { amount, isPart } = extent(value, place, least);
     return isPart ? amount * diagonal : amount;
@@ -57,7 +61,7 @@ function inScene(o: LimitmeshOptions, diagonal: number): LimitmeshOptions {
 }
 
 /** Refines a mesh at a scale, and puts it back; gives what is said of it. */
-async function refineMesh(document: Document, primitives: ReadPrimitive[], scale: number, o: LimitmeshOptions): Promise<string> {
+async function refineMesh(document: Document, primitives: ReadPrimitive[], scale: number, o: AdapterOptions & WorkerOptions): Promise<string> {
   const parts = primitives.map(own => own.part);
   const groups = Uint32Array.from(parts.flatMap((part, i) => new Array<number>(part.corners.length / 3).fill(i)));
   const weld = isGiven(o.weld) ? number(o.weld, 'weld', 'a distance of at least 0, or null', x => x >= 0 && x < Infinity) / scale : o.weld;

@@ -77,6 +77,6 @@ function file(glue: Glue, job: Job & { kind: 'file' }, listener: Listener | unde
   }
 }
 
-function asAsked(values: Float64Array, isSingle: boolean): FloatArray {
+function asAsked(values: Float64Array<ArrayBuffer>, isSingle: boolean): FloatArray {
   return isSingle ? new Float32Array(values) : values;
 }

@@ -42,9 +42,13 @@ export function meshOf(positions: Numbers, index: Numbers | null | undefined, o:
 /** A mesh without tags and channels. Without an index each three positions are a triangle. */
 export function trianglesOf(positions: unknown, index: unknown, faceSize: number, prefix = ''): MeshIn {
   const points = floats(positions, `${prefix}positions`, 'mesh');
+  if (!isGiven(index) && points.length % (3 * faceSize) !== 0) {
+    const place = `${prefix}positions`;
+    throw new LimitmeshError('mesh', place, `${place} has ${points.length} numbers, expected ${3 * faceSize} a face without an index`);
+  }
   const corners = isGiven(index)
     ? wholes(index, `${prefix}index`, 'mesh')
-    : Uint32Array.from({ length: Math.floor(points.length / 3) }, (_, corner) => corner);
+    : Uint32Array.from({ length: points.length / 3 }, (_, corner) => corner);
   return {
     positions: points,
     corners,

@@ -66,6 +66,10 @@ export function named<T extends object>(options: T | null | undefined, names: re
   if (typeof options !== 'object' || Array.isArray(options)) {
     throw new LimitmeshError('option', 'options', 'options are an object, such as { tolerance: "0.1%" }');
   }
+  const ofWorkers = WORKER_OPTIONS.find(name => Object.hasOwn(options, name));
+  if (ofWorkers !== undefined && !inWorker) {
+    throw new LimitmeshError('option', ofWorkers, `${ofWorkers} is for calls in a worker: refineAsync, measureAsync, refineGeometryAsync`);
+  }
   known(options, inWorker ? [...names, ...WORKER_OPTIONS] : names);
   return options;
 }

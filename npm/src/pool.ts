@@ -64,8 +64,7 @@ export class Pool {
 
   /** Has a job done; ends it, and its worker, as soon as the signal says so. */
   async run(module: WebAssembly.Module, job: unknown, transfer: ArrayBuffer[], wishes: Wishes): Promise<unknown> {
-    const own = wishes.worker;
-    if (own !== undefined) return resultOf(await work(ofBrowser(own), { module, job, transfer, wishes }));
+    if (wishes.worker !== undefined) return resultOf(await onGiven(wishes.worker, { module, job, transfer, wishes }));
     await this.#turn(wishes.signal);
     this.#busy++;
     try {
@@ -91,11 +90,54 @@ export class Pool {
   }
 }
 
+/** A job, and what its caller waits for. */
+interface Task {
+  module: WebAssembly.Module;
+  job: unknown;
+  transfer: ArrayBuffer[];
+  wishes: Wishes;
+}
+
+/** What is known of a worker that callers gave. */
+interface Given {
+  /** Resolves when the last of its calls has settled. */
+  isFree: Promise<void>;
+  isEnded: boolean;
+}
+
+const GIVEN = new WeakMap<Worker, Given>();
+
+/** A job on a worker that the caller gave, after those that were given to it before. One that a call has ended answers nobody. */
+async function onGiven(worker: Worker, task: Task): Promise<FromWorker> {
+  const { signal } = task.wishes;
+  const own = GIVEN.get(worker) ?? { isFree: Promise.resolve(), isEnded: false };
+  GIVEN.set(worker, own);
+  const end = () => {
+    own.isEnded = true;
+    worker.terminate();
+  };
+  const done = own.isFree.then(() => {
+    signal?.throwIfAborted();
+    if (own.isEnded) throw new LimitmeshError('internal', 'worker', ENDED);
+    return work({ ...ofBrowser(worker), end }, task);
+  });
+  own.isFree = done.then(() => {}, () => {});
+  return unlessAborted(done, signal);
+}
+
+const ENDED = 'worker was ended by an earlier call, which was aborted, cancelled or failed: give a new one';
+
+/** What a promise gives, or the signal's reason as soon as it is aborted. */
+function unlessAborted<T>(promise: Promise<T>, signal: AbortSignal | undefined): Promise<T> {
+  return new Promise((resolve, reject) => {
+    const abort = () => reject(signal!.reason);
+    signal?.addEventListener('abort', abort);
+    promise.then(resolve, reject).finally(() => signal?.removeEventListener('abort', abort));
+  });
+}
+
 /** One job on one worker, which is ended if the job is. */
-function work(
-  hands: Hands,
-  { module, job, transfer, wishes }: { module: WebAssembly.Module; job: unknown; transfer: ArrayBuffer[]; wishes: Wishes },
-): Promise<FromWorker> {
+function work(hands: Hands, { module, job, transfer, wishes }: Task): Promise<FromWorker> {
   const { signal, onProgress } = wishes;
   return new Promise((resolve, reject) => {
     const abort = () => end(signal!.reason);

@@ -22,7 +22,7 @@ export type Interpolation =
   | 'smooth-corners-plus2'
   | 'smooth-boundaries';
 
-export type FloatArray = Float32Array | Float64Array;
+export type FloatArray = Float32Array<ArrayBuffer> | Float64Array<ArrayBuffer>;
 /** Numbers: any typed array of numbers, or a plain one. */
 export type Numbers = ArrayLike<number>;
 
@@ -49,7 +49,7 @@ export interface RefinedChannel {
   data: FloatArray;
   components: number;
   /** By element of the domain, the row of its value. */
-  index: Uint32Array;
+  index: Uint32Array<ArrayBuffer>;
   domain: Domain;
 }
 
@@ -128,11 +128,15 @@ export interface Options extends SurfaceOptions {
 export interface WorkerOptions {
   /** Ends the call at once; it rejects with the signal's reason. */
   signal?: AbortSignal | null;
-  /** A worker that runs `limitmesh/worker`, for pages whose rules forbid workers from texts. It is ended with a call that is ended. */
+  /** A worker that runs `limitmesh/worker`, for pages whose rules forbid workers from texts. Calls on one worker wait for each other. It is
+   * ended with a call that is ended, and refused by later ones; one that you terminate yourself never answers. */
   worker?: Worker | null;
 }
 
-/** Why a refinement ended. */
+/**
+ * Why a refinement ended. `'rounding'`: numbers are too coarse for the tolerance, those of the reckoning or those of the result, which are
+ * rounded to 32 bits.
+ */
 export type Stop = 'met' | 'triangles' | 'triangle-cap' | 'level-cap' | 'memory-cap' | 'rounding' | 'cones' | 'other';
 
 /** What was found in the input. */
@@ -152,13 +156,13 @@ export interface Refined {
   /** Three numbers a vertex. */
   positions: FloatArray;
   /** Three vertices a triangle. */
-  index: Uint32Array;
+  index: Uint32Array<ArrayBuffer>;
   /** Limit normals, three numbers a vertex; at sharp edges an average of the sides. */
-  normals: Float32Array;
+  normals: Float32Array<ArrayBuffer>;
   /** Corners of triangles at sharp edges, numbered as in `index`, and the limit normals of their own sides. */
-  sides: { corners: Uint32Array; normals: Float32Array };
+  sides: { corners: Uint32Array<ArrayBuffer>; normals: Float32Array<ArrayBuffer> };
   /** By triangle, the face of the input that it came from. */
-  parents: Uint32Array;
+  parents: Uint32Array<ArrayBuffer>;
   /** In the order of the option. */
   channels: RefinedChannel[];
   /** The distance between mesh and limit surface is between these, where `certified` says so for sure; positions rounded to 32 bits are
@@ -242,13 +246,13 @@ export interface FileOptions extends Omit<Options, 'faceSize' | 'channels' | 'pr
 
 /** A file that was refined. */
 export interface RefinedFile {
-  bytes: Uint8Array;
+  bytes: Uint8Array<ArrayBuffer>;
   report: FileReport;
 }
 
 export interface FileReport {
   /** One for each mesh of an asset, else one. */
   meshes: (Pick<Refined, 'error' | 'stop' | 'creaseAngle' | 'diagnosis'> & { name: string; triangles: number; vertices: number })[];
-  /** Names of what could not be kept. */
+  /** Names of what could not be kept: values, and files of materials and pictures that the input names. */
   leftOut: string[];
 }

@@ -1,7 +1,7 @@
 /** A worker: does one job after the other. Pages whose rules forbid workers from texts start it by its address. */
 
 import { buffersOf } from './arrays.js';
-import { Engine } from './engine.js';
+import { Engine, type Glue } from './engine.js';
 import { LimitmeshError } from './error.js';
 import { perform, type Job } from './jobs.js';
 import { nowAndThen } from './listen.js';
@@ -15,7 +15,7 @@ interface Port {
 
 declare const process: { getBuiltinModule(name: string): { parentPort: Port & { on(name: string, hear: (data: ToWorker) => void): void } } };
 
-const engine = new Engine(glue);
+const engine = new Engine(glue as Glue);
 
 function answer(port: Port, { module, job, isHeard }: ToWorker): void {
   try {

@@ -111,6 +111,28 @@ test('goals and caps end a refinement as they say', () => {
   assert.ok(few.index.length < refine(knot.positions, knot.index).index.length);
 });
 
+test('a tolerance that rounding to 32 bits spoils is not met, and others leave room for it', () => {
+  const diagonal = diagonalOf(knot.positions);
+  for (const part of [3e-4, 1e-4, 7e-5]) {
+    const { stop, error } = refine(knot.positions, knot.index, { tolerance: part * diagonal });
+    assert.equal(stop, 'met');
+    assert.ok(error.upper <= part * diagonal, `${error.upper} ${part * diagonal}`);
+  }
+  const tolerance = 2e-7;
+  const far = Float64Array.from(cube.positions, x => x + 10);
+  const options = { tolerance, maxLevels: 12, maxTriangles: 20_000, creaseAngle: 30 };
+  const double = refine(far, cube.index, options);
+  assert.equal(double.stop, 'met');
+  assert.ok(double.error.upper <= tolerance);
+  // A third of a step of 32-bit numbers near 10 to 11.
+  const between = Float64Array.from(far, x => x + 2 ** -20 / 3);
+  const single = refine(between, cube.index, { ...options, precision: 'f32' });
+  assert.ok(single.error.upper > tolerance);
+  assert.equal(single.stop, 'rounding');
+  const wide = refine(between, cube.index, { ...options, tolerance: 1e-5, precision: 'f32' });
+  assert.ok(wide.error.upper <= 1e-5 && wide.stop === 'met');
+});
+
 test('what onProgress throws is thrown again, and false cancels', async () => {
   const sum = new RangeError('mine');
   const raise = () => { throw sum; };
@@ -158,6 +180,9 @@ test('errors name who is at fault and where', async () => {
   const cases = [
     [[positions.subarray(1), index], 'mesh', 'positions'],
     [[off, index], 'mesh', 'positions[4]'],
+    [[[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [0, 1, 2]], 'mesh', 'positions[0]'],
+    [[[0, 0, '0'], [0, 1, 2]], 'mesh', 'positions[2]'],
+    [[positions.subarray(0, 12), null], 'mesh', 'positions'],
     [[positions, [0, 1, 8]], 'mesh', 'index[2]'],
     [[positions, [0, 1]], 'mesh', 'index'],
     [[positions, [0, 1, -2]], 'mesh', 'index[2]'],
@@ -181,6 +206,17 @@ test('errors name who is at fault and where', async () => {
     const [p, i, o] = given;
     if (place !== 'signal') await assert.rejects(refineAsync(p, i, o), { name: 'LimitmeshError', code, place });
   }
+});
+
+test('errors say what was given, where else it goes, and in which mesh it is', () => {
+  const { positions, index } = cube;
+  const message = /^positions\[0\] is \[0,0,0\], expected a number$/;
+  assert.throws(() => refine([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [0, 1, 2]), { message });
+  assert.throws(() => refine(positions, index, { signal: new AbortController().signal }), { place: 'signal', message: /refineAsync/ });
+  const bad = { positions, index: [0, 1, 8] };
+  assert.throws(() => measure(cube, bad), { code: 'mesh', place: 'b.index[2]', message: /^b\.index\[2\] names vertex 8/ });
+  assert.throws(() => measure(bad, cube), { code: 'mesh', place: 'a.index[2]' });
+  assert.throws(() => measure(cube, null, { limitOf: bad }), { code: 'mesh', place: 'limitOf.index[2]' });
 });
 
 function diagonalOf(positions) {

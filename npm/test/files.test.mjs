@@ -35,6 +35,70 @@ test('every format is written and read again', async () => {
   }
 });
 
+/** A box of 3 × 2 × 1 around the origin as a binary STL file: twelve triangles, each with corners of its own. */
+function stlOfBox() {
+  const sides = [0, 1, 2].flatMap(axis => [-1, 1].map(sign => ({ axis, sign })));
+  const corner = ({ axis, sign }, a, b) => {
+    const [u, v] = sign > 0 ? [a, b] : [b, a];
+    const point = [];
+    [point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]] = [sign, u, v];
+    return point.map((x, i) => x * [1.5, 1, 0.5][i]);
+  };
+  const triangles = sides.flatMap(side => [[[-1, -1], [1, -1], [1, 1]], [[-1, -1], [1, 1], [-1, 1]]].map(all => all.map(at => corner(side, ...at))));
+  const bytes = Buffer.alloc(84 + 50 * triangles.length);
+  bytes.writeUInt32LE(triangles.length, 80);
+  triangles.forEach((all, t) => all.flat().forEach((x, i) => bytes.writeFloatLE(x, 84 + 50 * t + 12 + 4 * i)));
+  return bytes;
+}
+
+/** Document and numbers of a GLB file. */
+function openGlb(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  const length = view.getUint32(12, true);
+  const document = JSON.parse(Buffer.from(bytes.subarray(20, 20 + length)).toString());
+  const floats = accessor => {
+    const { bufferView, byteOffset = 0, count } = document.accessors[accessor];
+    const { byteOffset: start = 0, byteStride = 12 } = document.bufferViews[bufferView];
+    const at = 28 + length + start + byteOffset;
+    return Array.from({ length: count }, (_, v) => [0, 4, 8].map(i => view.getFloat32(at + v * byteStride + i, true)));
+  };
+  return { document, floats };
+}
+
+test('normals of a sharp box are those of its six sides, in glTF and PLY with vertices for each', async () => {
+  const { bytes, report } = await refineFile(stlOfBox(), 'stl', 'glb', { tolerance: '1%' });
+  assert.deepEqual(report.leftOut, []);
+  const { document, floats } = openGlb(bytes);
+  const { POSITION, NORMAL } = document.meshes[0].primitives[0].attributes;
+  const [positions, normals] = [floats(POSITION), floats(NORMAL)];
+  assert.equal(normals.length, positions.length);
+  const seen = new Map();
+  positions.forEach((at, v) => {
+    const axis = normals[v].findIndex(x => Math.abs(x) > 0.99999);
+    assert.ok(axis >= 0, `normal ${normals[v]} at ${at}`);
+    // The vertex is on the side that the normal is of.
+    assert.ok(Math.abs(at[axis] - Math.sign(normals[v][axis]) * [1.5, 1, 0.5][axis]) < 1e-6, `normal ${normals[v]} at ${at}`);
+    seen.set(String(at), (seen.get(String(at)) ?? 0) + 1);
+  });
+  const isCorner = at => at.every((x, i) => Math.abs(x) === [1.5, 1, 0.5][i]);
+  const corners = [...seen].filter(([at]) => isCorner(at.split(',').map(Number)));
+  assert.deepEqual(corners.map(([, count]) => count), Array(8).fill(3), 'three sides meet at each of eight corners');
+  const ply = (await refineFile(stlOfBox(), 'stl', 'ply', { tolerance: '1%' })).bytes;
+  const header = Buffer.from(ply).toString('latin1').split('end_header')[0];
+  assert.match(header, new RegExp(`element vertex ${positions.length}\\n`));
+  assert.match(header, /property \w+ nx\n/);
+});
+
+test('files of materials that a format does not name are left out, and told', async () => {
+  const named = Buffer.concat([Buffer.from('mtllib looks.mtl\nusemtl skin\n'), obj]);
+  const { bytes, report } = await refineFile(named, 'obj', 'glb', { tolerance: '5%' });
+  assert.ok(report.leftOut.includes('looks.mtl'), String(report.leftOut));
+  assert.equal(openGlb(bytes).document.materials[0].name, 'skin');
+  const again = await refineFile(named, 'obj', 'obj', { tolerance: '5%' });
+  assert.deepEqual(again.report.leftOut, []);
+  assert.match(Buffer.from(again.bytes).toString(), /^mtllib looks\.mtl$/m);
+});
+
 /** An asset of one quad with a texture, in JSON, with its buffer as text. */
 function assetOf({ hasSkin = false } = {}) {
   const floats = new Float32Array([0, 0, 0, 1, 0, 0, 1, 1, 1, 0, 1, 0, /* uv */ 0, 0, 1, 0, 1, 1, 0, 1]);
@@ -80,6 +144,7 @@ test('what cannot be kept is refused, and errors name their place', async () => 
   await assert.rejects(refineFile(moving, 'gltf', 'glb'), { code: 'read', place: 'meshes[0]' });
   await assert.rejects(refineFile(Buffer.from('v 0 0 0\nv 1 x 0\n'), 'obj', 'ply'), { code: 'read', place: 'line 2' });
   await assert.rejects(refineFile(Buffer.alloc(0), 'ply', 'ply'), { code: 'read', place: 'bytes' });
+  await assert.rejects(refineFile(obj, 'glb', 'glb'), { code: 'read', place: 'bytes', message: /looks like/ });
   await assert.rejects(refineFile(obj, 'doc', 'ply'), { code: 'option', place: 'from' });
   await assert.rejects(refineFile(obj, 'obj', 'exe'), { code: 'option', place: 'to' });
   await assert.rejects(refineFile('text', 'obj', 'ply'), { code: 'read', place: 'bytes' });

@@ -262,6 +262,18 @@ test('one line a mesh is logged, by a transform with a name', async () => {
   assert.match(lines[0], /^limitmesh: meshes\[0\] 'ball': 352 → [\d,]+ triangles within 0\.0\d+ of the surface$/);
 });
 
+test('no creases are found unless asked for, by whatever word', async () => {
+  const told = async options => {
+    const { document } = halves();
+    const lines = [];
+    document.setLogger({ debug() {}, info: line => lines.push(line), warn() {}, error() {} });
+    await document.transform(limitmesh({ tolerance: '1%', ...options }));
+    return lines;
+  };
+  const usual = await told({});
+  for (const creases of ['none', null, undefined]) assert.deepEqual(await told({ creases }), usual);
+});
+
 test('errors have a code and a place', async () => {
   assert.throws(() => limitmesh({ corners: [] }), { code: 'option', place: 'corners' });
   assert.throws(() => limitmesh({ creases: [[0, 1]] }), { code: 'option', place: 'creases' });

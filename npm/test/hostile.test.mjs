@@ -112,7 +112,7 @@ test('where memory ends, the error says so, and the next call works', () => {
       try { refine(positions, index, { tolerance: 1e-7, maxMemory: '3GB' }); } catch (error) { codes.push(error.code); }
       codes.push(refine(positions, index).stop);
     }
-    try { refine(new Float64Array(3e7), null); } catch (error) { codes.push(error.code); }
+    try { refine(new Float64Array(2.7e7), null); } catch (error) { codes.push(error.code); }
     codes.push(refine(positions, index).stop);
     console.log(codes.join(' '));`;
   // Four hundred pages are 25 MiB.

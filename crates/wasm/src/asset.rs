@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::files::{FileOut, mesh_told};
 use crate::inputs::{ControlIn, GoalsIn};
 use crate::options;
-use crate::refine::exact_of;
+use crate::refine::{Reached, Scale, exact_of};
 
 /// Numbers of a value at most that vertices of a file can have.
 const MOST_WIDE: usize = 4;
@@ -50,7 +50,11 @@ pub(crate) fn refined(
         left_out.extend(too_wide(&own));
         let build = options::build(told).weld(Weld::Never).keep_windings(true);
         let control = Control::new(own.soup.clone(), &build, told, observer)?;
-        let (found, channels) = exact_of(&control, told, goals, diagonal, observer)?;
+        let lengths = Scale {
+            diagonal,
+            is_rounded: true,
+        };
+        let (found, channels) = exact_of(&control, told, goals, lengths, observer)?;
         let back = PutBack {
             number,
             scale,
@@ -61,7 +65,8 @@ pub(crate) fn refined(
         left_out.extend(back.put(&own, &mut asset)?);
         let rounded = rounding(to, &WriteOptions::default(), found.mesh.positions());
         let name = asset.mesh_name(number);
-        meshes.push(mesh_told(&name, &found, &control, rounded));
+        let reached = Reached::of(&found, goals, diagonal, rounded);
+        meshes.push(mesh_told(&name, &found, &control, &reached));
     }
     left_out.extend(asset.left_out());
     Ok(FileOut {

@@ -34,6 +34,19 @@ impl Failure {
         Self::new("read", place, message)
     }
 
+    /// The same, of one of several meshes: its places begin with the mesh's name.
+    pub(crate) fn of(mut self, mesh: &str) -> Self {
+        if self.code == "mesh" {
+            let place = format!("{mesh}.{}", self.place);
+            self.message = match self.message.strip_prefix(&self.place) {
+                Some(rest) => format!("{place}{rest}"),
+                None => format!("{mesh}: {}", self.message),
+            };
+            self.place = place;
+        }
+        self
+    }
+
     fn new(code: &'static str, place: impl Into<String>, message: impl ToString) -> Self {
         Self {
             code,

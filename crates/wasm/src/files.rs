@@ -4,7 +4,7 @@ use std::path::Path;
 
 use js_sys::{Array, Object};
 use limitmesh::PolygonSoup;
-use limitmesh::mesh::Channel;
+use limitmesh::mesh::{Channel, SplitSurface};
 use limitmesh::refine::Exact;
 use limitmesh_io::{Format, Output, WriteOptions, holds, read_bytes, rounding, write_to};
 use wasm_bindgen::prelude::*;
@@ -14,7 +14,7 @@ use crate::control::Control;
 use crate::failure::Failure;
 use crate::inputs::{ControlIn, GoalsIn, Listener};
 use crate::options;
-use crate::refine::{exact_of, stop_name};
+use crate::refine::{Reached, Scale, exact_of};
 use crate::told::{self, observer, set};
 
 /// A file that was written.
@@ -64,15 +64,22 @@ fn refined(
     let soup = read_bytes(bytes, from)?;
     let kept = Kept::of(&soup);
     let control = Control::new(soup, &options::build(told), told, &mut observer)?;
-    let (found, channels) = exact_of(&control, told, goals, control.diagonal, &mut observer)?;
+    let scale = Scale {
+        diagonal: control.diagonal,
+        is_rounded: rounding(to, &WriteOptions::default(), &[[0.1; 3]]) > 0.0,
+    };
+    let (found, channels) = exact_of(&control, told, goals, scale, &mut observer)?;
     let (held, lost): (Vec<Channel>, Vec<Channel>) = channels
         .into_iter()
         .partition(|channel| holds(to, &WriteOptions::default(), channel));
     let rounded = rounding(to, &WriteOptions::default(), found.mesh.positions());
+    let reached = Reached::of(&found, goals, control.diagonal, rounded);
+    let mut left_out: Vec<String> = lost.into_iter().map(|channel| channel.name).collect();
+    left_out.extend(kept.left_out(to));
     Ok(FileOut {
-        meshes: vec![mesh_told("", &found, &control, rounded)],
+        meshes: vec![mesh_told("", &found, &control, &reached)],
         bytes: kept.written(to, &found, &held)?,
-        left_out: lost.into_iter().map(|channel| channel.name).collect(),
+        left_out,
     })
 }
 
@@ -99,19 +106,30 @@ impl Kept {
         }
     }
 
+    /// The files that a format does not name: what they say of materials and pictures goes with them.
+    fn left_out(&self, format: Format) -> Vec<String> {
+        let of = |own: Format, names: &[String]| match format == own {
+            true => Vec::new(),
+            false => names.to_vec(),
+        };
+        let mut names = of(Format::Obj, &self.material_libraries);
+        names.extend(of(Format::Ply, &self.texture_files));
+        names
+    }
+
     fn written(
         &self,
         format: Format,
         found: &Exact,
         channels: &[Channel],
     ) -> Result<Vec<u8>, Failure> {
-        let own = CornerNormals::of(found);
+        let sides = Sides::of(found, format);
         let output = Output::new(found.mesh.as_triangles())
             .channels(channels)
             .material_libraries(&self.material_libraries)
             .texture_files(&self.texture_files);
-        let output = match &own {
-            Some(own) => output.normals_of_corners(&own.normals, &own.corners),
+        let output = match &sides {
+            Some(sides) => sides.add_to(output),
             None => output.normals(&found.normals),
         };
         let mut bytes = Vec::new();
@@ -120,17 +138,22 @@ impl Kept {
     }
 }
 
-/// Normals, and by corner which of them it has.
-struct CornerNormals {
-    normals: Vec<[f64; 3]>,
-    corners: Vec<[u32; 3]>,
+/// Where a mesh has sharp edges: the normals of their sides as a format holds them.
+enum Sides {
+    /// Normals, and by corner which of them it has.
+    OfCorners(Vec<[f64; 3]>, Vec<[u32; 3]>),
+    /// Vertices stand once for each side.
+    Split(SplitSurface),
 }
 
-impl CornerNormals {
-    /// Those of a mesh where there are several at a vertex.
-    fn of(found: &Exact) -> Option<Self> {
+impl Sides {
+    /// None where each vertex has one normal.
+    fn of(found: &Exact, format: Format) -> Option<Self> {
         if found.sides.is_empty() {
             return None;
+        }
+        if format.is_gltf() || format == Format::Ply {
+            return Some(Self::Split(found.split_surface()));
         }
         let mut normals = found.normals.clone();
         let mut corners = found.mesh.triangles().to_vec();
@@ -138,30 +161,32 @@ impl CornerNormals {
             corners.as_flattened_mut()[corner as usize] = normals.len() as u32;
             normals.push(normal);
         }
-        Some(Self { normals, corners })
+        Some(Self::OfCorners(normals, corners))
+    }
+
+    fn add_to<'a>(&'a self, output: Output<'a>) -> Output<'a> {
+        match self {
+            Self::OfCorners(normals, corners) => output.normals_of_corners(normals, corners),
+            Self::Split(split) => Output {
+                surface: split.as_triangles(),
+                ..output
+            }
+            .normals(&split.normals),
+        }
     }
 }
 
-/// What is told of a refined mesh whose positions the file rounds by so much.
-pub(crate) fn mesh_told(name: &str, found: &Exact, control: &Control, rounded: f64) -> Object {
+/// What is told of a refined mesh, which its file holds within these bounds.
+pub(crate) fn mesh_told(name: &str, found: &Exact, control: &Control, reached: &Reached) -> Object {
     let (object, error) = (Object::new(), Object::new());
-    set(&error, "lower", (found.error.lower - rounded).max(0.0));
-    let upper = found.error.upper + rounded;
-    set(
-        &error,
-        "upper",
-        if rounded > 0.0 {
-            upper.next_up()
-        } else {
-            upper
-        },
-    );
+    set(&error, "lower", reached.lower);
+    set(&error, "upper", reached.upper);
     set(&error, "certified", found.error.certified);
     set(&object, "name", name);
     set(&object, "triangles", found.mesh.face_count() as f64);
     set(&object, "vertices", found.mesh.vertex_count() as f64);
     set(&object, "error", error);
-    set(&object, "stop", stop_name(found.stop));
+    set(&object, "stop", reached.stop);
     let crease_angle = control.crease_angle.map(JsValue::from);
     set(
         &object,

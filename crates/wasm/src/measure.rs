@@ -36,7 +36,8 @@ pub fn measure(
     listener: Option<Listener>,
 ) -> Result<Object, JsValue> {
     let measured = || {
-        let (a, b) = (soup(surface)?, soup(reference)?);
+        let a = soup(surface).map_err(|failure| failure.of("a"))?;
+        let b = soup(reference).map_err(|failure| failure.of("b"))?;
         let (of_a, of_b) = (as_triangles(&a), as_triangles(&b));
         let a = Triangles {
             positions: &a.positions,
@@ -65,19 +66,16 @@ pub fn measure_limit(
 ) -> Result<Object, JsValue> {
     let measured = || {
         let observer = &mut observer(listener.as_ref());
-        let surface = soup(surface)?;
+        let surface = soup(surface).map_err(|failure| failure.of("a"))?;
         let triangles = as_triangles(&surface);
         let a = Triangles {
             positions: &surface.positions,
             triangles: &triangles,
         };
         let unfolds = control.divides_concave_corners();
-        let control = Control::new(
-            soup(reference)?,
-            &options::build(control),
-            control,
-            observer,
-        )?;
+        let built = soup(reference)
+            .and_then(|soup| Control::new(soup, &options::build(control), control, observer));
+        let control = built.map_err(|failure| failure.of("limitOf"))?;
         match how.certified() {
             true => certified(a, &control, unfolds, how, observer),
             false => sampled(a, control, how, observer),

@@ -67,10 +67,12 @@ pub(crate) fn build(told: &ControlIn) -> BuildOptions {
     BuildOptions::default().weld(weld).strict(!told.repair())
 }
 
-/// Goals and caps for a mesh with this diagonal. Triangles stay within one face where faces are to be told apart.
+/// Goals and caps for a mesh with this diagonal, whose result is rounded by so much at most. Triangles stay within one face where faces are
+/// to be told apart.
 pub(crate) fn exact(
     told: &GoalsIn,
     diagonal: f64,
+    rounding: f64,
     tells_faces_apart: bool,
     unfolds: bool,
 ) -> ExactOptions {
@@ -93,7 +95,7 @@ pub(crate) fn exact(
         options = options.max_levels(count(levels));
     }
     if let Some(tolerance) = told.tolerance() {
-        options = options.tolerance(tolerance.of(diagonal));
+        options = options.tolerance(with_room(tolerance.of(diagonal), rounding));
     }
     if let Some(degrees) = told.angle() {
         options = options.angle(degrees.to_radians());
@@ -102,4 +104,10 @@ pub(crate) fn exact(
         options = options.triangles(count(triangles));
     }
     options
+}
+
+/// The part of a length that is left where rounding takes some of it afterwards, unless that is most of it.
+fn with_room(length: f64, rounding: f64) -> f64 {
+    let room = length - rounding;
+    if room > 0.5 * length { room } else { length }
 }

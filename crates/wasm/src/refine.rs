@@ -25,10 +25,8 @@ pub struct Refined {
     sides: Vec<(u32, [f64; 3])>,
     parents: Vec<u32>,
     channels: Vec<Channel>,
-    lower: f64,
-    upper: f64,
+    reached: Reached,
     certified: bool,
-    stop: &'static str,
     levels: usize,
     inverted: usize,
 }
@@ -55,15 +53,27 @@ fn refined(
 ) -> Result<Refined, Failure> {
     let mut observer = observer(listener);
     let control = Control::new(soup(mesh)?, &options::build(told), told, &mut observer)?;
-    let (found, channels) = exact_of(&control, told, goals, control.diagonal, &mut observer)?;
-    let refined = Refined::new(found, control, channels);
-    Ok(match goals.is_single() {
-        true => refined.rounded(),
-        false => refined,
-    })
+    let scale = Scale {
+        diagonal: control.diagonal,
+        is_rounded: goals.is_single(),
+    };
+    let (found, channels) = exact_of(&control, told, goals, scale, &mut observer)?;
+    let moved = match goals.is_single() {
+        true => rounding(found.mesh.positions()),
+        false => 0.0,
+    };
+    let reached = Reached::of(&found, goals, control.diagonal, moved);
+    Ok(Refined::new(found, reached, control, channels))
 }
 
-/// A control mesh refined to goals, with lengths in parts of a diagonal, and what it carries.
+/// What lengths are given in parts of, and whether positions are rounded to 32 bits afterwards.
+#[derive(Clone, Copy)]
+pub(crate) struct Scale {
+    pub(crate) diagonal: f64,
+    pub(crate) is_rounded: bool,
+}
+
+/// A control mesh refined to goals, and what it carries.
 ///
 /// # Errors
 /// The mesh has no limit, or the observer said stop.
@@ -71,11 +81,16 @@ pub(crate) fn exact_of(
     control: &Control,
     told: &ControlIn,
     goals: &GoalsIn,
-    diagonal: f64,
+    scale: Scale,
     observer: &mut Observer<'_>,
 ) -> Result<(Exact, Vec<Channel>), Failure> {
     let varies = control.channels.iter().any(Channel::varies_within_faces);
-    let options = options::exact(goals, diagonal, varies, told.divides_concave_corners());
+    let rounding = match scale.is_rounded {
+        true => most_rounding(control.mesh.positions()),
+        false => 0.0,
+    };
+    let unfolds = told.divides_concave_corners();
+    let options = options::exact(goals, scale.diagonal, rounding, varies, unfolds);
     let options = options.kept_edges(borders(&control.channels, &control.mesh));
     let found = exact_observed(&control.mesh, control.scheme, &options, observer)?;
     let channels = match control.channels.is_empty() {
@@ -86,8 +101,8 @@ pub(crate) fn exact_of(
 }
 
 impl Refined {
-    fn new(found: Exact, mut control: Control, channels: Vec<Channel>) -> Self {
-        let (error, stop, inverted) = (found.error, found.stop, found.inverted_triangles());
+    fn new(found: Exact, reached: Reached, mut control: Control, channels: Vec<Channel>) -> Self {
+        let inverted = found.inverted_triangles();
         let (positions, triangles) = found.mesh.into_positions_and_triangles();
         // What the result needs no longer.
         (control.channels, control.vertices) = Default::default();
@@ -99,33 +114,63 @@ impl Refined {
             normals: found.normals,
             sides: found.sides,
             channels,
-            lower: error.lower,
-            upper: error.upper,
-            certified: error.certified,
-            stop: stop_name(stop),
+            reached,
+            certified: found.error.certified,
             levels: found.statistics.levels,
             inverted,
         }
     }
+}
 
-    /// With positions of 32 bits, and bounds that hold for these.
-    fn rounded(mut self) -> Self {
-        let mut greatest = 0.0f64;
-        for position in &mut self.positions {
-            let rounded = position.map(|x| f64::from(x as f32));
-            let square = |i: usize| (position[i] - rounded[i]) * (position[i] - rounded[i]);
-            greatest = greatest.max(square(0) + square(1) + square(2));
-            *position = rounded;
+/// How far a position within the box of these moves at most as its numbers become those of 32 bits.
+fn most_rounding(positions: &[[f64; 3]]) -> f64 {
+    let coordinates = positions.as_flattened().iter();
+    let largest = coordinates.fold(0.0f64, |most, x| most.max(x.abs()));
+    // Half of the last place, and of the least number, along each axis.
+    let half = 0.5 * (largest * f64::from(f32::EPSILON) + f64::from(f32::from_bits(1)));
+    3f64.sqrt() * half
+}
+
+/// How far one of these positions moves as its numbers become those of 32 bits.
+fn rounding(positions: &[[f64; 3]]) -> f64 {
+    let square = |x: f64| (x - f64::from(x as f32)) * (x - f64::from(x as f32));
+    let squares = positions.iter().map(|own| own.map(square));
+    squares
+        .fold(0.0f64, |most, [x, y, z]| most.max(x + y + z))
+        .sqrt()
+}
+
+/// Bounds of the distance of a result as it is handed over, and why it ended.
+pub(crate) struct Reached {
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    pub(crate) stop: &'static str,
+}
+
+impl Reached {
+    /// That of a result whose positions are rounded by so much afterwards, with a tolerance in parts of a diagonal.
+    pub(crate) fn of(found: &Exact, goals: &GoalsIn, diagonal: f64, rounded: f64) -> Self {
+        let (lower, upper) = (found.error.lower, found.error.upper);
+        if rounded == 0.0 {
+            let stop = stop_name(found.stop);
+            return Self { lower, upper, stop };
         }
-        let moved = greatest.sqrt();
-        self.lower = (self.lower - moved).max(0.0);
-        self.upper = (self.upper + moved).next_up();
-        self
+        let upper = (upper + rounded).next_up();
+        let tolerance = goals.tolerance().map(|own| own.of(diagonal));
+        let is_past = tolerance.is_some_and(|tolerance| upper > tolerance);
+        Self {
+            lower: (lower - rounded).max(0.0),
+            upper,
+            stop: match found.stop {
+                ExactStop::Met if is_past => stop_name(ExactStop::Rounding),
+                stop => stop_name(stop),
+            },
+        }
     }
 }
 
 /// Why a refinement ended, as Python and the program have it.
-pub(crate) fn stop_name(stop: ExactStop) -> &'static str {
+fn stop_name(stop: ExactStop) -> &'static str {
     match stop {
         ExactStop::Met => "met",
         ExactStop::Triangles => "triangles",
@@ -185,11 +230,11 @@ impl Refined {
     /// All else that is told of it, by the names of TypeScript's result.
     pub fn told(&self) -> Object {
         let (object, error) = (Object::new(), Object::new());
-        told::set(&error, "lower", self.lower);
-        told::set(&error, "upper", self.upper);
+        told::set(&error, "lower", self.reached.lower);
+        told::set(&error, "upper", self.reached.upper);
         told::set(&error, "certified", self.certified);
         told::set(&object, "error", error);
-        told::set(&object, "stop", self.stop);
+        told::set(&object, "stop", self.reached.stop);
         told::set(&object, "levels", self.levels as f64);
         told::set(&object, "inverted", self.inverted as f64);
         let crease_angle = self.control.crease_angle.map(JsValue::from);

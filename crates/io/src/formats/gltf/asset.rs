@@ -10,6 +10,7 @@ use super::read::parts::{self, MeshSoup};
 use super::read::scene::{Placement, Scene};
 use super::read::scene_channels::SceneChannels;
 use crate::affine::bounding_box;
+use crate::content::looks_like_other;
 use crate::error::ReadError;
 use crate::files::{folder_of, read_all};
 use crate::flaw::{self, Flaw, shortened};
@@ -53,6 +54,13 @@ impl Asset {
         let format = Format::Gltf;
         if bytes.is_empty() {
             return Err(ReadError::Empty { path: None, format });
+        }
+        if let Some(looks_like) = looks_like_other(bytes, format) {
+            return Err(ReadError::OtherContent {
+                path: None,
+                format,
+                looks_like,
+            });
         }
         let asset = Source::parse(bytes, folder).and_then(|source| Self::of(None, source));
         asset.map_err(|flaw| flaw.read_as(format))
