@@ -131,8 +131,9 @@ impl Blobs {
             } else if is_mesh {
                 return Ok(None);
             } else {
+                let what = name.replace('_', " ");
                 self.left
-                    .push(format!("{name} within {} %", 100.0 * stop.tolerance));
+                    .push(format!("{what} within {} %", 100.0 * stop.tolerance));
                 parts.insert(name.to_owned(), Value::Null);
             }
         }

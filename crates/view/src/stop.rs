@@ -1,5 +1,7 @@
 //! A stop of the page's slider: a mesh at one tolerance.
 
+use std::borrow::Cow;
+
 use serde_json::{Map, Value, json};
 
 use crate::Report;
@@ -23,12 +25,12 @@ pub struct Stop {
 
 impl Stop {
     /// Its parts by name: those that there are, and `None` for others.
-    pub(crate) fn parts(&self) -> [(&'static str, Option<Vec<u8>>); 4] {
-        let numbers = |all: &Option<Vec<f32>>| all.as_ref().map(|all| bytes(all));
+    pub(crate) fn parts(&self) -> [(&'static str, Option<Cow<'_, [u8]>>); 4] {
+        let numbers = |all: &Option<Vec<f32>>| all.as_ref().map(|all| Cow::from(bytes(all)));
         [
-            ("glb", Some(self.glb.clone())),
+            ("glb", Some(Cow::from(&self.glb))),
             ("distances", numbers(&self.distances)),
-            ("uniform", self.uniform.clone()),
+            ("uniform", self.uniform.as_ref().map(Cow::from)),
             ("uniform_distances", numbers(&self.uniform_distances)),
         ]
     }
@@ -39,11 +41,11 @@ impl Stop {
     /// # Errors
     /// A number that JSON cannot hold.
     pub fn answer(&self) -> serde_json::Result<Vec<u8>> {
-        let (mut places, mut all) = (Map::new(), Vec::new());
+        let (mut places, mut all) = (Map::new(), Vec::<u8>::new());
         for (name, part) in self.parts() {
             let place = part.map(|part| {
                 let place = json!([all.len(), part.len()]);
-                all.extend(part);
+                all.extend_from_slice(&part);
                 place
             });
             places.insert(name.to_owned(), place.unwrap_or(Value::Null));

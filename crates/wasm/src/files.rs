@@ -179,14 +179,14 @@ impl Sides {
 /// What is told of a refined mesh, which its file holds within these bounds.
 pub(crate) fn mesh_told(name: &str, found: &Exact, control: &Control, reached: &Reached) -> Object {
     let (object, error) = (Object::new(), Object::new());
-    set(&error, "lower", reached.lower);
-    set(&error, "upper", reached.upper);
-    set(&error, "certified", found.error.certified);
+    set(&error, "lower", reached.error.lower);
+    set(&error, "upper", reached.error.upper);
+    set(&error, "certified", reached.error.certified);
     set(&object, "name", name);
     set(&object, "triangles", found.mesh.face_count() as f64);
     set(&object, "vertices", found.mesh.vertex_count() as f64);
     set(&object, "error", error);
-    set(&object, "stop", reached.stop);
+    set(&object, "stop", reached.stop.name());
     let crease_angle = control.crease_angle.map(JsValue::from);
     set(
         &object,

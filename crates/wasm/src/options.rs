@@ -2,7 +2,7 @@
 
 use limitmesh::PolygonSoup;
 use limitmesh::mesh::{BoundaryRule, BuildOptions, Weld};
-use limitmesh::refine::{ExactOptions, Finish};
+use limitmesh::refine::{ExactOptions, Finish, with_room};
 use limitmesh::scheme::{CatmullClark, Loop, LoopWarren, ModifiedButterfly, Scheme};
 
 use crate::failure::Failure;
@@ -104,10 +104,4 @@ pub(crate) fn exact(
         options = options.triangles(count(triangles));
     }
     options
-}
-
-/// The part of a length that is left where rounding takes some of it afterwards, unless that is most of it.
-fn with_room(length: f64, rounding: f64) -> f64 {
-    let room = length - rounding;
-    if room > 0.5 * length { room } else { length }
 }

@@ -4,7 +4,7 @@ use js_sys::Object;
 use limitmesh::carry::{borders, carried};
 use limitmesh::mesh::Channel;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{Exact, ExactStop, exact_observed};
+use limitmesh::refine::{ErrorBounds, Exact, ExactStop, exact_observed, most_rounding_to_single};
 use wasm_bindgen::prelude::*;
 
 use crate::channels::ChannelOut;
@@ -26,7 +26,6 @@ pub struct Refined {
     parents: Vec<u32>,
     channels: Vec<Channel>,
     reached: Reached,
-    certified: bool,
     levels: usize,
     inverted: usize,
 }
@@ -86,7 +85,7 @@ pub(crate) fn exact_of(
 ) -> Result<(Exact, Vec<Channel>), Failure> {
     let varies = control.channels.iter().any(Channel::varies_within_faces);
     let rounding = match scale.is_rounded {
-        true => most_rounding(control.mesh.positions()),
+        true => most_rounding_to_single(control.mesh.positions()),
         false => 0.0,
     };
     let unfolds = told.divides_concave_corners();
@@ -115,20 +114,10 @@ impl Refined {
             sides: found.sides,
             channels,
             reached,
-            certified: found.error.certified,
             levels: found.statistics.levels,
             inverted,
         }
     }
-}
-
-/// How far a position within the box of these moves at most as its numbers become those of 32 bits.
-fn most_rounding(positions: &[[f64; 3]]) -> f64 {
-    let coordinates = positions.as_flattened().iter();
-    let largest = coordinates.fold(0.0f64, |most, x| most.max(x.abs()));
-    // Half of the last place, and of the least number, along each axis.
-    let half = 0.5 * (largest * f64::from(f32::EPSILON) + f64::from(f32::from_bits(1)));
-    3f64.sqrt() * half
 }
 
 /// How far one of these positions moves as its numbers become those of 32 bits.
@@ -142,44 +131,21 @@ fn rounding(positions: &[[f64; 3]]) -> f64 {
 
 /// Bounds of the distance of a result as it is handed over, and why it ended.
 pub(crate) struct Reached {
-    pub(crate) lower: f64,
-    pub(crate) upper: f64,
-    pub(crate) stop: &'static str,
+    pub(crate) error: ErrorBounds,
+    pub(crate) stop: ExactStop,
 }
 
 impl Reached {
     /// That of a result whose positions are rounded by so much afterwards, with a tolerance in parts of a diagonal.
     pub(crate) fn of(found: &Exact, goals: &GoalsIn, diagonal: f64, rounded: f64) -> Self {
-        let (lower, upper) = (found.error.lower, found.error.upper);
-        if rounded == 0.0 {
-            let stop = stop_name(found.stop);
-            return Self { lower, upper, stop };
-        }
-        let upper = (upper + rounded).next_up();
+        let error = found.error.rounded(rounded);
         let tolerance = goals.tolerance().map(|own| own.of(diagonal));
-        let is_past = tolerance.is_some_and(|tolerance| upper > tolerance);
-        Self {
-            lower: (lower - rounded).max(0.0),
-            upper,
-            stop: match found.stop {
-                ExactStop::Met if is_past => stop_name(ExactStop::Rounding),
-                stop => stop_name(stop),
-            },
-        }
-    }
-}
-
-/// Why a refinement ended, as Python and the program have it.
-fn stop_name(stop: ExactStop) -> &'static str {
-    match stop {
-        ExactStop::Met => "met",
-        ExactStop::Triangles => "triangles",
-        ExactStop::TriangleCap => "triangle-cap",
-        ExactStop::LevelCap => "level-cap",
-        ExactStop::MemoryCap => "memory-cap",
-        ExactStop::Rounding => "rounding",
-        ExactStop::Cones => "cones",
-        _ => "other",
+        let is_past = rounded > 0.0 && tolerance.is_some_and(|tolerance| error.upper > tolerance);
+        let stop = match found.stop {
+            ExactStop::Met if is_past => ExactStop::Rounding,
+            stop => stop,
+        };
+        Self { error, stop }
     }
 }
 
@@ -230,11 +196,11 @@ impl Refined {
     /// All else that is told of it, by the names of TypeScript's result.
     pub fn told(&self) -> Object {
         let (object, error) = (Object::new(), Object::new());
-        told::set(&error, "lower", self.reached.lower);
-        told::set(&error, "upper", self.reached.upper);
-        told::set(&error, "certified", self.certified);
+        told::set(&error, "lower", self.reached.error.lower);
+        told::set(&error, "upper", self.reached.error.upper);
+        told::set(&error, "certified", self.reached.error.certified);
         told::set(&object, "error", error);
-        told::set(&object, "stop", self.reached.stop);
+        told::set(&object, "stop", self.reached.stop.name());
         told::set(&object, "levels", self.levels as f64);
         told::set(&object, "inverted", self.inverted as f64);
         let crease_angle = self.control.crease_angle.map(JsValue::from);

@@ -33,7 +33,7 @@ export function labels({ report }, data) {
 }
 
 /** Why no distances are shown. */
-export const NO_DISTANCES = 'No distances: they are measured for files with one mesh of at most 200,000 triangles.';
+export const NO_DISTANCES = 'No distances are known here: `limitmesh view` measures them for files with one mesh of at most 200,000 triangles.';
 
 /** The legend's marks, and what it is about. */
 export function legend(greatest, data) {

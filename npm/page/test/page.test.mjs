@@ -40,9 +40,11 @@ describe('the page', { skip }, () => {
     await page.close();
   });
 
-  test('a checker and materials are shown where a file has texture coordinates', async () => {
-    const { page, faults } = await opened(browser, written('spot.html', 'builtin:cube', '--stops', '1%'));
-    assert.equal(await page.isDisabled('input[value="material"]'), true);
+  test('what a file lacks cannot be chosen', async () => {
+    const { page, faults } = await opened(browser, written('cube.html', 'builtin:cube', '--stops', '1%'));
+    for (const look of ['material', 'checker']) {
+      assert.equal(await page.isDisabled(`input[value="${look}"]`), true, look);
+    }
     assert.deepEqual(faults, []);
     await page.close();
   });

@@ -23,7 +23,6 @@ use crate::input;
 use crate::interrupt;
 use crate::output;
 use crate::progress::Progress;
-use crate::report::refinement::exact_stop_name;
 use crate::report::{InputReport, LevelReport, LodReport, MorphReport, PictureReport, VERSION};
 use crate::written_unit::WrittenUnit;
 
@@ -168,7 +167,7 @@ fn in_short(last: &Level, which: usize, asked: &LodOptions) -> String {
     let cap = match (stop, asked.caps.triangles) {
         (ExactStop::TriangleCap, Some(most)) => format!("--max-triangles {}", thousands(most)),
         (ExactStop::LevelCap, _) => "the most that a face is divided".to_owned(),
-        _ => exact_stop_name(stop).to_owned(),
+        _ => stop.name().to_owned(),
     };
     format!(
         "{cap} was reached before level {which} of {}, counted from the coarsest, was within {}: LOD0 is as near as that allows",
@@ -319,7 +318,7 @@ fn reports(
                 from_distance: distance(shown(i)),
                 to_distance: distance(start),
             }),
-            stop: exact_stop_name(exact.stop),
+            stop: exact.stop.name(),
         }
     };
     let finest_first = levels.iter().enumerate().rev().enumerate();

@@ -5,7 +5,7 @@ use limitmesh::criterion::Camera;
 use limitmesh::criterion::Viewpoint;
 use limitmesh::measure::watertightness;
 use limitmesh::mesh::Weld;
-use limitmesh::refine::{ErrorBounds, ExactStop, StepReport, Stop};
+use limitmesh::refine::{ErrorBounds, StepReport, Stop};
 use serde::Serialize;
 
 use super::diagnosis::DiagnosisReport;
@@ -153,21 +153,6 @@ pub(crate) fn stop_name(stop: Stop) -> &'static str {
         Stop::Levels => "levels",
         Stop::Satisfied => "satisfied",
         Stop::TriangleCap { .. } => "triangle-cap",
-        _ => "other",
-    }
-}
-
-/// The name of an exact refinement's stop: the goals are met, the number of triangles asked for is used up, a cap
-/// was reached before, or all that is not met is an angle where no division helps.
-pub(crate) fn exact_stop_name(stop: ExactStop) -> &'static str {
-    match stop {
-        ExactStop::Met => "met",
-        ExactStop::Triangles => "triangles",
-        ExactStop::TriangleCap => "triangle-cap",
-        ExactStop::LevelCap => "level-cap",
-        ExactStop::MemoryCap => "memory-cap",
-        ExactStop::Rounding => "rounding",
-        ExactStop::Cones => "cones",
         _ => "other",
     }
 }

@@ -207,6 +207,15 @@ impl Served {
         Answer { status, body }
     }
 
+    /// The request of a page that stays open.
+    fn opened(&self) -> TcpStream {
+        let mut page = self.connected();
+        let (path, host) = (&self.path, self.host());
+        write!(page, "GET {path}alive HTTP/1.1\r\n{host}\r\n").expect("sent");
+        page.read_exact(&mut [0]).expect("a sign of life");
+        page
+    }
+
     fn host(&self) -> String {
         format!("Host: 127.0.0.1:{}\r\n", self.port)
     }
@@ -273,35 +282,19 @@ fn the_page_gets_meshes_and_nobody_else_does() {
 #[cfg(unix)]
 fn ctrl_c_ends_it_in_good_order() {
     let mut served = Served::new("builtin:cup");
-    let mut page = served.connected();
-    write!(
-        page,
-        "GET {}alive HTTP/1.1\r\n{}\r\n",
-        served.path,
-        served.host()
-    )
-    .expect("sent");
-    page.read_exact(&mut [0]).expect("a sign of life");
+    let page = served.opened();
     let process = served.child.id().to_string();
     let sent = Command::new("kill").args(["-INT", &process]).status();
     assert!(sent.expect("kill").success());
     let status = served.child.wait().expect("its end");
+    drop(page);
     assert!(status.success(), "{status}");
 }
 
 #[test]
 fn a_newer_request_wins_and_the_program_ends_with_its_page() {
     let mut served = Served::new("builtin:head");
-    let mut page = served.connected();
-    write!(
-        page,
-        "GET {}alive HTTP/1.1\r\n{}\r\n",
-        served.path,
-        served.host()
-    )
-    .expect("sent");
-    let mut sign = [0];
-    page.read_exact(&mut sign).expect("a sign of life");
+    let page = served.opened();
     std::thread::scope(|scope| {
         let long = scope.spawn(|| served.refine(1e-7));
         std::thread::sleep(Duration::from_millis(300));

@@ -28,6 +28,21 @@ pub enum ExactStop {
     Cones,
 }
 
+impl ExactStop {
+    /// Its name in reports, and in the packages for Python and JavaScript.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::Triangles => "triangles",
+            Self::TriangleCap => "triangle-cap",
+            Self::MemoryCap => "memory-cap",
+            Self::LevelCap => "level-cap",
+            Self::Rounding => "rounding",
+            Self::Cones => "cones",
+        }
+    }
+}
+
 /// An interval for the symmetric Hausdorff distance between a mesh and the limit surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

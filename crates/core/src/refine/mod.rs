@@ -20,6 +20,7 @@ mod limit_reference;
 mod lineage;
 mod quad_order;
 mod replay;
+mod rounding;
 mod simplified;
 mod split;
 mod step;
@@ -44,6 +45,7 @@ pub use limit_distance::{
 pub use limit_reference::{limit_reference, reference_levels};
 pub use lineage::Traced;
 pub use replay::{Frame, Replay, ReplayError};
+pub use rounding::{most_rounding_to_single, with_room};
 pub use stepwise::{SeamRule, StepwiseOptions, stepwise, stepwise_observed};
 pub use uniform::{
     UniformOptions, UniformTriangles, uniform, uniform_observed, uniform_triangles,

@@ -2,7 +2,7 @@
 
 use limitmesh::carry::carried;
 use limitmesh::progress::Observer;
-use limitmesh::refine::{Exact, ExactStop, exact_observed, quads_observed};
+use limitmesh::refine::{Exact, exact_observed, quads_observed};
 
 use super::within::Near;
 use super::{Indices, Refined};
@@ -54,11 +54,7 @@ pub(super) fn refined(
 impl Refined {
     /// What is told of an exact refinement, but for channels.
     pub(crate) fn of_exact(found: Exact, tables: Tables) -> Self {
-        let (error, stop, inverted) = (
-            found.error,
-            stop_name(found.stop),
-            found.inverted_triangles(),
-        );
+        let (error, stop, inverted) = (found.error, found.stop.name(), found.inverted_triangles());
         let (side_corners, side_normals) = found.sides.into_iter().unzip();
         let (positions, triangles) = found.mesh.into_positions_and_triangles();
         Self {
@@ -82,19 +78,5 @@ impl Refined {
             inverted: Some(inverted),
             seconds: 0.0,
         }
-    }
-}
-
-/// Why a refinement ended, as Python has it.
-pub(super) fn stop_name(stop: ExactStop) -> &'static str {
-    match stop {
-        ExactStop::Met => "met",
-        ExactStop::Triangles => "triangles",
-        ExactStop::TriangleCap => "triangle-cap",
-        ExactStop::LevelCap => "level-cap",
-        ExactStop::MemoryCap => "memory-cap",
-        ExactStop::Rounding => "rounding",
-        ExactStop::Cones => "cones",
-        _ => "other",
     }
 }

@@ -6,7 +6,7 @@ use limitmesh::refine::{ExactStop, UniformOptions};
 use limitmesh::sqrt3::{Sqrt3Options, adaptive_observed, uniform_observed};
 
 use super::stepwise::BYTES_PER_TRIANGLE;
-use super::{Normals, Refined, exact, stepwise};
+use super::{Normals, Refined, stepwise};
 use crate::control::Control;
 use crate::errors::Failure;
 use crate::options::Goals;
@@ -46,7 +46,7 @@ pub(super) fn to_goals(
             .map(|distance| (0.0, distance, false, at.into())),
         stop: match found.stop {
             ExactStop::TriangleCap => goals.cap_name(BYTES_PER_ADAPTIVE),
-            stop => exact::stop_name(stop),
+            stop => stop.name(),
         },
         levels: found.levels,
         ..Refined::of_mesh(found.mesh, normals, control.tables)

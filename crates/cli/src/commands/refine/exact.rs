@@ -9,13 +9,12 @@ use super::super::normals::Normals;
 use super::goals::Goals;
 use super::input_distance;
 use super::refined::Refined;
-use super::rounding::{rounded, rounding};
+use super::rounding::rounding;
 use super::task::Task;
 use super::trail::Trail;
 use crate::failure::Outcome;
 use crate::format::{bytes, counted, thousands, upper_bound};
 use crate::progress::Phases;
-use crate::report::refinement::exact_stop_name;
 use crate::report::{
     CameraReport, ErrorReport, ExactParametersReport, IntervalReport, MethodReport,
     ParametersReport, RoundEntry, ViewReport,
@@ -74,7 +73,7 @@ pub(super) fn run(task: &Task<'_>, goals: &Goals) -> anyhow::Result<Refined> {
         pixels: found.pixels.filter(|pixels| pixels.is_finite()),
         open_cones: arguments.angle.map(|_| found.statistics.open_cones),
         attributes,
-        ..MethodReport::new(found.statistics.levels, exact_stop_name(found.stop))
+        ..MethodReport::new(found.statistics.levels, found.stop.name())
     };
     let provenance = task.provenance(&found.origins, &found.parents);
     let trail = match task.is_traced || arguments.proof.is_some() {
@@ -121,7 +120,7 @@ fn watch<'a>(
 /// Counts what writing rounds among the distance; a note where that is much of it.
 fn round(found: &mut Exact, rounding: f64, goals: &Goals) -> Option<String> {
     let proven = found.error.upper;
-    found.error = rounded(found.error, rounding);
+    found.error = found.error.rounded(rounding);
     let is_beyond = |length: f64| proven <= length && found.error.upper > length;
     if goals.length.is_some_and(is_beyond) && found.stop == ExactStop::Met {
         found.stop = ExactStop::Rounding;

@@ -17,7 +17,6 @@ use super::exact;
 use super::goals::Goals;
 use super::jobs::{self, Job};
 use super::refined::Refined;
-use super::rounding::rounded;
 use super::source::{by_faces, item_of};
 use super::task::Task;
 use super::written;
@@ -27,7 +26,6 @@ use crate::format::{bytes, counted, number, seconds, upper_bound};
 use crate::input::{self, Input};
 use crate::output;
 use crate::progress::Progress;
-use crate::report::refinement::exact_stop_name;
 use crate::report::{
     ErrorReport, FrameReport, FramesReport, FramesSeconds, MethodReport, VERSION, percent,
 };
@@ -120,7 +118,7 @@ pub(super) fn run(arguments: &RefineArguments, progress: &Progress) -> anyhow::R
             triangles: refined.mesh.face_count(),
             vertices: refined.mesh.vertex_count(),
             levels: refined.statistics.levels,
-            stop: exact_stop_name(stop),
+            stop: stop.name(),
             pixels: refined.pixels.filter(|pixels| pixels.is_finite()),
             open_cones: arguments.angle.map(|_| refined.statistics.open_cones),
             table_bytes: found.replay.table_bytes(),
@@ -371,7 +369,7 @@ fn write_all(
     progress: &Progress,
 ) -> anyhow::Result<Vec<ErrorBounds>> {
     let exact = &found.refined;
-    let report = MethodReport::new(exact.statistics.levels, exact_stop_name(exact.stop));
+    let report = MethodReport::new(exact.statistics.levels, exact.stop.name());
     let mut frame = Frame::default();
     let mut refined = Refined {
         channels,
@@ -387,7 +385,7 @@ fn write_all(
         let mut moved = exact.clone().moved_to(&frame)?;
         let options = job.write_options();
         let rounding = limitmesh_io::rounding(format, &options, moved.mesh.positions());
-        errors.push(rounded(found.errors[number], rounding));
+        errors.push(found.errors[number].rounded(rounding));
         refined.normals = Normals::are_held(format).then(|| Normals::of_exact(&mut moved));
         refined.mesh = moved.mesh;
         if number == 0 {

@@ -5,11 +5,11 @@ use limitmesh::Mesh;
 use limitmesh::carry::borders;
 use limitmesh::criterion::Camera;
 use limitmesh::limit::LimitTable;
-use limitmesh::refine::{AngleGoal, Exact, ExactOptions};
+use limitmesh::refine::{AngleGoal, Exact, ExactOptions, with_room};
 
 use super::attribute_goals::AttributeGoals;
 use super::nearness::Nearness;
-use super::rounding::{most_rounding, with_room};
+use super::rounding::most_rounding;
 use super::task::Task;
 use crate::arguments::{ConcaveCorners, Extent, RefineArguments};
 use crate::bulk::winding;

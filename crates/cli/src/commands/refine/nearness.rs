@@ -2,9 +2,9 @@
 
 use limitmesh::Mesh;
 use limitmesh::mesh::FaceParts;
-use limitmesh::refine::{WithinOptions, within_observed};
+use limitmesh::refine::{WithinOptions, with_room, within_observed};
 
-use super::rounding::{most_rounding, with_room};
+use super::rounding::most_rounding;
 use crate::arguments::RefineArguments;
 use crate::failure::Outcome;
 use crate::format::{counted, number, upper_bound};

@@ -12,7 +12,6 @@ use super::refined::{Refined, capped};
 use super::task::Task;
 use crate::arguments::{Extent, Method, RefineArguments};
 use crate::format::{counted, number};
-use crate::report::refinement::exact_stop_name;
 use crate::report::{MethodReport, ParametersReport};
 
 /// The angle of planarity where nothing else is asked, in degrees: that of the stepwise methods.
@@ -152,7 +151,7 @@ pub(super) fn run(task: &Task<'_>) -> anyhow::Result<Refined> {
     let found = front.snapshot()?;
     drop(front);
     let normals = task.wants_normals().then(|| normals(&found, task));
-    let report = MethodReport::new(levels, exact_stop_name(stop));
+    let report = MethodReport::new(levels, stop.name());
     let outcome = capped(&found.mesh, stop, arguments);
     Ok(Refined {
         normals: normals.transpose()?,

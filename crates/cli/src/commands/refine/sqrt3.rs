@@ -9,7 +9,7 @@ use super::stepwise;
 use super::task::Task;
 use crate::arguments::{Extent, RefineArguments};
 use crate::format::counted;
-use crate::report::refinement::{ErrorReport, exact_stop_name};
+use crate::report::refinement::ErrorReport;
 use crate::report::{MethodReport, ParametersReport};
 
 /// The tolerance where there is no other goal, in per cent of the diagonal: that of the exact method.
@@ -59,7 +59,7 @@ pub(super) fn to_goals(task: &Task<'_>) -> anyhow::Result<Refined> {
         .collect();
     let report = MethodReport {
         error,
-        ..MethodReport::new(found.levels, exact_stop_name(found.stop))
+        ..MethodReport::new(found.levels, found.stop.name())
     };
     let how = counted(found.levels, "level", "levels") + " of √3-subdivision";
     let outcome = capped(&mesh, found.stop, arguments);

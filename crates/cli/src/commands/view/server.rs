@@ -1,6 +1,6 @@
 //! The program as the page's server, until the page is gone.
 //!
-//! A request for a mesh cancels the one before it. An answer that never ends tells whether the page is still open.
+//! A request for a mesh cancels the one before it. An answer that never ends shows whether the page is still open.
 
 use std::collections::HashMap;
 use std::io::{self, Read, Write};
