@@ -52,6 +52,11 @@
 //!
 //! At the root stand [`Mesh`], and the limit surface as an object: [`LimitSurface`], [`Proximity`]
 //! and [`RayCaster`].
+//!
+//! | feature | what it does |
+//! |---|---|
+//! | `parallel` (default) | runs long loops on rayon's current thread pool; the results are the same bytes without it |
+//! | `serde` | writes and reads results of measurements |
 
 // Results are the same on every platform.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
@@ -63,6 +68,7 @@ pub mod closure;
 pub mod criterion;
 pub mod front;
 pub mod guide;
+mod lanes;
 mod node;
 pub mod part;
 pub mod refine;
@@ -70,7 +76,7 @@ pub mod sqrt3;
 
 #[doc(hidden)]
 pub use limitmesh_mesh::math;
-use limitmesh_mesh::{geometry, options, parallel, vector};
+use limitmesh_mesh::{error_messages, geometry, options, parallel, vector};
 pub use limitmesh_mesh::{index, measure, mesh, progress, ring, simplify};
 use limitmesh_surface::{facing, limit_surface, masks, patch, value_mesh};
 pub use limitmesh_surface::{interpolate, limit, scheme};

@@ -25,6 +25,7 @@
 // Results are the same on every platform.
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
+mod error_messages;
 #[doc(hidden)]
 pub mod geometry;
 pub mod index;

@@ -1,6 +1,7 @@
 //! Loops over elements that give the same bytes for any number of threads: every slot is computed from the
 //! input alone and written by exactly one call; sums are taken over pieces of fixed length, in order.
 
+use crate::error_messages;
 use core::cell::RefCell;
 use core::cmp::Ordering;
 use core::ops::Range;
@@ -203,9 +204,12 @@ pub fn for_each_run<A: Send, B: Send, F: Fn(usize, &mut [A], &mut [B]) + Sync + 
 }
 
 /// The observer asked to stop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("cancelled by the observer")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cancelled;
+
+error_messages! {
+    Cancelled { Self => ("cancelled by the observer"), }
+}
 
 /// The callback of a loop that can be cancelled, between its blocks and always on the calling
 /// thread, with the number of elements done by then.

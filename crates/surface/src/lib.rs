@@ -61,6 +61,8 @@ pub use limit_surface::{
     BarycentricError, Curvature, Derivatives, LimitSurface, SurfacePoint, barycentric,
 };
 pub use limitmesh_mesh::{FaceId, HalfEdgeId, Mesh, PolygonSoup, Triangles, VertexId};
-pub use limitmesh_mesh::{geometry, index, math, mesh, options, parallel, progress, ring, vector};
+pub use limitmesh_mesh::{
+    error_messages, geometry, index, math, mesh, options, parallel, progress, ring, vector,
+};
 pub use proximity::{Closest, Membership, Proximity, ProximityError};
 pub use rays::{Crossing, Hit, Ray, RayCaster, RayError, RayOptions};

@@ -25,19 +25,18 @@ pub(crate) use pixels::{Backs, Lens, Pixels};
 pub(crate) use region::Region;
 pub use view::{AngleLimit, View};
 
+use crate::error_messages;
 use crate::limit::{LimitError, LimitTable};
 use crate::math;
 use crate::mesh::Mesh;
 
 /// An error of a criterion.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum CriterionError {
     /// The limit normals that it needs do not exist.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(LimitError),
     /// One of its parameters is out of range.
-    #[error("{name} must be {expected}, but is {value}")]
     BadParameter {
         /// The parameter's name.
         name: &'static str,
@@ -46,6 +45,13 @@ pub enum CriterionError {
         /// The range of valid values.
         expected: &'static str,
     },
+}
+
+error_messages! {
+    CriterionError {
+        Self::BadParameter { name, value, expected } => ("{name} must be {expected}, but is {value}"),
+    }
+    from { Limit(LimitError) }
 }
 
 /// Refuses values that are no angles in radians.

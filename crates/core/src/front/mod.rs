@@ -66,6 +66,7 @@ pub use measure::Measure;
 pub use snapshot::Snapshot;
 
 use crate::criterion::CriterionError;
+use crate::error_messages;
 use crate::limit::LimitError;
 use crate::limit_surface::LimitSurface;
 use crate::mesh::{Mesh, MeshError, check_size};
@@ -73,21 +74,23 @@ use crate::progress::{Cancelled, Observer, unobserved};
 use crate::scheme::Scheme;
 
 /// An error of a front.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum FrontError {
     /// The scheme has no limit at the shape of some ring.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(LimitError),
     /// The demand is out of range.
-    #[error(transparent)]
-    Demand(#[from] CriterionError),
+    Demand(CriterionError),
     /// The result is no mesh.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    FrontError {
+    }
+    from { Limit(LimitError), Demand(CriterionError), Mesh(MeshError), Cancelled(Cancelled) }
 }
 
 /// Triangles that approximate the limit surface of a control mesh, updated to the current demand.

@@ -5,6 +5,7 @@
 //! against its own limit normals, the vertices of that face are taken for control points as they are: the surface passes by them. With
 //! what is around them solved anew that is looked at again, and more vertices follow until nothing folds.
 
+use crate::error_messages;
 use crate::geometry::DisjointSets;
 use crate::index::VertexId;
 use crate::interpolate::{InterpolateError, InterpolateOptions, Interpolated, interpolate_but};
@@ -37,15 +38,19 @@ const IN_PLANE: f64 = 2e-7;
 const ROUNDING: f64 = 1e-7;
 
 /// Why there are no control points.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum UnfoldedError {
     /// There are none for any vertices.
-    #[error(transparent)]
-    Interpolate(#[from] InterpolateError),
+    Interpolate(InterpolateError),
     /// The surface could not be looked at.
-    #[error(transparent)]
-    Refine(#[from] RefineError),
+    Refine(RefineError),
+}
+
+error_messages! {
+    UnfoldedError {
+    }
+    from { Interpolate(InterpolateError), Refine(RefineError) }
 }
 
 /// A control mesh, and where its surface passes by vertices so that it does not fold.

@@ -56,6 +56,7 @@ pub use within::{Within, WithinOptions, turned_over_triangles, within, within_ob
 use core::time::Duration;
 
 use crate::criterion::CriterionError;
+use crate::error_messages;
 use crate::interpolate::InterpolateError;
 use crate::limit::{LimitError, SidedNormals};
 use crate::measure::MeasureError;
@@ -65,23 +66,16 @@ use crate::ring::INFINITELY_SHARP;
 use crate::simplify::SimplifyError;
 
 /// The reason why a refinement gave no mesh.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum RefineError {
     /// The criterion has no answer.
-    #[error(transparent)]
-    Criterion(#[from] CriterionError),
+    Criterion(CriterionError),
     /// A limit position does not exist.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(LimitError),
     /// The result would not be a mesh, or an option is out of range.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// A semi-sharp tag, for a method that supports only smooth and infinitely sharp ones.
-    #[error(
-        "{tag} has the sharpness {sharpness}, which is semi-sharp: √3-subdivision supports smooth (0) \
-         and infinitely sharp ({INFINITELY_SHARP} and more) edges and vertices only; use a scheme that splits triangles in four"
-    )]
     FadingTag {
         /// The edge or vertex that is tagged.
         tag: String,
@@ -89,29 +83,34 @@ pub enum RefineError {
         sharpness: f64,
     },
     /// A distance could not be measured.
-    #[error(transparent)]
     Measure(MeasureError),
     /// Edges could not be collapsed.
-    #[error(transparent)]
     Simplify(SimplifyError),
     /// There are no control points for the requested limits.
-    #[error(transparent)]
     Interpolate(InterpolateError),
     /// A scheme that passes through its control points, for a method that smooths by moving
     /// vertices.
-    #[error(
-        "the scheme {scheme} passes through its control points, so that it smooths nothing; Loop's and Warren's do"
-    )]
     NotSmoothing {
         /// Its name.
         scheme: String,
     },
     /// A frame cannot be replayed.
-    #[error(transparent)]
     Replay(ReplayError),
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    RefineError {
+        Self::FadingTag { tag, sharpness } => ("{tag} has the sharpness {sharpness}, which is semi-sharp: √3-subdivision supports smooth (0) \
+         and infinitely sharp ({INFINITELY_SHARP} and more) edges and vertices only; use a scheme that splits triangles in four"),
+        Self::Measure(error) => ("{error}"),
+        Self::Simplify(error) => ("{error}"),
+        Self::Interpolate(error) => ("{error}"),
+        Self::NotSmoothing { scheme } => ("the scheme {scheme} passes through its control points, so that it smooths nothing; Loop's and Warren's do"),
+        Self::Replay(error) => ("{error}"),
+    }
+    from { Criterion(CriterionError), Limit(LimitError), Mesh(MeshError), Cancelled(Cancelled) }
 }
 
 impl From<MeasureError> for RefineError {

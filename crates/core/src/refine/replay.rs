@@ -13,6 +13,7 @@ mod wanted;
 mod weights;
 
 use super::exact_result::Exact;
+use crate::error_messages;
 use crate::limit::LimitError;
 use crate::mesh::{Groups, Mesh, MeshError, Sharpness, check_finite};
 use crate::parallel::Cancelled;
@@ -26,19 +27,15 @@ use table::{LANES, Table, average};
 use wanted::Wants;
 
 /// An error of a replay.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ReplayError {
     /// The surface is not made of polynomials.
-    #[error(
-        "the scheme {scheme:?} is none of those whose surfaces are made of polynomials, which a replay needs"
-    )]
     Scheme {
         /// Its name.
         scheme: String,
     },
     /// The origins of the vertices are not known.
-    #[error("{origins} origins for {vertices} vertices: a replay needs a refinement with origins")]
     NoOrigins {
         /// Origins that are known.
         origins: usize,
@@ -46,21 +43,16 @@ pub enum ReplayError {
         vertices: usize,
     },
     /// A vertex came from no place of the control mesh, or its place on a side of a sharp edge is not known.
-    #[error(
-        "vertex {vertex} has no place in the control mesh: a replay needs a refinement of that mesh, without flat regions"
-    )]
     Elsewhere {
         /// The vertex of the refined mesh.
         vertex: u32,
     },
     /// A place over a control face is on no polynomial.
-    #[error("the limit surface over control face {face} is on no polynomial")]
     NoPolynomial {
         /// The control face, or one like it.
         face: u32,
     },
     /// A frame does not fit the control mesh.
-    #[error("frame {frame}: {why}")]
     Frame {
         /// Its number, from 0.
         frame: usize,
@@ -68,7 +60,6 @@ pub enum ReplayError {
         why: MeshError,
     },
     /// A frame's surface needs too many triangles.
-    #[error("frame {frame} would take more than {most} triangles")]
     TooMany {
         /// Its number, from 0.
         frame: usize,
@@ -76,17 +67,26 @@ pub enum ReplayError {
         most: usize,
     },
     /// More weights than can be numbered.
-    #[error("the table would be too large")]
     TooLarge,
     /// Positions are not those of the control mesh's vertices.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// A limit position does not exist.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(LimitError),
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    ReplayError {
+        Self::Scheme { scheme } => ("the scheme {scheme:?} is none of those whose surfaces are made of polynomials, which a replay needs"),
+        Self::NoOrigins { origins, vertices } => ("{origins} origins for {vertices} vertices: a replay needs a refinement with origins"),
+        Self::Elsewhere { vertex } => ("vertex {vertex} has no place in the control mesh: a replay needs a refinement of that mesh, without flat regions"),
+        Self::NoPolynomial { face } => ("the limit surface over control face {face} is on no polynomial"),
+        Self::Frame { frame, why } => ("frame {frame}: {why}"),
+        Self::TooMany { frame, most } => ("frame {frame} would take more than {most} triangles"),
+        Self::TooLarge => ("the table would be too large"),
+    }
+    from { Mesh(MeshError), Limit(LimitError), Cancelled(Cancelled) }
 }
 
 /// The data that compute a refinement's vertices for other positions of the control vertices.

@@ -25,25 +25,21 @@ pub use hausdorff::{
 pub use quality::{TriangleQuality, triangle_quality};
 pub use watertight::{Watertightness, watertightness, watertightness_observed};
 
+use crate::error_messages;
 use crate::mesh::Triangles;
 use crate::parallel;
 use crate::progress::Cancelled;
 
 /// An error of a measurement.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MeasureError {
     /// A surface without triangles has no distance to anything.
-    #[error("the {which} surface has no triangles")]
     Empty {
         /// Which of the two.
         which: &'static str,
     },
     /// More triangles than `u32` indices can name.
-    #[error(
-        "the {which} surface has {count} triangles, at most {} can be measured",
-        u32::MAX
-    )]
     TooMany {
         /// Which of the two surfaces.
         which: &'static str,
@@ -51,9 +47,6 @@ pub enum MeasureError {
         count: usize,
     },
     /// A triangle names a vertex that does not exist.
-    #[error(
-        "triangle {face} of the {which} surface names vertex {vertex}, but there are {count} vertices"
-    )]
     VertexOutOfRange {
         /// Which of the two surfaces.
         which: &'static str,
@@ -65,9 +58,6 @@ pub enum MeasureError {
         count: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error(
-        "vertex {vertex} of the {which} surface: coordinate {axis} is {value}, which is no finite number"
-    )]
     NotFinite {
         /// Which of the two surfaces.
         which: &'static str,
@@ -79,9 +69,6 @@ pub enum MeasureError {
         value: f64,
     },
     /// A coordinate so large that distances could not be represented.
-    #[error(
-        "the {which} surface has a coordinate of {value:e}, at most {greatest:e} can be measured"
-    )]
     TooLarge {
         /// Which of the two surfaces.
         which: &'static str,
@@ -91,8 +78,19 @@ pub enum MeasureError {
         greatest: f64,
     },
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    MeasureError {
+        Self::Empty { which } => ("the {which} surface has no triangles"),
+        Self::TooMany { which, count } => ("the {which} surface has {count} triangles, at most {} can be measured",
+        u32::MAX),
+        Self::VertexOutOfRange { which, face, vertex, count } => ("triangle {face} of the {which} surface names vertex {vertex}, but there are {count} vertices"),
+        Self::NotFinite { which, vertex, axis, value } => ("vertex {vertex} of the {which} surface: coordinate {axis} is {value}, which is no finite number"),
+        Self::TooLarge { which, value, greatest } => ("the {which} surface has a coordinate of {value:e}, at most {greatest:e} can be measured"),
+    }
+    from { Cancelled(Cancelled) }
 }
 
 /// Refuses surfaces without distances: no triangles, an index out of range, a coordinate that is

@@ -5,9 +5,8 @@
 //! corners at one vertex have one value if their indices are equal; where they differ, the channel
 //! has a *seam*.
 
-use thiserror::Error;
-
 use super::{FaceParts, Mesh, PolygonFaces, PolygonSoup};
+use crate::error_messages;
 use crate::index::HalfEdgeId;
 
 /// The elements that have the values of a channel.
@@ -132,11 +131,10 @@ pub struct Channel {
 }
 
 /// An error of a channel on its mesh.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ChannelError {
     /// There are more or fewer indices than elements.
-    #[error("channel {name} has {count} indices for {expected} {elements}: each needs one")]
     Count {
         /// The channel.
         name: String,
@@ -148,7 +146,6 @@ pub enum ChannelError {
         elements: &'static str,
     },
     /// An index is out of the values' range.
-    #[error("channel {name} has index {index} at element {element}, but there are {count} values")]
     Index {
         /// The channel.
         name: String,
@@ -160,7 +157,6 @@ pub enum ChannelError {
         count: usize,
     },
     /// A value is not finite, or the table ends within one.
-    #[error("value {value} of channel {name} is {what}; it must be {arity} finite numbers")]
     Value {
         /// The channel.
         name: String,
@@ -172,21 +168,27 @@ pub enum ChannelError {
         arity: usize,
     },
     /// The result's triangles do not know where on the control faces they are.
-    #[error(
-        "{why}: channels are carried by triangles that each come from one control face, with origins"
-    )]
     Unknown {
         /// Why not.
         why: &'static str,
     },
     /// Limits of the channel could not be computed.
-    #[error("channel {name}: {why}")]
     Limit {
         /// The channel.
         name: String,
         /// Why not.
         why: String,
     },
+}
+
+error_messages! {
+    ChannelError {
+        Self::Count { name, count, expected, elements } => ("channel {name} has {count} indices for {expected} {elements}: each needs one"),
+        Self::Index { name, element, index, count } => ("channel {name} has index {index} at element {element}, but there are {count} values"),
+        Self::Value { name, value, what, arity } => ("value {value} of channel {name} is {what}; it must be {arity} finite numbers"),
+        Self::Unknown { why } => ("{why}: channels are carried by triangles that each come from one control face, with origins"),
+        Self::Limit { name, why } => ("channel {name}: {why}"),
+    }
 }
 
 /// The faces and corners of a soup of which those of a mesh are made.

@@ -41,16 +41,16 @@ pub use tags::{CornerTag, CreaseTag, Tags};
 pub use topology::{MAX_FACES, outgoing_half_edges, outgoing_half_edges_polled};
 pub use topology::{RingNeighbours, Topology};
 
+use crate::error_messages;
 use crate::index::{FaceId, HalfEdgeId, VertexId};
 use crate::ring::{EdgeShape, RingShape};
 use crate::vector::{DVec3, diagonal, normal, unit_or_zero, vector};
 
 /// An error in the data of a mesh.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
     /// More elements than `u32` indices allow.
-    #[error("{count} {what} are too many: at most {limit} can be indexed")]
     TooMany {
         /// The kind of element.
         what: &'static str,
@@ -60,7 +60,6 @@ pub enum MeshError {
         limit: usize,
     },
     /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {vertex}, but there are {count} vertices (0 to {})", count.saturating_sub(1))]
     VertexOutOfRange {
         /// The face at fault.
         face: usize,
@@ -70,7 +69,6 @@ pub enum MeshError {
         count: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("coordinate {} of vertex {vertex} is {value}, which is no finite number", ["x", "y", "z"][*axis])]
     NotFinite {
         /// The vertex at fault.
         vertex: usize,
@@ -80,7 +78,6 @@ pub enum MeshError {
         value: f64,
     },
     /// A face names a vertex twice.
-    #[error("face {face} names vertex {vertex} twice")]
     RepeatedCorner {
         /// The face at fault.
         face: usize,
@@ -88,9 +85,6 @@ pub enum MeshError {
         vertex: usize,
     },
     /// An edge has more than two faces, or two faces run along it in one direction.
-    #[error(
-        "the edge from vertex {from} to vertex {to} is used by face {face} and by an earlier face in the same direction"
-    )]
     EdgeUsedTwice {
         /// Origin of the directed edge.
         from: usize,
@@ -100,7 +94,6 @@ pub enum MeshError {
         face: usize,
     },
     /// The faces at a vertex do not form one fan.
-    #[error("the faces at vertex {vertex} form {fans} fans rather than one")]
     BowTie {
         /// The vertex at fault.
         vertex: usize,
@@ -108,25 +101,21 @@ pub enum MeshError {
         fans: usize,
     },
     /// A vertex is in no face.
-    #[error("vertex {vertex} is in no face")]
     Isolated {
         /// The vertex at fault.
         vertex: usize,
     },
     /// No face is left to refine.
-    #[error("no face is left: {reason}")]
     NoFaces {
         /// The cause.
         reason: String,
     },
     /// A repair is needed and forbidden.
-    #[error("the mesh needs repair, which strict mode refuses: {summary}")]
     NeedsRepair {
         /// A summary in words.
         summary: String,
     },
     /// An option is out of range.
-    #[error("{name} must be {expected}, but is {value}")]
     BadOption {
         /// The option's name.
         name: &'static str,
@@ -136,13 +125,28 @@ pub enum MeshError {
         expected: &'static str,
     },
     /// An internal invariant is broken.
-    #[error("{what} (at {place})")]
     Broken {
         /// The element at fault.
         place: String,
         /// The invariant that does not hold.
         what: &'static str,
     },
+}
+
+error_messages! {
+    MeshError {
+        Self::TooMany { what, count, limit } => ("{count} {what} are too many: at most {limit} can be indexed"),
+        Self::VertexOutOfRange { face, vertex, count } => ("face {face} names vertex {vertex}, but there are {count} vertices (0 to {})", count.saturating_sub(1)),
+        Self::NotFinite { vertex, axis, value } => ("coordinate {} of vertex {vertex} is {value}, which is no finite number", ["x", "y", "z"][*axis]),
+        Self::RepeatedCorner { face, vertex } => ("face {face} names vertex {vertex} twice"),
+        Self::EdgeUsedTwice { from, to, face } => ("the edge from vertex {from} to vertex {to} is used by face {face} and by an earlier face in the same direction"),
+        Self::BowTie { vertex, fans } => ("the faces at vertex {vertex} form {fans} fans rather than one"),
+        Self::Isolated { vertex } => ("vertex {vertex} is in no face"),
+        Self::NoFaces { reason } => ("no face is left: {reason}"),
+        Self::NeedsRepair { summary } => ("the mesh needs repair, which strict mode refuses: {summary}"),
+        Self::BadOption { name, value, expected } => ("{name} must be {expected}, but is {value}"),
+        Self::Broken { place, what } => ("{what} (at {place})"),
+    }
 }
 
 /// A view of triangles over positions, manifold or not: the input of measuring, drawing and

@@ -37,6 +37,7 @@ mod vertex_star;
 
 pub use kept_features::Features;
 
+use crate::error_messages;
 use crate::index::VertexId;
 use crate::measure::{Bvh, MeasureError, Target};
 use crate::mesh::{Mesh, MeshError};
@@ -50,19 +51,23 @@ use proof::Prover;
 use reference::{LEAST_AGREEMENT, Reference};
 
 /// An error of simplification.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum SimplifyError {
     /// An option is out of range, or a feature does not fit the mesh.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// A distance could not be measured.
-    #[error(transparent)]
-    Measure(#[from] MeasureError),
+    Measure(MeasureError),
     /// The observer asked to stop. This is the mesh by then: as valid as any result, with more
     /// triangles.
-    #[error("cancelled by the observer")]
     Cancelled(Box<Simplified>),
+}
+
+error_messages! {
+    SimplifyError {
+        Self::Cancelled(_) => ("cancelled by the observer"),
+    }
+    from { Mesh(MeshError), Measure(MeasureError) }
 }
 
 /// The goals of simplification, which ends at the first one reached.

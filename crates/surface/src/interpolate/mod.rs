@@ -70,6 +70,7 @@ mod system;
 pub use fairness::Fairness;
 pub use near::NearVertices;
 
+use crate::error_messages;
 use crate::index::VertexId;
 use crate::limit::{LimitError, LimitTable};
 use crate::mesh::{Mesh, MeshError};
@@ -94,17 +95,14 @@ const POLLED: u32 = 1 << 12;
 const MOST_ATTEMPTS: usize = 4;
 
 /// An error of interpolation.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum InterpolateError {
     /// A limit position does not exist.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
+    Limit(LimitError),
     /// A control point would not be finite, or an option is out of range.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
     /// No limits that are near enough were found.
-    #[error("the limit of {vertex} is at least {distance} from it, but may be at most {within}")]
     TooFar {
         /// The vertex at fault.
         vertex: VertexId,
@@ -114,8 +112,14 @@ pub enum InterpolateError {
         within: f64,
     },
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    InterpolateError {
+        Self::TooFar { vertex, distance, within } => ("the limit of {vertex} is at least {distance} from it, but may be at most {within}"),
+    }
+    from { Limit(LimitError), Mesh(MeshError), Cancelled(Cancelled) }
 }
 
 options! {

@@ -8,10 +8,10 @@
 
 use core::f64::consts::TAU;
 
-use nalgebra::{Complex, ComplexField, DMatrix, DVector};
-
 use super::LimitError;
-use super::eigen::{complex_eigenvalues, left_eigenvector};
+use super::complex::Complex;
+use super::eigen::{eigenvalues, left_eigenvector, only_solution};
+use super::matrix::Matrix;
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 use crate::math;
@@ -27,7 +27,7 @@ const TURN_TOLERANCE: f64 = 1e-11;
 /// An eigenvalue of the difference matrix and the frequency of its block.
 #[derive(Clone, Copy)]
 struct Mode {
-    value: Complex<f64>,
+    value: Complex,
     frequency: usize,
 }
 
@@ -41,7 +41,7 @@ struct Sector<'n, 's> {
     /// First row of each kind, without the vertex: the weights that are not zero as kind, sector, weight.
     rows: Vec<Vec<(usize, usize, f64)>>,
     /// e^{2πij/k}.
-    roots: Vec<Complex<f64>>,
+    roots: Vec<Complex>,
 }
 
 /// The limit stencil of a closed ring.
@@ -152,9 +152,9 @@ impl<'n, 's> Sector<'n, 's> {
     }
 
     /// Ŝ(m).
-    fn ring_block(&self, frequency: usize) -> DMatrix<Complex<f64>> {
+    fn ring_block(&self, frequency: usize) -> Matrix {
         let k = self.valence();
-        let mut block = DMatrix::zeros(self.kinds, self.kinds);
+        let mut block = Matrix::zeros(self.kinds, self.kinds);
         for (kind, row) in self.rows.iter().enumerate() {
             for &(other, sector, weight) in row {
                 block[(kind, other)] += self.roots[(frequency * sector) % k] * weight;
@@ -164,11 +164,14 @@ impl<'n, 's> Sector<'n, 's> {
     }
 
     /// D̂(m).
-    fn difference_block(&self, frequency: usize) -> DMatrix<Complex<f64>> {
+    fn difference_block(&self, frequency: usize) -> Matrix {
         let mut block = self.ring_block(frequency);
         if frequency == 0 {
-            for ((_, other), entry) in indexed(&mut block) {
-                *entry -= self.valence() as f64 * self.centre[1 + other];
+            for kind in 0..self.kinds {
+                for other in 0..self.kinds {
+                    let drawn = self.valence() as f64 * self.centre[1 + other];
+                    block[(kind, other)] -= drawn.into();
+                }
             }
         }
         block
@@ -186,7 +189,7 @@ impl<'n, 's> Sector<'n, 's> {
             let size = 1 + self.kinds;
             let block = self.ring_block(0);
             let system =
-                DMatrix::from_fn(size, size, |equation, unknown| match (equation, unknown) {
+                Matrix::from_fn(size, size, |equation, unknown| match (equation, unknown) {
                     (0, 0) => 1.0,
                     (0, _) => k,
                     (_, 0) => self.centre[equation],
@@ -195,14 +198,10 @@ impl<'n, 's> Sector<'n, 's> {
                             - f64::from(u8::from(equation == unknown))
                     }
                 });
-            let right = DVector::from_fn(size, |i, _| if i == 0 { 1.0 } else { 0.0 });
-            let solution = system.lu().solve(&right);
-            let Some(solution) = solution.filter(|x| x.iter().all(|weight| weight.is_finite()))
-            else {
+            weights = only_solution(system).ok_or_else(|| {
                 let what = "the eigenvalue 1 of the ring matrix must be simple";
-                return Err(self.neighbourhood.unsuitable(what));
-            };
-            weights = solution.iter().copied().collect();
+                self.neighbourhood.unsuitable(what)
+            })?;
         }
         let (centre, kinds) = (weights[0], &weights[1..]);
         let all = kinds
@@ -216,7 +215,7 @@ impl<'n, 's> Sector<'n, 's> {
     fn modes(&self) -> Result<Vec<Mode>, LimitError> {
         let mut modes = Vec::with_capacity((self.valence() / 2 + 1) * self.kinds);
         for frequency in 0..=self.valence() / 2 {
-            let Some(values) = complex_eigenvalues(&self.difference_block(frequency)) else {
+            let Some(values) = eigenvalues(&self.difference_block(frequency)) else {
                 return Err(self
                     .neighbourhood
                     .unsuitable("the eigenvalues of its ring matrix could not be computed"));
@@ -263,7 +262,7 @@ impl<'n, 's> Sector<'n, 's> {
 
     /// The left eigenvector of a mode over all differences, scaled to 1 at the first neighbour (or where it is
     /// greatest, should it vanish there).
-    fn eigenvector(&self, mode: Mode) -> Result<Vec<Complex<f64>>, LimitError> {
+    fn eigenvector(&self, mode: Mode) -> Result<Vec<Complex>, LimitError> {
         let failed = || {
             self.neighbourhood
                 .unsuitable("a left eigenvector of its ring matrix could not be computed")
@@ -273,27 +272,17 @@ impl<'n, 's> Sector<'n, 's> {
         let scale = if vector[0].modulus() > 1e-9 {
             vector[0]
         } else {
-            vector.iter().copied().fold(Complex::new(0.0, 0.0), |a, b| {
+            vector.iter().copied().fold(Complex::ZERO, |a, b| {
                 if b.modulus() > a.modulus() { b } else { a }
             })
         };
         let k = self.valence();
-        let turned = |weight: Complex<f64>| {
+        let turned = |weight: Complex| {
             let weight = weight / scale;
             (0..k).map(move |j| weight * self.roots[(mode.frequency * j) % k].conj())
         };
         Ok(vector.iter().flat_map(|&weight| turned(weight)).collect())
     }
-}
-
-fn indexed(
-    matrix: &mut DMatrix<Complex<f64>>,
-) -> impl Iterator<Item = ((usize, usize), &mut Complex<f64>)> {
-    let rows = matrix.nrows();
-    matrix
-        .iter_mut()
-        .enumerate()
-        .map(move |(i, entry)| ((i % rows, i / rows), entry))
 }
 
 /// Checks on two other sectors that their rows are the first one's, turned.

@@ -8,10 +8,10 @@
 //! With Loop's scheme the odd patterns do not notice the crease, so that the tangent across it is the smooth one;
 //! that along it, and the position, are not those of the smooth vertex (from which they differ by tenths).
 
-use nalgebra::{Complex, ComplexField, DMatrix, DVector};
-
 use super::LimitError;
-use super::eigen::{block, components, eigenvalues, left_vector};
+use super::complex::Complex;
+use super::eigen::{components, eigenvalues, left_vector};
+use super::matrix::Matrix;
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 use crate::scheme::Support;
@@ -43,9 +43,9 @@ pub(super) fn analyse(neighbourhood: &Neighbourhood<'_>) -> Result<LimitStencil,
     }
     let differences = differences(&rows);
     let mirror = mirror(neighbourhood);
-    let n = differences.nrows();
+    let n = differences.row_count();
     let is_mirrored = |i: usize, j: usize| {
-        (differences[(i, j)] - differences[(mirror[i], mirror[j])]).abs() <= MIRROR_TOLERANCE
+        (differences[(i, j)] - differences[(mirror[i], mirror[j])]).modulus() <= MIRROR_TOLERANCE
     };
     if !(0..n).all(|i| (0..n).all(|j| is_mirrored(i, j))) {
         return Ok(bare);
@@ -138,13 +138,13 @@ fn position(
 }
 
 /// D over all points but the vertex.
-fn differences(rows: &[Vec<(usize, f64)>]) -> DMatrix<f64> {
+fn differences(rows: &[Vec<(usize, f64)>]) -> Matrix {
     let n = rows.len() - 1;
-    let mut differences = DMatrix::zeros(n, n);
+    let mut differences = Matrix::zeros(n, n);
     for (i, row) in rows[1..].iter().enumerate() {
         for (share, entries) in [(1.0, row), (-1.0, &rows[0])] {
             for &(column, weight) in entries.iter().filter(|&&(column, _)| column > 0) {
-                differences[(i, column - 1)] += share * weight;
+                differences[(i, column - 1)] += (share * weight).into();
             }
         }
     }
@@ -170,32 +170,32 @@ struct Parity<'d> {
     sign: f64,
     /// One point of each pair of mirror images.
     points: Vec<usize>,
-    matrix: DMatrix<f64>,
+    matrix: Matrix,
     components: Vec<Vec<usize>>,
-    modes: Vec<(Complex<f64>, usize)>,
+    modes: Vec<(Complex, usize)>,
 }
 
 impl<'d> Parity<'d> {
     /// Even functionals for `sign` 1, odd ones for −1. `None` where an iteration does not converge.
-    fn new(differences: &DMatrix<f64>, mirror: &'d [usize], sign: f64) -> Option<Self> {
+    fn new(differences: &Matrix, mirror: &'d [usize], sign: f64) -> Option<Self> {
         let is_own = |i: usize| mirror[i] == i;
         let points: Vec<usize> = (0..mirror.len())
             .filter(|&i| i < mirror[i] || (is_own(i) && sign > 0.0))
             .collect();
         // The value at j after a step of a functional with weight 1 at i and ±1 at its image.
-        let matrix = DMatrix::from_fn(points.len(), points.len(), |a, b| {
+        let matrix = Matrix::from_fn(points.len(), points.len(), |a, b| {
             let (i, j) = (points[a], points[b]);
             let image = if is_own(i) {
-                0.0
+                Complex::ZERO
             } else {
-                sign * differences[(mirror[i], j)]
+                differences[(mirror[i], j)] * sign
             };
             differences[(i, j)] + image
         });
         let components = components(&matrix);
         let mut modes = Vec::with_capacity(points.len());
         for (component, rows) in components.iter().enumerate() {
-            let values = eigenvalues(&block(&matrix, rows, rows))?;
+            let values = eigenvalues(&matrix.block(rows, rows))?;
             modes.extend(values.into_iter().map(|value| (value, component)));
         }
         modes.sort_by(|a, b| b.0.modulus().total_cmp(&a.0.modulus()));
@@ -214,20 +214,17 @@ impl<'d> Parity<'d> {
     }
 
     /// The dominant functional over all points, its greatest weight on the first `ring` of them 1.
-    fn dominant(&self, ring: usize) -> Option<DVector<f64>> {
+    fn dominant(&self, ring: usize) -> Option<Vec<f64>> {
         let &(value, component) = self.modes.first().filter(|mode| is_real(mode.0))?;
         let own = left_vector(&self.matrix, &self.components, component, value.re)?;
-        let mut all = DVector::zeros(self.mirror.len());
-        for (&point, &weight) in self.points.iter().zip(own.iter()) {
+        let mut all = vec![0.0; self.mirror.len()];
+        for (&point, &weight) in self.points.iter().zip(&own) {
             all[self.mirror[point]] = self.sign * weight;
             all[point] = weight;
         }
-        let most = all
-            .rows(0, ring)
-            .iter()
-            .copied()
-            .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
-        (most != 0.0).then(|| all / most)
+        let greatest = |a: f64, &b: &f64| if b.abs() > a.abs() { b } else { a };
+        let most = all[..ring].iter().fold(0.0, greatest);
+        (most != 0.0).then(|| all.iter().map(|weight| weight / most).collect())
     }
 }
 

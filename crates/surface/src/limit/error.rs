@@ -1,15 +1,15 @@
 //! Why a scheme has no limit stencil at a ring.
 
+use crate::error_messages;
 use crate::mesh::Mesh;
 use crate::ring::RingShape;
 use crate::scheme::{Family, Scheme};
 
 /// Why a scheme has no limit stencil at a ring.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum LimitError {
     /// The scheme's masks do not have the property that the analysis rests on.
-    #[error("scheme {scheme} at {shape:?}: {what}")]
     Unsuitable {
         /// The scheme's name.
         scheme: String,
@@ -19,13 +19,19 @@ pub enum LimitError {
         what: String,
     },
     /// A scheme for quads and a mesh of triangles, or the other way round, or a function that is for triangles alone.
-    #[error("{what} needs a mesh of {expected}, which this one is not")]
     Cells {
         /// The scheme or the function.
         what: String,
         /// The faces that it is for.
         expected: &'static str,
     },
+}
+
+error_messages! {
+    LimitError {
+        Self::Unsuitable { scheme, shape, what } => ("scheme {scheme} at {shape:?}: {what}"),
+        Self::Cells { what, expected } => ("{what} needs a mesh of {expected}, which this one is not"),
+    }
 }
 
 /// Refuses a scheme for quads on a mesh of triangles, and others on a mesh of quads.

@@ -99,10 +99,12 @@
 //! ```
 
 mod closed;
+mod complex;
 mod dart;
 mod eigen;
 mod error;
 mod evaluate;
+mod matrix;
 mod neighbourhood;
 mod open;
 pub(crate) mod quads;

@@ -15,12 +15,12 @@
 //! * **Corner**: the two dominant left eigenvectors of B, that is both boundary edges, where they dominate A or draw
 //!   it along.
 
-use nalgebra::{Complex, ComplexField, DMatrix, DVector};
-
 use super::LimitError;
+use super::complex::Complex;
 use super::eigen::{
-    block, components, eigenspace_dimension, eigenvalues, join_jordan_blocks, left_vector,
+    components, eigenspace_dimension, eigenvalues, join_jordan_blocks, left_vector, only_solution,
 };
+use super::matrix::Matrix;
 use super::neighbourhood::Neighbourhood;
 use super::stencil::{LimitStencil, TangentPlane, is_real, same_modulus};
 
@@ -31,7 +31,7 @@ const GREATEST_VALENCE: usize = 512;
 /// An eigenvalue of D and the component it belongs to.
 #[derive(Clone, Copy)]
 struct Mode {
-    value: Complex<f64>,
+    value: Complex,
     component: usize,
     on_boundary: bool,
     /// Whether the eigenvalue has a Jordan block: its pattern grows by a power of the number of
@@ -104,48 +104,39 @@ fn position(neighbourhood: &Neighbourhood<'_>) -> Result<Vec<f64>, LimitError> {
     }
     // As in a closed ring: the first column of x·(S − 1) = 0 is replaced by "the weights sum to 1".
     let n = boundary.len();
-    let system = DMatrix::from_fn(n, n, |equation, unknown| match equation {
+    let system = Matrix::from_fn(n, n, |equation, unknown| match equation {
         0 => 1.0,
         _ => rows[unknown][boundary[equation]] - f64::from(u8::from(equation == unknown)),
     });
-    let right = DVector::from_fn(n, |i, _| f64::from(u8::from(i == 0)));
-    match system.lu().solve(&right) {
-        Some(solution) if solution.iter().all(|weight| weight.is_finite()) => {
-            boundary
-                .iter()
-                .zip(solution.iter())
-                .for_each(|(&point, &weight)| weights[point] = weight);
-            Ok(weights)
-        }
-        _ => Err(neighbourhood
-            .unsuitable("the eigenvalue 1 of the boundary's ring matrix must be simple")),
-    }
+    let solution = only_solution(system).ok_or_else(|| {
+        neighbourhood.unsuitable("the eigenvalue 1 of the boundary's ring matrix must be simple")
+    })?;
+    boundary
+        .iter()
+        .zip(solution)
+        .for_each(|(&point, weight)| weights[point] = weight);
+    Ok(weights)
 }
 
 /// D over all points but the vertex.
-fn difference_matrix(neighbourhood: &Neighbourhood<'_>) -> Result<DMatrix<f64>, LimitError> {
+fn difference_matrix(neighbourhood: &Neighbourhood<'_>) -> Result<Matrix, LimitError> {
     let n = neighbourhood.len() - 1;
     let centre = neighbourhood.row(0)?;
-    let mut differences = DMatrix::zeros(n, n);
-    for i in 0..n {
-        let row = neighbourhood.row(i + 1)?;
-        for j in 0..n {
-            differences[(i, j)] = row[j + 1] - centre[j + 1];
-        }
-    }
-    Ok(differences)
+    let rows = (1..=n).map(|point| neighbourhood.row(point));
+    let rows = rows.collect::<Result<Vec<_>, LimitError>>()?;
+    Ok(Matrix::from_fn(n, n, |i, j| rows[i][j + 1] - centre[j + 1]))
 }
 
 /// All eigenvalues of D, by falling modulus.
 fn modes(
     neighbourhood: &Neighbourhood<'_>,
-    differences: &DMatrix<f64>,
+    differences: &Matrix,
     components: &[Vec<usize>],
 ) -> Result<Vec<Mode>, LimitError> {
-    let mut modes = Vec::with_capacity(differences.nrows());
+    let mut modes = Vec::with_capacity(differences.row_count());
     for (component, rows) in components.iter().enumerate() {
         let on_boundary = rows.iter().all(|&i| neighbourhood.is_on_boundary(i + 1));
-        let own = block(differences, rows, rows);
+        let own = differences.block(rows, rows);
         let Some(values) = eigenvalues(&own) else {
             return Err(neighbourhood
                 .unsuitable("the eigenvalues of its ring matrix could not be computed"));
@@ -165,7 +156,7 @@ fn modes(
 /// The modes of both tangents, their span, and the greatest modulus among the others.
 fn choose(
     neighbourhood: &Neighbourhood<'_>,
-    differences: &DMatrix<f64>,
+    differences: &Matrix,
     modes: &[Mode],
 ) -> Option<([Mode; 2], TangentPlane, f64)> {
     let place = |from: usize, on_boundary: bool| {
@@ -222,7 +213,7 @@ fn choose(
 /// the boundary's plane (like the number of steps): D has no other left eigenvectors for that eigenvalue.
 ///
 /// So it is at corners of three faces with Loop's scheme.
-fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2]) -> bool {
+fn draws_others_along(differences: &Matrix, modes: &[Mode], pair: [Mode; 2]) -> bool {
     let value = pair[0].value;
     let is_same = |mode: &Mode| (mode.value - value).modulus() <= 1e-12;
     let no_slower = |mode: &&Mode| {
@@ -233,38 +224,32 @@ fn draws_others_along(differences: &DMatrix<f64>, modes: &[Mode], pair: [Mode; 2
     is_same(&pair[1])
         && count > 2
         && modes.iter().filter(no_slower).all(is_same)
-        && eigenspace_dimension(differences, value.re) == Some(2)
+        && eigenspace_dimension(differences, value.re) == 2
 }
 
 /// Both eigenvectors in the scale that [`LimitStencil::tangent_weights`] promises.
-fn scaled(
-    neighbourhood: &Neighbourhood<'_>,
-    along: DVector<f64>,
-    across: DVector<f64>,
-) -> Vec<[f64; 2]> {
+fn scaled(neighbourhood: &Neighbourhood<'_>, along: Vec<f64>, across: Vec<f64>) -> Vec<[f64; 2]> {
     let k = neighbourhood.valence();
-    let greatest = |vector: &DVector<f64>| {
-        let ring = vector.rows(0, k).amax();
-        if ring > 0.0 { ring } else { vector.amax() }
+    let greatest_of = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let greatest = |vector: &[f64]| {
+        let ring = greatest_of(&vector[..k]);
+        if ring > 0.0 {
+            ring
+        } else {
+            greatest_of(vector)
+        }
     };
-    let along_scale = if along[0] < 0.0 {
-        -greatest(&along)
-    } else {
-        greatest(&along)
-    };
-    let inner = if k > 2 {
-        across.rows(1, k - 2).norm()
-    } else {
-        0.0
-    };
-    let across_scale = if inner > 1e-9 * across.norm() {
+    let along_scale = greatest(&along).copysign(along[0]);
+    let length = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let inner = length(&across[1..k - 1]);
+    let across_scale = if inner > 1e-9 * length(&across) {
         inner / ((k - 1) as f64 / 2.0).sqrt()
     } else {
         greatest(&across)
     };
     along
         .iter()
-        .zip(across.iter())
+        .zip(&across)
         .map(|(u, w)| [u / along_scale, w / across_scale])
         .collect()
 }

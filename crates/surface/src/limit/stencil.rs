@@ -5,8 +5,7 @@
 
 use core::f64::consts::{FRAC_PI_3, PI, TAU};
 
-use nalgebra::{Complex, ComplexField};
-
+use super::complex::Complex;
 use crate::math;
 use crate::ring::RingShape;
 use crate::scheme::Support;
@@ -172,6 +171,6 @@ pub(super) fn same_modulus(a: f64, b: f64) -> bool {
 }
 
 /// Whether an eigenvalue is real up to rounding.
-pub(super) fn is_real(value: Complex<f64>) -> bool {
+pub(super) fn is_real(value: Complex) -> bool {
     value.im.abs() <= 1e-12 * value.modulus()
 }

@@ -1,5 +1,7 @@
 //! Places on a face as weights of its corners with few digits, corrected to a sum of 1.
 
+use crate::error_messages;
+
 /// How far the sum of weights may be from 1: three of four decimals each, such as 0.3333, are off by up to 1.5e-4 together.
 const OF_SUMS: f64 = 2e-4;
 
@@ -10,21 +12,26 @@ const OF_WEIGHTS: f64 = 1e-6;
 const OF_DOUBLES: f64 = 4.0 * f64::EPSILON;
 
 /// An error of barycentric coordinates.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum BarycentricError {
     /// A weight is below 0.
-    #[error("the weight {weight:?} is below 0: the place is not on the face")]
     Outside {
         /// The weight.
         weight: f64,
     },
     /// The weights do not add up to 1, or are no numbers.
-    #[error("the weights add up to {sum:?} rather than 1 (to {OF_SUMS:?})")]
     Sum {
         /// The sum of the weights.
         sum: f64,
     },
+}
+
+error_messages! {
+    BarycentricError {
+        Self::Outside { weight } => ("the weight {weight:?} is below 0: the place is not on the face"),
+        Self::Sum { sum } => ("the weights add up to {sum:?} rather than 1 (to {OF_SUMS:?})"),
+    }
 }
 
 /// Weights of the corners of a face that add up to 1, of weights that nearly do: divided by their sum, if that is within 2e-4 of 1.

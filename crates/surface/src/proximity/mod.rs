@@ -12,6 +12,7 @@ mod nearest;
 mod pieces;
 mod winding;
 
+use crate::error_messages;
 use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::BoxTree;
 use crate::index::FaceId;
@@ -40,27 +41,19 @@ const NEAR: f64 = 1e-9;
 const LEAST_TOLERANCE: f64 = 1e-13;
 
 /// An error of proximity.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ProximityError {
     /// Bounds exist only for schemes of Loop's family and for Catmull–Clark.
-    #[error(
-        "closest points are found on surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"
-    )]
     Scheme {
         /// The scheme's name.
         name: String,
     },
     /// A mesh without faces has no surface.
-    #[error("the control mesh has no faces")]
     Empty,
     /// A limit stencil failed.
-    #[error(transparent)]
-    Limit(#[from] crate::limit::LimitError),
+    Limit(crate::limit::LimitError),
     /// An open surface has no inside.
-    #[error(
-        "the surface has no inside: the edge from vertex {from} to vertex {to} is on its boundary"
-    )]
     Open {
         /// Where the first boundary edge begins.
         from: u32,
@@ -68,7 +61,6 @@ pub enum ProximityError {
         to: u32,
     },
     /// A point is not finite.
-    #[error("point {index} is not finite: ({}, {}, {})", .point[0], .point[1], .point[2])]
     NotFinite {
         /// Which of those that were given.
         index: usize,
@@ -76,10 +68,6 @@ pub enum ProximityError {
         point: [f64; 3],
     },
     /// A point whose squared distance overflows.
-    #[error(
-        "point {index} at ({}, {}, {}) is too far from the surface for its distance, by the surface's size, to be squared",
-        .point[0], .point[1], .point[2]
-    )]
     TooFar {
         /// Which of those that were given.
         index: usize,
@@ -87,14 +75,25 @@ pub enum ProximityError {
         point: [f64; 3],
     },
     /// A tolerance is out of range.
-    #[error("the tolerance must be a length above 0, but is {tolerance}")]
     Tolerance {
         /// The given value.
         tolerance: f64,
     },
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    ProximityError {
+        Self::Scheme { name } => ("closest points are found on surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"),
+        Self::Empty => ("the control mesh has no faces"),
+        Self::Open { from, to } => ("the surface has no inside: the edge from vertex {from} to vertex {to} is on its boundary"),
+        Self::NotFinite { index, point } => ("point {index} is not finite: ({}, {}, {})", point[0], point[1], point[2]),
+        Self::TooFar { index, point } => ("point {index} at ({}, {}, {}) is too far from the surface for its distance, by the surface's size, to be squared",
+        point[0], point[1], point[2]),
+        Self::Tolerance { tolerance } => ("the tolerance must be a length above 0, but is {tolerance}"),
+    }
+    from { Limit(crate::limit::LimitError), Cancelled(Cancelled) }
 }
 
 /// The point of a limit surface that is closest to a given one.

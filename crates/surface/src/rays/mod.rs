@@ -12,6 +12,7 @@ mod pieces;
 mod planar;
 mod search;
 
+use crate::error_messages;
 use crate::geometry::SurfaceFrame;
 use crate::geometry::box_tree::{Bounds, BoxTree, NO_BOUNDS, grown};
 use crate::index::FaceId;
@@ -108,23 +109,25 @@ pub struct Hit {
 }
 
 /// An error of rays.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum RayError {
     /// Hulls exist only for schemes of Loop's family and for Catmull–Clark.
-    #[error(
-        "rays are followed to surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"
-    )]
     Scheme {
         /// The scheme's name.
         name: String,
     },
     /// A limit stencil failed.
-    #[error(transparent)]
-    Limit(#[from] crate::limit::LimitError),
+    Limit(crate::limit::LimitError),
     /// The observer asked to stop.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    Cancelled(Cancelled),
+}
+
+error_messages! {
+    RayError {
+        Self::Scheme { name } => ("rays are followed to surfaces of the Loop family and Catmull–Clark, not of the scheme '{name}'"),
+    }
+    from { Limit(crate::limit::LimitError), Cancelled(Cancelled) }
 }
 
 /// A limit surface, ready for many rays.

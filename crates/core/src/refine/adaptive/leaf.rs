@@ -71,7 +71,7 @@ mod tests {
                     let own = LeafTriangle::of(labels);
                     let case = format!("{split} {diagonal:?}: {labels:?} {own:?}");
                     let turned = |turn: usize| {
-                        (0..3).all(|i| own.corners[i] == labels[(i + turn) % 3].into())
+                        (0..3).all(|i| own.corners[i] == usize::from(labels[(i + turn) % 3]))
                     };
                     assert!((0..3).any(turned), "{case}");
                     assert_eq!(
