@@ -466,6 +466,7 @@ class Refined:
             {name: restored(channel[slice(None)], channel) for name, channel in faces.items()},
             frozenset(name for name, channel in self.channels.items() if channel.semantic == "texture"),
             self.parent_face,
+            split.sources,
         )
 
 
