@@ -210,6 +210,11 @@ def test_trimesh_in_one_call(octahedron):
     assert fine.visual.uv.shape == (len(own.vertices), 2) and len(fine.vertex_attributes["heat"]) == len(own.vertices)
     part = limitmesh.refine_trimesh(trimesh.creation.cylinder(1.0, 2.0), "0.1%", creases="auto")
     assert part.is_watertight and abs(part.volume / (2 * np.pi) - 1) < 0.01
+    # Parts that touch stay two.
+    one, other = trimesh.creation.box(), trimesh.creation.box()
+    other.apply_translation([1, 0, 0])
+    both = limitmesh.refine_trimesh(trimesh.util.concatenate([one, other]), "1%", crease_angle=30)
+    assert both.is_watertight and abs(both.volume - 2) < 1e-9
     with pytest.raises(limitmesh.MeshError, match="a trimesh scene"):
         limitmesh.refine_trimesh(trimesh.Scene([mesh]))
 

@@ -50,7 +50,11 @@ def refine_trimesh(mesh: Any, tolerance: Length | None = None, **options: Any) -
     >>> smooth.is_watertight, len(smooth.faces) > 80
     (True, True)
     """
-    made = to_trimesh(refine(from_trimesh(mesh), tolerance=tolerance, **options), visual=mesh.visual)
+    given = from_trimesh(mesh)
+    if mesh.is_watertight:
+        # Its parts may touch, and would become one.
+        options.setdefault("weld", None)
+    made = to_trimesh(refine(given, tolerance=tolerance, **options), visual=mesh.visual)
     made.metadata.update(copy.deepcopy(mesh.metadata))
     return made
 

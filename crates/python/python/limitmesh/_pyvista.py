@@ -12,9 +12,10 @@ from ._incoming import carried
 from ._limitmesh import MeshError
 from ._measure import Distance, measure
 from ._options import Length
-from ._outgoing import to_pyvista
+from ._outgoing import Outgoing, to_pyvista
 from ._project import project
 from ._refine import refine
+from ._refined import Refined
 
 
 @pyvista.register_dataset_accessor("limitmesh", pyvista.DataSet)
@@ -54,21 +55,14 @@ class Accessor:
         surface = self._surface()
         bare = surface.copy(deep=False)
         bare.cell_data.clear()
-        points = {name: np.asarray(values) for name, values in surface.point_data.items() if name != "Normals"}
-        nearest = {name: values for name, values in points.items() if not _is_blended(name, values)}
-        for name in nearest:
-            bare.point_data.remove(name)
+        for name, values in surface.point_data.items():
+            if not _is_blended(name, values):
+                bare.point_data.remove(name)
         fine = refine(bare, tolerance=tolerance, **options)
         outgoing = fine._outgoing(sides=False)
         made = to_pyvista(outgoing)
-        for name, values in bare.point_data.items():
-            if name in outgoing.by_vertex:
-                made.point_data[name] = made.point_data[name].astype(values.dtype)
-        if nearest and fine.barycentric is not None and fine.barycentric_vertices is not None:
-            corner = fine.barycentric.argmax(axis=1)[:, None]
-            rows = np.take_along_axis(fine.barycentric_vertices, corner, axis=1)[outgoing.sources, 0]
-            for name, values in nearest.items():
-                made.point_data[name] = values[rows]
+        for name, values in _data_of_points(surface, bare, fine, outgoing).items():
+            made.point_data[name] = values
         if fine.parent_face is not None:
             # Points and lines are cells, too, and stand before the faces.
             cells = fine.parent_face + (surface.n_verts + surface.n_lines)
@@ -118,6 +112,21 @@ def _is_blended(name: str, values: npt.NDArray[Any]) -> bool:
     """Whether values between those of points mean something."""
     channel = carried(name, values, "vertex")
     return channel is not None and (values.dtype.kind == "f" or channel.semantic == "colour")
+
+
+def _data_of_points(surface: Any, blended: Any, fine: Refined, outgoing: Outgoing) -> dict[str, npt.NDArray[Any]]:
+    """Data of points with the types that they had: those that another dataset has as well are blended, the others of the nearest point."""
+    found = {}
+    for name in set(blended.point_data) & set(outgoing.by_vertex):
+        values, dtype = outgoing.by_vertex[name], surface.point_data[name].dtype
+        values = values.reshape(len(values), *surface.point_data[name].shape[1:])
+        found[name] = (np.rint(values) if dtype.kind in "iu" else values).astype(dtype)
+    if fine.barycentric is not None and fine.barycentric_vertices is not None:
+        corner = fine.barycentric.argmax(axis=1)[:, None]
+        nearest = np.take_along_axis(fine.barycentric_vertices, corner, axis=1)[outgoing.sources, 0]
+        for name in set(surface.point_data) - set(blended.point_data) - {"Normals"}:
+            found[name] = np.asarray(surface.point_data[name])[nearest]
+    return {name: found[name] for name in surface.point_data if name in found}
 
 
 def _show_as(surface: Any, made: Any) -> None:
