@@ -116,6 +116,10 @@ def test_files_at_addresses(tmp_path, memory):
         assert line["error"]["kind"] == "file" and f"memory://in/{name}.obj" in line["error"]["message"]
     assert "limitmesh-" not in memory.cat("/results/all.jsonl").decode()
     assert sorted(memory.find("/out")) == [f"/out/deep/{i}.ply" for i in range(3)]
+    # A place that has folders.
+    place = (tmp_path / "elsewhere").as_uri()
+    assert limitmesh.batch([{**there[1], "output": f"{place}/deep/0.ply"}], f"{place}/results.jsonl").done == 1
+    assert (tmp_path / "elsewhere/deep/0.ply").read_bytes() == jobs[1]["output"].read_bytes()
     # Resumed: what is there is kept, what is not is done again.
     before = memory.cat("/results/all.jsonl")
     with pytest.raises(limitmesh.ReadError, match="resume=True"):
@@ -177,6 +181,9 @@ def test_tables(tmp_path, request, place):
             assert found == {name: value for name, value in line.items() if value is not None}
     with pytest.raises(limitmesh.ReadError, match="resume=True"):
         limitmesh.batch(source, target)
+    with pytest.raises(limitmesh.ReadError, match="cannot be written"):
+        limitmesh.batch([{"input": "builtin:cup", "output": tmp_path / "cup.ply"}], tmp_path / "none/results.parquet")
+    assert not (tmp_path / "cup.ply").exists()
     (tmp_path / "no.parquet").write_text("no table")
     with pytest.raises(limitmesh.ReadError, match="no.parquet cannot be read"):
         limitmesh.batch(tmp_path / "no.parquet", tmp_path / "other.jsonl")

@@ -147,8 +147,10 @@ def _fetch_results(target: str, here: str, resume: bool, folder: Path, files: Re
     if is_there and not resume:
         raise _limitmesh.ReadError(f"{target} is there already; resume=True goes on with it")
     if not is_there:
-        return
-    if _tables.is_table(target):
+        # What cannot be written is found before any work.
+        Path(here).touch()
+        _store_results(here, target, folder, files)
+    elif _tables.is_table(target):
         table = files.fetch_to(target, folder / "earlier.parquet") if is_address(target) else target
         _tables.lines_of(table, here)
     else:
@@ -157,12 +159,14 @@ def _fetch_results(target: str, here: str, resume: bool, folder: Path, files: Re
 
 def _store_results(here: str, target: str, folder: Path, files: RemoteFiles) -> None:
     """Lines of results as the file that was asked for."""
-    if _tables.is_table(target):
-        made = folder / "results.parquet" if is_address(target) else Path(f"{target}.unfinished")
-        _tables.results_of(here, made)
-    else:
+    try:
         made = Path(here)
-    if is_address(target):
-        files.store(made, target)
-    else:
-        os.replace(made, target)
+        if _tables.is_table(target):
+            made = folder / "results.parquet" if is_address(target) else Path(f"{target}.unfinished")
+            _tables.results_of(here, made)
+        if is_address(target):
+            files.store(made, target)
+        else:
+            os.replace(made, target)
+    except OSError as why:
+        raise _limitmesh.ReadError(f"{target} cannot be written: {why}") from why

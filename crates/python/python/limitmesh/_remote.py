@@ -45,9 +45,12 @@ class RemoteFiles:
     def store(self, source: str | os.PathLike[str], address: str) -> None:
         """Copies a file of this machine to an address."""
         files, path = _reached(address)
-        if not files.isdir(parent := files._parent(path)):
-            files.makedirs(parent, exist_ok=True)
-        files.put_file(os.fspath(source), path)
+        try:
+            files.put_file(os.fspath(source), path)
+        except FileNotFoundError:
+            # Buckets have no folders, other places do.
+            files.makedirs(files._parent(path), exist_ok=True)
+            files.put_file(os.fspath(source), path)
 
     def size(self, address: str) -> int | None:
         """Bytes of a file; None where there is none."""
