@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _limitmesh, _options, _tables
+from ._again import again
 from ._files import _name
 from ._limitmesh import OptionError
 from ._options import ProgressCallback
@@ -109,7 +109,7 @@ def batch(
             if value is not None:
                 arguments.append(f"--{name}={value}")
         try:
-            counts = _limitmesh.batch(arguments, [sys.executable, "-m", "limitmesh"], files, _options.callback_of(progress))
+            counts = _limitmesh.batch(arguments, again(), files, _options.callback_of(progress))
         finally:
             # Also what an interrupt left: it can be resumed.
             if is_copied and os.path.exists(here):
